@@ -1,0 +1,3 @@
+//! What a command leaves behind: pictures, numbers, tables.
+
+pub mod picture;

@@ -1,0 +1,73 @@
+//! Triangle lists and where they stand.
+
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+/// One triangle list with one material, in object space.
+///
+/// The vertex arrays all have the same length; `indices` holds three entries a triangle, each below that length.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    pub name: String,
+    /// Metres.
+    pub positions: Vec<Vec3>,
+    /// Unit length.
+    pub normals: Vec<Vec3>,
+    /// xyz unit length along increasing u, w = +1 or -1: the bitangent is w * cross(normal, tangent).
+    /// All zero where the material has no normal map.
+    pub tangents: Vec<Vec4>,
+    /// Texture coordinates, glTF's convention: (0, 0) is the picture's upper left corner.
+    pub uvs: Vec<Vec2>,
+    pub indices: Vec<u32>,
+    /// Index into `Scene::materials`.
+    pub material: usize,
+}
+
+impl Mesh {
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len() / 3
+    }
+
+    /// The three corners of triangle `triangle`, in object space.
+    pub fn triangle(&self, triangle: usize) -> [Vec3; 3] {
+        [0, 1, 2].map(|corner| self.positions[self.indices[3 * triangle + corner] as usize])
+    }
+}
+
+/// One mesh at one place.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw {
+    /// Index into `Scene::meshes`.
+    pub mesh: usize,
+    /// Affine. A negative determinant mirrors: the renderer then turns the winding around.
+    pub world_from_object: Mat4,
+}
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub min: Vec3,
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    pub fn include(&mut self, point: Vec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    pub fn center(&self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Length of the diagonal in metres; 0 where empty.
+    pub fn diagonal(&self) -> f32 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+    }
+}

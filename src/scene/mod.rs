@@ -1,0 +1,61 @@
+//! The scene on the host: triangles, materials, textures, lights, cameras. No Vulkan types.
+//!
+//! World space is glTF's: right-handed, y up, metres. Light is glTF's: candela, lux, emissive radiance
+//! (see `shading` for what they mean in a picture).
+
+pub mod camera;
+pub mod gltf;
+pub mod light;
+pub mod material;
+pub mod mesh;
+pub mod procedural;
+pub mod texture;
+
+pub use camera::{Camera, Projection};
+pub use light::{Light, LightKind};
+pub use material::{AlphaMode, Material};
+pub use mesh::{Bounds, Draw, Mesh};
+pub use texture::{ColorSpace, Image, Sampler, Texture, Wrap};
+
+/// Everything that a technique may draw.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The built-in name with its parameters, or the file's stem.
+    pub name: String,
+    /// BLAKE3, in hexadecimal, of the bytes read and the import settings (of name and parameters for built-in scenes).
+    pub hash: String,
+    /// Triangle lists in object space, one material each (a glTF primitive).
+    pub meshes: Vec<Mesh>,
+    /// Which mesh stands where. Several draws may share a mesh.
+    pub draws: Vec<Draw>,
+    /// At least one where there is a mesh; `Mesh::material` points here.
+    pub materials: Vec<Material>,
+    /// An image seen through a sampler in a colour space; materials point here.
+    pub textures: Vec<Texture>,
+    /// Decoded pictures; textures point here.
+    pub images: Vec<Image>,
+    /// Punctual lights. Emissive materials are not listed here.
+    pub lights: Vec<Light>,
+    /// Cameras in file order. May be empty: the job then frames the bounds.
+    pub cameras: Vec<Camera>,
+    /// What was ignored or replaced on import, one sentence each, for the user to read.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// How many triangles all draws together have.
+    pub fn triangle_count(&self) -> u64 {
+        self.draws.iter().map(|draw| self.meshes[draw.mesh].triangle_count() as u64).sum()
+    }
+
+    /// The box around everything that is drawn, in world space; empty where nothing is drawn.
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for draw in &self.draws {
+            for position in &self.meshes[draw.mesh].positions {
+                bounds.include(draw.world_from_object.transform_point3(*position));
+            }
+        }
+        bounds
+    }
+}

@@ -1,0 +1,56 @@
+//! Decoded pictures and how they are sampled.
+
+/// 8-bit RGBA, row-major from the upper left corner, 4 * width * height bytes.
+#[derive(Clone, Debug, Default)]
+pub struct Image {
+    pub name: String,
+    pub width: u32,
+    pub height: u32,
+    pub rgba8: Vec<u8>,
+}
+
+/// What the numbers of an image mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ColorSpace {
+    /// sRGB-encoded colour (base colour, emissive); alpha is linear.
+    Srgb,
+    /// Plain numbers (normals, metallic and roughness).
+    Linear,
+}
+
+/// What lies outside 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    Repeat,
+    MirroredRepeat,
+    ClampToEdge,
+}
+
+/// glTF's sampler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sampler {
+    pub wrap_u: Wrap,
+    pub wrap_v: Wrap,
+    /// Linear when magnified, else nearest.
+    pub mag_linear: bool,
+    /// Linear inside a level when minified, else nearest.
+    pub min_linear: bool,
+    /// None: only the finest level is used. Some(true): linear between levels, Some(false): the nearest level.
+    pub mip_linear: Option<bool>,
+}
+
+impl Default for Sampler {
+    /// glTF leaves the filter open where the file names none: trilinear, repeated.
+    fn default() -> Self {
+        Self { wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat, mag_linear: true, min_linear: true, mip_linear: Some(true) }
+    }
+}
+
+/// An image seen through a sampler in a colour space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Texture {
+    /// Index into `Scene::images`.
+    pub image: usize,
+    pub sampler: Sampler,
+    pub color_space: ColorSpace,
+}
