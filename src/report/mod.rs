@@ -1,3 +1,6 @@
 //! What a command leaves behind: pictures, numbers, tables.
 
+pub mod image_file;
 pub mod picture;
+pub mod tonemap;
+pub mod whole_file;

@@ -1,0 +1,206 @@
+//! Pictures as files: EXR for the numbers, PNG for the eye. The extension chooses.
+
+mod exr_file;
+mod png_file;
+
+use std::fmt::Display;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::report::picture::Picture;
+use crate::report::tonemap::{Srgb8, ToneMap};
+use crate::units::{Bytes, Extent};
+
+/// How a picture is written. A PNG heeds `exposure_ev` and `tone_map`, an EXR the others.
+#[derive(Clone, Debug, Default)]
+pub struct WriteOptions<'a> {
+    /// PNG: stops; 0 makes radiance 1 white.
+    pub exposure_ev: f64,
+    /// PNG.
+    pub tone_map: ToneMap,
+    /// EXR: of every channel but the whole-number ones.
+    pub exr_precision: ExrPrecision,
+    /// EXR: layers beside the picture, with different names. A PNG has no room for them: writing one fails.
+    pub aovs: &'a [Aov],
+    /// EXR: text attributes, as (name, text): the command line, the technique, the scene's hash. Names are different, of 1
+    /// to 255 bytes, and none of OpenEXR's own. A PNG leaves them out.
+    pub attributes: Vec<(String, String)>,
+}
+
+/// The floating-point format of an EXR.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExrPrecision {
+    /// 32 bits: what is read back equals what was written.
+    #[default]
+    Float,
+    /// 16 bits, rounded to nearest, ties to even. A finite value past 65504, the largest half, becomes 65504.
+    Half,
+}
+
+/// A layer beside the picture (an arbitrary output variable): `name.R`, `name.G`, `name.B` or `name.Y` in the EXR.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aov {
+    /// ASCII, without a dot at either end: viewers group channels by what stands before the last dot.
+    pub name: String,
+    pub channels: AovChannels,
+}
+
+/// The numbers of an AOV, row-major, as many as the picture has pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AovChannels {
+    /// Three channels: `name.R`, `name.G`, `name.B`.
+    Rgb(Vec<[f32; 3]>),
+    /// One channel: `name.Y`.
+    Y(Vec<f32>),
+    /// One channel of whole numbers, `name.Y`, 32 bits in either precision.
+    YU32(Vec<u32>),
+}
+
+impl AovChannels {
+    fn pixel_count(&self) -> usize {
+        match self {
+            Self::Rgb(values) => values.len(),
+            Self::Y(values) => values.len(),
+            Self::YU32(values) => values.len(),
+        }
+    }
+}
+
+/// Writes a picture as `path`'s extension says: `.png` (8-bit sRGB) or `.exr` (scene-linear), whole or not at all.
+///
+/// Fails as a bad request that names the path and the cause: another extension, AOVs for a PNG, or a file that cannot be
+/// written.
+pub fn write(path: &Path, picture: &Picture, options: &WriteOptions) -> Result<()> {
+    match Format::of(path)? {
+        Format::Png if !options.aovs.is_empty() => Err(Error::request(format!(
+            "cannot write {}: a PNG has no room for the layer {}; -o FILE.exr has",
+            path.display(),
+            options.aovs[0].name
+        ))),
+        Format::Png => png_file::write(path, &Srgb8::from_picture(picture, options.exposure_ev, options.tone_map)),
+        Format::Exr => exr_file::write(path, picture, options),
+    }
+}
+
+/// Writes codes as they are, as a PNG; otherwise like [`write`]. `path` must end in `.png`.
+pub fn write_srgb8(path: &Path, codes: &Srgb8) -> Result<()> {
+    require_png(path)?;
+    png_file::write(path, codes)
+}
+
+/// Fails as a bad request unless `path` ends in `.png`: lets a command refuse before the work is done.
+pub fn require_png(path: &Path) -> Result<()> {
+    match Format::of(path)? {
+        Format::Png => Ok(()),
+        Format::Exr => {
+            Err(Error::request(format!("cannot write {}: this picture is a PNG; name it .png", path.display())))
+        }
+    }
+}
+
+/// Reads a picture as `path`'s extension says, to scene-linear RGB.
+///
+/// PNG: 8 or 16 bits a channel or fewer, grey, palette or RGB, sRGB-decoded to 0 to 1; alpha is dropped. EXR: the channels
+/// R, G, B of the first part that has them, half, float or whole numbers, over its data window, uncompressed or under RLE,
+/// ZIP, PIZ or PXR24.
+/// Fails as a bad request that names the path and the cause: missing, broken or of another kind, past 32768 pixels a side
+/// or 2 GiB decoded.
+pub fn read(path: &Path) -> Result<Picture> {
+    match Format::of(path)? {
+        Format::Png => png_file::read(path),
+        Format::Exr => exr_file::read(path),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Format {
+    Png,
+    Exr,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().unwrap_or_default();
+        if extension.eq_ignore_ascii_case("png") {
+            Ok(Self::Png)
+        } else if extension.eq_ignore_ascii_case("exr") {
+            Ok(Self::Exr)
+        } else {
+            Err(Error::request(format!("{}: a picture's name ends in .png or .exr", path.display())))
+        }
+    }
+}
+
+/// The largest side of a picture that is read, in pixels: the largest image a Vulkan driver of today makes.
+const SIDE_LIMIT_PX: u32 = 32768;
+
+/// The most bytes that a picture may take when decoded: a header of a few bytes must not claim the machine's memory.
+const DECODED_LIMIT: Bytes = Bytes(2 << 30);
+
+/// What a file's header claims, held against the limits before anything is allocated by it.
+fn require_within_limits(path: &Path, width: u64, height: u64) -> Result<Extent> {
+    let decoded = Bytes(width.saturating_mul(height).saturating_mul(size_of::<[f32; 3]>() as u64));
+    let side_limit = u64::from(SIDE_LIMIT_PX);
+    if width == 0 || height == 0 || width > side_limit || height > side_limit || decoded > DECODED_LIMIT {
+        return Err(unreadable(
+            path,
+            &format!(
+                "{width}x{height}: a side has 1 to {SIDE_LIMIT_PX} pixels, a decoded picture at most {DECODED_LIMIT}"
+            ),
+        ));
+    }
+    Ok(Extent::new(width as u32, height as u32))
+}
+
+fn unreadable(path: &Path, cause: &dyn Display) -> Error {
+    Error::request(format!("cannot read {}: {cause}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_extension_chooses_in_either_case_and_others_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = Picture::filled(Extent::new(3, 2), [1.0, 0.0, 1.0]);
+        for name in ["a.PNG", "a.Exr"] {
+            let path = folder.path().join(name);
+            write(&path, &picture, &WriteOptions::default()).unwrap();
+            assert_eq!(read(&path).unwrap(), picture);
+        }
+        for name in ["a.jpg", "a", ".png"] {
+            let path = folder.path().join(name);
+            for error in [read(&path).unwrap_err(), write(&path, &picture, &WriteOptions::default()).unwrap_err()] {
+                assert_eq!(error.exit_code(), 2);
+                assert!(error.message().ends_with("a picture's name ends in .png or .exr"), "{error}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_missing_file_and_a_folder_say_so() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("folder.png")).unwrap();
+        std::fs::create_dir(folder.path().join("folder.exr")).unwrap();
+        for (name, cause) in [
+            ("none.png", "No such file"),
+            ("none.exr", "No such file"),
+            ("folder.png", "directory"),
+            ("folder.exr", "directory"),
+        ] {
+            let error = read(&folder.path().join(name)).unwrap_err();
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.message().contains(name) && error.message().contains(cause), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_header_is_held_against_the_limits() {
+        let path = Path::new("a.png");
+        assert!(require_within_limits(path, 32768, 1).is_ok());
+        for (width, height) in [(0, 4), (32769, 1), (32768, 32768), (u64::MAX, u64::MAX)] {
+            assert!(require_within_limits(path, width, height).is_err(), "{width}x{height}");
+        }
+    }
+}

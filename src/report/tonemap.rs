@@ -1,0 +1,153 @@
+//! Scene-linear light to 8-bit sRGB and back: exposure, tone map, transfer function, rounding.
+//!
+//! Everything is computed in double precision and rounded once, without dither, so that the same picture gives the same
+//! bytes on every machine.
+
+use crate::error::{Error, Result};
+use crate::report::picture::Picture;
+use crate::units::Extent;
+
+/// How radiance above what a screen can show is brought down to 0 to 1. Input and output are linear.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneMap {
+    /// Each channel cut to 0 to 1. The default: below 1 it changes nothing, so two such pictures compare.
+    #[default]
+    Clip,
+    /// L / (1 + L) of the luminance with the hue kept, then cut (Reinhard et al. 2002, equation 3).
+    Reinhard,
+    /// A rational fit of the ACES reference rendering transform, each channel by itself (Narkowicz 2015).
+    Aces,
+}
+
+impl ToneMap {
+    /// Every tone map with the name that the command line gives it.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("clip", Self::Clip), ("reinhard", Self::Reinhard), ("aces", Self::Aces)];
+
+    /// The tone map of that name; a request error that lists the names otherwise.
+    pub fn parse(name: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, tone_map)| tone_map).ok_or_else(|| {
+            let names = Self::ALL.map(|(known, _)| known).join(", ");
+            Error::request(format!("--tonemap {name}: the tone maps are {names}"))
+        })
+    }
+
+    /// Linear RGB, finite and at least 0, to linear RGB in 0 to 1.
+    fn apply(self, color: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Clip => color.map(|channel| channel.min(1.0)),
+            Self::Reinhard => {
+                let scale = 1.0 / (1.0 + weighted(color, REC709_WEIGHTS));
+                color.map(|channel| (channel * scale).min(1.0))
+            }
+            Self::Aces => color.map(|x| {
+                let mapped = (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
+                mapped.min(1.0)
+            }),
+        }
+    }
+}
+
+/// Shares of red, green and blue in luminance (ITU-R BT.709, section 3.2).
+pub const REC709_WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+/// The sum of the channels, each times its weight.
+pub fn weighted(color: [f64; 3], weights: [f64; 3]) -> f64 {
+    color[0] * weights[0] + color[1] * weights[1] + color[2] * weights[2]
+}
+
+/// Linear 0 to 1 to sRGB-encoded 0 to 1 (IEC 61966-2-1).
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// sRGB-encoded 0 to 1 to linear 0 to 1 (IEC 61966-2-1).
+pub fn linear_from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// 8-bit sRGB, row-major from the upper left corner.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Srgb8 {
+    pub extent: Extent,
+    /// `extent.pixel_count()` entries.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+impl Srgb8 {
+    /// What a screen shows of a picture: times 2^`exposure_ev` (at 0, radiance 1 is white), tone-mapped, encoded, rounded
+    /// to the nearest code.
+    ///
+    /// Below zero and NaN are black, infinity is white.
+    pub fn from_picture(picture: &Picture, exposure_ev: f64, tone_map: ToneMap) -> Self {
+        let exposure = exposure_ev.exp2();
+        let encode = |pixel: &[f32; 3]| {
+            let exposed = pixel.map(|channel| {
+                // `max` turns NaN into 0; the upper bound keeps the tone maps away from infinity over infinity.
+                (f64::from(channel) * exposure).max(0.0).min(f64::from(f32::MAX))
+            });
+            tone_map.apply(exposed).map(|channel| (255.0 * srgb_from_linear(channel)).round() as u8)
+        };
+        Self { extent: picture.extent, pixels: picture.pixels.iter().map(encode).collect() }
+    }
+
+    /// Back to scene-linear light at exposure 0 without a tone map: code 255 is radiance 1.
+    ///
+    /// `from_picture` with exposure 0 and `ToneMap::Clip` undoes it exactly.
+    pub fn to_picture(&self) -> Picture {
+        let linear: Vec<f32> = (0..=255u8).map(|code| linear_from_srgb(f64::from(code) / 255.0) as f32).collect();
+        let decode = |pixel: &[u8; 3]| pixel.map(|code| linear[usize::from(code)]);
+        Picture { extent: self.extent, pixels: self.pixels.iter().map(decode).collect() }
+    }
+
+    /// The same bytes in a row, three a pixel.
+    pub fn as_bytes(&self) -> &[u8] {
+        self.pixels.as_flattened()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(color: [f32; 3], exposure_ev: f64, tone_map: ToneMap) -> [u8; 3] {
+        Srgb8::from_picture(&Picture::filled(Extent::new(1, 1), color), exposure_ev, tone_map).pixels[0]
+    }
+
+    #[test]
+    fn every_code_survives_the_way_to_linear_and_back() {
+        let pixels = (0..=255u8).map(|code| [code, 255 - code, code ^ 0x55]).collect();
+        let codes = Srgb8 { extent: Extent::new(16, 16), pixels };
+        assert_eq!(Srgb8::from_picture(&codes.to_picture(), 0.0, ToneMap::Clip), codes);
+    }
+
+    #[test]
+    fn the_transfer_function_has_the_standards_values() {
+        // 0.5 linear is 187.516 / 255 encoded, code 188; 0.18 is 117.6, code 118.
+        assert_eq!(one([0.5, 0.18, 1.0], 0.0, ToneMap::Clip), [188, 118, 255]);
+        for encoded in [0.0, 0.02, 0.040_45, 0.2, 0.7, 1.0] {
+            assert!((srgb_from_linear(linear_from_srgb(encoded)) - encoded).abs() < 1e-6, "{encoded}");
+        }
+    }
+
+    #[test]
+    fn exposure_counts_in_stops() {
+        assert_eq!(one([0.25; 3], 1.0, ToneMap::Clip), one([0.5; 3], 0.0, ToneMap::Clip));
+        assert_eq!(one([2.0; 3], -1.0, ToneMap::Clip), [255; 3]);
+    }
+
+    #[test]
+    fn tone_maps_bring_light_down_and_keep_black() {
+        assert_eq!(one([1.0; 3], 0.0, ToneMap::Reinhard), one([0.5; 3], 0.0, ToneMap::Clip));
+        // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.803797
+        assert_eq!(one([1.0; 3], 0.0, ToneMap::Aces), one([0.803_797; 3], 0.0, ToneMap::Clip));
+        for (name, tone_map) in ToneMap::ALL {
+            assert_eq!(one([0.0; 3], 0.0, tone_map), [0; 3], "{name}");
+            assert_eq!(one([-1.0, f32::NAN, f32::NEG_INFINITY], 0.0, tone_map), [0; 3], "{name}");
+            assert_eq!(one([f32::INFINITY; 3], 0.0, tone_map), [255; 3], "{name}");
+            assert_eq!(ToneMap::parse(name).unwrap(), tone_map);
+        }
+        let error = ToneMap::parse("filmic").unwrap_err();
+        assert_eq!(error.message(), "--tonemap filmic: the tone maps are clip, reinhard, aces");
+    }
+}
