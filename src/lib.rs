@@ -2,6 +2,7 @@
 //! by side: the same scene, the same lights, the same driver, the same ground truth.
 
 pub mod error;
+pub mod metrics;
 pub mod report;
 pub mod scene;
 pub mod units;

@@ -1,0 +1,172 @@
+//! How far a picture is from its reference, in five numbers.
+//!
+//! Two are of light (RMSE, relMSE: scene-linear RGB), three of what a screen shows (PSNR, SSIM, FLIP: 8-bit sRGB at
+//! exposure 0, cut at 1), because a bound on an algorithm needs the first and a claim about looks the second.
+
+mod flip;
+mod linear;
+mod psnr;
+mod ssim;
+
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::report::picture::Picture;
+use crate::report::tonemap::{Srgb8, ToneMap};
+use crate::units::Extent;
+
+/// One number of each kind. Under serde an infinite PSNR is null.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Metrics {
+    /// Root of the mean squared difference over all pixels and channels, in units of radiance; 0 for equal pictures.
+    pub rmse: f64,
+    /// Mean over all pixels and channels of (a - b)^2 / (b^2 + 0.01), b the reference; 0 for equal pictures.
+    pub relmse: f64,
+    /// Peak signal-to-noise ratio in decibels; infinite where the 8-bit pictures are equal.
+    pub psnr: f64,
+    /// Structural similarity of the luma, -1 to 1; 1 for equal pictures.
+    pub ssim: f64,
+    /// Mean of FLIP's map at 67 pixels a degree, 0 to 1; 0 for equal pictures.
+    pub flip: f64,
+}
+
+impl Metrics {
+    /// The names, as the command line and the reports write them, in the order of `values`.
+    pub const NAMES: [&'static str; 5] = ["rmse", "relmse", "psnr", "ssim", "flip"];
+
+    /// The numbers in the order of `NAMES`.
+    pub fn values(&self) -> [f64; 5] {
+        [self.rmse, self.relmse, self.psnr, self.ssim, self.flip]
+    }
+}
+
+/// What a comparison leaves: the numbers, and where the difference is.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    pub extent: Extent,
+    pub metrics: Metrics,
+    /// FLIP's error of each pixel, row-major, 0 to 1.
+    flip_map: Vec<f32>,
+}
+
+impl Comparison {
+    /// FLIP's map in the magma colours: black where nothing is seen, pale yellow where the error is 1.
+    pub fn error_picture(&self) -> Srgb8 {
+        flip::magma(self.extent, &self.flip_map)
+    }
+}
+
+/// Compares a picture with its reference.
+///
+/// Fails as a bad request where the extents differ, as a gate where either holds NaN or infinity (with their count and the
+/// first pixel).
+pub fn compare(actual: &Picture, reference: &Picture) -> Result<Comparison> {
+    if actual.extent != reference.extent {
+        return Err(Error::request(format!(
+            "the picture is {}, the reference {}: only pictures of one size compare",
+            actual.extent, reference.extent
+        )));
+    }
+    require_finite(actual, "the picture")?;
+    require_finite(reference, "the reference")?;
+    let actual_codes = Srgb8::from_picture(actual, 0.0, ToneMap::Clip);
+    let reference_codes = Srgb8::from_picture(reference, 0.0, ToneMap::Clip);
+    let flip_map = flip::map(&actual_codes, &reference_codes);
+    let metrics = Metrics {
+        rmse: linear::rmse(actual, reference),
+        relmse: linear::relmse(actual, reference),
+        psnr: psnr::psnr(&actual_codes, &reference_codes),
+        ssim: ssim::ssim(&actual_codes, &reference_codes),
+        flip: flip::mean(&flip_map),
+    };
+    Ok(Comparison { extent: actual.extent, metrics, flip_map })
+}
+
+fn require_finite(picture: &Picture, name: &str) -> Result<()> {
+    let broken = |pixel: &[f32; 3]| pixel.iter().any(|channel| !channel.is_finite());
+    let Some(first) = picture.pixels.iter().position(broken) else { return Ok(()) };
+    let count = picture.pixels.iter().filter(|pixel| broken(pixel)).count();
+    let width = picture.extent.width as usize;
+    let (x, y) = (first % width, first / width);
+    let [red, green, blue] = picture.pixels[first];
+    Err(Error::gate(format!(
+        "{name} holds NaN or infinity in {count} of {} pixels, first at ({x}, {y}): {red} {green} {blue}",
+        picture.pixels.len()
+    )))
+}
+
+/// The pictures on which the metrics are held against other programs; 8-bit formulas, so that both sides compute them.
+#[cfg(test)]
+fn formula_pictures(width: u32, height: u32) -> [Srgb8; 2] {
+    let extent = Extent::new(width, height);
+    let mut actual = Srgb8 { extent, pixels: Vec::new() };
+    let mut reference = Srgb8 { extent, pixels: Vec::new() };
+    for y in 0..height as i32 {
+        for x in 0..width as i32 {
+            let codes = [(10 * x + 3 * y) % 256, (x * x + 5 * y) % 256, (7 * x * y) % 256];
+            let difference = ((x + 2 * y) % 7) * 5 - 12;
+            actual.pixels.push(codes.map(|code| code as u8));
+            reference.pixels.push(codes.map(|code| (code + difference).clamp(0, 255) as u8));
+        }
+    }
+    [actual, reference]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_pictures_have_no_error() {
+        let [picture, _] = formula_pictures(24, 16);
+        let comparison = compare(&picture.to_picture(), &picture.to_picture()).unwrap();
+        let expected = Metrics { rmse: 0.0, relmse: 0.0, psnr: f64::INFINITY, ssim: 1.0, flip: 0.0 };
+        assert_eq!(comparison.metrics, expected);
+        assert_eq!(
+            serde_json::to_string(&comparison.metrics).unwrap(),
+            r#"{"rmse":0.0,"relmse":0.0,"psnr":null,"ssim":1.0,"flip":0.0}"#
+        );
+        assert!(comparison.error_picture().pixels.iter().all(|pixel| *pixel == comparison.error_picture().pixels[0]));
+    }
+
+    #[test]
+    fn all_but_relmse_are_symmetric() {
+        let [a, b] = formula_pictures(24, 16).map(|codes| codes.to_picture());
+        let forth = compare(&a, &b).unwrap().metrics;
+        let back = compare(&b, &a).unwrap().metrics;
+        assert_eq!(forth.rmse, back.rmse);
+        assert_eq!(forth.psnr, back.psnr);
+        assert!((forth.ssim - back.ssim).abs() < 1e-12);
+        assert!((forth.flip - back.flip).abs() < 1e-6);
+        assert_ne!(forth.relmse, back.relmse);
+    }
+
+    #[test]
+    fn names_and_values_are_in_the_order_of_the_json() {
+        let metrics = Metrics { rmse: 1.0, relmse: 2.0, psnr: 3.0, ssim: 4.0, flip: 5.0 };
+        let json = serde_json::to_value(metrics).unwrap();
+        let keys: Vec<&String> = json.as_object().unwrap().keys().collect();
+        assert_eq!(keys, Metrics::NAMES);
+        for (name, value) in Metrics::NAMES.into_iter().zip(metrics.values()) {
+            assert_eq!(json[name], value);
+        }
+    }
+
+    #[test]
+    fn other_sizes_and_broken_pixels_are_refused() {
+        let picture = Picture::filled(Extent::new(3, 2), [0.5; 3]);
+        let error = compare(&picture, &Picture::filled(Extent::new(2, 3), [0.5; 3])).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.message().contains("3x2") && error.message().contains("2x3"), "{error}");
+
+        let mut broken = picture.clone();
+        broken.pixels[4][1] = f32::NAN;
+        broken.pixels[5] = [f32::INFINITY; 3];
+        for (actual, reference, name) in [(&broken, &picture, "the picture"), (&picture, &broken, "the reference")] {
+            let error = compare(actual, reference).unwrap_err();
+            assert_eq!(error.exit_code(), 1);
+            let expected = format!("{name} holds NaN or infinity in 2 of 6 pixels, first at (1, 1): 0.5 NaN 0.5");
+            assert_eq!(error.message(), expected);
+        }
+    }
+}
