@@ -82,7 +82,7 @@ pub fn write(path: &Path, picture: &Picture, options: &WriteOptions) -> Result<(
     }
 }
 
-/// Writes codes as they are, as a PNG; otherwise like [`write`]. `path` must end in `.png`.
+/// Writes codes as they are, as a PNG; otherwise like [`write()`]. `path` must end in `.png`.
 pub fn write_srgb8(path: &Path, codes: &Srgb8) -> Result<()> {
     require_png(path)?;
     png_file::write(path, codes)
