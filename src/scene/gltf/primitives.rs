@@ -12,7 +12,8 @@ use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
 use crate::scene::{Material, Mesh};
 
-/// How many indices the drawn meshes may have together: 89 million triangles of a list, 13 GiB where none share vertices.
+/// How many indices the drawn meshes may have together: 89 million triangles of a list, 13 GiB where no two share a
+/// vertex.
 ///
 /// A short file can name the same accessors in thousands of primitives, so that each is backed by bytes and their sum
 /// is not.
