@@ -1,0 +1,272 @@
+//! glTF primitives to meshes: attributes read, indices made a triangle list, missing normals and tangents made.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use glam::{Vec2, Vec3, Vec4};
+use gltf::{Accessor, Document, Semantic};
+use rayon::prelude::*;
+
+use super::buffers::Buffers;
+use super::{accessors, label, tangents, topology};
+use crate::error::{Error, Result};
+use crate::scene::{Material, Mesh};
+
+/// How many indices the drawn meshes may have together: 89 million triangles of a list, 13 GiB where no two share a
+/// vertex.
+///
+/// A short file can name the same accessors in thousands of primitives, so that each is backed by bytes and their sum
+/// is not.
+const MAX_INDICES: usize = 1 << 28;
+
+/// The meshes of a scene, and which of them a glTF mesh became.
+#[derive(Debug)]
+pub struct Primitives {
+    pub meshes: Vec<Mesh>,
+    of_mesh: BTreeMap<usize, Range<usize>>,
+}
+
+impl Primitives {
+    /// Indices into `meshes` of the primitives of a glTF mesh that was read.
+    pub fn of_mesh(&self, mesh_index: usize) -> Range<usize> {
+        self.of_mesh.get(&mesh_index).cloned().unwrap_or_default()
+    }
+}
+
+/// What became of one primitive.
+#[derive(Debug)]
+enum Outcome {
+    Mesh {
+        mesh: Mesh,
+        left_over_indices: usize,
+        repaired_normals: usize,
+    },
+    /// Points or lines.
+    NotTriangles,
+    /// A triangle mode without a whole triangle.
+    Empty,
+}
+
+/// Reads the glTF meshes `drawn`, in parallel; a primitive without a material appends glTF's default to `materials`.
+pub fn read(
+    document: &Document,
+    drawn: &BTreeSet<usize>,
+    buffers: &Buffers<'_>,
+    materials: &mut Vec<Material>,
+    warnings: &mut Vec<String>,
+) -> Result<Primitives> {
+    let jobs: Vec<gltf::Mesh<'_>> = document.meshes().filter(|mesh| drawn.contains(&mesh.index())).collect();
+    let jobs: Vec<_> = jobs.iter().flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh, primitive))).collect();
+    check_total(&jobs)?;
+    let default_material = materials.len();
+    let outcomes: Vec<Result<Outcome>> = jobs
+        .par_iter()
+        .map(|(mesh, primitive)| {
+            let material_index = primitive.material().index().unwrap_or(default_material);
+            let normal_mapped = materials.get(material_index).is_some_and(|material| material.normal_texture.is_some());
+            let mut outcome = read_primitive(buffers, primitive, normal_mapped)
+                .map_err(|error| error.within(primitive_label(mesh, primitive)))?;
+            if let Outcome::Mesh { mesh: read, .. } = &mut outcome {
+                read.name = mesh_name(mesh, primitive.index());
+                read.material = material_index;
+            }
+            Ok(outcome)
+        })
+        .collect();
+
+    let mut primitives = Primitives { meshes: Vec::new(), of_mesh: BTreeMap::new() };
+    let (mut not_triangles, mut left_over, mut repaired) = (0, 0, 0);
+    // Taken in file order, so that of several broken primitives always the same one is reported.
+    for ((mesh, _), outcome) in jobs.iter().zip(outcomes) {
+        let next = primitives.meshes.len();
+        let range = primitives.of_mesh.entry(mesh.index()).or_insert(next..next);
+        match outcome? {
+            Outcome::Mesh { mesh, left_over_indices, repaired_normals } => {
+                range.end = next + 1;
+                left_over += usize::from(left_over_indices > 0);
+                repaired += repaired_normals;
+                primitives.meshes.push(mesh);
+            }
+            Outcome::NotTriangles => not_triangles += 1,
+            Outcome::Empty => {}
+        }
+    }
+    if primitives.meshes.iter().any(|mesh| mesh.material == default_material) {
+        materials.push(Material::default());
+    }
+    for (count, one, many) in [
+        (not_triangles, "primitive of points or lines is left out", "primitives of points or lines are left out"),
+        (
+            left_over,
+            "primitive ends with an incomplete triangle, left out",
+            "primitives end with an incomplete triangle, left out",
+        ),
+        (
+            repaired,
+            "normal of length zero is replaced by its triangle's",
+            "normals of length zero are replaced by their triangles'",
+        ),
+    ] {
+        if count > 0 {
+            warnings.push(label::count(count, one, many));
+        }
+    }
+    Ok(primitives)
+}
+
+fn primitive_label(mesh: &gltf::Mesh<'_>, primitive: &gltf::Primitive<'_>) -> String {
+    format!("{}, primitive {}", label::element("mesh", mesh.index(), mesh.name()), primitive.index())
+}
+
+/// Refuses what would take more memory than any scene here is worth, before anything is read.
+fn check_total(jobs: &[(&gltf::Mesh<'_>, gltf::Primitive<'_>)]) -> Result<()> {
+    let mut total = 0usize;
+    for (mesh, primitive) in jobs {
+        let corners = primitive.indices().or_else(|| primitive.get(&Semantic::Positions));
+        total = total.saturating_add(corners.map_or(0, |accessor| accessor.count()));
+        if total > MAX_INDICES {
+            let label = primitive_label(mesh, primitive);
+            return Err(Error::request(format!(
+                "{label}: brings the file to {total} indices; {MAX_INDICES} is the limit"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The mesh's name, with the primitive's index where it has several.
+fn mesh_name(mesh: &gltf::Mesh<'_>, primitive_index: usize) -> String {
+    let name = mesh.name().map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
+    if mesh.primitives().len() > 1 { format!("{name}.{primitive_index}") } else { name }
+}
+
+fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, normal_mapped: bool) -> Result<Outcome> {
+    let Some(positions) = primitive.get(&Semantic::Positions) else {
+        return Err(Error::request("has no POSITION"));
+    };
+    let vertex_count = u32::try_from(positions.count())
+        .map_err(|_| Error::request(format!("{} vertices are more than 32-bit indices can name", positions.count())))?;
+    let positions = accessors::floats::<3>(buffers, &positions).map_err(|error| error.within("POSITION"))?;
+    let indices = match primitive.indices() {
+        Some(accessor) => {
+            accessors::indices(buffers, &accessor, positions.len()).map_err(|error| error.within("indices"))?
+        }
+        None => (0..vertex_count).collect(),
+    };
+    let Some(triangles) = topology::triangle_list(primitive.mode(), indices) else { return Ok(Outcome::NotTriangles) };
+    if triangles.indices.is_empty() {
+        return Ok(Outcome::Empty);
+    }
+
+    let normals = attribute::<3>(buffers, primitive, &Semantic::Normals, positions.len())?;
+    let uvs = attribute::<2>(buffers, primitive, &Semantic::TexCoords(0), positions.len())?;
+    // glTF 2.0, section 3.7.2.1: without normals the file's tangents mean nothing.
+    let tangents = match normal_mapped && normals.is_some() {
+        true => attribute::<4>(buffers, primitive, &Semantic::Tangents, positions.len())?,
+        false => None,
+    };
+    let mut mesh = Mesh {
+        uvs: uvs.map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
+        positions: vectors(positions, Vec3::from_array),
+        normals: vectors(normals.unwrap_or_default(), Vec3::from_array),
+        tangents: vectors(tangents.unwrap_or_default(), Vec4::from_array),
+        indices: triangles.indices,
+        ..Mesh::default()
+    };
+    topology::drop_unused_vertices(&mut mesh);
+    let repaired_normals = if mesh.normals.is_empty() {
+        flat_normals(&mut mesh);
+        0
+    } else {
+        normalize_normals(&mut mesh)
+    };
+    match (normal_mapped, mesh.tangents.is_empty()) {
+        (true, true) => tangents::generate(&mut mesh),
+        (true, false) => tangents::normalize(&mut mesh),
+        (false, _) => mesh.tangents = vec![Vec4::ZERO; mesh.positions.len()],
+    }
+    Ok(Outcome::Mesh { mesh, left_over_indices: triangles.left_over, repaired_normals })
+}
+
+/// An optional attribute, which must have one element a vertex.
+fn attribute<const N: usize>(
+    buffers: &Buffers<'_>,
+    primitive: &gltf::Primitive<'_>,
+    semantic: &Semantic,
+    vertex_count: usize,
+) -> Result<Option<Vec<[f32; N]>>> {
+    let read = |accessor: Accessor<'_>| {
+        if accessor.count() != vertex_count {
+            return Err(Error::request(format!(
+                "{} has {} elements, but POSITION has {vertex_count}",
+                label::element("accessor", accessor.index(), accessor.name()),
+                accessor.count()
+            )));
+        }
+        accessors::floats::<N>(buffers, &accessor)
+    };
+    primitive.get(semantic).map(read).transpose().map_err(|error| error.within(semantic.to_string()))
+}
+
+fn vectors<const N: usize, V>(arrays: Vec<[f32; N]>, vector: fn([f32; N]) -> V) -> Vec<V> {
+    arrays.into_iter().map(vector).collect()
+}
+
+/// Unit normal of a triangle; +y where it has no area.
+fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    // In 64 bits: fourth powers of edges of any 32-bit length neither vanish nor overflow there.
+    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+    (b - a).cross(c - a).try_normalize().map_or(Vec3::Y, |normal| normal.as_vec3())
+}
+
+/// glTF 2.0, section 3.7.2.1: without normals a mesh is flat, so its triangles share no vertices.
+fn flat_normals(mesh: &mut Mesh) {
+    topology::unshare_vertices(mesh);
+    mesh.normals = (0..mesh.triangle_count()).flat_map(|index| [triangle_normal(mesh.triangle(index)); 3]).collect();
+}
+
+/// Makes normals unit length; those without a length take that of the last triangle at their vertex. Returns how many.
+fn normalize_normals(mesh: &mut Mesh) -> usize {
+    let mut broken = BTreeSet::new();
+    for (vertex, normal) in mesh.normals.iter_mut().enumerate() {
+        match normal.try_normalize() {
+            Some(unit) => *normal = unit,
+            None => {
+                broken.insert(vertex as u32);
+            }
+        }
+    }
+    if !broken.is_empty() {
+        for corner in 0..mesh.indices.len() {
+            if broken.contains(&mesh.indices[corner]) {
+                mesh.normals[mesh.indices[corner] as usize] = triangle_normal(mesh.triangle(corner / 3));
+            }
+        }
+    }
+    broken.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_are_made_unit_and_repaired_where_they_have_no_length() {
+        let mut mesh = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            normals: vec![Vec3::Z * 3.0, Vec3::ZERO, Vec3::Z],
+            indices: vec![0, 1, 2],
+            ..Mesh::default()
+        };
+        assert_eq!(normalize_normals(&mut mesh), 1);
+        assert_eq!(mesh.normals, [Vec3::Z; 3]);
+    }
+
+    #[test]
+    fn a_triangle_of_any_size_has_a_normal() {
+        for size in [1e-30, 1.0, 1e30] {
+            assert_eq!(triangle_normal([Vec3::ZERO, Vec3::X * size, Vec3::Y * size]), Vec3::Z, "{size}");
+        }
+        assert_eq!(triangle_normal([Vec3::ONE; 3]), Vec3::Y);
+    }
+}

@@ -1,0 +1,136 @@
+//! Small glTF files, built in the test that needs them and written into a folder of their own.
+
+use std::path::PathBuf;
+
+use quincunx::Result;
+use quincunx::scene::{Scene, gltf};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+pub const U8: u32 = 5121;
+pub const U16: u32 = 5123;
+pub const U32: u32 = 5125;
+pub const F32: u32 = 5126;
+
+/// The document and the bytes of its one buffer.
+#[derive(Clone)]
+pub struct GltfFile {
+    pub json: Value,
+    pub bytes: Vec<u8>,
+}
+
+impl GltfFile {
+    /// An empty scene.
+    pub fn empty() -> Self {
+        let json = json!({
+            "asset": {"version": "2.0"},
+            "scenes": [{"nodes": []}], "nodes": [], "meshes": [], "materials": [],
+            "accessors": [], "bufferViews": [], "buffers": [],
+        });
+        Self { json, bytes: Vec::new() }
+    }
+
+    /// One node that draws the triangle (0 0 0), (1 0 0), (0 1 0), without indices or normals.
+    pub fn triangle() -> Self {
+        let mut file = Self::empty();
+        let positions = file.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        file.push("meshes", json!({"name": "leaf", "primitives": [{"attributes": {"POSITION": positions}}]}));
+        file.root(json!({"mesh": 0}));
+        file
+    }
+
+    /// Appends to one of the document's arrays; returns the index.
+    pub fn push(&mut self, array: &str, value: Value) -> usize {
+        let array =
+            self.json.as_object_mut().unwrap().entry(array).or_insert_with(|| json!([])).as_array_mut().unwrap();
+        array.push(value);
+        array.len() - 1
+    }
+
+    /// Appends a node and makes it a root of the scene; returns its index.
+    pub fn root(&mut self, node: Value) -> usize {
+        let index = self.push("nodes", node);
+        self.json["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(index));
+        index
+    }
+
+    /// Appends a view of `bytes`; returns its index.
+    pub fn view(&mut self, bytes: &[u8]) -> usize {
+        let offset = self.bytes.len();
+        self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.push("bufferViews", json!({"buffer": 0, "byteOffset": offset, "byteLength": bytes.len()}))
+    }
+
+    /// Appends an accessor of floats; returns its index.
+    pub fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
+        let components = match kind {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            _ => 4,
+        };
+        let view = self.view(&values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>());
+        let count = values.len() / components;
+        self.push("accessors", json!({"bufferView": view, "componentType": F32, "count": count, "type": kind}))
+    }
+
+    /// Appends an accessor of indices; returns its index.
+    pub fn indices(&mut self, component_type: u32, values: &[u32]) -> usize {
+        let size = match component_type {
+            U8 => 1,
+            U16 => 2,
+            _ => 4,
+        };
+        let view = self.view(&values.iter().flat_map(|value| value.to_le_bytes()[..size].to_vec()).collect::<Vec<_>>());
+        let count = values.len();
+        self.push(
+            "accessors",
+            json!({"bufferView": view, "componentType": component_type, "count": count, "type": "SCALAR"}),
+        )
+    }
+
+    /// The first primitive of the first mesh.
+    pub fn primitive(&mut self) -> &mut Value {
+        &mut self.json["meshes"][0]["primitives"][0]
+    }
+
+    /// The .glb's bytes.
+    pub fn glb(&self) -> Vec<u8> {
+        let mut json = self.json.clone();
+        if !self.bytes.is_empty() && json["buffers"] == json!([]) {
+            json["buffers"] = json!([{"byteLength": self.bytes.len()}]);
+        }
+        let mut text = json.to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let mut glb = b"glTF\x02\0\0\0".to_vec();
+        glb.extend((12 + 8 + text.len() as u32 + 8 + self.bytes.len() as u32).to_le_bytes());
+        for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &self.bytes)] {
+            glb.extend((chunk.len() as u32).to_le_bytes());
+            glb.extend(kind);
+            glb.extend(chunk);
+        }
+        glb
+    }
+
+    /// Loads it as a .glb.
+    pub fn load(&self) -> Result<Scene> {
+        load_bytes("scene.glb", &self.glb())
+    }
+}
+
+/// Writes files into a folder of their own; returns it and the path of the first.
+pub fn write(files: &[(&str, &[u8])]) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in files {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let path = folder.path().join(files[0].0);
+    (folder, path)
+}
+
+/// Loads a file with these bytes.
+pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Scene> {
+    let (_folder, path) = write(&[(name, bytes)]);
+    gltf::load(&path)
+}
