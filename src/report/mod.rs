@@ -2,5 +2,6 @@
 
 pub mod image_file;
 pub mod picture;
+pub mod run;
 pub mod tonemap;
 pub mod whole_file;

@@ -8,6 +8,7 @@ pub mod gltf;
 pub mod light;
 pub mod material;
 pub mod mesh;
+pub mod mipmaps;
 pub mod procedural;
 pub mod texture;
 

@@ -1,0 +1,27 @@
+// The tree that src/bvh.rs builds, as it lies in buffers. bvh_walk.glsl walks it.
+#ifndef BVH_GLSL
+#define BVH_GLSL
+
+// One node: its box, and its children or triangles.
+struct BvhNodeBlock {
+    // xyz: least corner; w as bits: 0 for an inner node, else the number of triangles.
+    vec4 min_count;
+    // xyz: greatest corner; w as bits: the first of two neighbouring children, or the first triangle.
+    vec4 max_first;
+};
+
+// One triangle, in the order in which leaves list them.
+struct BvhTriangleBlock {
+    vec4 corner;
+    vec4 edge1;
+    vec4 edge2;
+};
+
+// A shadow ray starts this many metres off its surface, along the normal.
+layout(constant_id = 60) const float RAY_OFFSET = 1e-4;
+
+const uint SHADOW_NONE = 0u;
+const uint SHADOW_SUN = 1u;
+const uint SHADOW_RAY = 2u;
+
+#endif

@@ -1,0 +1,48 @@
+// BLEND surfaces over the finished picture, back to front, lit forward by every light. Pass: src/passes/blend.rs.
+#version 460
+#include "frame.glsl"
+#include "bvh.glsl"
+#include "shading/light.glsl"
+#include "shading/material.glsl"
+
+// BRDF_ and SHADOW_ values.
+layout(constant_id = 2) const uint BRDF_KIND = 2;
+layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
+
+struct BlendParams {
+    // Square of --vpl-clamp, in square metres.
+    float least_squared;
+};
+
+layout(push_constant) uniform Push { BlendParams params; };
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 2) readonly buffer Materials { MaterialBlock materials[]; };
+layout(std430, set = 0, binding = 3) readonly buffer Lights { LightBlock lights[]; };
+layout(std430, set = 0, binding = 4) readonly buffer Vpls { VplBlock vpls[]; };
+layout(std430, set = 0, binding = 5) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
+layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
+
+#include "bvh_walk.glsl"
+#include "shading/shade_lights.glsl"
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    MaterialBlock material = materials[in_material];
+    vec4 base_color = base_color_at(material);
+    vec2 metallic_roughness = metallic_roughness_at(material);
+    vec3 normal_ws = normal_at(material);
+    Surface surface = Surface(base_color.rgb, metallic_roughness.x, metallic_roughness.y);
+    vec3 eye_ws = to_eye(frame, in_position_ws);
+    vec3 radiance = emissive_at(material) + albedo_of(surface) * frame.ambient.rgb;
+    for (uint light = 0u; light < frame.light_count; light++) {
+        radiance += shade_light(lights[light], surface, in_position_ws, normal_ws, eye_ws);
+    }
+    vec3 received = vec3(0.0);
+    for (uint vpl = 0u; vpl < frame.vpl_count; vpl++) {
+        received += vpl_irradiance(vpls[vpl], in_position_ws, normal_ws, params.least_squared);
+    }
+    radiance += albedo_of(surface) * received / PI;
+    // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
+    out_color = vec4(radiance * base_color.a, base_color.a);
+}

@@ -1,0 +1,45 @@
+// G-buffer creation (BC). Segovia 2006, section 4.1. Pass: src/passes/gbuffer.rs.
+// variants: POSITION=half|unorm16|depth|float EMISSIVE=off|on ALPHA=opaque|mask
+#version 460
+#include "passes/gbuffer.glsl"
+#include "shading/material.glsl"
+
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 2) readonly buffer Materials { MaterialBlock materials[]; };
+
+layout(location = 0) out uvec2 out_normal;
+layout(location = 1) out uvec2 out_color;
+#ifdef EMISSIVE_ON
+layout(location = 2) out uvec2 out_emissive;
+#define POSITION_LOCATION 3
+#else
+#define POSITION_LOCATION 2
+#endif
+#if defined(POSITION_FLOAT)
+layout(location = POSITION_LOCATION) out uvec4 out_position;
+#elif !defined(POSITION_DEPTH)
+layout(location = POSITION_LOCATION) out uvec2 out_position;
+#endif
+
+void main() {
+    MaterialBlock material = materials[in_material];
+    vec4 base_color = base_color_at(material);
+#ifdef ALPHA_MASK
+    if (base_color.a < material.alpha_cutoff) {
+        discard;
+    }
+#endif
+    vec2 metallic_roughness = metallic_roughness_at(material);
+    out_normal = pack_normal(normal_at(material), metallic_roughness.y, metallic_roughness.x);
+    out_color = pack_halves(base_color.rgb, in_material & 0xffffu);
+#ifdef EMISSIVE_ON
+    out_emissive = pack_halves(emissive_at(material), 0u);
+#endif
+#if defined(POSITION_FLOAT)
+    out_position = uvec4(floatBitsToUint(in_position_ws), 0u);
+#elif defined(POSITION_HALF)
+    out_position = pack_halves(clamp(in_position_ws, -HALF_MAX, HALF_MAX), 0u);
+#elif defined(POSITION_UNORM16)
+    out_position = pack_unorm16(frame, in_position_ws);
+#endif
+}

@@ -1,0 +1,33 @@
+// Vertex stage that every pass over the scene's triangles shares. Draws: src/passes/mesh.rs.
+#version 460
+#include "frame.glsl"
+#include "resident.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 tangent;
+layout(location = 3) in vec2 uv;
+
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 1) readonly buffer Draws { DrawBlock draws[]; };
+
+layout(location = 0) out vec3 out_position_ws;
+layout(location = 1) out vec3 out_normal_ws;
+layout(location = 2) out vec4 out_tangent_ws;
+layout(location = 3) out vec2 out_uv;
+layout(location = 4) flat out uint out_material;
+
+// Two passes over the same triangles must agree on depth to the bit.
+invariant gl_Position;
+
+void main() {
+    // The first instance is the draw's index: no push constants between draws.
+    DrawBlock draw = draws[gl_InstanceIndex];
+    vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
+    out_position_ws = position_ws.xyz;
+    out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
+    out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, tangent.w);
+    out_uv = uv;
+    out_material = draw.material;
+    gl_Position = frame.clip_from_world * position_ws;
+}

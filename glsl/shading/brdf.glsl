@@ -1,0 +1,58 @@
+// What a surface does with light: Lambert, Blinn-Phong, GGX. Twin: src/shading/brdf.rs.
+#ifndef SHADING_BRDF_GLSL
+#define SHADING_BRDF_GLSL
+
+const float PI = 3.14159265358979;
+
+const uint BRDF_LAMBERT = 0u;
+const uint BRDF_BLINN_PHONG = 1u;
+const uint BRDF_GGX = 2u;
+
+// A surface as light sees it.
+struct Surface {
+    vec3 base_color;
+    float metallic;
+    float roughness;
+};
+
+// Base colour of the part that scatters diffusely.
+vec3 albedo_of(Surface surface) {
+    return surface.base_color * (1.0 - surface.metallic);
+}
+
+// The BRDF in 1/sr, without the cosine. All vectors are unit length; `n_dot_l` is positive.
+//
+// GGX: Smith's height-correlated visibility, Schlick's Fresnel with F0 = mix(0.04, base colour, metallic), diffuse
+// weighted by 1 - F (glTF 2.0, appendix B). Blinn-Phong: the exponent with the same width, 2/alpha^2 - 2, normalised
+// by (s + 2) / (8 pi) as in the L-buffer literature, with the same Fresnel.
+vec3 brdf(uint kind, Surface surface, vec3 normal, vec3 to_light, vec3 to_eye) {
+    vec3 diffuse = albedo_of(surface) / PI;
+    if (kind == BRDF_LAMBERT) {
+        return diffuse;
+    }
+    vec3 half_vector = normalize(to_light + to_eye);
+    float n_dot_h = clamp(dot(normal, half_vector), 0.0, 1.0);
+    float v_dot_h = clamp(dot(to_eye, half_vector), 0.0, 1.0);
+    float n_dot_l = clamp(dot(normal, to_light), 0.0, 1.0);
+    float n_dot_v = max(dot(normal, to_eye), 1e-4);
+    float alpha = max(surface.roughness * surface.roughness, 1e-3);
+    float alpha_squared = alpha * alpha;
+    vec3 f0 = mix(vec3(0.04), surface.base_color, surface.metallic);
+    float grazing = 1.0 - v_dot_h;
+    float grazing_squared = grazing * grazing;
+    vec3 fresnel = f0 + (1.0 - f0) * (grazing_squared * grazing_squared * grazing);
+    float specular;
+    if (kind == BRDF_BLINN_PHONG) {
+        float exponent = max(2.0 / alpha_squared - 2.0, 1.0);
+        specular = (exponent + 2.0) / (8.0 * PI) * pow(max(n_dot_h, 1e-6), exponent);
+    } else {
+        float denominator = n_dot_h * n_dot_h * (alpha_squared - 1.0) + 1.0;
+        float distribution = alpha_squared / (PI * denominator * denominator);
+        float masking = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared);
+        float shadowing = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - alpha_squared) + alpha_squared);
+        specular = distribution * 0.5 / max(masking + shadowing, 1e-6);
+    }
+    return (1.0 - fresnel) * diffuse + fresnel * specular;
+}
+
+#endif

@@ -1,0 +1,28 @@
+// The loop over punctual lights that full shading shares: deferred shading, composite, blended surfaces.
+//
+// The including shader declares: `lights[]`, `frame`, what bvh.glsl wants, and the constants BRDF_KIND and
+// DIRECT_SHADOW. A light beyond its range adds exactly 0, so leaving it out changes no bit.
+#ifndef SHADING_SHADE_LIGHTS_GLSL
+#define SHADING_SHADE_LIGHTS_GLSL
+
+#include "shading/light.glsl"
+#include "shading/brdf.glsl"
+
+// Radiance towards the eye that one punctual light causes. `geometric_ws`: normal of the triangle's plane side, used to
+// start shadow rays off the surface.
+vec3 shade_light(LightBlock light, Surface surface, vec3 position_ws, vec3 normal_ws, vec3 eye_ws) {
+    Incident incident = incident_from(light, position_ws);
+    precise float cosine = dot(normal_ws, incident.direction_ws);
+    if (cosine <= 0.0 || incident.irradiance == vec3(0.0)) {
+        return vec3(0.0);
+    }
+    if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL)) {
+        if (occluded(position_ws, normal_ws, incident.direction_ws, incident.distance)) {
+            return vec3(0.0);
+        }
+    }
+    precise vec3 reflected = brdf(BRDF_KIND, surface, normal_ws, incident.direction_ws, eye_ws) * incident.irradiance * cosine;
+    return reflected;
+}
+
+#endif

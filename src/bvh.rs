@@ -1,0 +1,262 @@
+//! The tree that rays walk, for the host and for compute shaders (glsl/bvh.glsl, glsl/bvh_walk.glsl).
+//!
+//! A crate builds it (PLOC with reinsertion); this file lays it out as the shaders read it and walks it on the host, as
+//! the shaders' twin. BLEND surfaces are left out: they stop no light. MASK surfaces are in it; the caller of
+//! `closest_hit` decides about holes, shadow rays take them as solid.
+
+use crate::error::{Error, Result};
+use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
+use crate::scene::{AlphaMode, Scene};
+use glam::Vec3;
+use obvhs::BvhBuildParams;
+use obvhs::bvh2::builder::build_bvh2_from_tris;
+use obvhs::triangle::Triangle;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+/// A walk's stack: the shader's BVH_STACK.
+const STACK: usize = 64;
+
+/// Boxes and triangles in leaf order.
+pub struct Bvh {
+    pub nodes: Vec<BvhNodeBlock>,
+    pub triangles: Vec<BvhTriangleBlock>,
+    /// Where each of `triangles` comes from.
+    pub sources: Vec<Source>,
+}
+
+/// A scene's tree, built when the first ray asks for it: pictures without rays do not wait for it.
+pub struct LazyBvh {
+    built: OnceLock<Bvh>,
+    empty: Bvh,
+}
+
+impl Default for LazyBvh {
+    fn default() -> Self {
+        Self { built: OnceLock::new(), empty: Bvh::empty() }
+    }
+}
+
+impl LazyBvh {
+    /// The tree over `scene`, which must be the same at every call.
+    ///
+    /// Errors: as `Bvh::build`.
+    pub fn over(&self, scene: &Scene) -> Result<&Bvh> {
+        if let Some(bvh) = self.built.get() {
+            return Ok(bvh);
+        }
+        let bvh = Bvh::build(scene)?;
+        Ok(self.built.get_or_init(|| bvh))
+    }
+
+    /// The tree that no ray meets.
+    pub fn empty(&self) -> &Bvh {
+        &self.empty
+    }
+}
+
+/// Triangle `triangle` of draw `draw`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    pub draw: u32,
+    pub triangle: u32,
+}
+
+/// The first triangle that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// In lengths of the direction.
+    pub distance: f32,
+    /// Index into `Bvh::triangles`.
+    pub triangle: usize,
+    /// Weights of the second and the third corner.
+    pub barycentric: [f32; 2],
+}
+
+impl Bvh {
+    /// Builds the tree over everything opaque or masked, in world space.
+    ///
+    /// Errors: the tree is deeper than a walk's stack (exit code 2).
+    pub fn build(scene: &Scene) -> Result<Self> {
+        let mut corners = Vec::new();
+        let mut sources = Vec::new();
+        for (draw_index, draw) in scene.draws.iter().enumerate() {
+            let mesh = &scene.meshes[draw.mesh];
+            if scene.materials[mesh.material].alpha == AlphaMode::Blend {
+                continue;
+            }
+            for triangle in 0..mesh.triangle_count() {
+                let [v0, v1, v2] = mesh.triangle(triangle).map(|v| draw.world_from_object.transform_point3(v));
+                corners.push(Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() });
+                sources.push(Source { draw: draw_index as u32, triangle: triangle as u32 });
+            }
+        }
+        if corners.is_empty() {
+            return Ok(Self::empty());
+        }
+        let tree = build_bvh2_from_tris(&corners, BvhBuildParams::medium_build(), &mut Duration::default());
+        let depth = tree.depth(0);
+        // A walk holds at most one waiting node a level, and one more.
+        if depth + 1 > STACK {
+            return Err(Error::request(format!("the scene's tree is {depth} levels deep, {} can be walked", STACK - 1)));
+        }
+        let word = f32::from_bits;
+        let nodes = tree
+            .nodes
+            .iter()
+            .map(|node| BvhNodeBlock {
+                min_count: [node.aabb.min.x, node.aabb.min.y, node.aabb.min.z, word(node.prim_count)],
+                max_first: [node.aabb.max.x, node.aabb.max.y, node.aabb.max.z, word(node.first_index)],
+            })
+            .collect();
+        let order: Vec<usize> = tree.primitive_indices.iter().map(|index| *index as usize).collect();
+        let triangles = order
+            .iter()
+            .map(|index| {
+                let Triangle { v0, v1, v2 } = corners[*index];
+                let four = |v: glam::Vec3A| [v.x, v.y, v.z, 0.0];
+                BvhTriangleBlock { corner: four(v0), edge1: four(v1 - v0), edge2: four(v2 - v0) }
+            })
+            .collect();
+        Ok(Self { nodes, triangles, sources: order.iter().map(|index| sources[*index]).collect() })
+    }
+
+    /// A tree that no ray meets: one leaf with a triangle of no area, which has no source.
+    pub fn empty() -> Self {
+        let node = BvhNodeBlock { min_count: [0.0, 0.0, 0.0, f32::from_bits(1)], max_first: [0.0; 4] };
+        let triangle = BvhTriangleBlock { corner: [0.0; 4], edge1: [0.0; 4], edge2: [0.0; 4] };
+        Self { nodes: vec![node], triangles: vec![triangle], sources: Vec::new() }
+    }
+
+    /// The nearest triangle along a ray, both of its sides, nearer than `limit`; `accept` may let a ray pass.
+    pub fn closest_hit(&self, origin: Vec3, direction: Vec3, limit: f32, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        self.walk(origin, direction, limit, |triangle, limit| {
+            let (distance, barycentric) = intersect(&self.triangles[triangle], origin, direction, limit)?;
+            let hit = Hit { distance, triangle, barycentric };
+            if !accept(&hit) {
+                return None;
+            }
+            best = Some(hit);
+            Some(distance)
+        });
+        best
+    }
+
+    /// Whether anything lies on the ray before `limit`.
+    pub fn occluded(&self, origin: Vec3, direction: Vec3, limit: f32) -> bool {
+        let mut met = false;
+        self.walk(origin, direction, limit, |triangle, limit| {
+            met |= intersect(&self.triangles[triangle], origin, direction, limit).is_some();
+            // A limit of 0 ends the walk: no box is entered any more.
+            met.then_some(0.0)
+        });
+        met
+    }
+
+    /// Calls `visit` for each triangle whose leaf the ray enters; what it returns becomes the new limit.
+    fn walk(&self, origin: Vec3, direction: Vec3, mut limit: f32, mut visit: impl FnMut(usize, f32) -> Option<f32>) {
+        let inverse = Vec3::from_array(direction.to_array().map(|side| 1.0 / if side == 0.0 { 1e-20 } else { side }));
+        let mut stack = [0u32; STACK];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let node = &self.nodes[stack[depth] as usize];
+            if !enters(node, origin, inverse, limit) {
+                continue;
+            }
+            let (count, first) = (node.min_count[3].to_bits(), node.max_first[3].to_bits());
+            if count == 0 {
+                stack[depth] = first;
+                stack[depth + 1] = first + 1;
+                depth += 2;
+                continue;
+            }
+            for triangle in first..first + count {
+                if let Some(nearer) = visit(triangle as usize, limit) {
+                    limit = nearer;
+                }
+            }
+        }
+    }
+}
+
+fn enters(node: &BvhNodeBlock, origin: Vec3, inverse: Vec3, limit: f32) -> bool {
+    let [x, y, z, _] = node.min_count;
+    let near = (Vec3::new(x, y, z) - origin) * inverse;
+    let [x, y, z, _] = node.max_first;
+    let far = (Vec3::new(x, y, z) - origin) * inverse;
+    let entry = near.min(far).max_element().max(0.0);
+    let leave = near.max(far).min_element().min(limit);
+    entry <= leave
+}
+
+/// Distance and barycentrics, in the shader's order of operations.
+fn intersect(triangle: &BvhTriangleBlock, origin: Vec3, direction: Vec3, limit: f32) -> Option<(f32, [f32; 2])> {
+    let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+    let (edge1, edge2) = (three(triangle.edge1), three(triangle.edge2));
+    let p = direction.cross(edge2);
+    let determinant = edge1.dot(p);
+    if determinant == 0.0 {
+        return None;
+    }
+    let inverse = 1.0 / determinant;
+    let offset = origin - three(triangle.corner);
+    let u = offset.dot(p) * inverse;
+    let q = offset.cross(edge1);
+    let v = direction.dot(q) * inverse;
+    let distance = edge2.dot(q) * inverse;
+    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < limit;
+    inside.then_some((distance, [u, v]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Draw, Material, Mesh};
+    use glam::Mat4;
+    use proptest::prelude::*;
+
+    /// A field of small triangles around the origin.
+    fn field(seed: u32, count: u32) -> Scene {
+        let number = |index: u32, axis: u32| sobol_burley::sample(index, axis, seed) * 2.0 - 1.0;
+        let mut mesh = Mesh::default();
+        for triangle in 0..count {
+            let center = Vec3::new(number(triangle, 0), number(triangle, 1), number(triangle, 2));
+            for corner in 0..3 {
+                let around = Vec3::new(
+                    number(3 * triangle + corner, 3),
+                    number(3 * triangle + corner, 4),
+                    number(3 * triangle + corner, 5),
+                );
+                mesh.indices.push(mesh.positions.len() as u32);
+                mesh.positions.push(center + 0.2 * around);
+            }
+        }
+        let draws = vec![Draw { mesh: 0, world_from_object: Mat4::from_translation(Vec3::new(0.5, 0.0, 0.0)) }];
+        Scene { meshes: vec![mesh], draws, materials: vec![Material::default()], ..Scene::default() }
+    }
+
+    proptest! {
+        #[test]
+        fn a_walk_meets_what_trying_every_triangle_meets(seed in 0u32..50, ray in 0u32..200) {
+            let bvh = Bvh::build(&field(seed, 60)).unwrap();
+            let number = |axis: u32| sobol_burley::sample(ray, axis, seed + 1000) * 2.0 - 1.0;
+            let origin = 3.0 * Vec3::new(number(0), number(1), number(2));
+            let direction = (Vec3::new(number(3), number(4), number(5)) - origin).normalize();
+            let every = (0..bvh.triangles.len())
+                .filter_map(|index| intersect(&bvh.triangles[index], origin, direction, 100.0))
+                .map(|(distance, _)| distance)
+                .fold(f32::INFINITY, f32::min);
+            let hit = bvh.closest_hit(origin, direction, 100.0, |_| true);
+            prop_assert_eq!(hit.map_or(f32::INFINITY, |hit| hit.distance), every);
+            prop_assert_eq!(bvh.occluded(origin, direction, 100.0), every.is_finite());
+        }
+    }
+
+    #[test]
+    fn an_empty_tree_stops_nothing() {
+        assert!(!Bvh::empty().occluded(Vec3::ZERO, Vec3::X, 1e30));
+        assert!(Bvh::build(&Scene::default()).unwrap().sources.is_empty());
+    }
+}

@@ -1,0 +1,191 @@
+//! The view of a frame: camera and extent, and the block of numbers that every shader may read (glsl/frame.glsl).
+
+use crate::error::{Error, Result};
+use crate::gpu::shader::structs::FrameBlock;
+use crate::scene::{Bounds, Camera, Projection, Scene};
+use crate::units::Extent;
+use glam::{Mat4, Vec3, Vec4};
+
+/// A camera and the picture it fills.
+#[derive(Clone, Debug)]
+pub struct View {
+    pub extent: Extent,
+    pub camera: Camera,
+    /// The scene had no camera: this one frames its bounds.
+    pub made_up: bool,
+}
+
+impl View {
+    /// The camera that `selector` (an index or a name) names; where the scene has none, one that frames its bounds along
+    /// -z with 45 degrees and a margin of 5 %.
+    ///
+    /// Errors: no such camera (exit code 2).
+    pub fn new(scene: &Scene, selector: &str, extent: Extent) -> Result<Self> {
+        if scene.cameras.is_empty() {
+            if selector != "0" {
+                return Err(Error::request(format!("--camera {selector}: {} has no camera", scene.name))
+                    .note("without --camera one is made that frames the scene"));
+            }
+            return Ok(Self { extent, camera: framing(&scene.bounds(), extent), made_up: true });
+        }
+        let by_name = scene.cameras.iter().position(|camera| camera.name == selector);
+        let index = by_name.or_else(|| selector.parse().ok()).filter(|index| *index < scene.cameras.len());
+        match index {
+            Some(index) => Ok(Self { extent, camera: scene.cameras[index].clone(), made_up: false }),
+            None => {
+                let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).take(12).collect();
+                Err(Error::request(format!("--camera {selector}: {} has no such camera", scene.name))
+                    .note(format!("it has {}: {}", scene.cameras.len(), names.join(", "))))
+            }
+        }
+    }
+
+    /// Where the eye is, world space.
+    pub fn eye(&self) -> Vec3 {
+        self.camera.world_from_view.w_axis.truncate()
+    }
+
+    /// Clip space from world space: y down as in Vulkan, depth reversed.
+    pub fn clip_from_world(&self) -> Mat4 {
+        let aspect = self.extent.width as f32 / self.extent.height as f32;
+        self.clip_from_view(aspect) * self.camera.world_from_view.inverse()
+    }
+
+    fn clip_from_view(&self, picture_aspect: f32) -> Mat4 {
+        match self.camera.projection {
+            Projection::Perspective { y_fov, aspect, z_near, z_far } => {
+                // A camera with an aspect of its own keeps its vertical angle; the picture's shape decides the width.
+                let _ = aspect;
+                let y = 1.0 / (0.5 * y_fov).tan();
+                let x = y / picture_aspect;
+                // depth = near (far - z) / (z (far - near)): 1 at near, 0 at far; far may be infinite.
+                let (a, b) = match z_far {
+                    None => (0.0, z_near),
+                    Some(z_far) => (z_near / (z_far - z_near), z_near * z_far / (z_far - z_near)),
+                };
+                Mat4::from_cols(
+                    Vec4::new(x, 0.0, 0.0, 0.0),
+                    Vec4::new(0.0, -y, 0.0, 0.0),
+                    Vec4::new(0.0, 0.0, a, -1.0),
+                    Vec4::new(0.0, 0.0, b, 0.0),
+                )
+            }
+            Projection::Orthographic { x_mag, y_mag, z_near, z_far } => {
+                // The picture's shape decides the width here too.
+                let x_mag = if x_mag / y_mag == picture_aspect { x_mag } else { y_mag * picture_aspect };
+                let depth = z_far - z_near;
+                Mat4::from_cols(
+                    Vec4::new(1.0 / x_mag, 0.0, 0.0, 0.0),
+                    Vec4::new(0.0, -1.0 / y_mag, 0.0, 0.0),
+                    Vec4::new(0.0, 0.0, 1.0 / depth, 0.0),
+                    Vec4::new(0.0, 0.0, z_far / depth, 1.0),
+                )
+            }
+        }
+    }
+
+    /// The block that shaders read.
+    pub fn block(&self, bounds: &Bounds, background: Vec3, ambient: Vec3, light_count: u32, vpl_count: u32) -> FrameBlock {
+        let clip_from_world = self.clip_from_world();
+        // Double precision: the inverse is what `--position depth` reads positions back with.
+        let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
+        let perspective = matches!(self.camera.projection, Projection::Perspective { .. });
+        let forward = -self.camera.world_from_view.z_axis.truncate();
+        let (box_min, box_size) = if bounds.is_empty() {
+            (Vec3::ZERO, Vec3::ONE)
+        } else {
+            // A flat scene still needs a box with an inside.
+            (bounds.min, (bounds.max - bounds.min).max(Vec3::splat(1e-6 * bounds.diagonal().max(1e-6))))
+        };
+        FrameBlock {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            world_from_clip: world_from_clip.to_cols_array_2d(),
+            eye_ws: self.eye().extend(if perspective { 1.0 } else { 0.0 }).to_array(),
+            forward_ws: forward.extend(0.0).to_array(),
+            box_min_ws: box_min.extend(0.0).to_array(),
+            box_size_ws: box_size.extend(0.0).to_array(),
+            background: background.extend(0.0).to_array(),
+            ambient: ambient.extend(0.0).to_array(),
+            width_px: self.extent.width,
+            height_px: self.extent.height,
+            light_count,
+            vpl_count,
+        }
+    }
+}
+
+/// A camera that sees all of `bounds`.
+fn framing(bounds: &Bounds, extent: Extent) -> Camera {
+    const Y_FOV: f32 = 45.0 * std::f32::consts::PI / 180.0;
+    const MARGIN: f32 = 1.05;
+    let (center, half) = if bounds.is_empty() {
+        (Vec3::ZERO, Vec3::ONE)
+    } else {
+        (bounds.center(), (bounds.max - bounds.min) * 0.5)
+    };
+    let tangent = (0.5 * Y_FOV).tan();
+    let aspect = extent.width as f32 / extent.height as f32;
+    let away = (half.y / tangent).max(half.x / (tangent * aspect)) * MARGIN;
+    let radius = half.length().max(1e-6);
+    let distance = half.z + away.max(1e-3 * radius);
+    let z_near = (distance - half.z) * 0.5;
+    Camera {
+        name: "framing".to_owned(),
+        world_from_view: Mat4::from_translation(center + Vec3::new(0.0, 0.0, distance)),
+        projection: Projection::Perspective { y_fov: Y_FOV, aspect: None, z_near, z_far: None },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view(projection: Projection) -> View {
+        let world_from_view = Mat4::from_translation(Vec3::new(0.0, 0.0, 5.0));
+        let camera = Camera { name: String::new(), world_from_view, projection };
+        View { extent: Extent::new(200, 100), camera, made_up: false }
+    }
+
+    #[test]
+    fn depth_is_one_at_the_near_plane_and_zero_at_the_far_plane_and_up_is_up() {
+        let perspective = Projection::Perspective { y_fov: 1.0, aspect: None, z_near: 1.0, z_far: Some(10.0) };
+        let orthographic = Projection::Orthographic { x_mag: 4.0, y_mag: 2.0, z_near: 1.0, z_far: 10.0 };
+        for projection in [perspective, orthographic] {
+            let clip = view(projection).clip_from_world();
+            assert!((clip.project_point3(Vec3::new(0.0, 0.0, 4.0)).z - 1.0).abs() < 1e-6, "{projection:?}");
+            assert!(clip.project_point3(Vec3::new(0.0, 0.0, -5.0)).z.abs() < 1e-6, "{projection:?}");
+            // Vulkan's y points down: what is up in the world has a negative y.
+            assert!(clip.project_point3(Vec3::new(0.0, 0.5, 0.0)).y < 0.0);
+            assert!(clip.project_point3(Vec3::new(0.5, 0.0, 0.0)).x > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_made_up_camera_sees_every_corner_of_the_bounds() {
+        let bounds = Bounds { min: Vec3::new(-3.0, 1.0, -7.0), max: Vec3::new(5.0, 2.0, 1.0) };
+        for extent in [Extent::new(640, 360), Extent::new(100, 300)] {
+            let clip = View { extent, camera: framing(&bounds, extent), made_up: true }.clip_from_world();
+            for corner in 0..8u32 {
+                let pick = |bit: u32, low: f32, high: f32| if corner & bit == 0 { low } else { high };
+                let point = Vec3::new(
+                    pick(1, bounds.min.x, bounds.max.x),
+                    pick(2, bounds.min.y, bounds.max.y),
+                    pick(4, bounds.min.z, bounds.max.z),
+                );
+                let seen = clip.project_point3(point);
+                assert!(seen.x.abs() <= 1.0 && seen.y.abs() <= 1.0 && (0.0..=1.0).contains(&seen.z), "{seen}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_camera_that_is_not_there_is_refused_with_those_that_are() {
+        let mut scene = Scene { name: "room".to_owned(), ..Scene::default() };
+        assert!(View::new(&scene, "0", Extent::new(8, 8)).unwrap().made_up);
+        assert_eq!(View::new(&scene, "1", Extent::new(8, 8)).unwrap_err().exit_code(), 2);
+        scene.cameras.push(framing(&Bounds::EMPTY, Extent::new(8, 8)));
+        assert!(View::new(&scene, "framing", Extent::new(8, 8)).is_ok());
+        let error = View::new(&scene, "door", Extent::new(8, 8)).unwrap_err();
+        assert!(error.to_string().contains("it has 1: framing"), "{error}");
+    }
+}

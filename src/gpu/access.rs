@@ -1,0 +1,292 @@
+//! One vocabulary for barriers: how a resource is touched, as stage, access and layout in one word.
+//!
+//! A pass states the right side (`to`), because it knows what it needs. `record` states the left side (`from`), because
+//! only the technique knows who wrote. Nothing is inferred; debug builds compare the left side with the truth
+//! (`Commands`), and synchronization validation checks the rest.
+
+use super::buffer::Buffer;
+use super::image::Image;
+use ash::vk;
+
+/// One way of touching a resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Read as a storage buffer or storage image by a compute shader.
+    ComputeRead,
+    /// Written (and perhaps read) as a storage buffer or storage image by a compute shader.
+    ComputeWrite,
+    /// Read through an image descriptor by a compute shader.
+    ComputeSample,
+    /// Read as a storage or uniform buffer by vertex and fragment shaders.
+    GraphicsRead,
+    /// Read through an image descriptor by a fragment shader.
+    FragmentSample,
+    /// Written as a colour attachment, blending included.
+    ColorWrite,
+    /// Tested and written as the depth attachment.
+    DepthWrite,
+    /// Tested as a read-only depth attachment.
+    DepthTest,
+    TransferRead,
+    TransferWrite,
+    /// Read as vertices or indices.
+    VertexRead,
+}
+
+impl Access {
+    const ALL: [Self; 11] = [
+        Self::ComputeRead,
+        Self::ComputeWrite,
+        Self::ComputeSample,
+        Self::GraphicsRead,
+        Self::FragmentSample,
+        Self::ColorWrite,
+        Self::DepthWrite,
+        Self::DepthTest,
+        Self::TransferRead,
+        Self::TransferWrite,
+        Self::VertexRead,
+    ];
+
+    fn stage(self) -> vk::PipelineStageFlags2 {
+        use vk::PipelineStageFlags2 as Stage;
+        match self {
+            Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample => Stage::COMPUTE_SHADER,
+            Self::GraphicsRead => Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER,
+            Self::FragmentSample => Stage::FRAGMENT_SHADER,
+            Self::ColorWrite => Stage::COLOR_ATTACHMENT_OUTPUT,
+            Self::DepthWrite | Self::DepthTest => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,
+            Self::TransferRead | Self::TransferWrite => Stage::ALL_TRANSFER,
+            Self::VertexRead => Stage::VERTEX_INPUT,
+        }
+    }
+
+    fn access(self) -> vk::AccessFlags2 {
+        use vk::AccessFlags2 as Flags;
+        match self {
+            Self::ComputeRead => Flags::SHADER_STORAGE_READ | Flags::UNIFORM_READ,
+            Self::ComputeWrite => Flags::SHADER_STORAGE_READ | Flags::SHADER_STORAGE_WRITE,
+            Self::ComputeSample | Self::FragmentSample => Flags::SHADER_SAMPLED_READ,
+            Self::GraphicsRead => Flags::SHADER_STORAGE_READ | Flags::UNIFORM_READ,
+            Self::ColorWrite => Flags::COLOR_ATTACHMENT_READ | Flags::COLOR_ATTACHMENT_WRITE,
+            Self::DepthWrite => Flags::DEPTH_STENCIL_ATTACHMENT_READ | Flags::DEPTH_STENCIL_ATTACHMENT_WRITE,
+            Self::DepthTest => Flags::DEPTH_STENCIL_ATTACHMENT_READ,
+            Self::TransferRead => Flags::TRANSFER_READ,
+            Self::TransferWrite => Flags::TRANSFER_WRITE,
+            Self::VertexRead => Flags::VERTEX_ATTRIBUTE_READ | Flags::INDEX_READ,
+        }
+    }
+
+    /// The layout that an image must have for it; a buffer has none.
+    pub fn layout(self) -> vk::ImageLayout {
+        match self {
+            Self::ComputeRead | Self::ComputeWrite => vk::ImageLayout::GENERAL,
+            Self::ComputeSample | Self::FragmentSample => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+            Self::ColorWrite => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+            Self::DepthWrite => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+            Self::DepthTest => vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+            Self::TransferRead => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+            Self::TransferWrite => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+            Self::GraphicsRead | Self::VertexRead => vk::ImageLayout::UNDEFINED,
+        }
+    }
+
+    pub fn writes(self) -> bool {
+        matches!(self, Self::ComputeWrite | Self::ColorWrite | Self::DepthWrite | Self::TransferWrite)
+    }
+
+    fn bit(self) -> u16 {
+        1 << self as u16
+    }
+}
+
+/// Several accesses at once: all readers since the last write, or one writer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct AccessSet(u16);
+
+impl AccessSet {
+    /// Not touched in this frame. A frame begins after the fence of the one before it, so nothing is waited for.
+    pub const UNTOUCHED: Self = Self(0);
+
+    pub fn iter(self) -> impl Iterator<Item = Access> {
+        Access::ALL.into_iter().filter(move |access| self.0 & access.bit() != 0)
+    }
+
+    pub fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    pub fn with(self, access: Access) -> Self {
+        Self(self.0 | access.bit())
+    }
+
+    fn stages(self) -> vk::PipelineStageFlags2 {
+        self.iter().fold(vk::PipelineStageFlags2::NONE, |stages, access| stages | access.stage())
+    }
+
+    /// What must be made available: reads need none.
+    fn writes(self) -> vk::AccessFlags2 {
+        self.iter()
+            .filter(|access| access.writes())
+            .fold(vk::AccessFlags2::NONE, |flags, access| flags | access.access())
+    }
+
+    /// The layout that the last access left; all accesses of a set share one.
+    fn layout(self) -> vk::ImageLayout {
+        self.iter().next().map_or(vk::ImageLayout::UNDEFINED, Access::layout)
+    }
+}
+
+impl From<Access> for AccessSet {
+    fn from(access: Access) -> Self {
+        Self(access.bit())
+    }
+}
+
+impl std::ops::BitOr for Access {
+    type Output = AccessSet;
+
+    fn bitor(self, other: Self) -> AccessSet {
+        AccessSet::from(self).with(other)
+    }
+}
+
+/// A resource, or several, and how it was touched last: the left side of a barrier.
+#[derive(Debug)]
+pub struct Edge<'a, R> {
+    pub resource: &'a R,
+    pub from: AccessSet,
+}
+
+// By hand, because a derived Copy would ask the resource to be Copy.
+impl<R> Clone for Edge<'_, R> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<R> Copy for Edge<'_, R> {}
+
+/// One barrier: a resource, its last accesses, its next one.
+#[derive(Clone, Copy, Debug)]
+pub struct Barrier {
+    pub(super) target: Target,
+    pub(super) from: AccessSet,
+    pub(super) to: Access,
+    /// The contents need not survive.
+    pub(super) discard: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Target {
+    Buffer(vk::Buffer),
+    Image(vk::Image, vk::ImageAspectFlags),
+}
+
+impl Edge<'_, Buffer> {
+    /// The next access: the right side.
+    pub fn to(self, access: Access) -> Barrier {
+        Barrier { target: Target::Buffer(self.resource.handle), from: self.from, to: access, discard: false }
+    }
+}
+
+impl Edge<'_, Image> {
+    /// The next access: the right side.
+    pub fn to(self, access: Access) -> Barrier {
+        let target = Target::Image(self.resource.handle, self.resource.aspect());
+        Barrier { target, from: self.from, to: access, discard: false }
+    }
+}
+
+impl Buffer {
+    /// States who touched it last.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
+    /// First touch of the frame, old contents not needed.
+    pub fn discard(&self, access: Access) -> Barrier {
+        let target = Target::Buffer(self.handle);
+        Barrier { target, from: AccessSet::UNTOUCHED, to: access, discard: true }
+    }
+}
+
+impl Image {
+    /// States who touched it last.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
+    /// First touch of the frame, old contents not needed.
+    pub fn discard(&self, access: Access) -> Barrier {
+        let target = Target::Image(self.handle, self.aspect());
+        Barrier { target, from: AccessSet::UNTOUCHED, to: access, discard: true }
+    }
+}
+
+impl Barrier {
+    /// Readers that follow readers in the same layout need no barrier.
+    pub(super) fn is_needed(&self) -> bool {
+        if self.discard {
+            return matches!(self.target, Target::Image(..));
+        }
+        let same_layout = match self.target {
+            Target::Buffer(_) => true,
+            Target::Image(..) => self.from.layout() == self.to.layout(),
+        };
+        let known = self.from.contains(self.to.into());
+        self.to.writes() || self.from.iter().any(Access::writes) || !same_layout || !known
+    }
+
+    pub(super) fn buffer_barrier(&self, buffer: vk::Buffer) -> vk::BufferMemoryBarrier2<'static> {
+        vk::BufferMemoryBarrier2::default()
+            .src_stage_mask(self.from.stages())
+            .src_access_mask(self.from.writes())
+            .dst_stage_mask(self.to.stage())
+            .dst_access_mask(self.to.access())
+            .buffer(buffer)
+            .size(vk::WHOLE_SIZE)
+    }
+
+    pub(super) fn image_barrier(&self, image: vk::Image, aspect: vk::ImageAspectFlags) -> vk::ImageMemoryBarrier2<'static> {
+        let old_layout = if self.discard { vk::ImageLayout::UNDEFINED } else { self.from.layout() };
+        vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(self.from.stages())
+            .src_access_mask(self.from.writes())
+            .dst_stage_mask(self.to.stage())
+            .dst_access_mask(self.to.access())
+            .old_layout(old_layout)
+            .new_layout(self.to.layout())
+            .image(image)
+            .subresource_range(
+                vk::ImageSubresourceRange::default()
+                    .aspect_mask(aspect)
+                    .level_count(vk::REMAINING_MIP_LEVELS)
+                    .layer_count(vk::REMAINING_ARRAY_LAYERS),
+            )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reader_after_a_known_reader_needs_no_barrier_and_a_writer_always_does() {
+        let target = Target::Buffer(vk::Buffer::null());
+        let barrier = |from: AccessSet, to| Barrier { target, from, to, discard: false }.is_needed();
+        assert!(barrier(Access::ComputeWrite.into(), Access::ComputeRead));
+        assert!(!barrier(Access::ComputeRead.into(), Access::ComputeRead));
+        // The write was made visible to compute only: another stage needs its own barrier.
+        assert!(barrier(Access::ComputeRead.into(), Access::GraphicsRead));
+        assert!(!barrier(Access::ComputeRead | Access::GraphicsRead, Access::GraphicsRead));
+        assert!(barrier(Access::ComputeRead.into(), Access::ComputeWrite));
+    }
+
+    #[test]
+    fn an_image_changes_layout_even_between_readers() {
+        let target = Target::Image(vk::Image::null(), vk::ImageAspectFlags::COLOR);
+        let barrier = Barrier { target, from: Access::ComputeRead.into(), to: Access::ComputeSample, discard: false };
+        assert!(barrier.is_needed());
+    }
+}

@@ -1,0 +1,84 @@
+//! A buffer: handle, description, allocation.
+
+use super::Gpu;
+use crate::error::{Error, Result};
+use crate::memory::kinds::Use;
+use crate::memory::{Allocation, Request, Tiling};
+use ash::vk;
+use std::mem::ManuallyDrop;
+use std::sync::Arc;
+
+/// A buffer with its memory; both end when it is dropped, which must be after the fence of its last frame.
+pub struct Buffer {
+    gpu: Arc<Gpu>,
+    pub handle: vk::Buffer,
+    pub name: String,
+    /// Bytes asked for.
+    pub bytes: u64,
+    allocation: ManuallyDrop<Allocation>,
+}
+
+impl Buffer {
+    /// Makes a buffer of `bytes` (at least 1) and binds memory for `usage`.
+    ///
+    /// Errors: the driver or the memory refuses (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        group: &str,
+        bytes: u64,
+        flags: vk::BufferUsageFlags,
+        usage: Use,
+    ) -> Result<Self> {
+        assert!(bytes > 0, "{name}: a buffer of no bytes does not exist in Vulkan");
+        let info = vk::BufferCreateInfo::default().size(bytes).usage(flags);
+        // SAFETY: a live device; the info has no pointers.
+        let handle = unsafe { gpu.device.create_buffer(&info, None) }
+            .map_err(|result| Error::device(format!("creating buffer {name} ({bytes} bytes): {result}")))?;
+        // SAFETY: the buffer was made from this device.
+        let requirements = unsafe { gpu.device.get_buffer_memory_requirements(handle) };
+        let request = Request { name, group, bytes, requirements, usage, tiling: Tiling::Linear };
+        let bound = gpu.memory.allocate(&request).and_then(|allocation| {
+            // SAFETY: fresh memory of an allowed type, in bounds, bound once.
+            unsafe { gpu.device.bind_buffer_memory(handle, allocation.handle, allocation.offset) }
+                .map_err(|result| Error::device(format!("binding buffer {name}: {result}")))?;
+            Ok(allocation)
+        });
+        match bound {
+            Ok(allocation) => {
+                gpu.name(handle, name);
+                let allocation = ManuallyDrop::new(allocation);
+                Ok(Self { gpu: gpu.clone(), handle, name: name.to_owned(), bytes, allocation })
+            }
+            Err(error) => {
+                // SAFETY: never used.
+                unsafe { gpu.device.destroy_buffer(handle, None) };
+                Err(error)
+            }
+        }
+    }
+
+    /// The host's view of the buffer. Panics where the buffer was not made for `Upload` or `Readback`.
+    pub fn mapped(&self) -> &[u8] {
+        let start = self.allocation.mapped.expect("only buffers for upload or readback are mapped");
+        // SAFETY: mapped, coherent, `bytes` long; the device writes it only before a fence that the caller waited for.
+        unsafe { std::slice::from_raw_parts(start.as_ptr(), self.bytes as usize) }
+    }
+
+    /// The host's view of the buffer, to write. The device must not be reading it.
+    pub fn mapped_mut(&mut self) -> &mut [u8] {
+        let start = self.allocation.mapped.expect("only buffers for upload or readback are mapped");
+        // SAFETY: as in `mapped`, and `self` is borrowed mutably.
+        unsafe { std::slice::from_raw_parts_mut(start.as_ptr(), self.bytes as usize) }
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: the frame's fence was waited for; the memory goes after the handle, and is taken out once.
+        unsafe {
+            self.gpu.device.destroy_buffer(self.handle, None);
+            ManuallyDrop::drop(&mut self.allocation);
+        }
+    }
+}

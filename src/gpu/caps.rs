@@ -1,0 +1,89 @@
+//! What a device can do, as plain data: looked up once, printed by `devices`, and read by a Plan that needs no device.
+
+use serde::{Deserialize, Serialize};
+
+/// A device's identity, limits, optional features and memory, without Vulkan types.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Caps {
+    pub identity: Identity,
+    pub limits: Limits,
+    pub features: Features,
+    pub heaps: Vec<Heap>,
+    pub memory_types: Vec<MemoryType>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Identity {
+    pub name: String,
+    /// `cpu`, `discrete-gpu`, `integrated-gpu`, `virtual-gpu` or `other`.
+    #[serde(rename = "type")]
+    pub device_type: String,
+    pub driver: String,
+    pub driver_info: String,
+    /// Highest Vulkan version, such as `1.3.230`.
+    pub api: String,
+}
+
+impl Identity {
+    /// Whether times measured on it are those of a software driver.
+    pub fn is_software(&self) -> bool {
+        self.device_type == "cpu"
+    }
+}
+
+/// Sizes in bytes, counts and periods.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Limits {
+    pub max_image_side_px: u32,
+    pub max_storage_buffer_range_bytes: u64,
+    pub max_push_constant_bytes: u32,
+    pub max_workgroup_invocations: u32,
+    pub max_workgroup_size: [u32; 3],
+    pub max_workgroup_count: [u32; 3],
+    pub max_sampled_images_per_stage: u32,
+    pub max_bound_descriptor_sets: u32,
+    pub max_color_attachments: u32,
+    pub max_allocation_count: u32,
+    pub max_allocation_bytes: u64,
+    pub buffer_image_granularity_bytes: u64,
+    pub non_coherent_atom_bytes: u64,
+    pub min_storage_buffer_offset_bytes: u64,
+    pub max_sampler_anisotropy: f32,
+    pub subgroup_size: u32,
+    /// Nanoseconds a tick; 0 where the queue writes no timestamps.
+    pub timestamp_period_ns: f32,
+    pub framebuffer_sample_counts: Vec<u32>,
+}
+
+/// Optional features, each of which some technique or setting asks for.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Features {
+    pub geometry_shader: bool,
+    pub layer_from_vertex_shader: bool,
+    pub fragment_stores_and_atomics: bool,
+    pub sampler_anisotropy: bool,
+    pub storage_image_extended_formats: bool,
+    pub shader_float16: bool,
+    pub shader_int64_atomics: bool,
+    pub pipeline_statistics: bool,
+    pub conservative_rasterization: bool,
+    pub ray_query: bool,
+    pub memory_budget: bool,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Heap {
+    pub bytes: u64,
+    pub device_local: bool,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MemoryType {
+    /// Index into `Caps::heaps`.
+    pub heap: u32,
+    pub device_local: bool,
+    pub host_visible: bool,
+    pub host_coherent: bool,
+    pub host_cached: bool,
+    pub lazily_allocated: bool,
+}

@@ -1,0 +1,473 @@
+//! Commands: a frame's command buffers, recorded by hand. The order of lines is the order of work.
+//!
+//! A frame is one command buffer, or one a pass (`Submits::PerPass`) so that each pass can be timed by the wall clock.
+//! Debug builds keep the truth of who touched what last and hold every barrier's left side against it.
+
+use super::access::{AccessSet, Barrier, Target};
+use super::buffer::Buffer;
+use super::image::Image;
+use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
+use super::shader::BindingKind;
+use super::timing::{PassTime, Timestamps};
+use super::{Access, Gpu};
+use crate::error::{Error, Result};
+use crate::units::Extent;
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// How a frame is submitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Submits {
+    /// One submit for the frame: what a real frame does.
+    One,
+    /// One submit and fence for each pass, for its time.
+    PerPass,
+}
+
+/// What a pass moves, by arithmetic: the bytes that its invocations read and write in buffers and images.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Traffic {
+    pub read_bytes: u64,
+    pub written_bytes: u64,
+    /// Invocations of its compute shader; None for draws.
+    pub invocations: Option<u64>,
+}
+
+/// Something a shader binds, by its name in GLSL.
+#[derive(Clone, Copy)]
+pub enum Bound<'a> {
+    Buffer(&'a Buffer),
+    /// Through a storage image descriptor; layout GENERAL.
+    Storage(&'a Image),
+    /// Through a sampler, layout as `access` has it.
+    Sampled(&'a Image, vk::Sampler, Access),
+}
+
+/// A named pass in a recorded frame.
+#[derive(Clone, Debug)]
+pub struct RecordedPass {
+    pub name: String,
+    pub traffic: Traffic,
+}
+
+/// A frame being recorded.
+pub struct Commands {
+    gpu: Arc<Gpu>,
+    submits: Submits,
+    pool: vk::CommandPool,
+    buffers: Vec<vk::CommandBuffer>,
+    descriptor_pools: Vec<vk::DescriptorPool>,
+    passes: Vec<RecordedPass>,
+    timestamps: Option<Timestamps>,
+    truth: HashMap<Target, AccessSet>,
+}
+
+/// A frame that can be run again and again.
+pub struct Recorded {
+    commands: Commands,
+    fence: vk::Fence,
+}
+
+/// What one run of a frame took.
+pub struct FrameTime {
+    /// First submit to last fence.
+    pub wall_ns: u64,
+    /// In the order of `Recorded::passes`.
+    pub passes: Vec<PassTime>,
+}
+
+/// Passes of one frame that can have timestamps.
+const MAX_PASS_COUNT: u32 = 256;
+
+impl Commands {
+    /// Starts recording. `name` labels the command buffers.
+    pub fn begin(gpu: &Arc<Gpu>, name: &str, submits: Submits) -> Result<Self> {
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
+        // SAFETY: a live device and its queue family.
+        let pool = unsafe { gpu.device.create_command_pool(&info, None) }
+            .map_err(|result| Error::device(format!("creating the command pool of {name}: {result}")))?;
+        let mut commands = Self {
+            gpu: gpu.clone(),
+            submits,
+            pool,
+            buffers: Vec::new(),
+            descriptor_pools: Vec::new(),
+            passes: Vec::new(),
+            timestamps: None,
+            truth: HashMap::new(),
+        };
+        gpu.name(pool, name);
+        if submits == Submits::PerPass {
+            commands.timestamps = Timestamps::new(gpu, MAX_PASS_COUNT)?;
+        }
+        commands.next_buffer()?;
+        if let Some(timestamps) = &commands.timestamps {
+            timestamps.reset(commands.buffer());
+        }
+        Ok(commands)
+    }
+
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    /// The command buffer that is being recorded.
+    pub fn buffer(&self) -> vk::CommandBuffer {
+        *self.buffers.last().expect("`begin` made the first")
+    }
+
+    fn next_buffer(&mut self) -> Result<()> {
+        let device = &self.gpu.device;
+        let fail = |result| Error::device(format!("recording commands: {result}"));
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+        // SAFETY: a live pool.
+        let buffer = unsafe { device.allocate_command_buffers(&info) }.map_err(fail)?[0];
+        // SAFETY: fresh from the pool.
+        unsafe { device.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default()) }.map_err(fail)?;
+        self.buffers.push(buffer);
+        Ok(())
+    }
+
+    fn end_buffer(&self) -> Result<()> {
+        // SAFETY: begun in `next_buffer`.
+        unsafe { self.gpu.device.end_command_buffer(self.buffer()) }
+            .map_err(|result| Error::device(format!("recording commands: {result}")))
+    }
+
+    /// Records one pass under its name: debug label, timing, report row.
+    pub fn pass(&mut self, name: &str, traffic: Traffic, record: impl FnOnce(&mut Self) -> Result<()>) -> Result<()> {
+        let index = self.passes.len() as u32;
+        assert!(index < MAX_PASS_COUNT, "{name}: more than {MAX_PASS_COUNT} passes in a frame");
+        if self.submits == Submits::PerPass && index > 0 {
+            self.end_buffer()?;
+            self.next_buffer()?;
+        }
+        self.passes.push(RecordedPass { name: name.to_owned(), traffic });
+        self.gpu.label(self.buffer(), Some(name));
+        if let Some(timestamps) = &self.timestamps {
+            timestamps.write(self.buffer(), index, false);
+        }
+        record(self).map_err(|error| error.within(name))?;
+        if let Some(timestamps) = &self.timestamps {
+            timestamps.write(self.buffer(), index, true);
+        }
+        self.gpu.label(self.buffer(), None);
+        Ok(())
+    }
+
+    /// One pipeline barrier for all of `barriers`; those that wait for nothing are left out.
+    pub fn barriers(&mut self, barriers: impl IntoIterator<Item = Barrier>) {
+        let mut buffers = Vec::new();
+        let mut images = Vec::new();
+        for barrier in barriers {
+            self.check_left_side(&barrier);
+            if barrier.is_needed() {
+                match barrier.target {
+                    Target::Buffer(buffer) => buffers.push(barrier.buffer_barrier(buffer)),
+                    Target::Image(image, aspect) => images.push(barrier.image_barrier(image, aspect)),
+                }
+            }
+            let known = self.truth.entry(barrier.target).or_default();
+            let joins = !barrier.to.writes() && known.iter().all(|access| !access.writes() && access.layout() == barrier.to.layout());
+            *known = if joins { known.with(barrier.to) } else { barrier.to.into() };
+        }
+        if buffers.is_empty() && images.is_empty() {
+            return;
+        }
+        let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
+        // SAFETY: the buffer is being recorded, outside rendering; the resources are alive.
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
+    }
+
+    /// A barrier whose left side lies in an earlier submit: the caller vouches for it.
+    pub(super) fn assume(&mut self, barrier: Barrier) {
+        self.truth.insert(barrier.target, barrier.from);
+        self.barriers([barrier]);
+    }
+
+    /// A programmer's mistake: `record` says that somebody else wrote.
+    fn check_left_side(&self, barrier: &Barrier) {
+        if cfg!(debug_assertions) {
+            let truth = self.truth.get(&barrier.target).copied().unwrap_or_default();
+            // Scene resources enter a frame readable: their first left side is what the upload left.
+            let first = truth == AccessSet::UNTOUCHED && barrier.from.iter().all(|access| !access.writes());
+            assert!(
+                first || barrier.from.contains(truth),
+                "a barrier to {:?} waits for {:?}, but the resource was last touched by {truth:?}",
+                barrier.to,
+                barrier.from
+            );
+        }
+    }
+
+    /// Writes a set for `interface` from what is bound by name, and binds it as set 0.
+    fn bind(&mut self, point: vk::PipelineBindPoint, interface: &Interface, bound: &[(&str, Bound<'_>)]) -> Result<()> {
+        for (name, _) in bound {
+            let known = interface.bindings.iter().any(|binding| binding.name == *name);
+            assert!(known, "{}: nothing is called {name}", interface.label);
+        }
+        if interface.bindings.is_empty() {
+            return Ok(());
+        }
+        let set = self.allocate_set(interface)?;
+        for binding in &interface.bindings {
+            let (_, value) = bound
+                .iter()
+                .find(|(name, _)| *name == binding.name)
+                .unwrap_or_else(|| panic!("{}: {} is not bound", interface.label, binding.name));
+            let mut buffer_info = [vk::DescriptorBufferInfo::default()];
+            let mut image_info = [vk::DescriptorImageInfo::default()];
+            let write = vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(binding.binding)
+                .descriptor_type(binding.kind.descriptor_type());
+            let write = match (binding.kind, value) {
+                (BindingKind::StorageBuffer | BindingKind::UniformBuffer, Bound::Buffer(buffer)) => {
+                    buffer_info[0] = buffer_info[0].buffer(buffer.handle).range(vk::WHOLE_SIZE);
+                    write.buffer_info(&buffer_info)
+                }
+                (BindingKind::StorageImage, Bound::Storage(image)) => {
+                    image_info[0] = image_info[0].image_view(image.storage_view).image_layout(vk::ImageLayout::GENERAL);
+                    write.image_info(&image_info)
+                }
+                (BindingKind::CombinedImageSampler, Bound::Sampled(image, sampler, access)) => {
+                    image_info[0] =
+                        image_info[0].image_view(image.view).sampler(*sampler).image_layout(access.layout());
+                    write.image_info(&image_info)
+                }
+                (kind, _) => panic!("{}: {} is a {kind:?} and was bound as something else", interface.label, binding.name),
+            };
+            // SAFETY: the set is fresh, the resources are alive and outlive the recorded frame.
+            unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) };
+        }
+        // SAFETY: the buffer is being recorded; the set was made for this layout.
+        unsafe {
+            self.gpu.device.cmd_bind_descriptor_sets(self.buffer(), point, interface.layout, 0, &[set], &[]);
+        }
+        Ok(())
+    }
+
+    fn allocate_set(&mut self, interface: &Interface) -> Result<vk::DescriptorSet> {
+        let layouts = [interface.set_layouts[0]];
+        for fresh in [false, true] {
+            if fresh {
+                self.descriptor_pools.push(new_descriptor_pool(&self.gpu)?);
+            }
+            let Some(pool) = self.descriptor_pools.last() else { continue };
+            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(*pool).set_layouts(&layouts);
+            // SAFETY: a live pool and layout; a full pool answers with an error and is followed by a new one.
+            match unsafe { self.gpu.device.allocate_descriptor_sets(&info) } {
+                Ok(sets) => return Ok(sets[0]),
+                Err(result) if fresh => {
+                    return Err(Error::device(format!("{}: allocating descriptors: {result}", interface.label)));
+                }
+                Err(_) => {}
+            }
+        }
+        unreachable!("the second round returns")
+    }
+
+    fn push(&self, interface: &Interface, params: &[u8]) {
+        let expected = interface.push_bytes as usize;
+        assert!(
+            params.len() >= expected && params.len() <= expected.next_multiple_of(16),
+            "{}: {} bytes of params, {expected} expected",
+            interface.label,
+            params.len()
+        );
+        if expected > 0 {
+            // SAFETY: the buffer is being recorded; the range is the layout's.
+            unsafe {
+                let (layout, stages) = (interface.layout, interface.push_stages);
+                self.gpu.device.cmd_push_constants(self.buffer(), layout, stages, 0, &params[..expected]);
+            }
+        }
+    }
+
+    /// Binds and dispatches `groups` workgroups.
+    pub fn dispatch(
+        &mut self,
+        pipeline: &ComputePipeline,
+        params: &[u8],
+        bound: &[(&str, Bound<'_>)],
+        groups: [u32; 3],
+    ) -> Result<()> {
+        let limit = self.gpu.caps.limits.max_workgroup_count;
+        if (0..3).any(|axis| groups[axis] > limit[axis]) {
+            let label = &pipeline.interface.label;
+            return Err(Error::request(format!("{label}: {groups:?} workgroups: this device allows {limit:?}")));
+        }
+        // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
+        unsafe {
+            self.gpu.device.cmd_bind_pipeline(self.buffer(), vk::PipelineBindPoint::COMPUTE, pipeline.handle);
+        }
+        self.bind(vk::PipelineBindPoint::COMPUTE, &pipeline.interface, bound)?;
+        self.push(&pipeline.interface, params);
+        // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers.
+        unsafe { self.gpu.device.cmd_dispatch(self.buffer(), groups[0], groups[1], groups[2]) };
+        Ok(())
+    }
+
+    /// Binds a graphics pipeline, inside rendering. Draws follow on `buffer()`.
+    pub fn bind_graphics(&mut self, pipeline: &GraphicsPipeline, params: &[u8], bound: &[(&str, Bound<'_>)]) -> Result<()> {
+        // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
+        unsafe {
+            self.gpu.device.cmd_bind_pipeline(self.buffer(), vk::PipelineBindPoint::GRAPHICS, pipeline.handle);
+        }
+        self.bind(vk::PipelineBindPoint::GRAPHICS, &pipeline.interface, bound)?;
+        self.push(&pipeline.interface, params);
+        Ok(())
+    }
+
+    /// Opens rendering into whole images of `extent`. A clear value of None loads what is there.
+    pub fn begin_rendering(
+        &mut self,
+        extent: Extent,
+        colors: &[(&Image, Option<vk::ClearColorValue>)],
+        depth: Option<(&Image, Option<f32>, Access)>,
+    ) {
+        let load = |clears: bool| if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
+        let color_infos: Vec<_> = colors
+            .iter()
+            .map(|(image, clear)| {
+                vk::RenderingAttachmentInfo::default()
+                    .image_view(image.view)
+                    .image_layout(Access::ColorWrite.layout())
+                    .load_op(load(clear.is_some()))
+                    .store_op(vk::AttachmentStoreOp::STORE)
+                    .clear_value(vk::ClearValue { color: clear.unwrap_or_default() })
+            })
+            .collect();
+        let depth_info = depth.map(|(image, clear, access)| {
+            let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
+            vk::RenderingAttachmentInfo::default()
+                .image_view(image.view)
+                .image_layout(access.layout())
+                .load_op(load(clear.is_some()))
+                .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
+                .clear_value(vk::ClearValue { depth_stencil: value })
+        });
+        let area = vk::Rect2D {
+            offset: vk::Offset2D::default(),
+            extent: vk::Extent2D { width: extent.width, height: extent.height },
+        };
+        let mut info =
+            vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
+        if let Some(depth_info) = &depth_info {
+            info = info.depth_attachment(depth_info);
+        }
+        let viewport = vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: extent.width as f32,
+            height: extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: the buffer is being recorded; the images are alive and in the layouts that the caller's barriers left.
+        unsafe {
+            self.gpu.device.cmd_begin_rendering(self.buffer(), &info);
+            self.gpu.device.cmd_set_viewport(self.buffer(), 0, &[viewport]);
+            self.gpu.device.cmd_set_scissor(self.buffer(), 0, &[area]);
+        }
+    }
+
+    pub fn end_rendering(&mut self) {
+        // SAFETY: opened by `begin_rendering`.
+        unsafe { self.gpu.device.cmd_end_rendering(self.buffer()) };
+    }
+
+    /// Ends recording.
+    pub fn finish(self) -> Result<Recorded> {
+        self.end_buffer()?;
+        // SAFETY: a live device.
+        let fence = unsafe { self.gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }
+            .map_err(|result| Error::device(format!("creating a fence: {result}")))?;
+        Ok(Recorded { commands: self, fence })
+    }
+}
+
+fn new_descriptor_pool(gpu: &Gpu) -> Result<vk::DescriptorPool> {
+    // Enough for any frame of today; a frame that needs more gets a second pool.
+    let sizes = [
+        (vk::DescriptorType::STORAGE_BUFFER, 256),
+        (vk::DescriptorType::UNIFORM_BUFFER, 64),
+        (vk::DescriptorType::STORAGE_IMAGE, 64),
+        (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 128),
+    ]
+    .map(|(ty, descriptor_count)| vk::DescriptorPoolSize { ty, descriptor_count });
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(64).pool_sizes(&sizes);
+    // SAFETY: a live device.
+    unsafe { gpu.device.create_descriptor_pool(&info, None) }
+        .map_err(|result| Error::device(format!("creating a descriptor pool: {result}")))
+}
+
+impl Drop for Commands {
+    fn drop(&mut self) {
+        // SAFETY: nothing recorded here is running: `Recorded::run` waits for its fences.
+        unsafe {
+            for pool in &self.descriptor_pools {
+                self.gpu.device.destroy_descriptor_pool(*pool, None);
+            }
+            self.gpu.device.destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+impl Recorded {
+    pub fn passes(&self) -> &[RecordedPass] {
+        &self.commands.passes
+    }
+
+    /// Submits the frame and waits for it.
+    ///
+    /// Errors: the device is lost or out of memory (exit code 4).
+    pub fn run(&self) -> Result<FrameTime> {
+        let commands = &self.commands;
+        let started = Instant::now();
+        let mut walls = Vec::with_capacity(commands.buffers.len());
+        for buffer in &commands.buffers {
+            let submitted = Instant::now();
+            self.submit(*buffer)?;
+            walls.push(submitted.elapsed().as_nanos() as u64);
+        }
+        let wall_ns = started.elapsed().as_nanos() as u64;
+        let timestamps = match &commands.timestamps {
+            Some(timestamps) => timestamps.read_first(commands.passes.len())?,
+            None => Vec::new(),
+        };
+        let passes = (0..commands.passes.len())
+            .map(|pass| PassTime {
+                wall_ns: (commands.submits == Submits::PerPass).then(|| walls[pass]),
+                timestamp_ns: timestamps.get(pass).copied(),
+            })
+            .collect();
+        Ok(FrameTime { wall_ns, passes })
+    }
+
+    fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {
+        let gpu = &self.commands.gpu;
+        let fail = |result| match self.commands.passes.as_slice() {
+            [] => Error::device(format!("running commands: {result}")),
+            [first, ..] => Error::device(format!("running the frame of {}: {result}", first.name)),
+        };
+        let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(buffer)];
+        let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
+        let _one_at_a_time = gpu.submit_lock.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // SAFETY: the buffer is recorded and not running; the queue is locked; the fence is unsignalled.
+        unsafe {
+            gpu.device.queue_submit2(gpu.queue, &[submit], self.fence).map_err(fail)?;
+            gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(fail)?;
+            gpu.device.reset_fences(&[self.fence]).map_err(fail)
+        }
+    }
+}
+
+impl Drop for Recorded {
+    fn drop(&mut self) {
+        // SAFETY: `submit` waited for it.
+        unsafe { self.commands.gpu.device.destroy_fence(self.fence, None) };
+    }
+}

@@ -1,0 +1,355 @@
+//! Instance, choice of device, queue, enabled features; and what every other file of this room needs of them.
+
+use super::caps::{Caps, Identity};
+use super::{probe, validation};
+use crate::error::{Error, Result};
+use crate::memory::{Memory, Strategy};
+use ash::vk;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::sync::{Arc, Mutex};
+
+/// Vulkan version that this program is written for.
+pub const API: u32 = vk::API_VERSION_1_3;
+
+/// Replaces a device function by name, or leaves it: how a test stands between this program and the driver.
+pub type DeviceHook = fn(&CStr, *const c_void) -> *const c_void;
+
+/// Which device, and how it is watched.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceRequest {
+    /// An index of the list that `devices` prints, or a part of a name; None: the first that fits, GPUs first.
+    pub selector: Option<String>,
+    /// Load the validation layer with synchronization checks and collect its messages.
+    pub validate: bool,
+    pub strategy: Strategy,
+    /// None: the driver's own functions.
+    pub hook: Option<DeviceHook>,
+}
+
+/// An open device with one queue, its memory and its validation log.
+pub struct Gpu {
+    pub caps: Caps,
+    pub device: ash::Device,
+    pub queue: vk::Queue,
+    pub queue_family: u32,
+    pub memory: Arc<Memory>,
+    names: Option<ash::ext::debug_utils::Device>,
+    validation: Option<Validation>,
+    instance: ash::Instance,
+    /// Serialises submits: a queue is externally synchronised.
+    pub(super) submit_lock: Mutex<()>,
+    // The loaded library stays as long as anything that came from it.
+    _entry: ash::Entry,
+}
+
+struct Validation {
+    functions: ash::ext::debug_utils::Instance,
+    messenger: vk::DebugUtilsMessengerEXT,
+    log: Box<validation::Log>,
+}
+
+/// A device that `devices` lists.
+pub struct Listed {
+    pub caps: Caps,
+    /// Why it cannot be used; empty where it can.
+    pub missing: Vec<String>,
+}
+
+fn load_entry() -> Result<ash::Entry> {
+    // SAFETY: loading the system's Vulkan loader runs its initialisers; there is no way to check a library beforehand.
+    unsafe { ash::Entry::load() }.map_err(|error| {
+        Error::no_device(format!("no Vulkan loader: {error}"))
+            .note("Debian and Ubuntu: apt-get install libvulkan1 mesa-vulkan-drivers")
+    })
+}
+
+fn create_instance(entry: &ash::Entry, validate: Option<&validation::Log>) -> Result<(ash::Instance, bool)> {
+    // SAFETY: the entry is loaded; enumerating has no preconditions.
+    let version = unsafe { entry.try_enumerate_instance_version() }.ok().flatten().unwrap_or(vk::API_VERSION_1_0);
+    if version < API {
+        return Err(Error::no_device(format!(
+            "the Vulkan loader speaks {}.{}, 1.3 is needed",
+            vk::api_version_major(version),
+            vk::api_version_minor(version)
+        )));
+    }
+    // SAFETY: as above.
+    let available = unsafe { entry.enumerate_instance_extension_properties(None) }.unwrap_or_default();
+    let has_names = available.iter().any(|e| e.extension_name_as_c_str() == Ok(ash::ext::debug_utils::NAME));
+    let application = vk::ApplicationInfo::default().application_name(c"quincunx").api_version(API);
+    let mut extensions: Vec<*const c_char> = Vec::new();
+    if has_names {
+        extensions.push(ash::ext::debug_utils::NAME.as_ptr());
+    }
+    let layers = [validation::LAYER.as_ptr()];
+    let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+    let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
+    let mut messenger = validate.map(validation::Log::messenger_info);
+    let mut info = vk::InstanceCreateInfo::default().application_info(&application);
+    if validate.is_some() {
+        // SAFETY: as above.
+        let present = unsafe { entry.enumerate_instance_layer_properties() }.unwrap_or_default();
+        if !present.iter().any(|layer| layer.layer_name_as_c_str() == Ok(validation::LAYER)) {
+            return Err(Error::request("--validate: the layer VK_LAYER_KHRONOS_validation is not installed")
+                .note("Debian and Ubuntu: apt-get install vulkan-validationlayers"));
+        }
+        info = info.enabled_layer_names(&layers).push_next(&mut features);
+        if let Some(messenger) = messenger.as_mut() {
+            info = info.push_next(messenger);
+        }
+    }
+    info = info.enabled_extension_names(&extensions);
+    // SAFETY: every pointer in `info` outlives the call.
+    let instance = unsafe { entry.create_instance(&info, None) }.map_err(no_driver)?;
+    Ok((instance, has_names))
+}
+
+fn no_driver(result: vk::Result) -> Error {
+    let mut error = Error::no_device(format!("no Vulkan driver answers ({result})"));
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        if let Some(value) = std::env::var_os(variable) {
+            error = error.note(format!("{variable} is set to {}", value.to_string_lossy()));
+        }
+    }
+    error.note("a software driver for any machine: apt-get install mesa-vulkan-drivers (Debian, Ubuntu)")
+}
+
+fn physical_devices(instance: &ash::Instance) -> Result<Vec<vk::PhysicalDevice>> {
+    // SAFETY: a live instance.
+    let devices = unsafe { instance.enumerate_physical_devices() }.map_err(no_driver)?;
+    if devices.is_empty() {
+        return Err(no_driver(vk::Result::ERROR_INITIALIZATION_FAILED));
+    }
+    Ok(devices)
+}
+
+/// What a device lacks of what this program cannot do without.
+fn missing(instance: &ash::Instance, physical: vk::PhysicalDevice, caps: &Caps) -> Vec<String> {
+    // SAFETY: a live instance and one of its physical devices.
+    let version = unsafe { instance.get_physical_device_properties(physical) }.api_version;
+    if version < API {
+        return vec![format!("it speaks Vulkan {}, 1.3 is needed", caps.identity.api)];
+    }
+    let mut features13 = vk::PhysicalDeviceVulkan13Features::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut features13);
+    // SAFETY: as above; 1.3 knows the chained struct.
+    unsafe { instance.get_physical_device_features2(physical, &mut features) };
+    let mut missing = Vec::new();
+    for (present, name) in [
+        (features13.dynamic_rendering, "dynamicRendering"),
+        (features13.synchronization2, "synchronization2"),
+        (features13.maintenance4, "maintenance4"),
+    ] {
+        if present == 0 {
+            missing.push(format!("feature {name}"));
+        }
+    }
+    if probe::queue_family(instance, physical).is_none() {
+        missing.push("a queue that draws and computes".to_owned());
+    }
+    missing
+}
+
+/// Every device of every driver, with what it lacks.
+pub fn list() -> Result<Vec<Listed>> {
+    let entry = load_entry()?;
+    let (instance, _) = create_instance(&entry, None)?;
+    let listed = physical_devices(&instance).map(|devices| {
+        devices
+            .into_iter()
+            .map(|physical| {
+                let caps = probe::caps(&instance, physical);
+                let missing = missing(&instance, physical, &caps);
+                Listed { caps, missing }
+            })
+            .collect()
+    });
+    // SAFETY: nothing made from the instance is alive.
+    unsafe { instance.destroy_instance(None) };
+    listed
+}
+
+/// The place of a device in the choice without `--device`: GPUs before processors.
+fn preference(identity: &Identity) -> u32 {
+    match identity.device_type.as_str() {
+        "discrete-gpu" => 0,
+        "integrated-gpu" => 1,
+        "virtual-gpu" => 2,
+        "cpu" => 3,
+        _ => 4,
+    }
+}
+
+fn choose(instance: &ash::Instance, selector: Option<&str>) -> Result<(vk::PhysicalDevice, Caps)> {
+    let all: Vec<(usize, vk::PhysicalDevice, Caps)> = physical_devices(instance)?
+        .into_iter()
+        .enumerate()
+        .map(|(index, physical)| (index, physical, probe::caps(instance, physical)))
+        .collect();
+    let mut fitting: Vec<_> = all
+        .iter()
+        .filter(|(index, _, caps)| match selector {
+            None => true,
+            Some(text) => text.parse::<usize>().map_or_else(
+                |_| {
+                    let name = format!("{} {}", caps.identity.name, caps.identity.driver_info).to_lowercase();
+                    name.contains(&text.to_lowercase())
+                },
+                |wanted| wanted == *index,
+            ),
+        })
+        .collect();
+    fitting.sort_by_key(|(_, _, caps)| preference(&caps.identity));
+    let usable = fitting.iter().find(|(_, physical, caps)| missing(instance, *physical, caps).is_empty());
+    if let Some((_, physical, caps)) = usable {
+        return Ok((*physical, caps.clone()));
+    }
+    let mut error = Error::no_device(match selector {
+        Some(text) => format!("--device {text}: no fitting device"),
+        None => "no fitting device".to_owned(),
+    });
+    for (index, physical, caps) in &all {
+        let lacks = missing(instance, *physical, caps);
+        let verdict = if lacks.is_empty() { "fits".to_owned() } else { format!("lacks {}", lacks.join(", ")) };
+        error = error.note(format!("{index}: {} ({}): {verdict}", caps.identity.name, caps.identity.driver_info));
+    }
+    Err(error)
+}
+
+impl Gpu {
+    /// Opens the device that `request` names.
+    ///
+    /// Errors: no loader, driver or fitting device (exit code 3); the validation layer is missing (2).
+    pub fn open(request: &DeviceRequest) -> Result<Arc<Self>> {
+        let entry = load_entry()?;
+        let log = request.validate.then(|| Box::new(validation::Log::default()));
+        let (instance, has_names) = create_instance(&entry, log.as_deref())?;
+        let opened = Self::open_on(entry, instance.clone(), has_names, log, request);
+        if opened.is_err() {
+            // SAFETY: `open_on` destroys what it made before it fails.
+            unsafe { instance.destroy_instance(None) };
+        }
+        opened.map(Arc::new)
+    }
+
+    fn open_on(
+        entry: ash::Entry,
+        instance: ash::Instance,
+        has_names: bool,
+        log: Option<Box<validation::Log>>,
+        request: &DeviceRequest,
+    ) -> Result<Self> {
+        let (physical, caps) = choose(&instance, request.selector.as_deref())?;
+        let queue_family = probe::queue_family(&instance, physical).expect("`choose` asked for it");
+        let priorities = [1.0];
+        let queues = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(queue_family)
+            .queue_priorities(&priorities)];
+        let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
+            .dynamic_rendering(true)
+            .synchronization2(true)
+            .maintenance4(true);
+        let features = vk::PhysicalDeviceFeatures::default()
+            .sampler_anisotropy(caps.features.sampler_anisotropy)
+            .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
+            .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics);
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_features(&features)
+            .push_next(&mut features13);
+        // SAFETY: every pointer in `info` outlives the call; the features were found present.
+        let created = unsafe { instance.create_device(physical, &info, None) };
+        let mut device =
+            created.map_err(|result| Error::device(format!("opening {}: {result}", caps.identity.name)))?;
+        if let Some(hook) = request.hook {
+            let get = instance.fp_v1_0().get_device_proc_addr;
+            let handle = device.handle();
+            // SAFETY: the same device, its functions passed through the hook, which keeps their signatures.
+            device = unsafe {
+                ash::Device::load_with(
+                    |name| {
+                        let own = get(handle, name.as_ptr()).map_or(std::ptr::null(), |f| f as *const c_void);
+                        hook(name, own)
+                    },
+                    handle,
+                )
+            };
+        }
+        let validation = match log {
+            None => None,
+            Some(log) => {
+                let functions = ash::ext::debug_utils::Instance::new(&entry, &instance);
+                // SAFETY: the log lives in the same struct as the messenger and is dropped after it.
+                match unsafe { functions.create_debug_utils_messenger(&log.messenger_info(), None) } {
+                    Ok(messenger) => Some(Validation { functions, messenger, log }),
+                    Err(result) => {
+                        // SAFETY: nothing made from the device is alive.
+                        unsafe { device.destroy_device(None) };
+                        return Err(Error::device(format!("creating the validation messenger: {result}")));
+                    }
+                }
+            }
+        };
+        // SAFETY: the family and index were asked for above.
+        let queue = unsafe { device.get_device_queue(queue_family, 0) };
+        let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
+        let memory = Arc::new(Memory::new(device.clone(), &caps, request.strategy));
+        Ok(Self {
+            caps,
+            device,
+            queue,
+            queue_family,
+            memory,
+            names,
+            validation,
+            instance,
+            submit_lock: Mutex::new(()),
+            _entry: entry,
+        })
+    }
+
+    /// Gives an object the name that tools and validation messages show.
+    pub fn name<H: vk::Handle>(&self, handle: H, name: &str) {
+        let (Some(names), Ok(text)) = (&self.names, CString::new(name)) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&text);
+        // SAFETY: the handle is alive and belongs to this device. A refused name costs nothing but the name.
+        let _ = unsafe { names.set_debug_utils_object_name(&info) };
+    }
+
+    /// Opens (Some) or closes (None) a labelled section of a command buffer.
+    pub(super) fn label(&self, buffer: vk::CommandBuffer, name: Option<&str>) {
+        let Some(names) = &self.names else { return };
+        match name.and_then(|name| CString::new(name).ok()) {
+            // SAFETY: the command buffer is being recorded by the caller; labels are opened and closed in pairs.
+            Some(text) => unsafe {
+                names.cmd_begin_debug_utils_label(buffer, &vk::DebugUtilsLabelEXT::default().label_name(&text));
+            },
+            // SAFETY: as above.
+            None => unsafe { names.cmd_end_debug_utils_label(buffer) },
+        }
+    }
+
+    /// What the validation layer has said since the last call; empty without `validate`.
+    pub fn take_validation_messages(&self) -> Vec<validation::Message> {
+        self.validation.as_ref().map(|validation| validation.log.take()).unwrap_or_default()
+    }
+}
+
+impl Drop for Gpu {
+    fn drop(&mut self) {
+        // SAFETY: resources hold this struct alive, so none is left; the order is the reverse of creation.
+        unsafe {
+            // A lost device cannot be waited for, and need not be.
+            let _ = self.device.device_wait_idle();
+            self.memory.close();
+            self.device.destroy_device(None);
+            if let Some(validation) = &self.validation {
+                validation.functions.destroy_debug_utils_messenger(validation.messenger, None);
+                for message in validation.log.take() {
+                    eprintln!("validation, at closing: {}: {}", message.id, message.text);
+                }
+            }
+            self.instance.destroy_instance(None);
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! An image: handle, view, description, allocation.
+
+use super::Gpu;
+use crate::error::{Error, Result};
+use crate::memory::kinds::Use;
+use crate::memory::{Allocation, Request, Tiling};
+use crate::units::Extent;
+use ash::vk;
+use std::mem::ManuallyDrop;
+use std::sync::Arc;
+
+/// A two-dimensional image with one layer and one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageDescription {
+    pub extent: Extent,
+    pub format: vk::Format,
+    pub level_count: u32,
+    pub usage: vk::ImageUsageFlags,
+}
+
+impl ImageDescription {
+    /// Bytes by arithmetic, all levels; what the driver requires may be more.
+    pub fn bytes(&self) -> u64 {
+        (0..self.level_count)
+            .map(|level| {
+                let width = u64::from((self.extent.width >> level).max(1));
+                let height = u64::from((self.extent.height >> level).max(1));
+                width * height * u64::from(texel_bytes(self.format))
+            })
+            .sum()
+    }
+}
+
+/// Bytes of a texel of the formats that this program uses.
+pub fn texel_bytes(format: vk::Format) -> u32 {
+    match format {
+        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB | vk::Format::R32_UINT | vk::Format::D32_SFLOAT => 4,
+        vk::Format::R32G32_UINT | vk::Format::R16G16B16A16_SFLOAT => 8,
+        vk::Format::R32G32B32A32_SFLOAT | vk::Format::R32G32B32A32_UINT => 16,
+        other => panic!("format {other:?} is not in the program's vocabulary"),
+    }
+}
+
+/// The format through which shaders store into an image: halves as integers, because drivers round them differently.
+fn storage_format(format: vk::Format) -> vk::Format {
+    match format {
+        vk::Format::R16G16B16A16_SFLOAT => vk::Format::R32G32_UINT,
+        other => other,
+    }
+}
+
+/// An image with its memory and its views; all end when it is dropped, after the fence of its last frame.
+pub struct Image {
+    gpu: Arc<Gpu>,
+    pub handle: vk::Image,
+    pub view: vk::ImageView,
+    /// The same texels as shaders store them; `view` itself where the formats are one.
+    pub storage_view: vk::ImageView,
+    pub name: String,
+    pub description: ImageDescription,
+    allocation: ManuallyDrop<Allocation>,
+}
+
+impl Image {
+    /// Makes an image in device memory.
+    ///
+    /// Errors: a side is beyond the device's limit (exit code 2); the driver or the memory refuses (4).
+    pub fn new(gpu: &Arc<Gpu>, name: &str, group: &str, description: ImageDescription) -> Result<Self> {
+        let ImageDescription { extent, format, level_count, usage } = description;
+        let limit = gpu.caps.limits.max_image_side_px;
+        if extent.width > limit || extent.height > limit {
+            return Err(Error::request(format!("{name}: {extent} pixels: this device allows {limit} a side")));
+        }
+        let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
+        let info = vk::ImageCreateInfo::default()
+            .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
+            .mip_levels(level_count)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(usage);
+        // SAFETY: a live device; the info has no pointers.
+        let handle = unsafe { gpu.device.create_image(&info, None) }
+            .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
+        match Self::bind(gpu, name, group, description, handle) {
+            Ok((allocation, view, storage_view)) => {
+                gpu.name(handle, name);
+                gpu.name(view, name);
+                let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
+                Ok(Self { gpu: gpu.clone(), handle, view, storage_view, name, description, allocation })
+            }
+            Err(error) => {
+                // SAFETY: never used.
+                unsafe { gpu.device.destroy_image(handle, None) };
+                Err(error)
+            }
+        }
+    }
+
+    fn bind(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        group: &str,
+        description: ImageDescription,
+        handle: vk::Image,
+    ) -> Result<(Allocation, vk::ImageView, vk::ImageView)> {
+        // SAFETY: the image was made from this device.
+        let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
+        let bytes = description.bytes();
+        let request = Request { name, group, bytes, requirements, usage: Use::Device, tiling: Tiling::Optimal };
+        let allocation = gpu.memory.allocate(&request)?;
+        // SAFETY: fresh memory of an allowed type, in bounds, bound once.
+        unsafe { gpu.device.bind_image_memory(handle, allocation.handle, allocation.offset) }
+            .map_err(|result| Error::device(format!("binding image {name}: {result}")))?;
+        let range = vk::ImageSubresourceRange::default()
+            .aspect_mask(aspect_of(description.format))
+            .level_count(description.level_count)
+            .layer_count(1);
+        let view_as = |format, usage| {
+            let mut usage = vk::ImageViewUsageCreateInfo::default().usage(usage);
+            let info = vk::ImageViewCreateInfo::default()
+                .image(handle)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(format)
+                .subresource_range(range)
+                .push_next(&mut usage);
+            // SAFETY: a bound image of this device; the format is its own or one that MUTABLE_FORMAT allows.
+            unsafe { gpu.device.create_image_view(&info, None) }
+                .map_err(|result| Error::device(format!("creating a view of image {name}: {result}")))
+        };
+        let (format, usage) = (description.format, description.usage);
+        if !usage.contains(vk::ImageUsageFlags::STORAGE) || storage_format(format) == format {
+            let view = view_as(format, usage)?;
+            return Ok((allocation, view, view));
+        }
+        let view = view_as(format, usage & !vk::ImageUsageFlags::STORAGE)?;
+        match view_as(storage_format(format), vk::ImageUsageFlags::STORAGE) {
+            Ok(storage_view) => Ok((allocation, view, storage_view)),
+            Err(error) => {
+                // SAFETY: never used.
+                unsafe { gpu.device.destroy_image_view(view, None) };
+                Err(error)
+            }
+        }
+    }
+
+    pub(super) fn aspect(&self) -> vk::ImageAspectFlags {
+        aspect_of(self.description.format)
+    }
+
+    /// All of level 0, for copies.
+    pub(super) fn whole_level(&self, level: u32) -> vk::ImageSubresourceLayers {
+        vk::ImageSubresourceLayers::default().aspect_mask(self.aspect()).mip_level(level).layer_count(1)
+    }
+}
+
+fn aspect_of(format: vk::Format) -> vk::ImageAspectFlags {
+    match format {
+        vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
+        _ => vk::ImageAspectFlags::COLOR,
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: the frame's fence was waited for; view, image, memory in this order, each once.
+        unsafe {
+            if self.storage_view != self.view {
+                self.gpu.device.destroy_image_view(self.storage_view, None);
+            }
+            self.gpu.device.destroy_image_view(self.view, None);
+            self.gpu.device.destroy_image(self.handle, None);
+            ManuallyDrop::drop(&mut self.allocation);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! A thin floor over ash: device, commands, barriers, buffers, images, pipelines. It knows no technique and no scene.
+
+pub mod access;
+pub mod buffer;
+pub mod caps;
+pub mod commands;
+pub mod device;
+pub mod image;
+pub mod pipeline;
+pub mod probe;
+pub mod readback;
+pub mod sampler;
+pub mod shader;
+pub mod timing;
+pub mod upload;
+pub mod validation;
+
+pub use access::{Access, Barrier, Edge};
+pub use buffer::Buffer;
+pub use caps::Caps;
+pub use commands::{Commands, Traffic};
+pub use device::{DeviceRequest, Gpu};
+pub use image::{Image, ImageDescription};

@@ -1,0 +1,344 @@
+//! Compute and graphics pipelines from the table's entries: their layouts come from the shaders, not from hands.
+
+use super::Gpu;
+use super::shader::{Binding, Shader, Side};
+use crate::error::{Error, Result};
+use ash::vk;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Specialization constants by name, values as bits.
+pub type Constants<'a> = &'a [(&'a str, u32)];
+
+/// Descriptor set layouts and push constants of one pipeline.
+pub struct Interface {
+    gpu: Arc<Gpu>,
+    pub layout: vk::PipelineLayout,
+    /// Set 0 is the pass's own. Sets above it belong to others, such as the materials'.
+    pub set_layouts: Vec<vk::DescriptorSetLayout>,
+    owned: Vec<vk::DescriptorSetLayout>,
+    pub bindings: Vec<Binding>,
+    pub push_stages: vk::ShaderStageFlags,
+    pub push_bytes: u32,
+    pub label: String,
+}
+
+impl Interface {
+    /// `foreign`: layouts for sets from 1 on that were made elsewhere.
+    fn new(gpu: &Arc<Gpu>, shaders: &[&Shader], foreign: &[vk::DescriptorSetLayout]) -> Result<Self> {
+        let label = shaders.iter().map(|shader| shader.label()).collect::<Vec<_>>().join("+");
+        let mut merged: BTreeMap<u32, (Binding, vk::ShaderStageFlags)> = BTreeMap::new();
+        let mut push_stages = vk::ShaderStageFlags::empty();
+        let mut push_bytes = 0;
+        for shader in shaders {
+            for binding in shader.bindings.iter().filter(|binding| binding.set == 0) {
+                let slot = merged.entry(binding.binding).or_insert((*binding, vk::ShaderStageFlags::empty()));
+                assert!(
+                    slot.0.name == binding.name && slot.0.kind == binding.kind,
+                    "{label}: binding {} is {} in one stage and {} in another",
+                    binding.binding,
+                    slot.0.name,
+                    binding.name
+                );
+                slot.1 |= shader.stage.flags();
+            }
+            let sets = shader.bindings.iter().map(|binding| binding.set).max().unwrap_or(0) as usize;
+            assert!(sets <= foreign.len(), "{label}: it reads set {sets}, and {} were given", foreign.len());
+            if let Some(params) = &shader.params {
+                push_stages |= shader.stage.flags();
+                push_bytes = push_bytes.max(params.size_bytes.next_multiple_of(4));
+            }
+        }
+        let layout_bindings: Vec<_> = merged
+            .values()
+            .map(|(binding, stages)| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(binding.binding)
+                    .descriptor_type(binding.kind.descriptor_type())
+                    .descriptor_count(binding.count)
+                    .stage_flags(*stages)
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&layout_bindings);
+        // SAFETY: a live device; the bindings outlive the call.
+        let own = unsafe { gpu.device.create_descriptor_set_layout(&info, None) }
+            .map_err(|result| Error::device(format!("creating the descriptor set layout of {label}: {result}")))?;
+        let mut set_layouts = vec![own];
+        set_layouts.extend_from_slice(foreign);
+        let ranges = [vk::PushConstantRange { stage_flags: push_stages, offset: 0, size: push_bytes }];
+        let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts);
+        if push_bytes > 0 {
+            info = info.push_constant_ranges(&ranges);
+        }
+        let bindings = merged.values().map(|(binding, _)| *binding).collect();
+        // SAFETY: as above.
+        match unsafe { gpu.device.create_pipeline_layout(&info, None) } {
+            Ok(layout) => {
+                let owned = vec![own];
+                Ok(Self { gpu: gpu.clone(), layout, set_layouts, owned, bindings, push_stages, push_bytes, label })
+            }
+            Err(result) => {
+                // SAFETY: never used.
+                unsafe { gpu.device.destroy_descriptor_set_layout(own, None) };
+                Err(Error::device(format!("creating the pipeline layout of {label}: {result}")))
+            }
+        }
+    }
+}
+
+impl Drop for Interface {
+    fn drop(&mut self) {
+        // SAFETY: pipelines made with it are destroyed by their owners, which drop this after them.
+        unsafe {
+            self.gpu.device.destroy_pipeline_layout(self.layout, None);
+            for layout in &self.owned {
+                self.gpu.device.destroy_descriptor_set_layout(*layout, None);
+            }
+        }
+    }
+}
+
+/// A SPIR-V module that lives while a pipeline is made of it.
+struct Module<'a> {
+    gpu: &'a Gpu,
+    handle: vk::ShaderModule,
+}
+
+impl<'a> Module<'a> {
+    fn new(gpu: &'a Gpu, shader: &Shader) -> Result<Self> {
+        let words = shader.words();
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: build.rs wrote valid SPIR-V; the words outlive the call.
+        let handle = unsafe { gpu.device.create_shader_module(&info, None) }
+            .map_err(|result| Error::device(format!("creating shader {}: {result}", shader.label())))?;
+        Ok(Self { gpu, handle })
+    }
+}
+
+impl Drop for Module<'_> {
+    fn drop(&mut self) {
+        // SAFETY: pipelines keep what they need of a module.
+        unsafe { self.gpu.device.destroy_shader_module(self.handle, None) };
+    }
+}
+
+/// The named constants as Vulkan wants them.
+struct Specialization {
+    entries: Vec<vk::SpecializationMapEntry>,
+    data: Vec<u8>,
+}
+
+impl Specialization {
+    /// Constants that another stage of the same pipeline has are passed over; one that no stage has is a mistake that
+    /// `Interface`'s caller asserts.
+    fn new(shader: &Shader, constants: Constants<'_>) -> Self {
+        let mut entries = Vec::new();
+        let mut data = Vec::new();
+        for (name, value) in constants {
+            if let Some(constant) = shader.constants.iter().find(|constant| constant.name == *name) {
+                entries.push(vk::SpecializationMapEntry { constant_id: constant.id, offset: data.len() as u32, size: 4 });
+                data.extend_from_slice(&value.to_ne_bytes());
+            }
+        }
+        Self { entries, data }
+    }
+
+    fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default().map_entries(&self.entries).data(&self.data)
+    }
+}
+
+fn assert_constants_exist(shaders: &[&Shader], constants: Constants<'_>) {
+    for (name, _) in constants {
+        let known = shaders.iter().any(|shader| shader.constants.iter().any(|constant| constant.name == *name));
+        assert!(known, "{}: no constant is called {name}", shaders[0].label());
+    }
+}
+
+/// A compute shader with its constants fixed.
+pub struct ComputePipeline {
+    gpu: Arc<Gpu>,
+    pub interface: Interface,
+    pub handle: vk::Pipeline,
+    /// Invocations of a workgroup, after specialization.
+    pub workgroup: [u32; 3],
+}
+
+impl ComputePipeline {
+    /// Errors: the driver refuses (exit code 4); the workgroup is larger than the device allows (2).
+    pub fn new(gpu: &Arc<Gpu>, shader: &Shader, constants: Constants<'_>) -> Result<Self> {
+        assert_constants_exist(&[shader], constants);
+        let workgroup = shader.workgroup.map(|side| match side {
+            Side::Fixed(value) => value,
+            Side::Constant(id) => {
+                let constant = shader.constants.iter().find(|constant| constant.id == id).expect("reflected by build.rs");
+                constants.iter().find(|(name, _)| *name == constant.name).map_or(constant.default, |(_, value)| *value)
+            }
+        });
+        let limits = &gpu.caps.limits;
+        let too_large = (0..3).any(|axis| workgroup[axis] > limits.max_workgroup_size[axis]);
+        if too_large || workgroup.iter().product::<u32>() > limits.max_workgroup_invocations {
+            return Err(Error::request(format!(
+                "{}: a workgroup of {workgroup:?}: this device allows {:?}, {} in all",
+                shader.label(),
+                limits.max_workgroup_size,
+                limits.max_workgroup_invocations
+            )));
+        }
+        let interface = Interface::new(gpu, &[shader], &[])?;
+        let module = Module::new(gpu, shader)?;
+        let specialization = Specialization::new(shader, constants);
+        let specialization_info = specialization.info();
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module.handle)
+            .name(c"main")
+            .specialization_info(&specialization_info);
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(interface.layout);
+        // SAFETY: every handle is alive and every pointer outlives the call.
+        let made = unsafe { gpu.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
+        let handle = made
+            .map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", shader.label())))?[0];
+        gpu.name(handle, &shader.label());
+        Ok(Self { gpu: gpu.clone(), interface, handle, workgroup })
+    }
+
+    /// Workgroups that cover `size` invocations.
+    pub fn groups(&self, size: [u32; 3]) -> [u32; 3] {
+        [0, 1, 2].map(|axis| size[axis].div_ceil(self.workgroup[axis]))
+    }
+}
+
+impl Drop for ComputePipeline {
+    fn drop(&mut self) {
+        // SAFETY: the fence of the last frame that used it was waited for.
+        unsafe { self.gpu.device.destroy_pipeline(self.handle, None) };
+    }
+}
+
+/// What a graphics pipeline draws with.
+pub struct GraphicsDescription<'a> {
+    pub vertex: &'a Shader,
+    /// None: depth only.
+    pub fragment: Option<&'a Shader>,
+    pub constants: Constants<'a>,
+    /// One vertex buffer each: its stride and its attributes (location, format, offset).
+    pub vertex_buffers: &'a [VertexBuffer],
+    pub color_formats: &'a [vk::Format],
+    /// Blend source over destination by alpha (premultiplied), on every colour attachment.
+    pub blend_over: bool,
+    pub depth_format: Option<vk::Format>,
+    pub depth_write: bool,
+    pub depth_compare: vk::CompareOp,
+    /// Layouts of set 1 and above.
+    pub foreign_sets: &'a [vk::DescriptorSetLayout],
+}
+
+/// Layout of one vertex buffer.
+pub struct VertexBuffer {
+    pub stride_bytes: u32,
+    pub attributes: &'static [(u32, vk::Format, u32)],
+}
+
+/// Vertex and fragment shader with their fixed state. Viewport, scissor, cull mode and front face are set by commands.
+pub struct GraphicsPipeline {
+    gpu: Arc<Gpu>,
+    pub interface: Interface,
+    pub handle: vk::Pipeline,
+}
+
+impl GraphicsPipeline {
+    /// Errors: the driver refuses (exit code 4).
+    pub fn new(gpu: &Arc<Gpu>, description: &GraphicsDescription<'_>) -> Result<Self> {
+        let shaders: Vec<&Shader> = std::iter::once(description.vertex).chain(description.fragment).collect();
+        assert_constants_exist(&shaders, description.constants);
+        let interface = Interface::new(gpu, &shaders, description.foreign_sets)?;
+        let modules: Vec<Module<'_>> = shaders.iter().map(|shader| Module::new(gpu, shader)).collect::<Result<_>>()?;
+        let specializations: Vec<Specialization> =
+            shaders.iter().map(|shader| Specialization::new(shader, description.constants)).collect();
+        let infos: Vec<vk::SpecializationInfo<'_>> = specializations.iter().map(Specialization::info).collect();
+        let stages: Vec<_> = (0..shaders.len())
+            .map(|index| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(shaders[index].stage.flags())
+                    .module(modules[index].handle)
+                    .name(c"main")
+                    .specialization_info(&infos[index])
+            })
+            .collect();
+        let mut buffers = Vec::new();
+        let mut attributes = Vec::new();
+        for (binding, buffer) in description.vertex_buffers.iter().enumerate() {
+            let binding = binding as u32;
+            buffers.push(vk::VertexInputBindingDescription {
+                binding,
+                stride: buffer.stride_bytes,
+                input_rate: vk::VertexInputRate::VERTEX,
+            });
+            for (location, format, offset) in buffer.attributes {
+                attributes.push(vk::VertexInputAttributeDescription {
+                    location: *location,
+                    binding,
+                    format: *format,
+                    offset: *offset,
+                });
+            }
+        }
+        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&buffers)
+            .vertex_attribute_descriptions(&attributes);
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(description.depth_format.is_some())
+            .depth_write_enable(description.depth_write)
+            .depth_compare_op(description.depth_compare);
+        let attachment = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA)
+            .blend_enable(description.blend_over)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA);
+        let attachments = vec![attachment; description.color_formats.len()];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
+        let dynamic_states = [
+            vk::DynamicState::VIEWPORT,
+            vk::DynamicState::SCISSOR,
+            vk::DynamicState::CULL_MODE,
+            vk::DynamicState::FRONT_FACE,
+        ];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default()
+            .color_attachment_formats(description.color_formats)
+            .depth_attachment_format(description.depth_format.unwrap_or(vk::Format::UNDEFINED));
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertex_input)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&raster)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(interface.layout)
+            .push_next(&mut rendering);
+        // SAFETY: every handle is alive and every pointer outlives the call.
+        let made = unsafe { gpu.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
+        let handle = made
+            .map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", interface.label)))?[0];
+        gpu.name(handle, &interface.label);
+        Ok(Self { gpu: gpu.clone(), interface, handle })
+    }
+}
+
+impl Drop for GraphicsPipeline {
+    fn drop(&mut self) {
+        // SAFETY: the fence of the last frame that used it was waited for.
+        unsafe { self.gpu.device.destroy_pipeline(self.handle, None) };
+    }
+}

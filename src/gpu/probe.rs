@@ -1,0 +1,133 @@
+//! A physical device's answers, looked up once, as `Caps`.
+
+use super::caps::{Caps, Features, Heap, Identity, Limits, MemoryType};
+use ash::vk;
+
+/// Queue family used here: the first that draws, computes and copies.
+pub fn queue_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
+    // SAFETY: a live instance and one of its physical devices.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+    let needed = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    families.iter().position(|family| family.queue_flags.contains(needed)).map(|index| index as u32)
+}
+
+/// Names of the device's extensions.
+pub fn extensions(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Vec<String> {
+    // SAFETY: a live instance and one of its physical devices.
+    let properties = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+    properties
+        .iter()
+        .filter_map(|property| property.extension_name_as_c_str().ok())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect()
+}
+
+/// Everything that `Caps` holds.
+pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
+    let mut vulkan12 = vk::PhysicalDeviceVulkan12Properties::default();
+    let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();
+    let mut maintenance3 = vk::PhysicalDeviceMaintenance3Properties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default()
+        .push_next(&mut vulkan12)
+        .push_next(&mut subgroup)
+        .push_next(&mut maintenance3);
+    // SAFETY: a live instance and one of its physical devices; the chained structs outlive the call.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    let core = properties.properties;
+    let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
+    let mut features2 = vk::PhysicalDeviceFeatures2::default().push_next(&mut features12);
+    // SAFETY: as above.
+    unsafe { instance.get_physical_device_features2(physical, &mut features2) };
+    let features = features2.features;
+    // SAFETY: as above.
+    let memory = unsafe { instance.get_physical_device_memory_properties(physical) };
+    let extensions = extensions(instance, physical);
+    let has = |name: &str| extensions.iter().any(|extension| extension == name);
+    let limits = core.limits;
+    let version = core.api_version;
+    let text = |name: Result<&std::ffi::CStr, std::ffi::FromBytesUntilNulError>| {
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    };
+    // A queue family that writes no timestamps says so with zero valid bits.
+    // SAFETY: as above.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+    let timestamp_bits =
+        queue_family(instance, physical).map_or(0, |family| families[family as usize].timestamp_valid_bits);
+    Caps {
+        identity: Identity {
+            name: text(core.device_name_as_c_str()),
+            device_type: match core.device_type {
+                vk::PhysicalDeviceType::CPU => "cpu",
+                vk::PhysicalDeviceType::DISCRETE_GPU => "discrete-gpu",
+                vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated-gpu",
+                vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual-gpu",
+                _ => "other",
+            }
+            .to_owned(),
+            driver: text(vulkan12.driver_name_as_c_str()),
+            driver_info: text(vulkan12.driver_info_as_c_str()),
+            api: format!(
+                "{}.{}.{}",
+                vk::api_version_major(version),
+                vk::api_version_minor(version),
+                vk::api_version_patch(version)
+            ),
+        },
+        limits: Limits {
+            max_image_side_px: limits.max_image_dimension2_d,
+            max_storage_buffer_range_bytes: u64::from(limits.max_storage_buffer_range),
+            max_push_constant_bytes: limits.max_push_constants_size,
+            max_workgroup_invocations: limits.max_compute_work_group_invocations,
+            max_workgroup_size: limits.max_compute_work_group_size,
+            max_workgroup_count: limits.max_compute_work_group_count,
+            max_sampled_images_per_stage: limits.max_per_stage_descriptor_sampled_images,
+            max_bound_descriptor_sets: limits.max_bound_descriptor_sets,
+            max_color_attachments: limits.max_color_attachments,
+            max_allocation_count: limits.max_memory_allocation_count,
+            max_allocation_bytes: maintenance3.max_memory_allocation_size,
+            buffer_image_granularity_bytes: limits.buffer_image_granularity,
+            non_coherent_atom_bytes: limits.non_coherent_atom_size,
+            min_storage_buffer_offset_bytes: limits.min_storage_buffer_offset_alignment,
+            max_sampler_anisotropy: limits.max_sampler_anisotropy,
+            subgroup_size: subgroup.subgroup_size,
+            timestamp_period_ns: if timestamp_bits == 0 { 0.0 } else { limits.timestamp_period },
+            framebuffer_sample_counts: (0..7)
+                .map(|bit| 1u32 << bit)
+                .filter(|count| limits.framebuffer_color_sample_counts.as_raw() & count != 0)
+                .collect(),
+        },
+        features: Features {
+            geometry_shader: features.geometry_shader != 0,
+            layer_from_vertex_shader: features12.shader_output_layer != 0,
+            fragment_stores_and_atomics: features.fragment_stores_and_atomics != 0,
+            sampler_anisotropy: features.sampler_anisotropy != 0,
+            storage_image_extended_formats: features.shader_storage_image_extended_formats != 0,
+            shader_float16: features12.shader_float16 != 0,
+            shader_int64_atomics: features12.shader_buffer_int64_atomics != 0,
+            pipeline_statistics: features.pipeline_statistics_query != 0,
+            conservative_rasterization: has("VK_EXT_conservative_rasterization"),
+            ray_query: has("VK_KHR_ray_query"),
+            memory_budget: has("VK_EXT_memory_budget"),
+        },
+        heaps: memory
+            .memory_heaps_as_slice()
+            .iter()
+            .map(|heap| Heap {
+                bytes: heap.size,
+                device_local: heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL),
+            })
+            .collect(),
+        memory_types: memory
+            .memory_types_as_slice()
+            .iter()
+            .map(|kind| MemoryType {
+                heap: kind.heap_index,
+                device_local: kind.property_flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL),
+                host_visible: kind.property_flags.contains(vk::MemoryPropertyFlags::HOST_VISIBLE),
+                host_coherent: kind.property_flags.contains(vk::MemoryPropertyFlags::HOST_COHERENT),
+                host_cached: kind.property_flags.contains(vk::MemoryPropertyFlags::HOST_CACHED),
+                lazily_allocated: kind.property_flags.contains(vk::MemoryPropertyFlags::LAZILY_ALLOCATED),
+            })
+            .collect(),
+    }
+}

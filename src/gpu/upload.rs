@@ -1,0 +1,77 @@
+//! Bytes from host to device, once: through a staging buffer, with a barrier that makes them readable.
+
+use super::access::AccessSet;
+use super::commands::Submits;
+use super::{Access, Buffer, Commands, Gpu, Image};
+use crate::error::Result;
+use crate::memory::kinds::Use;
+use ash::vk;
+use std::sync::Arc;
+
+/// Ledger group of staging memory, which is gone before the first frame.
+pub const GROUP: &str = "upload";
+
+fn staging(gpu: &Arc<Gpu>, name: &str, bytes: &[u8]) -> Result<Buffer> {
+    let name = format!("upload.{name}");
+    let mut staging =
+        Buffer::new(gpu, &name, GROUP, bytes.len() as u64, vk::BufferUsageFlags::TRANSFER_SRC, Use::Upload)?;
+    staging.mapped_mut()[..bytes.len()].copy_from_slice(bytes);
+    Ok(staging)
+}
+
+/// Fills the start of `target` with `bytes` and leaves it readable by `readers`.
+pub fn buffer(gpu: &Arc<Gpu>, target: &Buffer, bytes: &[u8], readers: impl Into<AccessSet>) -> Result<()> {
+    assert!(bytes.len() as u64 <= target.bytes, "{}: {} bytes into {}", target.name, bytes.len(), target.bytes);
+    if bytes.is_empty() {
+        return Ok(());
+    }
+    let staging = staging(gpu, &target.name, bytes)?;
+    let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
+    cmd.barriers([target.discard(Access::TransferWrite)]);
+    let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size: bytes.len() as u64 };
+    // SAFETY: both buffers are alive until the fence; the region lies in both.
+    unsafe { gpu.device.cmd_copy_buffer(cmd.buffer(), staging.handle, target.handle, &[region]) };
+    let mut last = AccessSet::from(Access::TransferWrite);
+    for reader in readers.into().iter() {
+        cmd.barriers([target.from(last).to(reader)]);
+        last = reader.into();
+    }
+    cmd.finish()?.run()?;
+    Ok(())
+}
+
+/// Fills the levels of `target`, finest first and one after the other in `bytes`, and leaves it readable as `access`.
+pub fn image(gpu: &Arc<Gpu>, target: &Image, bytes: &[u8], access: Access) -> Result<()> {
+    let description = &target.description;
+    assert_eq!(bytes.len() as u64, description.bytes(), "{}: its levels' bytes", target.name);
+    let staging = staging(gpu, &target.name, bytes)?;
+    let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
+    cmd.barriers([target.discard(Access::TransferWrite)]);
+    let mut offset = 0;
+    let texel_bytes = u64::from(super::image::texel_bytes(description.format));
+    let regions: Vec<_> = (0..description.level_count)
+        .map(|level| {
+            let width = (description.extent.width >> level).max(1);
+            let height = (description.extent.height >> level).max(1);
+            let region = vk::BufferImageCopy::default()
+                .buffer_offset(offset)
+                .image_subresource(target.whole_level(level))
+                .image_extent(vk::Extent3D { width, height, depth: 1 });
+            offset += u64::from(width) * u64::from(height) * texel_bytes;
+            region
+        })
+        .collect();
+    // SAFETY: buffer and image are alive until the fence; the regions lie in both.
+    unsafe {
+        gpu.device.cmd_copy_buffer_to_image(
+            cmd.buffer(),
+            staging.handle,
+            target.handle,
+            Access::TransferWrite.layout(),
+            &regions,
+        );
+    }
+    cmd.barriers([target.from(Access::TransferWrite).to(access)]);
+    cmd.finish()?.run()?;
+    Ok(())
+}

@@ -1,0 +1,250 @@
+//! Job: a checked request for one picture; `Job::run` is the whole road on one screen.
+
+use crate::error::{Error, Result};
+use crate::gpu::DeviceRequest;
+use crate::gpu::commands::{FrameTime, Submits};
+use crate::interrupt;
+use crate::memory::Strategy;
+use crate::memory::ledger::Snapshot;
+use crate::report::image_file::{Aov, AovChannels, ExrPrecision, WriteOptions, write};
+use crate::report::picture::Picture;
+use crate::report::run::Report;
+use crate::report::tonemap::ToneMap;
+use crate::report::whole_file::write_whole;
+use crate::scene::{self, Scene};
+use crate::session::{Renderer, Session};
+use crate::settings::{COMMON, Setting, Values};
+use crate::techniques::Technique;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A request for one picture, every part of it checked.
+pub struct Job {
+    /// A built-in name with parameters, or a path.
+    pub scene: String,
+    pub technique: &'static dyn Technique,
+    /// Common settings and the technique's own.
+    pub values: Values,
+    pub aovs: Vec<String>,
+    /// None: into `SCENE-TECHNIQUE.png` in the current folder.
+    pub output: Option<PathBuf>,
+    pub report: Option<PathBuf>,
+    /// An index or a part of a name, as `devices` lists them.
+    pub device: Option<String>,
+    /// One submit for each pass: pass times.
+    pub profile: bool,
+    /// Validation messages are fatal.
+    pub validate: bool,
+    /// The argv that repeats it.
+    pub command: Vec<String>,
+}
+
+/// What a run leaves in memory.
+pub struct Outcome {
+    pub report: Report,
+    pub picture: Picture,
+    pub path: PathBuf,
+}
+
+/// Frames measured with `--profile`, after one that warms the pipelines up.
+const PROFILE_FRAMES: usize = 3;
+
+/// The settings that `technique` reads, common ones included.
+pub fn settings_of(technique: &dyn Technique) -> Vec<Setting> {
+    COMMON.iter().chain(technique.settings().iter().copied().flatten()).copied().collect()
+}
+
+impl Job {
+    /// A request with every setting at its default.
+    pub fn new(scene: &str, technique: &'static dyn Technique) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            technique,
+            values: Values::defaults(&settings_of(technique)),
+            aovs: Vec::new(),
+            output: None,
+            report: None,
+            device: None,
+            profile: false,
+            validate: false,
+            command: Vec::new(),
+        }
+    }
+
+    /// Changes a setting.
+    ///
+    /// Errors: the technique does not read it, or the value is impossible (exit code 2).
+    pub fn set(&mut self, key: &str, value: &str) -> Result<()> {
+        let name = self.technique.name();
+        let settings = settings_of(self.technique);
+        match settings.iter().find(|setting| setting.key == key) {
+            Some(setting) => self.values.set(setting, value).map_err(|error| error.within(name)),
+            None => Err(Error::request(format!("{name}: it does not read --{key}"))
+                .note(format!("`quincunx render --technique {name} --help` lists what it reads"))),
+        }
+    }
+
+    /// Args to picture: scene, plan, device, frames, readback, report.
+    ///
+    /// Errors: see `ErrorKind`; nothing half-written stays.
+    pub fn run(&self) -> Result<Outcome> {
+        self.check()?;
+        let scene = self.load_scene()?;
+        let path = self.output.clone().unwrap_or_else(|| default_path(&scene, self.technique));
+        let session = Session::open(&self.device_request(), scene)?;
+        let submits = if self.profile { Submits::PerPass } else { Submits::One };
+        let renderer = session.renderer(self.technique, &self.values, submits)?;
+        let memory = session.gpu.memory.snapshot();
+        let times = self.frames(&renderer)?;
+        let picture = renderer.picture()?;
+        let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
+        let report = self.report(&session, &renderer, &memory, &times, &picture, &aovs, &path)?;
+        self.write(&path, &picture, &aovs, &report)?;
+        self.judge(&session)?;
+        Ok(Outcome { report, picture, path })
+    }
+
+    /// What can be refused before anything is loaded.
+    fn check(&self) -> Result<()> {
+        if let Some(path) = &self.output {
+            let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+            if !["png", "exr"].contains(&extension.to_lowercase().as_str()) {
+                return Err(Error::request(format!("-o {}: pictures are written as .png or .exr", path.display())));
+            }
+            require_folder(path)?;
+        }
+        if let Some(path) = &self.report {
+            require_folder(path)?;
+        }
+        for aov in &self.aovs {
+            if !self.technique.aovs().contains(&aov.as_str()) {
+                let name = self.technique.name();
+                return Err(Error::request(format!("--aov {aov}: {name} has no such stage"))
+                    .note(format!("it has {}", self.technique.aovs().join(", "))));
+            }
+        }
+        Ok(())
+    }
+
+    /// The scene that the request names.
+    ///
+    /// Errors: no such scene, or a broken file (exit code 2).
+    pub fn load_scene(&self) -> Result<Scene> {
+        scene::load(&self.scene, self.values.integer("seed"))
+    }
+
+    /// The device that the request names.
+    pub fn device_request(&self) -> DeviceRequest {
+        let strategy =
+            if self.values.text("allocation") == "dedicated" { Strategy::Dedicated } else { Strategy::Linear };
+        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, hook: None }
+    }
+
+    fn frames(&self, renderer: &Renderer) -> Result<Vec<FrameTime>> {
+        if !self.profile {
+            return Ok(vec![renderer.frame()?]);
+        }
+        renderer.frame()?;
+        (0..PROFILE_FRAMES)
+            .map(|_| {
+                interrupt::check()?;
+                renderer.frame()
+            })
+            .collect()
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn report(
+        &self,
+        session: &Session,
+        renderer: &Renderer,
+        memory: &Snapshot,
+        times: &[FrameTime],
+        picture: &Picture,
+        aovs: &[Aov],
+        path: &Path,
+    ) -> Result<Report> {
+        let mut report = Report::new(self.technique.name(), &self.command, &session.gpu.caps.identity);
+        report.scene(session, renderer);
+        report.settings(&self.values, &renderer.resolved);
+        report.image(picture, path)?;
+        report.aovs(aovs, picture.extent);
+        report.times(renderer, times, self.profile);
+        report.memory(&session.stats.plan(), &renderer.plan, memory);
+        report.counters(&renderer.counters);
+        Ok(report)
+    }
+
+    fn write(&self, path: &Path, picture: &Picture, aovs: &[Aov], report: &Report) -> Result<()> {
+        let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+        let mut options = WriteOptions {
+            exposure_ev: self.values.number("exposure"),
+            tone_map: ToneMap::parse(self.values.text("tonemap"))?,
+            exr_precision: if self.values.text("exr") == "half" { ExrPrecision::Half } else { ExrPrecision::Float },
+            aovs: &[],
+            attributes: Vec::new(),
+        };
+        if is_exr {
+            options.aovs = aovs;
+            options.attributes = report.attributes();
+        }
+        write(path, picture, &options)?;
+        if !is_exr {
+            // A PNG has no layers: each stage becomes a picture beside it.
+            for aov in aovs {
+                let file = path.with_extension(format!("{}.png", aov.name));
+                write(&file, &visible(aov, picture), &WriteOptions { aovs: &[], attributes: Vec::new(), ..options })?;
+            }
+        }
+        if let Some(file) = &self.report {
+            write_whole(file, |out| writeln!(out, "{:#}", report.json()))?;
+        }
+        Ok(())
+    }
+
+    /// Errors: the validation layer has said something (exit code 1).
+    fn judge(&self, session: &Session) -> Result<()> {
+        let messages = session.gpu.take_validation_messages();
+        match messages.first() {
+            None => Ok(()),
+            Some(first) => {
+                let count = messages.len();
+                Err(Error::gate(format!("--validate: {count} messages, the first is {}", first.id)).note(&first.text))
+            }
+        }
+    }
+}
+
+/// An AOV as a picture: normals from -1..1 to 0..1, irradiance as a white surface would show it, flags as white.
+fn visible(aov: &Aov, picture: &Picture) -> Picture {
+    let pixels = match &aov.channels {
+        AovChannels::Rgb(values) if aov.name.ends_with("normal") => {
+            values.iter().map(|value| value.map(|channel| 0.5 + 0.5 * channel)).collect()
+        }
+        AovChannels::Rgb(values) if aov.name.ends_with("irradiance") => {
+            values.iter().map(|value| value.map(|channel| channel / std::f32::consts::PI)).collect()
+        }
+        AovChannels::Rgb(values) => values.clone(),
+        AovChannels::Y(values) => values.iter().map(|value| [*value; 3]).collect(),
+        AovChannels::YU32(values) => values.iter().map(|value| [*value as f32; 3]).collect(),
+    };
+    Picture { extent: picture.extent, pixels }
+}
+
+/// Errors: the folder of an output does not exist (exit code 2); found before a picture is made, not after.
+fn require_folder(path: &Path) -> Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(Error::request(format!("{}: the folder {} does not exist", path.display(), folder.display())))
+}
+
+fn default_path(scene: &Scene, technique: &dyn Technique) -> PathBuf {
+    let stem: String =
+        scene.name.split(':').next().unwrap_or("scene").chars().map(|c| if c == '/' { '-' } else { c }).collect();
+    PathBuf::from(format!("{stem}-{}.png", technique.name()))
+}

@@ -1,0 +1,79 @@
+//! Tiled culling: a mask of punctual lights for each tile of 16x16 pixels. Shader: cull.comp.
+//! reads  the G-buffer, the lights      writes  cull.masks  buffer, one bit a light, tiles in row order
+//!
+//! Beyond its range a light adds exactly 0, so a mask that leaves it out changes no bit of the picture.
+
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::passes::gbuffer::{GBuffer, PositionStorage};
+use crate::plan::Plan;
+use crate::units::Extent;
+use std::sync::Arc;
+
+/// Side of a tile: glsl/lights/cull.glsl's TILE_PX.
+const TILE_PX: u32 = 16;
+
+/// Bytes of the masks.
+fn mask_bytes(extent: Extent, light_count: u32) -> u64 {
+    tile_count(extent) * u64::from(light_count.div_ceil(32)) * 4
+}
+
+fn tile_count(extent: Extent) -> u64 {
+    u64::from(extent.width.div_ceil(TILE_PX)) * u64::from(extent.height.div_ceil(TILE_PX))
+}
+
+/// Plans the masks, as a resource of `technique`.
+pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, light_count: u32) {
+    plan.buffer("lights", format!("{technique}.cull.masks"), mask_bytes(extent, light_count));
+}
+
+pub struct Cull {
+    pipeline: ComputePipeline,
+}
+
+impl Cull {
+    pub fn new(gpu: &Arc<Gpu>, position: PositionStorage) -> Result<Self> {
+        use crate::gpu::shader::lights::cull as shader;
+        let shader = match position {
+            PositionStorage::Half => &shader::COMP_HALF,
+            PositionStorage::Unorm16 => &shader::COMP_UNORM16,
+            PositionStorage::Depth => &shader::COMP_DEPTH,
+            PositionStorage::Float => &shader::COMP_FLOAT,
+        };
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &[])? })
+    }
+
+    /// `lights`: the punctual lights, `light_count` of them.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        technique: &str,
+        gbuffer: Edge<'_, GBuffer>,
+        frame: &Buffer,
+        lights: (&Buffer, u32),
+        masks: &Buffer,
+    ) -> Result<()> {
+        let extent = gbuffer.resource.extent();
+        let (lights, light_count) = lights;
+        let traffic = Traffic {
+            read_bytes: extent.pixel_count() * gbuffer.resource.surface_bytes()
+                + tile_count(extent) * u64::from(light_count) * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
+            written_bytes: mask_bytes(extent, light_count),
+            invocations: Some(tile_count(extent)),
+        };
+        cmd.pass(&format!("{technique}.cull"), traffic, |cmd| {
+            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers([masks.discard(Access::ComputeWrite)]);
+            let mut bound = gbuffer.resource.bound_surface();
+            bound.extend([
+                ("Frame", Bound::Buffer(frame)),
+                ("Lights", Bound::Buffer(lights)),
+                ("LightMasks", Bound::Buffer(masks)),
+            ]);
+            let groups = self.pipeline.groups([tile_count(extent) as u32, 1, 1]);
+            cmd.dispatch(&self.pipeline, &[], &bound, groups)
+        })
+    }
+}

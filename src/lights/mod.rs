@@ -1,0 +1,115 @@
+//! Which lights there are, and which reach what: the scene's own, scattered ones, the default rig, virtual ones.
+
+pub mod cull;
+pub mod vpl;
+
+use crate::error::{Error, Result};
+use crate::frame::View;
+use crate::scene::{Light, LightKind, Scene};
+use crate::settings::{Values, parse_color};
+use glam::Vec3;
+
+/// The default rig's key light, in lux: white, from the camera's upper left (design.md, section 3).
+const RIG_KEY_LUX: f32 = 3.0;
+/// The default rig's ambient radiance.
+const RIG_AMBIENT: f32 = 0.3;
+/// Irradiance that all scattered lights together give the scene's box on average, in lux: white diffuse surfaces then
+/// have radiance 1.
+const SCATTERED_LUX: f32 = std::f32::consts::PI;
+
+/// Every punctual light of a picture, and the light from everywhere.
+#[derive(Clone, Debug)]
+pub struct LightSet {
+    pub lights: Vec<Light>,
+    /// Radiance.
+    pub ambient: Vec3,
+    /// The scene had no light of its own, and got the rig.
+    pub has_rig: bool,
+    /// The scene, or `--lights`, has punctual lights that are not the rig's.
+    pub has_punctual: bool,
+}
+
+impl LightSet {
+    /// Collects the lights that the settings leave.
+    ///
+    /// Errors: `--lights` or `--ambient` cannot be read (exit code 2).
+    pub fn new(scene: &Scene, view: &View, values: &Values) -> Result<Self> {
+        let sun = values.is_on("sun");
+        let kept = |light: &&Light| sun || light.kind != LightKind::Directional;
+        let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
+        lights.extend(scattered(scene, values)?);
+        let has_punctual = !lights.is_empty();
+        let emissive = scene.draws.iter().any(|draw| scene.materials[scene.meshes[draw.mesh].material].is_emissive());
+        let has_rig = !has_punctual && !emissive && values.text("rig") == "default";
+        if has_rig {
+            lights.push(rig_key(view));
+        }
+        let ambient = match values.text("ambient") {
+            "auto" if has_rig => Vec3::splat(RIG_AMBIENT),
+            "auto" => Vec3::ZERO,
+            text => parse_color(text).ok_or_else(|| {
+                Error::request(format!("--ambient {text}: it must be R,G,B or one number, each at least 0, or auto"))
+            })?,
+        };
+        Ok(Self { lights, ambient, has_rig, has_punctual })
+    }
+
+    /// Whether any light is a sun.
+    pub fn has_sun(&self) -> bool {
+        self.lights.iter().any(|light| light.kind == LightKind::Directional)
+    }
+}
+
+fn rig_key(view: &View) -> Light {
+    let camera = &view.camera.world_from_view;
+    let from = camera.transform_vector3(Vec3::new(-1.0, 1.0, 1.0)).normalize();
+    Light {
+        name: "rig.key".to_owned(),
+        kind: LightKind::Directional,
+        intensity: Vec3::splat(RIG_KEY_LUX),
+        position: Vec3::ZERO,
+        direction: -from,
+        range: None,
+    }
+}
+
+/// `--lights N[:SEED]`: point lights of mixed colours all over the scene's box, low-discrepancy.
+fn scattered(scene: &Scene, values: &Values) -> Result<Vec<Light>> {
+    const MOST: u32 = 65_536;
+    let text = values.text("lights");
+    let wrong = || {
+        Error::request(format!("--lights {text}: it must be N or N:SEED, with N from 0 to {MOST}"))
+            .note("for example --lights 64 or --lights 64:7")
+    };
+    let (count, seed) = match text.split_once(':') {
+        None => (text, values.integer("seed") as u32),
+        Some((count, seed)) => (count, seed.parse().map_err(|_| wrong())?),
+    };
+    let count: u32 = count.parse().ok().filter(|count| *count <= MOST).ok_or_else(wrong)?;
+    let bounds = scene.bounds();
+    if count == 0 || bounds.is_empty() {
+        return Ok(Vec::new());
+    }
+    let size = bounds.max - bounds.min;
+    let area = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    // All lights' flux, spread evenly over the box: 4 pi I N = E A.
+    let candela = SCATTERED_LUX * area / (4.0 * std::f32::consts::PI * count as f32);
+    Ok((0..count)
+        .map(|index| {
+            let number = |axis| sobol_burley::sample(index & 0xffff, axis, seed ^ (index >> 16));
+            let position = bounds.min + size * Vec3::new(number(0), number(1), number(2));
+            // Three phases of one wave: every hue, the same brightness.
+            let hue = number(3) * std::f32::consts::TAU;
+            let wave = |phase: f32| 1.0 + 0.6 * (hue + phase).cos();
+            let third = std::f32::consts::TAU / 3.0;
+            Light {
+                name: format!("scattered.{index}"),
+                kind: LightKind::Point,
+                intensity: candela * Vec3::new(wave(0.0), wave(third), wave(2.0 * third)),
+                position,
+                direction: -Vec3::Y,
+                range: None,
+            }
+        })
+        .collect())
+}

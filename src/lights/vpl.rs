@@ -1,0 +1,391 @@
+//! Virtual point lights by Instant Radiosity (Segovia 2006, section 6; Keller 1997): a low-discrepancy light walk on the
+//! host whose landings become lights.
+//!
+//! Walks start on punctual lights and, with `--emissive on`, on emissive triangles, chosen by power. A start on an
+//! emissive triangle is a virtual light itself, because nothing else stands for the panel; a start on a punctual light is
+//! not, because `--direct` has it. A sun starts on a disc over the scene, so that roofs stop it.
+//!
+//! Walks go on until N lights are found, and all are divided by the number of walks: walks that leave the scene, or end
+//! on the back of a single-sided surface, count and leave nothing. Stopping at the N-th light instead of at a fixed number
+//! of walks biases the sum by about 1/N.
+
+use crate::bvh::{Bvh, Hit};
+use crate::error::{Error, Result};
+use crate::gpu::shader::structs::VplBlock;
+use crate::scene::{Light, LightKind, Scene};
+use crate::shading::{light, material};
+use glam::{Vec2, Vec3};
+
+/// What the walk is told.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk {
+    /// How many lights to find (`--vpls`).
+    pub count: u32,
+    /// Surfaces that a walk lands on at most (`--vpl-bounces`).
+    pub bounces: u32,
+    /// Whether emissive triangles send walks.
+    pub emissive: bool,
+    pub seed: u32,
+}
+
+/// What the walk found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// In the order of the walks: any stretch of them is as well spread as the whole.
+    pub vpls: Vec<VplBlock>,
+    pub walk_count: u32,
+}
+
+/// Walks tried for each light wanted, before a scene counts as one that no light lands in.
+const PATIENCE: u64 = 4096;
+
+/// Where a walk starts.
+enum Source<'a> {
+    Punctual(&'a Light),
+    Emissive { corners: [Vec3; 3], uvs: [Vec2; 3], material: usize },
+}
+
+/// Rays start off their surface by this part of the scene's diagonal.
+const RAY_OFFSET: f32 = 1e-4;
+
+/// Walks until `walk.count` lights are found.
+///
+/// Errors: nothing shines, or no walk lands on a surface (exit code 2).
+pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> Result<Found> {
+    let bounds = scene.bounds();
+    let radius = 0.5 * bounds.diagonal();
+    let (sources, powers) = sources(scene, lights, walk.emissive, radius);
+    let total: f64 = powers.iter().sum();
+    if total <= 0.0 {
+        return Err(Error::request(format!("{}: nothing shines, so there are no virtual point lights", scene.name))
+            .note("--lights N scatters lights; --emissive on lets emissive surfaces shine"));
+    }
+    let cumulative: Vec<f64> = powers
+        .iter()
+        .scan(0.0, |sum, power| {
+            *sum += power / total;
+            Some(*sum)
+        })
+        .collect();
+    let offset = RAY_OFFSET * bounds.diagonal();
+    let tracer = Tracer { scene, bvh, center: bounds.center(), radius, offset };
+    let mut vpls: Vec<VplBlock> = Vec::with_capacity(walk.count as usize);
+    let mut walk_count = 0u64;
+    while (vpls.len() as u64) < u64::from(walk.count) {
+        if walk_count >= PATIENCE * u64::from(walk.count) {
+            return Err(Error::request(format!(
+                "{}: {walk_count} light walks found {} places for virtual point lights, {} are wanted",
+                scene.name,
+                vpls.len(),
+                walk.count
+            ))
+            .note("the lights shine past the scene, or on the backs of single-sided surfaces"));
+        }
+        let mut numbers = Numbers::new(walk_count, walk.seed);
+        walk_count += 1;
+        let pick = f64::from(numbers.next());
+        let index = cumulative.partition_point(|sum| *sum <= pick).min(sources.len() - 1);
+        let chance = powers[index] / total;
+        tracer.one(&sources[index], chance as f32, walk.bounces, &mut numbers, &mut vpls);
+    }
+    vpls.truncate(walk.count as usize);
+    for vpl in &mut vpls {
+        vpl.intensity = vpl.intensity.map(|channel| (f64::from(channel) / walk_count as f64) as f32);
+    }
+    Ok(Found { vpls, walk_count: walk_count as u32 })
+}
+
+fn luminous(color: Vec3) -> f64 {
+    f64::from(color.x + color.y + color.z)
+}
+
+fn sources<'a>(scene: &Scene, lights: &'a [Light], emissive: bool, radius: f32) -> (Vec<Source<'a>>, Vec<f64>) {
+    let mut sources = Vec::new();
+    let mut powers = Vec::new();
+    for punctual in lights {
+        powers.push(luminous(light::flux(punctual, radius)));
+        sources.push(Source::Punctual(punctual));
+    }
+    if !emissive {
+        return (sources, powers);
+    }
+    for draw in &scene.draws {
+        let mesh = &scene.meshes[draw.mesh];
+        let material = &scene.materials[mesh.material];
+        if !material.is_emissive() {
+            continue;
+        }
+        for triangle in 0..mesh.triangle_count() {
+            let corners = mesh.triangle(triangle).map(|corner| draw.world_from_object.transform_point3(corner));
+            let uvs = [0, 1, 2].map(|corner| {
+                mesh.uvs.get(mesh.indices[3 * triangle + corner] as usize).copied().unwrap_or(Vec2::ZERO)
+            });
+            let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
+            // By the factor, not by the texture: a choice that is off costs variance, not truth.
+            let power = luminous(material.emissive) * f64::from(std::f32::consts::PI * area);
+            if power > 0.0 {
+                powers.push(power);
+                sources.push(Source::Emissive { corners, uvs, material: mesh.material });
+            }
+        }
+    }
+    (sources, powers)
+}
+
+/// The numbers of one walk, one dimension after the other.
+struct Numbers {
+    index: u32,
+    seed: u32,
+    dimension: u32,
+}
+
+impl Numbers {
+    fn new(walk: u64, seed: u32) -> Self {
+        // The sequence has 2^16 points; each further stretch is scrambled on its own.
+        let stretch = (walk >> 16) as u32;
+        Self { index: (walk & 0xffff) as u32, seed: seed ^ stretch.wrapping_mul(0x9e37_79b9), dimension: 0 }
+    }
+
+    fn next(&mut self) -> f32 {
+        self.dimension += 1;
+        sobol_burley::sample(self.index, self.dimension - 1, self.seed)
+    }
+}
+
+struct Tracer<'a> {
+    scene: &'a Scene,
+    bvh: &'a Bvh,
+    /// The sphere around the scene.
+    center: Vec3,
+    radius: f32,
+    offset: f32,
+}
+
+/// A surface point that a walk landed on.
+struct Landing {
+    position: Vec3,
+    normal: Vec3,
+    albedo: Vec3,
+}
+
+impl Tracer<'_> {
+    fn one(&self, source: &Source<'_>, chance: f32, bounces: u32, numbers: &mut Numbers, vpls: &mut Vec<VplBlock>) {
+        let (mut origin, mut direction, mut flux) = match source {
+            Source::Punctual(punctual) => start_on(punctual, self.center, self.radius, numbers),
+            Source::Emissive { corners, uvs, material } => {
+                let material = &self.scene.materials[*material];
+                let (u, v) = (numbers.next(), numbers.next());
+                let root = u.sqrt();
+                let weights = [1.0 - root, root * (1.0 - v), root * v];
+                let position = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+                let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
+                let twice = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+                let mut normal = twice.normalize_or_zero();
+                let mut area = 0.5 * twice.length();
+                if material.double_sided {
+                    // Both sides shine: each walk takes one of them, and stands for both.
+                    area *= 2.0;
+                    normal = if numbers.next() < 0.5 { normal } else { -normal };
+                }
+                let radiance = material::emissive_at(self.scene, material, uv);
+                vpls.push(vpl(position, normal, radiance * area / chance));
+                let out = cosine_direction(normal, numbers);
+                (position + normal * self.offset, out, radiance * area * std::f32::consts::PI)
+            }
+        };
+        flux /= chance;
+        for _ in 0..bounces {
+            let Some(landing) = self.land(origin, direction) else { return };
+            flux *= landing.albedo;
+            if flux == Vec3::ZERO {
+                return;
+            }
+            vpls.push(vpl(landing.position, landing.normal, flux / std::f32::consts::PI));
+            origin = landing.position + landing.normal * self.offset;
+            direction = cosine_direction(landing.normal, numbers);
+        }
+    }
+
+    /// The first surface that stops a ray; None where there is none, or where the ray meets a single-sided one's back.
+    fn land(&self, origin: Vec3, direction: Vec3) -> Option<Landing> {
+        let hit = self.bvh.closest_hit(origin, direction, 4.0 * self.radius, |hit| !self.is_hole(hit))?;
+        let (mesh, draw, corners) = self.corners(&hit);
+        let material = &self.scene.materials[mesh.material];
+        let positions = corners.map(|corner| draw.world_from_object.transform_point3(mesh.positions[corner]));
+        let mut normal = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize_or_zero();
+        // A mirrored draw turns the winding around, not the surface.
+        if draw.world_from_object.determinant() < 0.0 {
+            normal = -normal;
+        }
+        if normal.dot(direction) > 0.0 {
+            if !material.double_sided {
+                return None;
+            }
+            normal = -normal;
+        }
+        let uv = self.uv(&hit);
+        let base_color = material::base_color_at(self.scene, material, uv).truncate();
+        let albedo = base_color * (1.0 - material::metallic_at(self.scene, material, uv));
+        Some(Landing { position: origin + direction * hit.distance, normal, albedo })
+    }
+
+    fn corners(&self, hit: &Hit) -> (&crate::scene::Mesh, &crate::scene::Draw, [usize; 3]) {
+        let source = self.bvh.sources[hit.triangle];
+        let draw = &self.scene.draws[source.draw as usize];
+        let mesh = &self.scene.meshes[draw.mesh];
+        let corners = [0, 1, 2].map(|corner| mesh.indices[3 * source.triangle as usize + corner] as usize);
+        (mesh, draw, corners)
+    }
+
+    fn uv(&self, hit: &Hit) -> Vec2 {
+        let (mesh, _, corners) = self.corners(hit);
+        let [u, v] = hit.barycentric;
+        let at = |corner: usize| mesh.uvs.get(corners[corner]).copied().unwrap_or(Vec2::ZERO);
+        at(0) * (1.0 - u - v) + at(1) * u + at(2) * v
+    }
+
+    fn is_hole(&self, hit: &Hit) -> bool {
+        let (mesh, _, _) = self.corners(hit);
+        material::is_hole(self.scene, &self.scene.materials[mesh.material], self.uv(hit))
+    }
+}
+
+/// Origin, direction and flux of a walk from a punctual light.
+fn start_on(punctual: &Light, center: Vec3, radius: f32, numbers: &mut Numbers) -> (Vec3, Vec3, Vec3) {
+    use std::f32::consts::{PI, TAU};
+    let (u, v) = (numbers.next(), numbers.next());
+    match punctual.kind {
+        LightKind::Directional => {
+            let (x, y) = punctual.direction.any_orthonormal_pair();
+            let (r, angle) = (radius * u.sqrt(), TAU * v);
+            let on_disc = x * (r * angle.cos()) + y * (r * angle.sin());
+            let origin = center + on_disc - punctual.direction * (1.01 * radius);
+            (origin, punctual.direction, light::flux(punctual, radius))
+        }
+        LightKind::Point => {
+            let z = 1.0 - 2.0 * u;
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            let direction = Vec3::new(r * (TAU * v).cos(), r * (TAU * v).sin(), z);
+            (punctual.position, direction, punctual.intensity * (4.0 * PI))
+        }
+        LightKind::Spot { inner_angle, outer_angle } => {
+            // Uniform in the outer cone; the cone's edge dims the flux.
+            let z = 1.0 - u * (1.0 - outer_angle.cos());
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            let (x, y) = punctual.direction.any_orthonormal_pair();
+            let direction = x * (r * (TAU * v).cos()) + y * (r * (TAU * v).sin()) + punctual.direction * z;
+            let edge = (inner_angle.cos() - outer_angle.cos()).max(1e-3);
+            let cone = ((z - outer_angle.cos()) / edge).clamp(0.0, 1.0);
+            (punctual.position, direction, punctual.intensity * (TAU * (1.0 - outer_angle.cos()) * cone * cone))
+        }
+    }
+}
+
+fn cosine_direction(normal: Vec3, numbers: &mut Numbers) -> Vec3 {
+    let (u, v) = (numbers.next(), numbers.next());
+    let (r, angle) = (u.sqrt(), std::f32::consts::TAU * v);
+    if normal == Vec3::ZERO {
+        return Vec3::Y;
+    }
+    let (x, y) = normal.any_orthonormal_pair();
+    (x * (r * angle.cos()) + y * (r * angle.sin()) + normal * (1.0 - u).max(0.0).sqrt()).normalize()
+}
+
+fn vpl(position: Vec3, normal: Vec3, intensity: Vec3) -> VplBlock {
+    VplBlock {
+        position_ws: position.extend(0.0).to_array(),
+        normal_ws: normal.extend(0.0).to_array(),
+        intensity: intensity.extend(0.0).to_array(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Draw, Material, Mesh};
+    use glam::{Mat4, Vec4};
+
+    /// A large horizontal square at y = `y`, facing up, and its material.
+    fn square(y: f32, half: f32, material: usize) -> Mesh {
+        Mesh {
+            positions: [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]
+                .map(|(x, z)| Vec3::new(x * half, y, z * half))
+                .to_vec(),
+            normals: vec![Vec3::Y; 4],
+            indices: vec![0, 1, 2, 0, 2, 3],
+            material,
+            ..Mesh::default()
+        }
+    }
+
+    fn floor(albedo: f32) -> Scene {
+        Scene {
+            meshes: vec![square(0.0, 50.0, 0)],
+            draws: vec![Draw { mesh: 0, world_from_object: Mat4::IDENTITY }],
+            materials: vec![Material::diffuse("floor", Vec3::splat(albedo))],
+            ..Scene::default()
+        }
+    }
+
+    fn point(height: f32) -> Light {
+        Light {
+            name: String::new(),
+            kind: LightKind::Point,
+            intensity: Vec3::new(2.0, 1.0, 0.5),
+            position: Vec3::new(0.0, height, 0.0),
+            direction: -Vec3::Y,
+            range: None,
+        }
+    }
+
+    fn total(found: &Found) -> Vec3 {
+        found.vpls.iter().map(|vpl| Vec4::from_array(vpl.intensity).truncate()).sum()
+    }
+
+    #[test]
+    fn the_flux_that_lands_is_the_flux_that_leaves() {
+        let scene = floor(0.5);
+        let bvh = Bvh::build(&scene).unwrap();
+        let found = walk(&scene, &bvh, &[point(1.0)], &Walk { count: 4096, bounces: 1, emissive: false, seed: 3 }).unwrap();
+        assert_eq!(found.vpls.len(), 4096);
+        // Half of 4 pi I goes down and nearly all of that lands on a floor of 50 m; half of it is kept; a Lambert patch
+        // that sends the flux F has the intensity F / pi along its normal.
+        let landing = Vec3::new(2.0, 1.0, 0.5) * (2.0 * std::f32::consts::PI) * 0.98;
+        let expected = landing * 0.5 / std::f32::consts::PI;
+        assert!((total(&found) / expected - 1.0).abs().max_element() < 0.02, "{} {expected}", total(&found));
+        assert!(found.vpls.iter().all(|vpl| vpl.normal_ws[1] > 0.99 && vpl.position_ws[1].abs() < 1e-3));
+    }
+
+    #[test]
+    fn an_emissive_panel_stands_for_itself() {
+        let mut scene = floor(0.0);
+        scene.materials.push(Material { emissive: Vec3::splat(3.0), ..Material::diffuse("panel", Vec3::ZERO) });
+        scene.meshes.push(square(2.0, 1.0, 1));
+        scene.draws.push(Draw { mesh: 1, world_from_object: Mat4::IDENTITY });
+        let bvh = Bvh::build(&scene).unwrap();
+        let found = walk(&scene, &bvh, &[], &Walk { count: 512, bounces: 1, emissive: true, seed: 1 }).unwrap();
+        // Radiance 3 times an area of 4; the panel faces up and the floor is black, so nothing else is lit.
+        assert!((total(&found) - 12.0).abs().max_element() < 1e-3, "{}", total(&found));
+    }
+
+    #[test]
+    fn a_roof_stops_the_sun_and_its_back_holds_no_light() {
+        let mut scene = floor(0.5);
+        scene.meshes.push(square(0.0, 50.0, 0));
+        // A roof that faces down into the room: the sun meets its back.
+        let down = Mat4::from_translation(Vec3::new(0.0, 3.0, 0.0)) * Mat4::from_rotation_x(std::f32::consts::PI);
+        scene.draws.push(Draw { mesh: 1, world_from_object: down });
+        let sun = Light { kind: LightKind::Directional, ..point(0.0) };
+        let bvh = Bvh::build(&scene).unwrap();
+        let error = walk(&scene, &bvh, &[sun], &Walk { count: 4, bounces: 1, emissive: false, seed: 1 }).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn nothing_that_shines_is_said_so() {
+        let scene = floor(0.5);
+        let bvh = Bvh::build(&scene).unwrap();
+        let error = walk(&scene, &bvh, &[], &Walk { count: 4, bounces: 1, emissive: true, seed: 1 }).unwrap_err();
+        assert!(error.message().contains("nothing shines"), "{error}");
+    }
+}

@@ -1,0 +1,109 @@
+//! Which memory type a resource gets, and why: numbers and flags only, testable without a device.
+
+use crate::error::{Error, Result};
+use crate::gpu::Caps;
+use crate::gpu::caps::MemoryType;
+use std::fmt;
+
+/// What the memory is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Read and written by the device alone.
+    Device,
+    /// Written by the host, read by the device: staging and per-frame numbers.
+    Upload,
+    /// Written by the device, read by the host.
+    Readback,
+}
+
+impl fmt::Display for Use {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Device => "device-local",
+            Self::Upload => "host-visible",
+            Self::Readback => "host-cached",
+        })
+    }
+}
+
+/// A memory type with the reason for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    pub type_index: u32,
+    /// The host must see it.
+    pub mapped: bool,
+    pub reason: &'static str,
+}
+
+/// The device's memory types.
+pub struct Kinds {
+    types: Vec<MemoryType>,
+}
+
+impl Kinds {
+    pub fn new(caps: &Caps) -> Self {
+        Self { types: caps.memory_types.clone() }
+    }
+
+    /// The best type for `usage` among those that `allowed` has a bit for. Mapped types are coherent, so that no
+    /// flush is ever due.
+    ///
+    /// Errors: no type has what the use cannot do without (exit code 4).
+    pub fn choose(&self, usage: Use, allowed: u32) -> Result<Choice> {
+        type Wanted = (fn(&MemoryType) -> bool, &'static str);
+        let host = |kind: &MemoryType| kind.host_visible && kind.host_coherent;
+        let wanted: &[Wanted] = match usage {
+            Use::Device => &[
+                (|kind| kind.device_local && !kind.host_visible, "device-local, kept from the host"),
+                (|kind| kind.device_local && !kind.lazily_allocated, "device-local, and the host sees it: no other is"),
+                (|kind| !kind.lazily_allocated, "not device-local: the driver allows no other"),
+            ],
+            Use::Upload => &[
+                (|kind| kind.host_visible && kind.host_coherent && !kind.host_cached, "host-coherent, write-combined"),
+                (|kind| kind.host_visible && kind.host_coherent, "host-coherent"),
+            ],
+            Use::Readback => &[
+                (|kind| kind.host_visible && kind.host_coherent && kind.host_cached, "host-coherent and cached"),
+                (|kind| kind.host_visible && kind.host_coherent, "host-coherent, uncached: no cached type"),
+            ],
+        };
+        for (fits, reason) in wanted {
+            let found = self.types.iter().enumerate().find(|(index, kind)| allowed & (1 << index) != 0 && fits(kind));
+            if let Some((index, kind)) = found {
+                let mapped = usage != Use::Device && host(kind);
+                return Ok(Choice { type_index: index as u32, mapped, reason });
+            }
+        }
+        Err(Error::device(format!("no {usage} memory type among those the driver allows (mask {allowed:#b})")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kind(device_local: bool, host_visible: bool, host_cached: bool) -> MemoryType {
+        let host_coherent = host_visible;
+        MemoryType { heap: 0, device_local, host_visible, host_coherent, host_cached, lazily_allocated: false }
+    }
+
+    #[test]
+    fn a_discrete_gpu_keeps_device_memory_from_the_host_and_reads_back_through_the_cache() {
+        let kinds = Kinds { types: vec![kind(true, false, false), kind(false, true, false), kind(false, true, true)] };
+        assert_eq!(kinds.choose(Use::Device, 0b111).unwrap().type_index, 0);
+        assert_eq!(kinds.choose(Use::Upload, 0b111).unwrap().type_index, 1);
+        assert_eq!(kinds.choose(Use::Readback, 0b111).unwrap().type_index, 2);
+        // The driver's mask decides first.
+        assert_eq!(kinds.choose(Use::Device, 0b110).unwrap().type_index, 1);
+        assert_eq!(kinds.choose(Use::Upload, 0b001).unwrap_err().exit_code(), 4);
+    }
+
+    #[test]
+    fn a_software_driver_has_one_type_for_all() {
+        let kinds = Kinds { types: vec![kind(true, true, true)] };
+        for usage in [Use::Device, Use::Upload, Use::Readback] {
+            assert_eq!(kinds.choose(usage, 1).unwrap().type_index, 0);
+        }
+        assert!(!kinds.choose(Use::Device, 1).unwrap().mapped);
+    }
+}

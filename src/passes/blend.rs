@@ -1,0 +1,109 @@
+//! BLEND surfaces over the finished picture: forward, back to front by their boxes' middles, counted.
+//! Shaders: mesh.vert, blend.frag.
+//! reads  the scene, every light, the G-buffer's depth      writes  the picture
+//!
+//! Their indirect light is the sum over all virtual point lights, not a subset: a blended surface has no neighbours to
+//! filter with, and what it shows is what `--split none` would.
+
+use super::mesh;
+use crate::error::Result;
+use crate::frame::View;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::structs::BlendParams;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::resident::{DrawCall, SceneGpu};
+use crate::scene::AlphaMode;
+use ash::vk;
+use std::sync::Arc;
+
+/// What the fragment stage reads beside the scene.
+pub struct BlendLights<'a> {
+    pub lights: &'a Buffer,
+    pub vpls: &'a Buffer,
+    pub bvh_nodes: &'a Buffer,
+    pub bvh_triangles: &'a Buffer,
+}
+
+pub struct Blend {
+    pipeline: GraphicsPipeline,
+    /// Farthest first.
+    calls: Vec<DrawCall>,
+    params: BlendParams,
+}
+
+impl Blend {
+    /// None where the scene has no BLEND surface. `constants`: BRDF_KIND, DIRECT_SHADOW, RAY_OFFSET.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        view: &View,
+        picture_format: vk::Format,
+        least_squared: f32,
+        constants: &[(&str, u32)],
+    ) -> Result<Option<Self>> {
+        let eye = view.eye();
+        let mut calls: Vec<DrawCall> =
+            scene.calls.iter().filter(|call| call.alpha == AlphaMode::Blend).copied().collect();
+        if calls.is_empty() {
+            return Ok(None);
+        }
+        calls.sort_by(|a, b| {
+            let distance = |call: &DrawCall| call.center_ws.distance_squared(eye);
+            distance(b).total_cmp(&distance(a))
+        });
+        let pipeline = GraphicsPipeline::new(
+            gpu,
+            &GraphicsDescription {
+                vertex: &crate::gpu::shader::passes::mesh::VERT,
+                fragment: Some(&crate::gpu::shader::passes::blend::FRAG),
+                constants,
+                vertex_buffers: &mesh::VERTEX_BUFFERS,
+                color_formats: &[picture_format],
+                blend_over: true,
+                depth_format: Some(vk::Format::D32_SFLOAT),
+                depth_write: false,
+                depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                foreign_sets: &[scene.material_layout],
+            },
+        )?;
+        Ok(Some(Self { pipeline, calls, params: BlendParams { least_squared } }))
+    }
+
+    /// How many draws it blends.
+    pub fn draw_count(&self) -> usize {
+        self.calls.len()
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        technique: &str,
+        frame: &Buffer,
+        scene: &SceneGpu,
+        lights: &BlendLights<'_>,
+        depth: Edge<'_, Image>,
+        picture: Edge<'_, Image>,
+    ) -> Result<()> {
+        let traffic = Traffic { read_bytes: mesh::read_bytes(&self.calls), written_bytes: 0, invocations: None };
+        cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
+            cmd.barriers([depth.to(Access::DepthTest), picture.to(Access::ColorWrite)]);
+            let extent = picture.resource.description.extent;
+            cmd.begin_rendering(extent, &[(picture.resource, None)], Some((depth.resource, None, Access::DepthTest)));
+            mesh::bind_streams(cmd, scene);
+            let mut bound = mesh::bound(frame, scene).to_vec();
+            bound.extend([
+                ("Materials", Bound::Buffer(&scene.materials)),
+                ("Lights", Bound::Buffer(lights.lights)),
+                ("Vpls", Bound::Buffer(lights.vpls)),
+                ("BvhNodes", Bound::Buffer(lights.bvh_nodes)),
+                ("BvhTriangles", Bound::Buffer(lights.bvh_triangles)),
+            ]);
+            cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&self.params), &bound)?;
+            mesh::draw(cmd, &self.pipeline, scene, &self.calls);
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! What full shading of punctual lights needs on the device: the list of lights, the tree for shadow rays, the
+//! constants of composite.glsl. Deferred shading and the composite hold one each.
+
+use crate::bvh::{Bvh, LazyBvh};
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
+use crate::gpu::{Access, Buffer, Gpu, upload};
+use crate::lights::{LightSet, cull};
+use crate::passes::gbuffer::PositionStorage;
+use crate::plan::{Plan, Resources};
+use crate::scene::Scene;
+use crate::settings::Values;
+use crate::shading::brdf::Brdf;
+use crate::shading::light;
+use crate::units::Extent;
+use std::sync::Arc;
+
+/// Which lights cast shadow rays (`--direct-shadow`); the number is the shader's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DirectShadow {
+    None = 0,
+    Sun = 1,
+    Ray = 2,
+}
+
+impl DirectShadow {
+    /// The value of `--direct-shadow`; `sun` without a sun is `none`.
+    fn from_setting(text: &str, lights: &LightSet) -> Self {
+        match text {
+            "ray" if !lights.lights.is_empty() => Self::Ray,
+            "sun" if lights.has_sun() => Self::Sun,
+            "none" | "sun" | "ray" => Self::None,
+            other => panic!("--direct-shadow {other} was checked"),
+        }
+    }
+}
+
+/// What the settings say of shading with a G-buffer (`settings::SHADING`).
+#[derive(Clone, Debug)]
+pub struct ShadingSettings {
+    pub brdf: Brdf,
+    pub position: PositionStorage,
+    pub cull: bool,
+    pub shadow: DirectShadow,
+    pub workgroup: [u32; 2],
+    /// Metres that a shadow ray starts off its surface.
+    pub ray_offset: f32,
+}
+
+/// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
+const RAY_OFFSET: f32 = 1e-4;
+
+impl ShadingSettings {
+    pub fn new(values: &Values, lights: &LightSet, diagonal: f32) -> Self {
+        Self {
+            brdf: Brdf::from_setting(values.text("brdf")),
+            position: PositionStorage::from_setting(values.text("position")),
+            cull: values.text("cull") == "tiled",
+            shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
+            workgroup: values.pair("workgroup"),
+            ray_offset: RAY_OFFSET * diagonal.max(1e-6),
+        }
+    }
+
+    /// WORKGROUP_X and WORKGROUP_Y.
+    pub fn workgroup_constants(&self) -> [(&'static str, u32); 2] {
+        [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
+    }
+
+    /// DIRECT_SHADOW and RAY_OFFSET.
+    pub fn shadow_constants(&self) -> [(&'static str, u32); 2] {
+        [("DIRECT_SHADOW", self.shadow as u32), ("RAY_OFFSET", self.ray_offset.to_bits())]
+    }
+
+    /// BRDF_KIND and those of shadows.
+    pub fn light_constants(&self) -> [(&'static str, u32); 3] {
+        let [shadow, offset] = self.shadow_constants();
+        [("BRDF_KIND", self.brdf as u32), shadow, offset]
+    }
+
+    /// The tree that shadow rays walk: the scene's, or the empty one where no ray is cast.
+    pub fn tree<'a>(&self, bvh: &'a LazyBvh, scene: &Scene) -> Result<&'a Bvh> {
+        if self.shadow == DirectShadow::None { Ok(bvh.empty()) } else { bvh.over(scene) }
+    }
+}
+
+/// Plans the list of lights and the tree, as resources of `technique`.
+pub fn plan(plan: &mut Plan, technique: &str, light_count: usize, settings: &ShadingSettings, tree: &Bvh, extent: Extent) {
+    let bytes = |count: usize, size: usize| count as u64 * size as u64;
+    plan.buffer("lights", format!("{technique}.lights"), bytes(light_count, size_of::<LightBlock>()));
+    plan.buffer("bvh", format!("{technique}.bvh.nodes"), bytes(tree.nodes.len(), size_of::<BvhNodeBlock>()));
+    plan.buffer("bvh", format!("{technique}.bvh.triangles"), bytes(tree.triangles.len(), size_of::<BvhTriangleBlock>()));
+    if settings.cull && light_count > 0 {
+        cull::plan(plan, technique, extent, light_count as u32);
+    }
+}
+
+/// The planned buffers, filled.
+pub struct DirectGpu {
+    pub lights: Buffer,
+    pub light_count: u32,
+    pub bvh_nodes: Buffer,
+    pub bvh_triangles: Buffer,
+    /// With `--cull tiled`, where there are lights.
+    pub masks: Option<Buffer>,
+}
+
+impl DirectGpu {
+    /// Uploads `lights` and the tree.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        technique: &str,
+        lights: &[LightBlock],
+        settings: &ShadingSettings,
+        tree: &Bvh,
+    ) -> Result<Self> {
+        let mut filled = |what: &str, bytes: &[u8]| {
+            let buffer = resources.buffer(&format!("{technique}.{what}"));
+            // Compute shaders and blended surfaces both read it.
+            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead | Access::GraphicsRead)?;
+            Ok(buffer)
+        };
+        Ok(Self {
+            lights: filled("lights", bytemuck::cast_slice(lights))?,
+            light_count: lights.len() as u32,
+            bvh_nodes: filled("bvh.nodes", bytemuck::cast_slice(&tree.nodes))?,
+            bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
+            masks: (settings.cull && !lights.is_empty()).then(|| resources.buffer(&format!("{technique}.cull.masks"))),
+        })
+    }
+
+    /// What composite.glsl binds of it.
+    pub fn bound(&self) -> Vec<(&'static str, Bound<'_>)> {
+        let mut bound = vec![
+            ("Lights", Bound::Buffer(&self.lights)),
+            ("BvhNodes", Bound::Buffer(&self.bvh_nodes)),
+            ("BvhTriangles", Bound::Buffer(&self.bvh_triangles)),
+        ];
+        if let Some(masks) = &self.masks {
+            bound.push(("LightMasks", Bound::Buffer(masks)));
+        }
+        bound
+    }
+}
+
+/// The lights as shaders read them.
+pub fn light_blocks(lights: &LightSet, values: &Values) -> Vec<LightBlock> {
+    let cutoff = values.number("light-cutoff") as f32;
+    lights.lights.iter().map(|one| light::block(one, cutoff)).collect()
+}

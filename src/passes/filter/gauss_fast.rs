@@ -1,0 +1,91 @@
+//! The fast Gaussian: half-texel fetches that let the sampler blend two texels and their flags at once. Segovia 2006,
+//! section 4.5 and figure 4b (SG12). Shader: gauss_fast.comp; gauss_pack.comp makes its image.
+//! reads  an irradiance buffer and flags      writes  two images between, then the target buffer
+
+use super::Kernel;
+use super::gauss_pack::GaussPack;
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::passes::filter::gauss_fast as shader;
+use crate::gpu::shader::structs::GaussFastParams;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::units::Extent;
+use ash::vk;
+use std::sync::Arc;
+
+pub struct GaussFast {
+    pack: GaussPack,
+    horizontal: ComputePipeline,
+    vertical: ComputePipeline,
+    linear: Sampler,
+    extent: Extent,
+    row_pitch: u32,
+    kernel: Kernel,
+}
+
+impl GaussFast {
+    pub fn new(gpu: &Arc<Gpu>, workgroup: &[(&str, u32)], extent: Extent, row_pitch: u32, kernel: Kernel) -> Result<Self> {
+        Ok(Self {
+            pack: GaussPack::new(gpu, workgroup)?,
+            horizontal: ComputePipeline::new(gpu, &shader::COMP_IMAGE, workgroup)?,
+            vertical: ComputePipeline::new(gpu, &shader::COMP_BUFFER, workgroup)?,
+            linear: Sampler::clamped(gpu, vk::Filter::LINEAR)?,
+            extent,
+            row_pitch,
+            kernel,
+        })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        technique: &str,
+        source: Edge<'_, Buffer>,
+        flags: Edge<'_, Buffer>,
+        between: [&Image; 2],
+        target: &Buffer,
+    ) -> Result<()> {
+        let pixels = self.extent.pixel_count();
+        // The middle, and a fetch for each pair of taps on either side; a fetch touches two texels.
+        let fetches = 1 + 2 * u64::from(self.kernel.radius().div_ceil(2));
+        let traffic = Traffic {
+            read_bytes: pixels * (8 + 4) + 2 * pixels * fetches * 8,
+            written_bytes: 3 * pixels * 8,
+            invocations: Some(3 * pixels),
+        };
+        cmd.pass(&format!("{technique}.filter"), traffic, |cmd| {
+            let [packed, half_way] = between;
+            cmd.barriers([
+                source.to(Access::ComputeRead),
+                flags.to(Access::ComputeRead),
+                packed.discard(Access::ComputeWrite),
+                half_way.discard(Access::ComputeWrite),
+                target.discard(Access::ComputeWrite),
+            ]);
+            self.pack.record(cmd, self.extent, self.row_pitch, source.resource, flags.resource, packed)?;
+            cmd.barriers([packed.from(Access::ComputeWrite).to(Access::ComputeSample)]);
+            let sampled = |image| Bound::Sampled(image, self.linear.handle, Access::ComputeSample);
+            let groups = self.horizontal.groups([self.extent.width, self.extent.height, 1]);
+            let params = self.params(true);
+            let bound = [("source", sampled(packed)), ("target", Bound::Storage(half_way))];
+            cmd.dispatch(&self.horizontal, bytemuck::bytes_of(&params), &bound, groups)?;
+            cmd.barriers([half_way.from(Access::ComputeWrite).to(Access::ComputeSample)]);
+            let params = self.params(false);
+            let bound = [("source", sampled(half_way)), ("Target", Bound::Buffer(target))];
+            cmd.dispatch(&self.vertical, bytemuck::bytes_of(&params), &bound, groups)
+        })
+    }
+
+    fn params(&self, horizontal: bool) -> GaussFastParams {
+        GaussFastParams {
+            width_px: self.extent.width,
+            height_px: self.extent.height,
+            row_pitch: self.row_pitch,
+            horizontal: u32::from(horizontal),
+            radius: self.kernel.radius(),
+            falloff: self.kernel.falloff(),
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! G-buffer creation: Segovia 2006, section 4.1 (BC). Shaders: mesh.vert, gbuffer.frag; encoding: gbuffer.glsl.
+//! reads   the scene
+//! writes  gbuffer.normal, gbuffer.color   images, 8 B a pixel each
+//!         gbuffer.position                image, 8 or 16 B a pixel; none where the depth buffer holds positions
+//!         gbuffer.emissive                image, 8 B a pixel, where the scene has emissive materials
+//!         gbuffer.depth                   image, 4 B a pixel, reversed
+//!
+//! Differs from the paper: normals are 16-bit snorm, not half floats (their error is 32 times smaller near 1), positions
+//! are fractions of the scene's box by default, and emission has an image of its own, because it is added after the
+//! filter and no component is spare.
+
+use super::{decode, mesh};
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::Shader;
+use crate::gpu::{Access, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
+use crate::plan::{Plan, Resources};
+use crate::report::image_file::{Aov, AovChannels};
+use crate::resident::SceneGpu;
+use crate::scene::AlphaMode;
+use crate::units::Extent;
+use ash::vk;
+use std::sync::Arc;
+
+/// How positions are kept (`--position`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PositionStorage {
+    Half,
+    Unorm16,
+    Depth,
+    Float,
+}
+
+impl PositionStorage {
+    /// The value of `--position`.
+    pub fn from_setting(text: &str) -> Self {
+        match text {
+            "half" => Self::Half,
+            "unorm16" => Self::Unorm16,
+            "depth" => Self::Depth,
+            "float" => Self::Float,
+            other => panic!("--position {other} was checked"),
+        }
+    }
+
+    /// Bytes of a position in an image or a buffer.
+    pub fn bytes(self) -> u64 {
+        match self {
+            Self::Half | Self::Unorm16 => 8,
+            Self::Depth => 4,
+            Self::Float => 16,
+        }
+    }
+
+    fn image_format(self) -> Option<vk::Format> {
+        match self {
+            Self::Half | Self::Unorm16 => Some(vk::Format::R32G32_UINT),
+            Self::Float => Some(vk::Format::R32G32B32A32_UINT),
+            Self::Depth => None,
+        }
+    }
+
+    /// The variant of a shader that has the axis POSITION, given in the order half, unorm16, depth, float.
+    pub fn pick<T>(self, half: T, unorm16: T, depth: T, float: T) -> T {
+        match self {
+            Self::Half => half,
+            Self::Unorm16 => unorm16,
+            Self::Depth => depth,
+            Self::Float => float,
+        }
+    }
+}
+
+const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+const WORDS: vk::Format = vk::Format::R32G32_UINT;
+
+/// Plans the images of one G-buffer, as resources of `technique`.
+pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, position: PositionStorage, has_emissive: bool) {
+    use vk::ImageUsageFlags as Usage;
+    let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
+    let mut image = |what: &str, format, usage| {
+        plan.image("gbuffer", format!("{technique}.gbuffer.{what}"), extent, format, usage);
+    };
+    image("normal", WORDS, color);
+    image("color", WORDS, color);
+    if has_emissive {
+        image("emissive", WORDS, color);
+    }
+    if let Some(format) = position.image_format() {
+        image("position", format, color);
+    }
+    image("depth", DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC);
+}
+
+/// The images of one G-buffer.
+pub struct GBuffer {
+    pub position_storage: PositionStorage,
+    pub normal: Image,
+    pub color: Image,
+    pub emissive: Option<Image>,
+    pub position: Option<Image>,
+    pub depth: Image,
+    nearest: Sampler,
+}
+
+impl GBuffer {
+    /// Takes the images out that `plan` put in.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        technique: &str,
+        position_storage: PositionStorage,
+        has_emissive: bool,
+    ) -> Result<Self> {
+        let mut image = |what: &str| resources.image(&format!("{technique}.gbuffer.{what}"));
+        Ok(Self {
+            position_storage,
+            normal: image("normal"),
+            color: image("color"),
+            emissive: has_emissive.then(|| image("emissive")),
+            position: position_storage.image_format().map(|_| image("position")),
+            depth: image("depth"),
+            nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+        })
+    }
+
+    pub fn extent(&self) -> Extent {
+        self.normal.description.extent
+    }
+
+    /// Bytes a pixel of normal and position: what irradiance needs.
+    pub fn surface_bytes(&self) -> u64 {
+        8 + self.position_storage.bytes()
+    }
+
+    /// Bytes a pixel of all that a composite reads.
+    pub fn shading_bytes(&self) -> u64 {
+        self.surface_bytes() + 8 + if self.emissive.is_some() { 8 } else { 0 }
+    }
+
+    /// States who touched it last. `ColorWrite` stands for the G-buffer pass, which wrote the depth too.
+    pub fn from(&self, access: Access) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
+    /// What gbuffer_read.glsl binds.
+    pub fn bound_surface(&self) -> Vec<(&'static str, Bound<'_>)> {
+        let position = self.position.as_ref().unwrap_or(&self.depth);
+        vec![("gbuffer_position", self.sampled(position)), ("gbuffer_normal", self.sampled(&self.normal))]
+    }
+
+    /// What composite.glsl binds.
+    pub fn bound_shading(&self) -> Vec<(&'static str, Bound<'_>)> {
+        let mut bound = self.bound_surface();
+        bound.push(("gbuffer_color", self.sampled(&self.color)));
+        if let Some(emissive) = &self.emissive {
+            bound.push(("gbuffer_emissive", self.sampled(emissive)));
+        }
+        bound
+    }
+
+    fn sampled<'a>(&'a self, image: &'a Image) -> Bound<'a> {
+        Bound::Sampled(image, self.nearest.handle, Access::ComputeSample)
+    }
+
+    /// Colour attachments in the order of gbuffer.frag's locations.
+    fn attachments(&self) -> Vec<&Image> {
+        [Some(&self.normal), Some(&self.color), self.emissive.as_ref(), self.position.as_ref()]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+}
+
+impl Edge<'_, GBuffer> {
+    /// All that compute shaders sample becomes readable by them.
+    pub fn to_sampled(self) -> Vec<Barrier> {
+        let gbuffer = self.resource;
+        let mut barriers: Vec<Barrier> = gbuffer
+            .attachments()
+            .into_iter()
+            .map(|image| image.from(self.from).to(Access::ComputeSample))
+            .collect();
+        if gbuffer.position_storage == PositionStorage::Depth {
+            let from = if self.from == Access::ColorWrite.into() { Access::DepthWrite.into() } else { self.from };
+            barriers.push(gbuffer.depth.from(from).to(Access::ComputeSample));
+        }
+        barriers
+    }
+}
+
+/// AOVs that every technique with a G-buffer has.
+pub const AOVS: &[&str] = &["gbuffer.normal", "gbuffer.color"];
+
+impl GBuffer {
+    /// How a pass that tests depth takes it over: written by the G-buffer pass, or since sampled as positions.
+    pub fn depth_edge(&self) -> Edge<'_, Image> {
+        match self.position_storage {
+            PositionStorage::Depth => self.depth.from(Access::ComputeSample),
+            PositionStorage::Half | PositionStorage::Unorm16 | PositionStorage::Float => {
+                self.depth.from(Access::DepthWrite)
+            }
+        }
+    }
+
+    /// One of `AOVS`, read back; None where the name is another's. Normals are in world space.
+    pub fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Option<Result<Aov>> {
+        let decoded = |image: &Image, decode: fn([u32; 2]) -> [f32; 3]| -> Result<Aov> {
+            let bytes = readback::image(gpu, image, Access::ComputeSample)?;
+            Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(decode::words(&bytes).map(decode).collect()) })
+        };
+        match name {
+            "gbuffer.normal" => Some(decoded(&self.normal, decode::normal)),
+            "gbuffer.color" => Some(decoded(&self.color, decode::halves)),
+            _ => None,
+        }
+    }
+}
+
+/// The pass that fills a G-buffer.
+pub struct GBufferPass {
+    opaque: GraphicsPipeline,
+    mask: GraphicsPipeline,
+}
+
+fn fragment(position: PositionStorage, has_emissive: bool, mask: bool) -> &'static Shader {
+    use crate::gpu::shader::passes::gbuffer as s;
+    match (has_emissive, mask) {
+        (false, false) => position.pick(
+            &s::FRAG_HALF_OFF_OPAQUE,
+            &s::FRAG_UNORM16_OFF_OPAQUE,
+            &s::FRAG_DEPTH_OFF_OPAQUE,
+            &s::FRAG_FLOAT_OFF_OPAQUE,
+        ),
+        (false, true) => position.pick(
+            &s::FRAG_HALF_OFF_MASK,
+            &s::FRAG_UNORM16_OFF_MASK,
+            &s::FRAG_DEPTH_OFF_MASK,
+            &s::FRAG_FLOAT_OFF_MASK,
+        ),
+        (true, false) => position.pick(
+            &s::FRAG_HALF_ON_OPAQUE,
+            &s::FRAG_UNORM16_ON_OPAQUE,
+            &s::FRAG_DEPTH_ON_OPAQUE,
+            &s::FRAG_FLOAT_ON_OPAQUE,
+        ),
+        (true, true) => position.pick(
+            &s::FRAG_HALF_ON_MASK,
+            &s::FRAG_UNORM16_ON_MASK,
+            &s::FRAG_DEPTH_ON_MASK,
+            &s::FRAG_FLOAT_ON_MASK,
+        ),
+    }
+}
+
+impl GBufferPass {
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, position: PositionStorage, has_emissive: bool) -> Result<Self> {
+        let mut formats = vec![WORDS, WORDS];
+        if has_emissive {
+            formats.push(WORDS);
+        }
+        formats.extend(position.image_format());
+        let pipeline = |mask: bool| {
+            GraphicsPipeline::new(
+                gpu,
+                &GraphicsDescription {
+                    vertex: &crate::gpu::shader::passes::mesh::VERT,
+                    fragment: Some(fragment(position, has_emissive, mask)),
+                    constants: &[],
+                    vertex_buffers: &mesh::VERTEX_BUFFERS,
+                    color_formats: &formats,
+                    blend_over: false,
+                    depth_format: Some(DEPTH_FORMAT),
+                    depth_write: true,
+                    depth_compare: vk::CompareOp::GREATER,
+                    foreign_sets: &[scene.material_layout],
+                },
+            )
+        };
+        Ok(Self { opaque: pipeline(false)?, mask: pipeline(true)? })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        technique: &str,
+        frame: &Buffer,
+        scene: &SceneGpu,
+        gbuffer: &GBuffer,
+    ) -> Result<()> {
+        let attachments = gbuffer.attachments();
+        let pixel_bytes = 8 * (attachments.len() as u64 - u64::from(gbuffer.position.is_some()))
+            + 4
+            + gbuffer.position.as_ref().map_or(0, |_| gbuffer.position_storage.bytes());
+        let solid = || scene.calls.iter().filter(|call| call.alpha != AlphaMode::Blend);
+        let traffic = Traffic {
+            read_bytes: mesh::read_bytes(solid()),
+            // Each pixel once: overdraw depends on the view.
+            written_bytes: gbuffer.extent().pixel_count() * pixel_bytes,
+            invocations: None,
+        };
+        cmd.pass(&format!("{technique}.gbuffer"), traffic, |cmd| {
+            cmd.barriers(attachments.iter().map(|image| image.discard(Access::ColorWrite)));
+            cmd.barriers([gbuffer.depth.discard(Access::DepthWrite)]);
+            // All bits 0: no surface.
+            let clear = Some(vk::ClearColorValue { uint32: [0; 4] });
+            let colors: Vec<_> = attachments.iter().map(|image| (*image, clear)).collect();
+            cmd.begin_rendering(gbuffer.extent(), &colors, Some((&gbuffer.depth, Some(0.0), Access::DepthWrite)));
+            mesh::bind_streams(cmd, scene);
+            let mask = |call: &&crate::resident::DrawCall| matches!(call.alpha, AlphaMode::Mask { .. });
+            for (pipeline, masked) in [(&self.opaque, false), (&self.mask, true)] {
+                let calls: Vec<_> = solid().filter(|call| mask(call) == masked).collect();
+                if !calls.is_empty() {
+                    let mut bound = mesh::bound(frame, scene).to_vec();
+                    bound.push(("Materials", Bound::Buffer(&scene.materials)));
+                    cmd.bind_graphics(pipeline, &[], &bound)?;
+                    mesh::draw(cmd, pipeline, scene, calls);
+                }
+            }
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+}

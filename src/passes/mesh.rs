@@ -1,0 +1,82 @@
+//! The vertex stage that passes over triangles share, and the loop that draws with it. Shader: mesh.vert.
+//! reads  scene.positions, scene.attributes, scene.indices, scene.draws, the frame's block
+
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::{GraphicsPipeline, VertexBuffer};
+use crate::gpu::{Buffer, Commands};
+use crate::resident::{DrawCall, SceneGpu, VertexAttributes};
+use ash::vk;
+use std::mem::offset_of;
+
+/// Layout of the two vertex streams.
+pub const VERTEX_BUFFERS: [VertexBuffer; 2] = [
+    VertexBuffer { stride_bytes: 12, attributes: &[(0, vk::Format::R32G32B32_SFLOAT, 0)] },
+    VertexBuffer {
+        stride_bytes: size_of::<VertexAttributes>() as u32,
+        attributes: &[
+            (1, vk::Format::R32G32B32_SFLOAT, offset_of!(VertexAttributes, normal) as u32),
+            (2, vk::Format::R32G32B32A32_SFLOAT, offset_of!(VertexAttributes, tangent) as u32),
+            (3, vk::Format::R32G32_SFLOAT, offset_of!(VertexAttributes, uv) as u32),
+        ],
+    },
+];
+
+/// What mesh.vert binds.
+pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> [(&'static str, Bound<'a>); 2] {
+    [("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))]
+}
+
+/// Bytes that a pass over `calls` reads of the scene: each call's indices, and each index's vertex once.
+pub fn read_bytes<'a>(calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
+    let vertex = 12 + size_of::<VertexAttributes>() as u64;
+    calls.into_iter().map(|call| u64::from(call.index_count) * (4 + vertex)).sum()
+}
+
+/// Binds the scene's streams, inside rendering.
+pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
+    let device = &cmd.gpu().device;
+    let streams = [scene.positions.handle, scene.attributes.handle];
+    // SAFETY: the buffer is being recorded; the scene outlives the recorded frame.
+    unsafe {
+        device.cmd_bind_vertex_buffers(cmd.buffer(), 0, &streams, &[0, 0]);
+        device.cmd_bind_index_buffer(cmd.buffer(), scene.indices.handle, 0, vk::IndexType::UINT32);
+    }
+}
+
+/// Draws `calls` with `pipeline`, which is bound, setting sides, winding and material where they change.
+pub fn draw<'a>(
+    cmd: &Commands,
+    pipeline: &GraphicsPipeline,
+    scene: &SceneGpu,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+) {
+    let device = &cmd.gpu().device;
+    let buffer = cmd.buffer();
+    let mut state: Option<(bool, bool)> = None;
+    let mut material = None;
+    for call in calls {
+        if state != Some((call.double_sided, call.mirrored)) {
+            state = Some((call.double_sided, call.mirrored));
+            let cull = if call.double_sided { vk::CullModeFlags::NONE } else { vk::CullModeFlags::BACK };
+            // glTF's front faces are counter-clockwise; y is turned in clip space, so they arrive as such.
+            let front = if call.mirrored { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE };
+            // SAFETY: the buffer is being recorded inside rendering.
+            unsafe {
+                device.cmd_set_cull_mode(buffer, cull);
+                device.cmd_set_front_face(buffer, front);
+            }
+        }
+        if material != Some(call.material) {
+            material = Some(call.material);
+            let set = [scene.material_sets[call.material as usize]];
+            let layout = pipeline.interface.layout;
+            // SAFETY: as above; the pipeline's set 1 is the scene's layout.
+            unsafe {
+                device.cmd_bind_descriptor_sets(buffer, vk::PipelineBindPoint::GRAPHICS, layout, 1, &set, &[]);
+            }
+        }
+        let DrawCall { index_count, first_index, vertex_offset, draw, .. } = *call;
+        // SAFETY: as above; the importer checked that every index has its vertex.
+        unsafe { device.cmd_draw_indexed(buffer, index_count, 1, first_index, vertex_offset, draw) };
+    }
+}

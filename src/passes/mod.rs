@@ -1,0 +1,8 @@
+//! Passes that two or more techniques share. Each is labelled by the technique that runs it.
+
+pub mod blend;
+pub mod decode;
+pub mod direct;
+pub mod filter;
+pub mod gbuffer;
+pub mod mesh;

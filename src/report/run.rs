@@ -1,0 +1,290 @@
+//! The report of one run: what was asked, on what, what came out, what each pass and each byte cost. Keys: design.md,
+//! section 2; within a schema number a key is only ever added.
+
+use crate::error::Result;
+use crate::gpu::caps::Identity;
+use crate::gpu::commands::FrameTime;
+use crate::gpu::image::ImageDescription;
+use crate::memory::ledger::Snapshot;
+use crate::plan::{Plan, Shape};
+use crate::report::image_file::{Aov, AovChannels};
+use crate::report::picture::Picture;
+use crate::session::{Renderer, Session};
+use crate::settings::Values;
+use crate::units::{Bytes, Extent};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Number of the set of keys.
+const SCHEMA: u32 = 1;
+/// A pass whose timestamp is farther from its wall time than this part of it is reported.
+const DISAGREEMENT: f64 = 0.1;
+/// Shorter passes are not judged: the submit itself takes tens of microseconds.
+const JUDGED_FROM_MS: f64 = 1.0;
+
+/// A JSON document in the making, and the text that a person reads.
+pub struct Report {
+    document: Map<String, Value>,
+    is_software: bool,
+}
+
+/// Median, least and greatest of some milliseconds, with the samples.
+pub fn spread(samples: &[f64]) -> Value {
+    if samples.is_empty() {
+        return Value::Null;
+    }
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    json!({ "median": median(&sorted), "min": sorted[0], "max": sorted[sorted.len() - 1], "samples": samples })
+}
+
+/// Of sorted samples, at least one.
+pub fn median(sorted: &[f64]) -> f64 {
+    let middle = sorted.len() / 2;
+    if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
+}
+
+fn milliseconds(ns: u64) -> f64 {
+    ns as f64 / 1e6
+}
+
+impl Report {
+    pub fn new(technique: &str, command: &[String], device: &Identity) -> Self {
+        let mut document = Map::new();
+        document.insert("schema".into(), json!(SCHEMA));
+        let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("QUINCUNX_COMMIT"));
+        document.insert("quincunx".into(), json!({ "version": version, "commit": commit }));
+        document.insert("command".into(), json!(command));
+        document.insert("device".into(), json!(device));
+        document.insert("technique".into(), json!(technique));
+        Self { document, is_software: device.is_software() }
+    }
+
+    pub fn scene(&mut self, session: &Session, renderer: &Renderer) {
+        let scene = &session.scene;
+        let mut entry = json!({
+            "name": scene.name,
+            "hash": scene.hash,
+            "triangles": scene.triangle_count(),
+            "draws": scene.draws.len(),
+            "lights": renderer.lights.lights.len(),
+            "materials": scene.materials.len(),
+            "camera": renderer.view.camera.name,
+        });
+        if renderer.lights.has_rig {
+            entry["rig"] = json!("default");
+        }
+        if renderer.view.made_up {
+            entry["camera"] = json!("framing");
+        }
+        if !scene.warnings.is_empty() {
+            entry["warnings"] = json!(scene.warnings);
+        }
+        self.document.insert("scene".into(), entry);
+    }
+
+    /// `resolved`: what `auto` and percentages came to.
+    pub fn settings(&mut self, values: &Values, resolved: &BTreeMap<&'static str, String>) {
+        let mut settings = Map::new();
+        for (key, text) in values.iter() {
+            let text = resolved.get(key).map_or(text, String::as_str);
+            let value = text.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number);
+            settings.insert(key.to_owned(), value);
+        }
+        self.document.insert("settings".into(), Value::Object(settings));
+    }
+
+    /// Errors: the picture holds NaN or infinity (exit code 1).
+    pub fn image(&mut self, picture: &Picture, path: &Path) -> Result<()> {
+        let hash = picture.hash()?;
+        let Extent { width, height } = picture.extent;
+        let path = path.display().to_string();
+        let mean = picture.mean();
+        self.document.insert(
+            "image".into(),
+            json!({ "width": width, "height": height, "mean": mean, "hash": hash, "path": path }),
+        );
+        Ok(())
+    }
+
+    pub fn aovs(&mut self, aovs: &[Aov], extent: Extent) {
+        let entries: Vec<Value> = aovs
+            .iter()
+            .map(|aov| {
+                let mut hasher = blake3::Hasher::new();
+                let format = match &aov.channels {
+                    AovChannels::Rgb(values) => {
+                        hasher.update(bytemuck::cast_slice(values));
+                        "rgb float"
+                    }
+                    AovChannels::Y(values) => {
+                        hasher.update(bytemuck::cast_slice(values));
+                        "float"
+                    }
+                    AovChannels::YU32(values) => {
+                        hasher.update(bytemuck::cast_slice(values));
+                        "uint"
+                    }
+                };
+                let hash = hasher.finalize().to_hex().to_string();
+                json!({ "name": aov.name, "format": format, "extent": extent.to_string(), "hash": hash })
+            })
+            .collect();
+        self.document.insert("aovs".into(), json!(entries));
+    }
+
+    /// Pass rows where frames were submitted pass by pass, and the frame's time.
+    pub fn times(&mut self, renderer: &Renderer, frames: &[FrameTime], profile: bool) {
+        let mut rows: Vec<Value> = renderer
+            .host_passes
+            .iter()
+            .map(|(name, ns)| json!({ "name": name, "where": "host, once", "ms": spread(&[milliseconds(*ns)]) }))
+            .collect();
+        let mut warnings = Vec::new();
+        for (index, pass) in renderer.passes().iter().enumerate() {
+            let walls: Vec<f64> =
+                frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(milliseconds).collect();
+            let stamps: Vec<f64> =
+                frames.iter().filter_map(|frame| frame.passes[index].timestamp_ns).map(milliseconds).collect();
+            let disagrees = |(wall, stamp): (&f64, &f64)| {
+                *wall >= JUDGED_FROM_MS && (wall - stamp).abs() > DISAGREEMENT * wall
+            };
+            if walls.iter().zip(&stamps).any(disagrees) {
+                warnings.push(format!("{}: timestamp and wall time differ by over 10 %", pass.name));
+            }
+            let mut row = json!({
+                "name": pass.name,
+                "bytes_read": pass.traffic.read_bytes,
+                "bytes_written": pass.traffic.written_bytes,
+                "invocations": pass.traffic.invocations,
+            });
+            if profile {
+                row["ms"] = spread(&walls);
+                row["timestamp_ms"] = spread(&stamps);
+            }
+            rows.push(row);
+        }
+        let totals: Vec<f64> = frames.iter().map(|frame| milliseconds(frame.wall_ns)).collect();
+        self.document.insert("passes".into(), json!(rows));
+        self.document.insert("total_ms".into(), spread(&totals));
+        // Without --profile the one frame also pays for what drivers compile at first use.
+        self.document.insert("warmup_frames".into(), json!(u32::from(profile)));
+        if !warnings.is_empty() {
+            self.document.insert("timing_warnings".into(), json!(warnings));
+        }
+    }
+
+    pub fn memory(&mut self, scene: &Plan, frame: &Plan, snapshot: &Snapshot) {
+        let shapes: BTreeMap<&str, Shape> = scene
+            .resources
+            .iter()
+            .chain(&frame.resources)
+            .map(|planned| (planned.name.as_str(), planned.shape))
+            .collect();
+        let resources: Vec<Value> = snapshot
+            .resources
+            .iter()
+            .map(|entry| {
+                let mut row = json!(entry);
+                if let Some(Shape::Image(ImageDescription { extent, format, .. })) = shapes.get(entry.name.as_str()) {
+                    row["format"] = json!(format!("{format:?}"));
+                    row["extent"] = json!(extent.to_string());
+                }
+                row
+            })
+            .collect();
+        self.document.insert(
+            "memory".into(),
+            json!({
+                "planned_bytes": scene.bytes() + frame.bytes(),
+                "allocated_bytes": snapshot.bound_bytes(),
+                "memory_block_bytes": snapshot.memory_block_bytes,
+                "peak_bytes": snapshot.peak_bytes,
+                "groups": snapshot.groups(),
+                "resources": resources,
+            }),
+        );
+    }
+
+    pub fn counters(&mut self, counters: &BTreeMap<&'static str, f64>) {
+        self.document.insert("counters".into(), json!(counters));
+    }
+
+    /// The whole document.
+    pub fn json(&self) -> Value {
+        Value::Object(self.document.clone())
+    }
+
+    /// What an EXR's header carries.
+    pub fn attributes(&self) -> Vec<(String, String)> {
+        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        [
+            ("quincunx.version", &self.document["quincunx"]["version"]),
+            ("quincunx.technique", &self.document["technique"]),
+            ("quincunx.scene", &self.document["scene"]["name"]),
+            ("quincunx.scene_hash", &self.document["scene"]["hash"]),
+            ("quincunx.settings", &self.document["settings"]),
+        ]
+        .map(|(name, value)| (name.to_owned(), text(value)))
+        .to_vec()
+    }
+
+    /// What a person reads.
+    pub fn text(&self) -> String {
+        let document = &self.document;
+        let string = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let mut text = String::new();
+        let mut line = |words: String| writeln!(text, "{words}").expect("writing to a string");
+        line(format!(
+            "{}  {} triangles, {} draws, {} lights, {} materials",
+            string(&document["scene"]["name"]),
+            document["scene"]["triangles"],
+            document["scene"]["draws"],
+            document["scene"]["lights"],
+            document["scene"]["materials"]
+        ));
+        for warning in document["scene"]["warnings"].as_array().into_iter().flatten() {
+            line(format!("  note: {}", string(warning)));
+        }
+        let device = &document["device"];
+        line(format!("{}  ({}, Vulkan {})", string(&device["name"]), string(&device["driver_info"]), string(&device["api"])));
+        for pass in document["passes"].as_array().into_iter().flatten() {
+            if let Some(ms) = pass["ms"]["median"].as_f64() {
+                let place = if pass["where"].is_string() { "  (host, once)" } else { "" };
+                line(format!("  {:<44} {ms:>10.3} ms{place}", string(&pass["name"])));
+            }
+        }
+        let software = if self.is_software { ", software driver" } else { "" };
+        let warm = if document["warmup_frames"] == 0 { ", first frame, shader compilation included" } else { "" };
+        let total = document["total_ms"]["median"].as_f64().unwrap_or_default();
+        line(format!("  {:<44} {total:>10.3} ms{software}{warm}", "frame"));
+        for warning in document.get("timing_warnings").and_then(Value::as_array).into_iter().flatten() {
+            line(format!("  note: {}", string(warning)));
+        }
+        let bytes = |key: &str| Bytes(document["memory"][key].as_u64().unwrap_or_default());
+        line(format!(
+            "memory: {} planned, {} allocated, {} in memory blocks",
+            bytes("planned_bytes"),
+            bytes("allocated_bytes"),
+            bytes("memory_block_bytes")
+        ));
+        line(format!("image hash {}", string(&document["image"]["hash"])));
+        line(format!("wrote {}", string(&document["image"]["path"])));
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_of_an_even_number_lies_between() {
+        let value = spread(&[4.0, 1.0, 3.0, 2.0]);
+        assert_eq!(value["median"], 2.5);
+        assert_eq!((&value["min"], &value["max"]), (&json!(1.0), &json!(4.0)));
+        assert_eq!(spread(&[]), Value::Null);
+    }
+}

@@ -1,0 +1,474 @@
+//! SceneGpu: the scene in device memory: two vertex streams, indices, draws, materials with their textures. Shaders see
+//! it through glsl/resident.glsl.
+//!
+//! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
+
+use crate::error::{Error, Result};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
+use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
+use crate::plan::{Plan, Resources, Shape};
+use crate::scene::{AlphaMode, ColorSpace, Scene, Texture, Wrap, mipmaps};
+use crate::units::Extent;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat3, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// glsl/resident.glsl's bits.
+const BASE_COLOR_TEXTURE: u32 = 1;
+const METALLIC_ROUGHNESS_TEXTURE: u32 = 2;
+const NORMAL_TEXTURE: u32 = 4;
+const EMISSIVE_TEXTURE: u32 = 8;
+const DOUBLE_SIDED: u32 = 16;
+
+/// Textures of a material, in the order of set 1's bindings.
+const TEXTURES_PER_MATERIAL: usize = 4;
+
+/// What a vertex carries beside its position.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub struct VertexAttributes {
+    pub normal: [f32; 3],
+    pub tangent: [f32; 4],
+    pub uv: [f32; 2],
+}
+
+/// One draw call.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawCall {
+    /// Index into `Scene::draws`, and of the draw's block.
+    pub draw: u32,
+    pub material: u32,
+    pub first_index: u32,
+    pub index_count: u32,
+    pub vertex_offset: i32,
+    pub alpha: AlphaMode,
+    pub double_sided: bool,
+    /// The transform mirrors: front faces are clockwise.
+    pub mirrored: bool,
+    /// Middle of its box, world space: what BLEND draws are sorted by.
+    pub center_ws: Vec3,
+}
+
+/// Sizes of the scene's resources: all that a plan needs to know of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SceneStats {
+    pub vertex_count: u64,
+    pub index_count: u64,
+    pub draw_count: u64,
+    pub material_count: u64,
+    /// Extent and format of each distinct image in its colour space.
+    pub textures: Vec<(Extent, vk::Format)>,
+    pub has_emissive: bool,
+    pub has_blend: bool,
+}
+
+fn format_of(color_space: ColorSpace) -> vk::Format {
+    match color_space {
+        ColorSpace::Srgb => vk::Format::R8G8B8A8_SRGB,
+        ColorSpace::Linear => vk::Format::R8G8B8A8_UNORM,
+    }
+}
+
+/// Distinct images in their colour spaces, in the order of their first texture.
+fn distinct_images(scene: &Scene) -> Vec<(usize, ColorSpace)> {
+    let mut distinct = Vec::new();
+    for texture in &scene.textures {
+        if !distinct.contains(&(texture.image, texture.color_space)) {
+            distinct.push((texture.image, texture.color_space));
+        }
+    }
+    distinct
+}
+
+impl SceneStats {
+    pub fn of(scene: &Scene) -> Self {
+        let drawn = || scene.draws.iter().map(|draw| &scene.materials[scene.meshes[draw.mesh].material]);
+        Self {
+            vertex_count: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
+            index_count: scene.meshes.iter().map(|mesh| mesh.indices.len() as u64).sum(),
+            draw_count: scene.draws.len() as u64,
+            material_count: scene.materials.len() as u64,
+            textures: distinct_images(scene)
+                .into_iter()
+                .map(|(image, color_space)| {
+                    let image = &scene.images[image];
+                    (Extent::new(image.width, image.height), format_of(color_space))
+                })
+                .collect(),
+            has_emissive: drawn().any(|material| material.is_emissive()),
+            has_blend: drawn().any(|material| material.alpha == AlphaMode::Blend),
+        }
+    }
+
+    /// The scene's resources.
+    pub fn plan(&self) -> Plan {
+        use vk::BufferUsageFlags as Flags;
+        let mut plan = Plan::default();
+        let geometry = |bytes: u64, flags: Flags| Shape::Buffer {
+            bytes: bytes.max(16),
+            flags: flags | Flags::TRANSFER_DST,
+            usage: crate::memory::kinds::Use::Device,
+        };
+        let attributes = size_of::<VertexAttributes>() as u64;
+        plan.push("scene.geometry", "scene.positions", geometry(12 * self.vertex_count, Flags::VERTEX_BUFFER));
+        plan.push("scene.geometry", "scene.attributes", geometry(attributes * self.vertex_count, Flags::VERTEX_BUFFER));
+        plan.push("scene.geometry", "scene.indices", geometry(4 * self.index_count, Flags::INDEX_BUFFER));
+        plan.buffer("scene.geometry", "scene.draws", self.draw_count * size_of::<DrawBlock>() as u64);
+        plan.buffer("scene.materials", "scene.materials", self.material_count * size_of::<MaterialBlock>() as u64);
+        for (index, (extent, format)) in self.textures.iter().enumerate() {
+            plan.push("scene.textures", format!("scene.textures.{index}"), texture_shape(*extent, *format));
+        }
+        let white = texture_shape(Extent::new(1, 1), vk::Format::R8G8B8A8_UNORM);
+        plan.push("scene.textures", "scene.textures.white", white);
+        plan
+    }
+}
+
+fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
+    Shape::Image(ImageDescription {
+        extent,
+        format,
+        level_count: mipmaps::level_count(extent.width, extent.height),
+        usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+    })
+}
+
+/// The scene in device memory.
+pub struct SceneGpu {
+    gpu: Arc<Gpu>,
+    pub positions: Buffer,
+    pub attributes: Buffer,
+    pub indices: Buffer,
+    pub draws: Buffer,
+    pub materials: Buffer,
+    /// Sorted so that state changes least; BLEND draws last.
+    pub calls: Vec<DrawCall>,
+    /// Layout of set 1: the four textures of a material.
+    pub material_layout: vk::DescriptorSetLayout,
+    /// Set 1 of each material.
+    pub material_sets: Vec<vk::DescriptorSet>,
+    material_pool: vk::DescriptorPool,
+    // Alive as long as the sets that name them.
+    _textures: Vec<Image>,
+    _samplers: Vec<Sampler>,
+}
+
+impl SceneGpu {
+    /// Uploads the scene.
+    ///
+    /// Errors: memory is too small or a limit is passed (exit code 4).
+    pub fn new(gpu: &Arc<Gpu>, scene: &Scene) -> Result<Self> {
+        let stats = SceneStats::of(scene);
+        let mut resources = Resources::make(gpu, &stats.plan())?;
+        let geometry = Geometry::of(scene);
+        let send = |buffer: &Buffer, bytes: &[u8], access| upload::buffer(gpu, buffer, bytes, access);
+        let positions = resources.buffer("scene.positions");
+        send(&positions, bytemuck::cast_slice(&geometry.positions), Access::VertexRead)?;
+        let attributes = resources.buffer("scene.attributes");
+        send(&attributes, bytemuck::cast_slice(&geometry.attributes), Access::VertexRead)?;
+        let indices = resources.buffer("scene.indices");
+        send(&indices, bytemuck::cast_slice(&geometry.indices), Access::VertexRead)?;
+        let draws = resources.buffer("scene.draws");
+        send(&draws, bytemuck::cast_slice(&draw_blocks(scene)), Access::GraphicsRead)?;
+        let materials = resources.buffer("scene.materials");
+        let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_block).collect();
+        send(&materials, bytemuck::cast_slice(&blocks), Access::GraphicsRead)?;
+        let textures = Textures::new(gpu, scene, &mut resources)?;
+        let mut calls = geometry.calls(scene);
+        sort(&mut calls);
+        let Textures { images, samplers, layout, pool, sets } = textures;
+        Ok(Self {
+            gpu: gpu.clone(),
+            positions,
+            attributes,
+            indices,
+            draws,
+            materials,
+            calls,
+            material_layout: layout,
+            material_sets: sets,
+            material_pool: pool,
+            _textures: images,
+            _samplers: samplers,
+        })
+    }
+}
+
+impl Drop for SceneGpu {
+    fn drop(&mut self) {
+        // SAFETY: renderers are dropped before the scene, after their fences.
+        unsafe {
+            self.gpu.device.destroy_descriptor_pool(self.material_pool, None);
+            self.gpu.device.destroy_descriptor_set_layout(self.material_layout, None);
+        }
+    }
+}
+
+/// State changes cost: opaque before masked before blended, then by side, winding and material.
+fn sort(calls: &mut [DrawCall]) {
+    calls.sort_by_key(|call| {
+        let alpha = match call.alpha {
+            AlphaMode::Opaque => 0,
+            AlphaMode::Mask { .. } => 1,
+            AlphaMode::Blend => 2,
+        };
+        (alpha, call.double_sided, call.mirrored, call.material, call.draw)
+    });
+}
+
+/// All meshes one after the other.
+struct Geometry {
+    positions: Vec<[f32; 3]>,
+    attributes: Vec<VertexAttributes>,
+    indices: Vec<u32>,
+    /// First vertex and first index of each mesh.
+    starts: Vec<(usize, usize)>,
+}
+
+impl Geometry {
+    fn of(scene: &Scene) -> Self {
+        let mut all = Self { positions: Vec::new(), attributes: Vec::new(), indices: Vec::new(), starts: Vec::new() };
+        for mesh in &scene.meshes {
+            all.starts.push((all.positions.len(), all.indices.len()));
+            for vertex in 0..mesh.positions.len() {
+                all.positions.push(mesh.positions[vertex].to_array());
+                all.attributes.push(VertexAttributes {
+                    normal: mesh.normals[vertex].to_array(),
+                    tangent: mesh.tangents.get(vertex).map_or([0.0; 4], |tangent| tangent.to_array()),
+                    uv: mesh.uvs.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
+                });
+            }
+            all.indices.extend_from_slice(&mesh.indices);
+        }
+        all
+    }
+
+    fn calls(&self, scene: &Scene) -> Vec<DrawCall> {
+        let boxes: Vec<_> = scene
+            .meshes
+            .iter()
+            .map(|mesh| {
+                let mut bounds = crate::scene::Bounds::EMPTY;
+                mesh.positions.iter().for_each(|position| bounds.include(*position));
+                bounds
+            })
+            .collect();
+        let call = |(index, draw): (usize, &crate::scene::Draw)| {
+            let mesh = &scene.meshes[draw.mesh];
+            let material = &scene.materials[mesh.material];
+            let (first_vertex, first_index) = self.starts[draw.mesh];
+            DrawCall {
+                draw: index as u32,
+                material: mesh.material as u32,
+                first_index: first_index as u32,
+                index_count: mesh.indices.len() as u32,
+                vertex_offset: first_vertex as i32,
+                alpha: material.alpha,
+                double_sided: material.double_sided,
+                mirrored: draw.world_from_object.determinant() < 0.0,
+                center_ws: draw.world_from_object.transform_point3(boxes[draw.mesh].center()),
+            }
+        };
+        scene.draws.iter().enumerate().map(call).collect()
+    }
+}
+
+fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
+    scene
+        .draws
+        .iter()
+        .map(|draw| {
+            // The inverse transpose up to a positive factor, which normalising takes out again.
+            let linear = Mat3::from_mat4(draw.world_from_object);
+            let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+            let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+            let column = |v: Vec3| (sign * v).extend(0.0).to_array();
+            DrawBlock {
+                world_from_object: draw.world_from_object.to_cols_array_2d(),
+                normal_x: column(y.cross(z)),
+                normal_y: column(z.cross(x)),
+                normal_z: column(x.cross(y)),
+                material: scene.meshes[draw.mesh].material as u32,
+                ..DrawBlock::zeroed()
+            }
+        })
+        .collect()
+}
+
+fn material_block(material: &crate::scene::Material) -> MaterialBlock {
+    let bit = |present: bool, bit: u32| if present { bit } else { 0 };
+    MaterialBlock {
+        base_color: material.base_color.to_array(),
+        emissive: material.emissive.extend(material.normal_scale).to_array(),
+        metallic: material.metallic,
+        roughness: material.roughness,
+        alpha_cutoff: match material.alpha {
+            AlphaMode::Mask { cutoff } => cutoff,
+            AlphaMode::Opaque | AlphaMode::Blend => 0.0,
+        },
+        flags: bit(material.base_color_texture.is_some(), BASE_COLOR_TEXTURE)
+            | bit(material.metallic_roughness_texture.is_some(), METALLIC_ROUGHNESS_TEXTURE)
+            | bit(material.normal_texture.is_some(), NORMAL_TEXTURE)
+            | bit(material.emissive_texture.is_some(), EMISSIVE_TEXTURE)
+            | bit(material.double_sided, DOUBLE_SIDED),
+    }
+}
+
+/// Images, samplers, and a set of four for each material.
+struct Textures {
+    images: Vec<Image>,
+    samplers: Vec<Sampler>,
+    layout: vk::DescriptorSetLayout,
+    pool: vk::DescriptorPool,
+    sets: Vec<vk::DescriptorSet>,
+}
+
+impl Textures {
+    fn new(gpu: &Arc<Gpu>, scene: &Scene, resources: &mut Resources) -> Result<Self> {
+        let distinct = distinct_images(scene);
+        let mut images = Vec::with_capacity(distinct.len() + 1);
+        for (index, (image, color_space)) in distinct.iter().enumerate() {
+            let target = resources.image(&format!("scene.textures.{index}"));
+            let levels = mipmaps::levels(&scene.images[*image], *color_space);
+            upload::image(gpu, &target, &levels, Access::FragmentSample)?;
+            images.push(target);
+        }
+        let white = resources.image("scene.textures.white");
+        upload::image(gpu, &white, &[255; 4], Access::FragmentSample)?;
+        images.push(white);
+        let mut samplers = Vec::new();
+        let mut sampler_of = BTreeMap::new();
+        for texture in &scene.textures {
+            let info = sampler_info(gpu, texture);
+            let key = format!("{:?}", texture.sampler);
+            if !sampler_of.contains_key(&key) {
+                sampler_of.insert(key, samplers.len());
+                samplers.push(Sampler::new(gpu, &info)?);
+            }
+        }
+        if samplers.is_empty() {
+            samplers.push(Sampler::clamped(gpu, vk::Filter::NEAREST)?);
+        }
+        let white_index = images.len() - 1;
+        let view_of = |texture: Option<usize>| match texture {
+            None => (images[white_index].view, samplers[0].handle),
+            Some(index) => {
+                let texture = &scene.textures[index];
+                let image = distinct.iter().position(|entry| *entry == (texture.image, texture.color_space));
+                let sampler = sampler_of[&format!("{:?}", texture.sampler)];
+                (images[image.expect("`distinct_images` lists it")].view, samplers[sampler].handle)
+            }
+        };
+        let infos: Vec<[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]> = scene
+            .materials
+            .iter()
+            .map(|material| {
+                [
+                    material.base_color_texture,
+                    material.metallic_roughness_texture,
+                    material.normal_texture,
+                    material.emissive_texture,
+                ]
+                .map(|texture| {
+                    let (view, sampler) = view_of(texture);
+                    let layout = Access::FragmentSample.layout();
+                    vk::DescriptorImageInfo::default().image_view(view).sampler(sampler).image_layout(layout)
+                })
+            })
+            .collect();
+        let (layout, pool, sets) = material_sets(gpu, &infos)?;
+        Ok(Self { images, samplers, layout, pool, sets })
+    }
+}
+
+fn sampler_info(gpu: &Gpu, texture: &Texture) -> vk::SamplerCreateInfo<'static> {
+    let filter = |linear| if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
+    let wrap = |wrap| match wrap {
+        Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
+        Wrap::MirroredRepeat => vk::SamplerAddressMode::MIRRORED_REPEAT,
+        Wrap::ClampToEdge => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    };
+    let sampler = &texture.sampler;
+    // Anisotropy is left out on purpose: software drivers take several times as long for it, and pictures of different
+    // drivers would differ by more than their rounding.
+    let _ = gpu;
+    vk::SamplerCreateInfo::default()
+        .mag_filter(filter(sampler.mag_linear))
+        .min_filter(filter(sampler.min_linear))
+        .mipmap_mode(match sampler.mip_linear {
+            Some(true) => vk::SamplerMipmapMode::LINEAR,
+            Some(false) | None => vk::SamplerMipmapMode::NEAREST,
+        })
+        .address_mode_u(wrap(sampler.wrap_u))
+        .address_mode_v(wrap(sampler.wrap_v))
+        .address_mode_w(vk::SamplerAddressMode::REPEAT)
+        // glTF's NEAREST and LINEAR without a level: only the finest one.
+        .max_lod(if sampler.mip_linear.is_some() { vk::LOD_CLAMP_NONE } else { 0.25 })
+}
+
+type MaterialSets = (vk::DescriptorSetLayout, vk::DescriptorPool, Vec<vk::DescriptorSet>);
+
+fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]]) -> Result<MaterialSets> {
+    let kind = vk::DescriptorType::COMBINED_IMAGE_SAMPLER;
+    let bindings: Vec<_> = (0..TEXTURES_PER_MATERIAL as u32)
+        .map(|binding| {
+            vk::DescriptorSetLayoutBinding::default()
+                .binding(binding)
+                .descriptor_type(kind)
+                .descriptor_count(1)
+                .stage_flags(vk::ShaderStageFlags::FRAGMENT)
+        })
+        .collect();
+    let fail = |result| Error::device(format!("making the descriptor sets of {} materials: {result}", infos.len()));
+    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+    // SAFETY: a live device; the bindings outlive the call.
+    let layout = unsafe { gpu.device.create_descriptor_set_layout(&info, None) }.map_err(fail)?;
+    let count = infos.len().max(1) as u32;
+    let sizes = [vk::DescriptorPoolSize { ty: kind, descriptor_count: count * TEXTURES_PER_MATERIAL as u32 }];
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
+    // SAFETY: a live device.
+    let pool = match unsafe { gpu.device.create_descriptor_pool(&info, None) } {
+        Ok(pool) => pool,
+        Err(result) => {
+            // SAFETY: never used.
+            unsafe { gpu.device.destroy_descriptor_set_layout(layout, None) };
+            return Err(fail(result));
+        }
+    };
+    let layouts = vec![layout; infos.len()];
+    if infos.is_empty() {
+        return Ok((layout, pool, Vec::new()));
+    }
+    let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+    // SAFETY: pool and layout are alive and the pool holds as many sets.
+    let sets = match unsafe { gpu.device.allocate_descriptor_sets(&info) } {
+        Ok(sets) => sets,
+        Err(result) => {
+            // SAFETY: never used.
+            unsafe {
+                gpu.device.destroy_descriptor_pool(pool, None);
+                gpu.device.destroy_descriptor_set_layout(layout, None);
+            }
+            return Err(fail(result));
+        }
+    };
+    let writes: Vec<_> = sets
+        .iter()
+        .zip(infos)
+        .flat_map(|(set, images)| {
+            images.chunks(1).enumerate().map(move |(binding, image)| {
+                vk::WriteDescriptorSet::default()
+                    .dst_set(*set)
+                    .dst_binding(binding as u32)
+                    .descriptor_type(kind)
+                    .image_info(image)
+            })
+        })
+        .collect();
+    // SAFETY: the sets are fresh; views and samplers live as long as the sets.
+    unsafe { gpu.device.update_descriptor_sets(&writes, &[]) };
+    Ok((layout, pool, sets))
+}

@@ -1,0 +1,140 @@
+//! Session: the device with the scene in its memory. It makes any number of renderers; A B A B timing holds two.
+
+use crate::bvh::LazyBvh;
+use crate::error::{Error, Result};
+use crate::frame::View;
+use crate::gpu::commands::{FrameTime, Recorded, RecordedPass, Submits};
+use crate::gpu::readback;
+use crate::gpu::shader::structs::FrameBlock;
+use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
+use crate::lights::LightSet;
+use crate::plan::{Plan, Resources};
+use crate::report::image_file::Aov;
+use crate::report::picture::Picture;
+use crate::resident::{SceneGpu, SceneStats};
+use crate::scene::Scene;
+use crate::settings::Values;
+use crate::techniques::{Frame, Inputs, Technique};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A device and a scene.
+pub struct Session {
+    pub gpu: Arc<Gpu>,
+    pub scene: Scene,
+    pub stats: SceneStats,
+    scene_gpu: Arc<SceneGpu>,
+    bvh: LazyBvh,
+}
+
+/// One technique with its settings, ready to make frames.
+pub struct Renderer {
+    // Dropped in this order: commands, what they use, the scene.
+    recorded: Recorded,
+    frame: Box<dyn Frame>,
+    _block: Buffer,
+    _scene: Arc<SceneGpu>,
+    gpu: Arc<Gpu>,
+    pub view: View,
+    pub lights: LightSet,
+    pub host_passes: Vec<(String, u64)>,
+    pub counters: BTreeMap<&'static str, f64>,
+    pub resolved: BTreeMap<&'static str, String>,
+    /// Of the frame; the scene's own plan is `SceneStats::plan`.
+    pub plan: Plan,
+}
+
+impl Session {
+    /// Opens the device and uploads the scene.
+    ///
+    /// Errors: no fitting device (exit code 3); memory (4); a scene without a triangle (2).
+    pub fn open(request: &DeviceRequest, scene: Scene) -> Result<Self> {
+        if scene.draws.is_empty() {
+            return Err(Error::request(format!("{}: there is no triangle to draw", scene.name)));
+        }
+        let gpu = Gpu::open(request)?;
+        let stats = SceneStats::of(&scene);
+        let scene_gpu = Arc::new(SceneGpu::new(&gpu, &scene)?);
+        Ok(Self { gpu, scene, stats, scene_gpu, bvh: LazyBvh::default() })
+    }
+
+    /// Makes a technique real for these settings, and records its frame.
+    ///
+    /// Errors: impossible settings (exit code 2); memory (4).
+    pub fn renderer(&self, technique: &dyn Technique, values: &Values, submits: Submits) -> Result<Renderer> {
+        let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
+        let lights = LightSet::new(&self.scene, &view, values)?;
+        let inputs = Inputs {
+            scene: &self.scene,
+            stats: &self.stats,
+            bvh: &self.bvh,
+            view: &view,
+            lights: &lights,
+            values,
+        };
+        let prepared = technique.prepare(&inputs)?;
+        let mut plan = prepared.plan().clone();
+        let block_name = format!("{}.frame", technique.name());
+        plan.host_buffer("frame", &block_name, size_of::<FrameBlock>() as u64);
+        let mut resources = Resources::make(&self.gpu, &plan)?;
+        let [light_count, vpl_count] = prepared.light_counts();
+        let background = values.color("background");
+        let numbers = view.block(&self.scene.bounds(), background, lights.ambient, light_count, vpl_count);
+        let mut block = resources.buffer(&block_name);
+        block.mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
+        let (host_passes, counters, resolved) = (prepared.host_passes(), prepared.counters(), prepared.resolved());
+        let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
+        let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
+        frame.record(&mut cmd, &self.scene_gpu, &block)?;
+        Ok(Renderer {
+            recorded: cmd.finish()?,
+            frame,
+            _block: block,
+            _scene: self.scene_gpu.clone(),
+            gpu: self.gpu.clone(),
+            view,
+            lights,
+            host_passes,
+            counters,
+            resolved,
+            plan,
+        })
+    }
+}
+
+impl Renderer {
+    /// Makes one frame and waits for it.
+    ///
+    /// Errors: the device fails (exit code 4).
+    pub fn frame(&self) -> Result<FrameTime> {
+        self.recorded.run()
+    }
+
+    /// The passes of a frame, in order.
+    pub fn passes(&self) -> &[RecordedPass] {
+        self.recorded.passes()
+    }
+
+    /// The last frame's picture.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn picture(&self) -> Result<Picture> {
+        let (image, last) = self.frame.picture();
+        let bytes = readback::image(&self.gpu, image, last)?;
+        let pixels = bytes
+            .chunks_exact(16)
+            .map(|texel| {
+                let channel = |at: usize| f32::from_le_bytes([texel[at], texel[at + 1], texel[at + 2], texel[at + 3]]);
+                [channel(0), channel(4), channel(8)]
+            })
+            .collect();
+        Ok(Picture { extent: image.description.extent, pixels })
+    }
+
+    /// One of the last frame's intermediate results.
+    ///
+    /// Errors: the settings leave its pass out (exit code 2).
+    pub fn aov(&self, name: &str) -> Result<Aov> {
+        self.frame.aov(&self.gpu, name)
+    }
+}

@@ -1,0 +1,397 @@
+//! Every number that a technique reads, as one table: command line, help, sweeps and reports are made from it.
+//!
+//! A setting's key is its flag without the two leading dashes. A value is kept as the text that would repeat it, checked
+//! when it is set, so that what `Values` holds is possible.
+
+use crate::error::{Error, Result};
+use crate::units::Extent;
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// What a value may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    Integer { min: u64, max: u64 },
+    Number { min: f64, max: f64 },
+    Choice(&'static [&'static str]),
+    /// `NxM`, both in the range.
+    Pair { min: u32, max: u32 },
+    /// Metres, or a part of the scene's diagonal as `2%`.
+    Length,
+    /// Three numbers `R,G,B` of at least 0, or one for all three.
+    Color,
+    /// Free text, checked where it is used; the word shown in help.
+    Text(&'static str),
+}
+
+/// One row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    pub key: &'static str,
+    /// The paper's letter for it, or nothing.
+    pub symbol: &'static str,
+    pub kind: Kind,
+    pub default: &'static str,
+    /// px, m, EV; nothing where it counts or chooses.
+    pub unit: &'static str,
+    /// Where it comes from, or nothing.
+    pub paper: &'static str,
+    pub help: &'static str,
+}
+
+/// Settings that every technique and every picture has.
+pub const COMMON: &[Setting] = &[
+    Setting {
+        key: "size",
+        symbol: "",
+        kind: Kind::Pair { min: 1, max: 16384 },
+        default: "1280x720",
+        unit: "px",
+        paper: "",
+        help: "width and height of the picture",
+    },
+    Setting {
+        key: "camera",
+        symbol: "",
+        kind: Kind::Text("INDEX|NAME"),
+        default: "0",
+        unit: "",
+        paper: "",
+        help: "the scene's camera; a scene without one gets one that frames it",
+    },
+    Setting {
+        key: "seed",
+        symbol: "",
+        kind: Kind::Integer { min: 0, max: u32::MAX as u64 },
+        default: "1",
+        unit: "",
+        paper: "",
+        help: "seeds everything that is scattered or sampled",
+    },
+    Setting {
+        key: "lights",
+        symbol: "",
+        kind: Kind::Text("N[:SEED]"),
+        default: "0",
+        unit: "",
+        paper: "",
+        help: "scatter N point lights in the scene's bounds, beside its own",
+    },
+    Setting {
+        key: "exposure",
+        symbol: "",
+        kind: Kind::Number { min: -32.0, max: 32.0 },
+        default: "0",
+        unit: "EV",
+        paper: "",
+        help: "of PNGs: at 0, white diffuse under radiance 1 is 1.0",
+    },
+    Setting {
+        key: "tonemap",
+        symbol: "",
+        kind: Kind::Choice(&["clip", "reinhard", "aces"]),
+        default: "clip",
+        unit: "",
+        paper: "",
+        help: "of PNGs",
+    },
+    Setting {
+        key: "exr",
+        symbol: "",
+        kind: Kind::Choice(&["float", "half"]),
+        default: "float",
+        unit: "",
+        paper: "",
+        help: "precision of EXR files",
+    },
+    Setting {
+        key: "background",
+        symbol: "",
+        kind: Kind::Color,
+        default: "0",
+        unit: "",
+        paper: "",
+        help: "radiance where no surface is",
+    },
+    Setting {
+        key: "ambient",
+        symbol: "",
+        kind: Kind::Text("R,G,B|auto"),
+        default: "auto",
+        unit: "",
+        paper: "",
+        help: "radiance from everywhere; auto: 0 where the scene has lights, 0.3 with the default rig",
+    },
+    Setting {
+        key: "rig",
+        symbol: "",
+        kind: Kind::Choice(&["default", "none"]),
+        default: "default",
+        unit: "",
+        paper: "",
+        help: "light for a scene that has none: a key of 3 lux from the camera's upper left and an ambient of 0.3",
+    },
+    Setting {
+        key: "sun",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "",
+        help: "directional lights",
+    },
+    Setting {
+        key: "light-cutoff",
+        symbol: "",
+        kind: Kind::Number { min: 0.0, max: 1e6 },
+        default: "0.002",
+        unit: "lux",
+        paper: "",
+        help: "a punctual light without range ends where it gives this irradiance; 0: never",
+    },
+    Setting {
+        key: "allocation",
+        symbol: "",
+        kind: Kind::Choice(&["linear", "dedicated"]),
+        default: "linear",
+        unit: "",
+        paper: "",
+        help: "how resources come by their memory: ranges in shared memory blocks, or a memory block each",
+    },
+];
+
+/// Settings of shading with a G-buffer, which several techniques read.
+pub const SHADING: &[Setting] = &[
+    Setting {
+        key: "brdf",
+        symbol: "",
+        kind: Kind::Choice(&["lambert", "blinn-phong", "ggx"]),
+        default: "ggx",
+        unit: "",
+        paper: "",
+        help: "of direct light",
+    },
+    Setting {
+        key: "position",
+        symbol: "",
+        kind: Kind::Choice(&["half", "unorm16", "depth", "float"]),
+        default: "unorm16",
+        unit: "",
+        paper: "Segovia 2006, 4.1",
+        help: "how the G-buffer holds positions: half floats (the paper's), 16-bit fractions of the scene's box, the depth \
+               buffer, or 32-bit floats (the oracle)",
+    },
+    Setting {
+        key: "cull",
+        symbol: "",
+        kind: Kind::Choice(&["none", "tiled"]),
+        default: "none",
+        unit: "",
+        paper: "",
+        help: "of direct light: every light on every pixel, or a list of lights for each tile of 16x16; the same picture",
+    },
+    Setting {
+        key: "direct-shadow",
+        symbol: "",
+        kind: Kind::Choice(&["none", "sun", "ray"]),
+        default: "sun",
+        unit: "",
+        paper: "",
+        help: "shadow rays to no light, to directional lights, or to every punctual light",
+    },
+    Setting {
+        key: "workgroup",
+        symbol: "",
+        kind: Kind::Pair { min: 1, max: 256 },
+        default: "64x1",
+        unit: "",
+        paper: "",
+        help: "shape of compute workgroups",
+    },
+];
+
+impl Setting {
+    /// The range or the choices, for help and errors.
+    pub fn range(&self) -> String {
+        match self.kind {
+            Kind::Integer { min, max } => format!("{min} to {max}"),
+            Kind::Number { min, max } => format!("{min} to {max}"),
+            Kind::Choice(choices) => choices.join("|"),
+            Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
+            Kind::Length => "metres, or P% of the scene's diagonal".to_owned(),
+            Kind::Color => "R,G,B or one number, each at least 0".to_owned(),
+            Kind::Text(word) => word.to_owned(),
+        }
+    }
+
+    /// Checks a value.
+    ///
+    /// Errors: it is out of range or cannot be read (exit code 2).
+    fn check(&self, text: &str) -> Result<()> {
+        let possible = match self.kind {
+            Kind::Integer { min, max } => text.parse::<u64>().is_ok_and(|value| (min..=max).contains(&value)),
+            Kind::Number { min, max } => {
+                text.parse::<f64>().is_ok_and(|value| value.is_finite() && (min..=max).contains(&value))
+            }
+            Kind::Choice(choices) => choices.contains(&text),
+            Kind::Pair { min, max } => {
+                parse_pair(text).is_some_and(|pair| pair.iter().all(|side| (min..=max).contains(side)))
+            }
+            Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
+            Kind::Color => parse_color(text).is_some(),
+            Kind::Text(_) => true,
+        };
+        if possible {
+            return Ok(());
+        }
+        let paper = if self.paper.is_empty() { String::new() } else { format!(" ({})", self.paper) };
+        Err(Error::request(format!("--{} {text}: it must be {}{paper}", self.key, self.range()))
+            .note(format!("the default is --{} {}", self.key, self.default)))
+    }
+}
+
+fn parse_pair(text: &str) -> Option<[u32; 2]> {
+    let (first, second) = text.split_once('x')?;
+    Some([first.parse().ok()?, second.parse().ok()?])
+}
+
+fn parse_length(text: &str, diagonal: f64) -> Option<f64> {
+    let value = match text.strip_suffix('%') {
+        Some(percent) => percent.parse::<f64>().ok()? / 100.0 * diagonal,
+        None => text.parse().ok()?,
+    };
+    value.is_finite().then_some(value)
+}
+
+/// Three numbers, or one for all three, each finite and at least 0.
+pub fn parse_color(text: &str) -> Option<Vec3> {
+    let numbers: Vec<f32> = text.split(',').map(|part| part.parse().ok()).collect::<Option<_>>()?;
+    let color = match numbers[..] {
+        [all] => Vec3::splat(all),
+        [r, g, b] => Vec3::new(r, g, b),
+        _ => return None,
+    };
+    (color.is_finite() && color.cmpge(Vec3::ZERO).all()).then_some(color)
+}
+
+/// Checked values of some settings, by key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    entries: BTreeMap<&'static str, String>,
+}
+
+impl Values {
+    /// Every setting at its default.
+    pub fn defaults(settings: &[Setting]) -> Self {
+        Self { entries: settings.iter().map(|setting| (setting.key, setting.default.to_owned())).collect() }
+    }
+
+    /// Changes one value.
+    ///
+    /// Errors: the value is impossible (exit code 2).
+    pub fn set(&mut self, setting: &Setting, text: &str) -> Result<()> {
+        setting.check(text)?;
+        self.entries.insert(setting.key, text.to_owned());
+        Ok(())
+    }
+
+    /// In order of their keys.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.entries.iter().map(|(key, value)| (*key, value.as_str()))
+    }
+
+    /// The text of a setting that the table has. Asking for another key is a programmer's mistake.
+    pub fn text(&self, key: &str) -> &str {
+        self.entries.get(key).unwrap_or_else(|| panic!("no setting is called {key}"))
+    }
+
+    fn parsed<T>(&self, key: &str, parse: impl FnOnce(&str) -> Option<T>) -> T {
+        let text = self.text(key);
+        parse(text).unwrap_or_else(|| panic!("--{key} {text} was checked and cannot be read"))
+    }
+
+    pub fn integer(&self, key: &str) -> u64 {
+        self.parsed(key, |text| text.parse().ok())
+    }
+
+    pub fn number(&self, key: &str) -> f64 {
+        self.parsed(key, |text| text.parse().ok())
+    }
+
+    pub fn pair(&self, key: &str) -> [u32; 2] {
+        self.parsed(key, parse_pair)
+    }
+
+    pub fn extent(&self, key: &str) -> Extent {
+        let [width, height] = self.pair(key);
+        Extent::new(width, height)
+    }
+
+    /// Metres, in a scene with this diagonal.
+    pub fn length(&self, key: &str, diagonal: f32) -> f32 {
+        self.parsed(key, |text| parse_length(text, f64::from(diagonal))) as f32
+    }
+
+    pub fn color(&self, key: &str) -> Vec3 {
+        self.parsed(key, parse_color)
+    }
+
+    pub fn is_on(&self, key: &str) -> bool {
+        self.text(key) == "on"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn setting(kind: Kind) -> Setting {
+        Setting { key: "pattern", symbol: "n x m", kind, default: "4x4", unit: "px", paper: "Segovia 2006, 3", help: "" }
+    }
+
+    #[test]
+    fn a_value_out_of_range_says_the_range_the_paper_and_the_default() {
+        let pattern = setting(Kind::Pair { min: 1, max: 64 });
+        let mut values = Values::defaults(&[pattern]);
+        let error = values.set(&pattern, "0x6").unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let text = error.to_string();
+        assert!(text.contains("--pattern 0x6: it must be NxM, both 1 to 64 (Segovia 2006, 3)"), "{text}");
+        assert!(text.contains("4x4"), "{text}");
+        assert_eq!(values.pair("pattern"), [4, 4]);
+        values.set(&pattern, "3x2").unwrap();
+        assert_eq!(values.pair("pattern"), [3, 2]);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_refused() {
+        for (kind, wrong) in [
+            (Kind::Pair { min: 1, max: 9 }, &["", "x", "3", "3x", "-1x2", "3x2x1", "99999999999x1"][..]),
+            (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
+            (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
+            (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
+            (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),
+            (Kind::Color, &["", "1,2", "1,2,3,4", "-1", "nan"]),
+        ] {
+            for text in wrong {
+                assert!(setting(kind).check(text).is_err(), "{kind:?} took {text:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_length_is_metres_or_a_part_of_the_diagonal() {
+        let clamp = Setting { key: "vpl-clamp", default: "2%", ..setting(Kind::Length) };
+        let mut values = Values::defaults(&[clamp]);
+        assert!((values.length("vpl-clamp", 50.0) - 1.0).abs() < 1e-6);
+        values.set(&clamp, "0.25").unwrap();
+        assert!((values.length("vpl-clamp", 50.0) - 0.25).abs() < 1e-6);
+    }
+
+    #[test]
+    fn every_default_of_the_table_is_possible() {
+        for setting in COMMON.iter().chain(SHADING) {
+            setting.check(setting.default).unwrap();
+        }
+    }
+}

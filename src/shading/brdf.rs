@@ -1,0 +1,114 @@
+//! Lambert, Blinn-Phong and GGX on the host: the twin of glsl/shading/brdf.glsl.
+
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Which BRDF direct light uses (`--brdf`); the number is the shader's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Brdf {
+    Lambert = 0,
+    BlinnPhong = 1,
+    Ggx = 2,
+}
+
+impl Brdf {
+    /// The value of `--brdf`.
+    pub fn from_setting(text: &str) -> Self {
+        match text {
+            "lambert" => Self::Lambert,
+            "blinn-phong" => Self::BlinnPhong,
+            "ggx" => Self::Ggx,
+            other => panic!("--brdf {other} was checked"),
+        }
+    }
+}
+
+/// A surface as light sees it; colours linear, 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    pub base_color: Vec3,
+    pub metallic: f32,
+    pub roughness: f32,
+}
+
+impl Surface {
+    /// Base colour of the part that scatters diffusely.
+    pub fn albedo(&self) -> Vec3 {
+        self.base_color * (1.0 - self.metallic)
+    }
+}
+
+/// The BRDF in 1/sr, without the cosine; all vectors unit length.
+pub fn evaluate(kind: Brdf, surface: &Surface, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+    let diffuse = surface.albedo() / PI;
+    if kind == Brdf::Lambert {
+        return diffuse;
+    }
+    let half_vector = (to_light + to_eye).normalize();
+    let n_dot_h = normal.dot(half_vector).clamp(0.0, 1.0);
+    let v_dot_h = to_eye.dot(half_vector).clamp(0.0, 1.0);
+    let n_dot_l = normal.dot(to_light).clamp(0.0, 1.0);
+    let n_dot_v = normal.dot(to_eye).max(1e-4);
+    let alpha = (surface.roughness * surface.roughness).max(1e-3);
+    let alpha_squared = alpha * alpha;
+    let f0 = Vec3::splat(0.04).lerp(surface.base_color, surface.metallic);
+    let fresnel = f0 + (Vec3::ONE - f0) * (1.0 - v_dot_h).powi(5);
+    let specular = if kind == Brdf::BlinnPhong {
+        let exponent = (2.0 / alpha_squared - 2.0).max(1.0);
+        (exponent + 2.0) / (8.0 * PI) * n_dot_h.max(1e-6).powf(exponent)
+    } else {
+        let denominator = n_dot_h * n_dot_h * (alpha_squared - 1.0) + 1.0;
+        let distribution = alpha_squared / (PI * denominator * denominator);
+        let masking = n_dot_l * (n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared).sqrt();
+        let shadowing = n_dot_v * (n_dot_l * n_dot_l * (1.0 - alpha_squared) + alpha_squared).sqrt();
+        distribution * 0.5 / (masking + shadowing).max(1e-6)
+    };
+    (Vec3::ONE - fresnel) * diffuse + fresnel * specular
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Part of the light from one direction that leaves in all directions, by a midpoint rule over the hemisphere.
+    fn reflected(kind: Brdf, surface: &Surface, incidence: f32) -> f32 {
+        let to_light = Vec3::new(incidence.sin(), incidence.cos(), 0.0);
+        let (steps, mut sum) = (200, 0.0);
+        for i in 0..steps {
+            // Equal steps of cos^2: each direction stands for the same projected solid angle.
+            let cosine = ((i as f32 + 0.5) / steps as f32).sqrt();
+            let sine = (1.0 - cosine * cosine).sqrt();
+            for j in 0..2 * steps {
+                let azimuth = PI * (j as f32 + 0.5) / steps as f32;
+                let to_eye = Vec3::new(sine * azimuth.cos(), cosine, sine * azimuth.sin());
+                sum += evaluate(kind, surface, Vec3::Y, to_light, to_eye).x;
+            }
+        }
+        sum * PI / (2 * steps * steps) as f32
+    }
+
+    #[test]
+    fn no_brdf_makes_light_and_a_white_lambert_surface_loses_none() {
+        for roughness in [0.3, 0.6, 1.0] {
+            for metallic in [0.0, 1.0] {
+                let surface = Surface { base_color: Vec3::ONE, metallic, roughness };
+                for incidence in [0.0, 0.7, 1.2] {
+                    let ggx = reflected(Brdf::Ggx, &surface, incidence);
+                    assert!(ggx > 0.3 && ggx < 1.02, "roughness {roughness}, metallic {metallic}: {ggx}");
+                }
+            }
+        }
+        let white = Surface { base_color: Vec3::ONE, metallic: 0.0, roughness: 1.0 };
+        assert!((reflected(Brdf::Lambert, &white, 0.9) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn ggx_is_reciprocal() {
+        let surface = Surface { base_color: Vec3::new(0.9, 0.5, 0.2), metallic: 0.4, roughness: 0.5 };
+        let a = Vec3::new(0.3, 0.8, 0.1).normalize();
+        let b = Vec3::new(-0.5, 0.4, 0.6).normalize();
+        let there = evaluate(Brdf::Ggx, &surface, Vec3::Y, a, b);
+        let back = evaluate(Brdf::Ggx, &surface, Vec3::Y, b, a);
+        assert!((there - back).abs().max_element() < 1e-5);
+    }
+}

@@ -1,0 +1,138 @@
+//! Punctual and virtual point lights on the host: the twin of glsl/shading/light.glsl.
+
+use crate::gpu::shader::structs::{LightBlock, VplBlock};
+use crate::scene::{Light, LightKind};
+use bytemuck::Zeroable;
+use glam::{Vec3, Vec4};
+
+/// glsl/shading/light.glsl's kinds.
+const DIRECTIONAL: u32 = 0;
+const POINT: u32 = 1;
+const SPOT: u32 = 2;
+
+/// 1/d^2 of a punctual light ends at a millimetre: a surface inside a lamp stays finite.
+const LEAST_DISTANCE_SQUARED: f32 = 1e-6;
+
+/// A light as shaders read it. `cutoff_lux`: a light without range ends where it gives this irradiance; 0: never.
+pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
+    let range = match (light.kind, light.range) {
+        (LightKind::Directional, _) => 0.0,
+        (_, Some(range)) => range,
+        (_, None) if cutoff_lux > 0.0 => (light.intensity.max_element() / cutoff_lux).sqrt(),
+        (_, None) => 0.0,
+    };
+    let mut block = LightBlock {
+        position_ws: light.position.extend(if range > 0.0 { 1.0 / (range * range) } else { 0.0 }).to_array(),
+        intensity: light.intensity.extend(range).to_array(),
+        direction_ws: light.direction.extend(0.0).to_array(),
+        ..LightBlock::zeroed()
+    };
+    match light.kind {
+        LightKind::Directional => block.kind = DIRECTIONAL,
+        LightKind::Point => block.kind = POINT,
+        LightKind::Spot { inner_angle, outer_angle } => {
+            // KHR_lights_punctual's own suggestion for the cone's edge.
+            block.kind = SPOT;
+            block.spot_scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
+            block.spot_offset = -outer_angle.cos() * block.spot_scale;
+        }
+    }
+    block
+}
+
+/// Direction to the light, its distance, and the irradiance that it gives a surface that faces it.
+pub fn incident_from(light: &LightBlock, position_ws: Vec3) -> (Vec3, f32, Vec3) {
+    let intensity = Vec4::from_array(light.intensity).truncate();
+    let direction = Vec4::from_array(light.direction_ws).truncate();
+    if light.kind == DIRECTIONAL {
+        return (-direction, 1e30, intensity);
+    }
+    let to_light = Vec4::from_array(light.position_ws).truncate() - position_ws;
+    let distance_squared = to_light.length_squared();
+    let distance = distance_squared.sqrt();
+    let towards = to_light / distance.max(1e-12);
+    let fraction_squared = distance_squared * light.position_ws[3];
+    let window = (1.0 - fraction_squared * fraction_squared).clamp(0.0, 1.0);
+    let mut attenuation = window / distance_squared.max(LEAST_DISTANCE_SQUARED);
+    if light.kind == SPOT {
+        let cone = (direction.dot(-towards) * light.spot_scale + light.spot_offset).clamp(0.0, 1.0);
+        attenuation *= cone * cone;
+    }
+    (towards, distance, intensity * attenuation)
+}
+
+/// Irradiance that a virtual point light gives a surface; `least`: the least distance (--vpl-clamp), in metres.
+pub fn vpl_irradiance(vpl: &VplBlock, position_ws: Vec3, normal_ws: Vec3, least: f32) -> Vec3 {
+    let three = |v: [f32; 4]| Vec4::from_array(v).truncate();
+    let to_vpl = three(vpl.position_ws) - position_ws;
+    let distance_squared = to_vpl.length_squared();
+    let facing = normal_ws.dot(to_vpl).max(0.0) * (-three(vpl.normal_ws).dot(to_vpl)).max(0.0);
+    three(vpl.intensity) * (facing / (distance_squared.max(1e-12) * distance_squared.max(least * least)))
+}
+
+/// Flux in lumens (per channel); a directional light's is what falls through a disc of `radius` metres.
+pub fn flux(light: &Light, radius: f32) -> Vec3 {
+    use std::f32::consts::PI;
+    match light.kind {
+        LightKind::Directional => light.intensity * (PI * radius * radius),
+        LightKind::Point => light.intensity * (4.0 * PI),
+        LightKind::Spot { outer_angle, .. } => light.intensity * (2.0 * PI * (1.0 - outer_angle.cos())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn light(kind: LightKind) -> Light {
+        Light {
+            name: String::new(),
+            kind,
+            intensity: Vec3::splat(8.0),
+            position: Vec3::new(0.0, 2.0, 0.0),
+            direction: -Vec3::Y,
+            range: None,
+        }
+    }
+
+    #[test]
+    fn a_point_light_falls_off_by_the_square_and_ends_exactly_at_its_range() {
+        let block = block(&light(LightKind::Point), 0.0);
+        let (direction, distance, irradiance) = incident_from(&block, Vec3::ZERO);
+        assert_eq!((direction, distance, irradiance), (Vec3::Y, 2.0, Vec3::splat(2.0)));
+        let ending = super::block(&Light { range: Some(3.0), ..light(LightKind::Point) }, 0.0);
+        let window = 1.0 - (2.0f32 / 3.0).powi(4);
+        let (_, _, irradiance) = incident_from(&ending, Vec3::ZERO);
+        assert!((irradiance.x - 2.0 * window).abs() < 1e-5);
+        assert_eq!(incident_from(&ending, Vec3::new(0.0, -1.0, 0.0)).2, Vec3::ZERO);
+        assert_eq!(incident_from(&ending, Vec3::new(0.0, -9.0, 0.0)).2, Vec3::ZERO);
+    }
+
+    #[test]
+    fn a_light_without_range_gets_the_cutoffs() {
+        let block = block(&light(LightKind::Point), 0.002);
+        assert!((block.intensity[3] - (8.0f32 / 0.002).sqrt()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_spot_is_full_inside_its_inner_cone_and_dark_outside_its_outer_cone() {
+        let spot = block(&light(LightKind::Spot { inner_angle: 0.3, outer_angle: 0.6 }), 0.0);
+        assert_eq!(incident_from(&spot, Vec3::ZERO).2, Vec3::splat(2.0));
+        let at = |angle: f32| incident_from(&spot, Vec3::new(2.0 * angle.tan(), 0.0, 0.0)).2.x * (2.0 / angle.cos()).powi(2);
+        assert!((at(0.29) - 8.0).abs() < 1e-3);
+        assert!(at(0.61).abs() < 1e-6);
+        let half = ((0.45f32.cos() - 0.6f32.cos()) / (0.3f32.cos() - 0.6f32.cos())).powi(2);
+        assert!((at(0.45) - 8.0 * half).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_virtual_point_light_shines_like_a_small_lambert_patch() {
+        let vpl = VplBlock { position_ws: [0.0, 2.0, 0.0, 0.0], normal_ws: [0.0, -1.0, 0.0, 0.0], intensity: [4.0; 4] };
+        assert!((vpl_irradiance(&vpl, Vec3::ZERO, Vec3::Y, 0.1).x - 1.0).abs() < 1e-6);
+        // At 45 degrees: both cosines are 1/sqrt 2, the distance squared is 8.
+        assert!((vpl_irradiance(&vpl, Vec3::new(2.0, 0.0, 0.0), Vec3::Y, 0.1).x - 4.0 * 0.5 / 8.0).abs() < 1e-6);
+        assert_eq!(vpl_irradiance(&vpl, Vec3::new(0.0, 3.0, 0.0), -Vec3::Y, 0.1), Vec3::ZERO);
+        // Nearer than the clamp it grows no more.
+        assert!((vpl_irradiance(&vpl, Vec3::new(0.0, 1.9, 0.0), Vec3::Y, 1.0).x - 4.0).abs() < 1e-5);
+    }
+}

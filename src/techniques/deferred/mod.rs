@@ -1,0 +1,165 @@
+//! Plain deferred shading of punctual lights: the baseline of Segovia 2006 and the frame of every picture with direct
+//! light only. No indirect light.
+//!
+//! Passes: gbuffer, cull (with `--cull tiled`), shade, blend (where the scene has BLEND surfaces).
+
+pub mod shade;
+
+use super::{Frame, Inputs, Prepared, Technique, left_out};
+use crate::error::Result;
+use crate::gpu::shader::structs::LightBlock;
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::lights::cull::Cull;
+use crate::passes::blend::{Blend, BlendLights};
+use crate::passes::direct::{self, DirectGpu, ShadingSettings};
+use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
+use crate::plan::{Plan, Resources};
+use crate::report::image_file::Aov;
+use crate::resident::SceneGpu;
+use crate::settings::{SHADING, Setting};
+use ash::vk;
+use shade::Shade;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const NAME: &str = "deferred";
+
+/// Format of finished pictures.
+pub const PICTURE: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+pub struct Deferred;
+
+impl Technique for Deferred {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "plain deferred shading of the scene's punctual lights"
+    }
+
+    fn scene(&self) -> &'static str {
+        "lamps"
+    }
+
+    fn settings(&self) -> &'static [&'static [Setting]] {
+        &[SHADING]
+    }
+
+    fn aovs(&self) -> &'static [&'static str] {
+        gbuffer::AOVS
+    }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let settings = ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.bounds().diagonal());
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        let extent = inputs.view.extent;
+        let mut plan = Plan::default();
+        gbuffer::plan(&mut plan, NAME, extent, settings.position, inputs.stats.has_emissive);
+        let tree = settings.tree(inputs.bvh, inputs.scene)?;
+        direct::plan(&mut plan, NAME, lights.len(), &settings, tree, extent);
+        // No virtual lights: what blended surfaces bind in their place.
+        plan.buffer("lights", "deferred.vpls", 0);
+        plan.image("picture", "deferred.shade.color", extent, PICTURE, picture_usage());
+        Ok(Box::new(PreparedDeferred { settings, lights, plan }))
+    }
+}
+
+/// How a finished picture is used.
+pub fn picture_usage() -> vk::ImageUsageFlags {
+    vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC
+}
+
+struct PreparedDeferred {
+    settings: ShadingSettings,
+    lights: Vec<LightBlock>,
+    plan: Plan,
+}
+
+impl Prepared for PreparedDeferred {
+    fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    fn host_passes(&self) -> Vec<(String, u64)> {
+        Vec::new()
+    }
+
+    fn counters(&self) -> BTreeMap<&'static str, f64> {
+        BTreeMap::from([("lights", self.lights.len() as f64)])
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        BTreeMap::new()
+    }
+
+    fn light_counts(&self) -> [u32; 2] {
+        [self.lights.len() as u32, 0]
+    }
+
+    fn build(
+        self: Box<Self>,
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+    ) -> Result<Box<dyn Frame>> {
+        let (settings, has_emissive) = (&self.settings, inputs.stats.has_emissive);
+        let tree = settings.tree(inputs.bvh, inputs.scene)?;
+        let direct = DirectGpu::new(gpu, resources, NAME, &self.lights, settings, tree)?;
+        Ok(Box::new(DeferredFrame {
+            gbuffer_pass: GBufferPass::new(gpu, scene, settings.position, has_emissive)?,
+            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
+            shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some())?,
+            blend: Blend::new(gpu, scene, inputs.view, PICTURE, 0.0, &settings.light_constants())?,
+            gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
+            direct,
+            vpls: resources.buffer("deferred.vpls"),
+            color: resources.image("deferred.shade.color"),
+        }))
+    }
+}
+
+struct DeferredFrame {
+    gbuffer_pass: GBufferPass,
+    cull: Option<Cull>,
+    shade: Shade,
+    blend: Option<Blend>,
+    gbuffer: GBuffer,
+    direct: DirectGpu,
+    vpls: Buffer,
+    color: Image,
+}
+
+impl Frame for DeferredFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let gbuffer = &self.gbuffer;
+        self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
+        let mut written = Access::ColorWrite;
+        if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
+            let lights = (&self.direct.lights, self.direct.light_count);
+            cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
+            written = Access::ComputeSample;
+        }
+        self.shade.record(cmd, frame, &self.direct, gbuffer.from(written), &self.color)?;
+        if let Some(blend) = &self.blend {
+            let lights = BlendLights {
+                lights: &self.direct.lights,
+                vpls: &self.vpls,
+                bvh_nodes: &self.direct.bvh_nodes,
+                bvh_triangles: &self.direct.bvh_triangles,
+            };
+            let picture = self.color.from(Access::ComputeWrite);
+            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(), picture)?;
+        }
+        Ok(())
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        self.gbuffer.aov(gpu, name).unwrap_or_else(|| Err(left_out(NAME, name, "no pass of it has that name")))
+    }
+}

@@ -1,0 +1,76 @@
+//! Shade: every punctual light on every pixel. Shader: shade.comp.
+//! reads  the G-buffer, the lights, the tree      writes  deferred.shade.color  image, RGBA32F, frame extent
+
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deferred::shade as s;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::gbuffer::GBuffer;
+use std::sync::Arc;
+
+pub struct Shade {
+    pipeline: ComputePipeline,
+}
+
+impl Shade {
+    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, has_emissive: bool, tiled: bool) -> Result<Self> {
+        let position = settings.position;
+        let shader = match (has_emissive, tiled) {
+            (false, false) => position.pick(
+                &s::COMP_HALF_OFF_NONE,
+                &s::COMP_UNORM16_OFF_NONE,
+                &s::COMP_DEPTH_OFF_NONE,
+                &s::COMP_FLOAT_OFF_NONE,
+            ),
+            (false, true) => position.pick(
+                &s::COMP_HALF_OFF_TILED,
+                &s::COMP_UNORM16_OFF_TILED,
+                &s::COMP_DEPTH_OFF_TILED,
+                &s::COMP_FLOAT_OFF_TILED,
+            ),
+            (true, false) => position.pick(
+                &s::COMP_HALF_ON_NONE,
+                &s::COMP_UNORM16_ON_NONE,
+                &s::COMP_DEPTH_ON_NONE,
+                &s::COMP_FLOAT_ON_NONE,
+            ),
+            (true, true) => position.pick(
+                &s::COMP_HALF_ON_TILED,
+                &s::COMP_UNORM16_ON_TILED,
+                &s::COMP_DEPTH_ON_TILED,
+                &s::COMP_FLOAT_ON_TILED,
+            ),
+        };
+        let constants = [&settings.workgroup_constants()[..], &settings.light_constants()].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        direct: &DirectGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        color: &Image,
+    ) -> Result<()> {
+        let extent = color.description.extent;
+        let pixels = extent.pixel_count();
+        let traffic = Traffic {
+            read_bytes: pixels * gbuffer.resource.shading_bytes(),
+            written_bytes: pixels * 16,
+            invocations: Some(pixels),
+        };
+        cmd.pass("deferred.shade", traffic, |cmd| {
+            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers([color.discard(Access::ComputeWrite)]);
+            cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            let mut bound = gbuffer.resource.bound_shading();
+            bound.extend(direct.bound());
+            bound.extend([("Frame", Bound::Buffer(frame)), ("color", Bound::Storage(color))]);
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, &[], &bound, groups)
+        })
+    }
+}

@@ -1,0 +1,90 @@
+//! Composite: albedo times filtered irradiance, direct light, emission (Segovia 2006, section 4.5). Shader: composite.comp.
+//! reads  the G-buffer, the irradiance, the punctual lights      writes  composite.color  image, RGBA32F, frame extent
+
+use super::NAME;
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::CompositeParams;
+use crate::gpu::shader::techniques::interleaved_deferred::composite as s;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::gbuffer::GBuffer;
+use std::sync::Arc;
+
+pub struct Composite {
+    pipeline: ComputePipeline,
+    params: CompositeParams,
+}
+
+impl Composite {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &ShadingSettings,
+        has_emissive: bool,
+        tiled: bool,
+        params: CompositeParams,
+    ) -> Result<Self> {
+        let position = settings.position;
+        let shader = match (has_emissive, tiled) {
+            (false, false) => position.pick(
+                &s::COMP_HALF_OFF_NONE,
+                &s::COMP_UNORM16_OFF_NONE,
+                &s::COMP_DEPTH_OFF_NONE,
+                &s::COMP_FLOAT_OFF_NONE,
+            ),
+            (false, true) => position.pick(
+                &s::COMP_HALF_OFF_TILED,
+                &s::COMP_UNORM16_OFF_TILED,
+                &s::COMP_DEPTH_OFF_TILED,
+                &s::COMP_FLOAT_OFF_TILED,
+            ),
+            (true, false) => position.pick(
+                &s::COMP_HALF_ON_NONE,
+                &s::COMP_UNORM16_ON_NONE,
+                &s::COMP_DEPTH_ON_NONE,
+                &s::COMP_FLOAT_ON_NONE,
+            ),
+            (true, true) => position.pick(
+                &s::COMP_HALF_ON_TILED,
+                &s::COMP_UNORM16_ON_TILED,
+                &s::COMP_DEPTH_ON_TILED,
+                &s::COMP_FLOAT_ON_TILED,
+            ),
+        };
+        let constants = [&settings.workgroup_constants()[..], &settings.light_constants()].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        direct: &DirectGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        irradiance: Edge<'_, Buffer>,
+        color: &Image,
+    ) -> Result<()> {
+        let extent = color.description.extent;
+        let pixels = extent.pixel_count();
+        let traffic = Traffic {
+            read_bytes: pixels * (gbuffer.resource.shading_bytes() + 8),
+            written_bytes: pixels * 16,
+            invocations: Some(pixels),
+        };
+        cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {
+            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers([irradiance.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
+            cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            let mut bound = gbuffer.resource.bound_shading();
+            bound.extend(direct.bound());
+            bound.extend([
+                ("Frame", Bound::Buffer(frame)),
+                ("Irradiance", Bound::Buffer(irradiance.resource)),
+                ("color", Bound::Storage(color)),
+            ]);
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
+        })
+    }
+}

@@ -1,0 +1,52 @@
+//! Discontinuity buffer (DB): Segovia 2006, section 4.5 (SG10). Shader: discontinuity.comp.
+//! reads  the G-buffer      writes  discontinuity.flags  buffer, frame order, 4 B a pixel, 0 or 1
+//!
+//! The paper leaves the measure open. Here: 1 - cos of the angle between the normals, and the distance of the
+//! neighbour from the pixel's tangent plane, which does not flag a floor seen at a grazing angle.
+
+use super::NAME;
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::{DiscontinuityParams, MappingParams};
+use crate::gpu::shader::techniques::interleaved_deferred::discontinuity as s;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::passes::direct::ShadingSettings;
+use crate::passes::gbuffer::GBuffer;
+use crate::plan::Plan;
+use std::sync::Arc;
+
+/// Plans the flags.
+pub fn plan(plan: &mut Plan, mapping: &MappingParams) {
+    plan.buffer("discontinuity", format!("{NAME}.discontinuity.flags"), mapping.frame_texel_count() * 4);
+}
+
+pub struct Discontinuity {
+    pipeline: ComputePipeline,
+    params: DiscontinuityParams,
+}
+
+impl Discontinuity {
+    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, params: DiscontinuityParams) -> Result<Self> {
+        let shader = settings.position.pick(&s::COMP_HALF, &s::COMP_UNORM16, &s::COMP_DEPTH, &s::COMP_FLOAT);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &settings.workgroup_constants())?, params })
+    }
+
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, gbuffer: Edge<'_, GBuffer>, flags: &Buffer) -> Result<()> {
+        let extent = gbuffer.resource.extent();
+        let pixels = extent.pixel_count();
+        let traffic = Traffic {
+            read_bytes: 4 * pixels * gbuffer.resource.surface_bytes(),
+            written_bytes: pixels * 4,
+            invocations: Some(pixels),
+        };
+        cmd.pass(&format!("{NAME}.discontinuity"), traffic, |cmd| {
+            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers([flags.discard(Access::ComputeWrite)]);
+            let mut bound = gbuffer.resource.bound_surface();
+            bound.extend([("Frame", Bound::Buffer(frame)), ("Flags", Bound::Buffer(flags))]);
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
+        })
+    }
+}

@@ -1,0 +1,229 @@
+//! Interleaved deferred shading on the device: its passes, its resources, and `record`, which reads like figure 3.
+
+use super::NAME;
+use super::composite::Composite;
+use super::discontinuity::Discontinuity;
+use super::gather::Gather;
+use super::plan::{Choices, Filter};
+use super::shade::branch::ShadeBranch;
+use super::shade::sub_buffers::ShadeSubBuffers;
+use super::shade::subsample::ShadeSubsample;
+use super::shade::{ShadeGpu, SubsetLights};
+use super::split::Road;
+use super::split::one_pass::{OnePass, SubBuffers};
+use super::upscale::Upscale;
+use crate::error::Result;
+use crate::gpu::shader::structs::{CompositeParams, DiscontinuityParams, LightBlock, ShadeParams};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
+use crate::lights::cull::Cull;
+use crate::passes::blend::{Blend, BlendLights};
+use crate::passes::direct::DirectGpu;
+use crate::passes::filter::gauss::Gauss;
+use crate::passes::filter::gauss_fast::GaussFast;
+use crate::passes::gbuffer::{GBuffer, GBufferPass};
+use crate::plan::Resources;
+use crate::report::image_file::Aov;
+use crate::resident::SceneGpu;
+use crate::techniques::deferred::PICTURE;
+use crate::techniques::{Frame, Inputs};
+use std::sync::Arc;
+
+/// How pixels meet their lights.
+pub enum Roads {
+    Branch(ShadeBranch),
+    Subsample { shade: ShadeSubsample, upscale: Upscale, upscaled: Buffer },
+    SubBuffers { copy: OnePass, split: SubBuffers, shade: ShadeSubBuffers, gather: Gather, gathered: Buffer },
+}
+
+/// Discontinuities, the filter that stops at them, and what they write.
+pub struct FilterStage {
+    discontinuity: Discontinuity,
+    pub flags: Buffer,
+    gauss: AnyGauss,
+    pub irradiance: Buffer,
+}
+
+enum AnyGauss {
+    Walk(Gauss, Buffer),
+    Fast(GaussFast, [Image; 2]),
+}
+
+pub struct InterleavedFrame {
+    gbuffer_pass: GBufferPass,
+    pub gbuffer: GBuffer,
+    cull: Option<Cull>,
+    direct: DirectGpu,
+    pub shade: ShadeGpu,
+    pub roads: Roads,
+    /// What shading writes: sub-buffers, cells or frame order, as the road has it.
+    pub irradiance: Buffer,
+    pub filter: Option<FilterStage>,
+    composite: Composite,
+    color: Image,
+    blend: Option<Blend>,
+}
+
+impl InterleavedFrame {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        lights: &SubsetLights,
+        direct_lights: &[LightBlock],
+    ) -> Result<Self> {
+        let Choices { shading, road, mapping, .. } = choices;
+        let has_emissive = inputs.stats.has_emissive;
+        let tree = shading.tree(inputs.bvh, inputs.scene)?;
+        let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading, tree)?;
+        let least = inputs.values.length("vpl-clamp", inputs.scene.bounds().diagonal());
+        let params =
+            ShadeParams { mapping: *mapping, least_squared: least * least, weight: choices.subset_count() as f32 };
+        let shade = ShadeGpu::new(gpu, resources, lights, params)?;
+        let roads = match road {
+            Road::None | Road::Branch => Roads::Branch(ShadeBranch::new(gpu, shading)?),
+            Road::Subsample => Roads::Subsample {
+                shade: ShadeSubsample::new(gpu, shading)?,
+                upscale: Upscale::new(gpu, shading)?,
+                upscaled: resources.buffer(&format!("{NAME}.upscale.irradiance")),
+            },
+            Road::OnePass => Roads::SubBuffers {
+                copy: OnePass::new(gpu, shading)?,
+                split: SubBuffers::new(resources),
+                shade: ShadeSubBuffers::new(gpu, shading)?,
+                gather: Gather::new(gpu, shading)?,
+                gathered: resources.buffer(&format!("{NAME}.gather.irradiance")),
+            },
+        };
+        let params = CompositeParams { row_pitch: mapping.row_pitch(), direct_full: u32::from(choices.direct_full) };
+        Ok(Self {
+            gbuffer_pass: GBufferPass::new(gpu, scene, shading.position, has_emissive)?,
+            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position)).transpose()?,
+            roads,
+            irradiance: resources.buffer(&format!("{NAME}.shade.irradiance")),
+            filter: FilterStage::new(gpu, inputs, resources, choices)?,
+            composite: Composite::new(gpu, shading, has_emissive, direct.masks.is_some(), params)?,
+            color: resources.image(&format!("{NAME}.composite.color")),
+            blend: Blend::new(gpu, scene, inputs.view, PICTURE, least * least, &shading.light_constants())?,
+            gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
+            direct,
+            shade,
+        })
+    }
+
+    /// Split, shade, gather: the irradiance in frame order.
+    fn record_roads(&self, cmd: &mut Commands, frame: &Buffer, written: Access) -> Result<Edge<'_, Buffer>> {
+        let gbuffer = self.gbuffer.from(written);
+        match &self.roads {
+            Roads::Branch(shade) => {
+                shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
+                Ok(self.irradiance.from(Access::ComputeWrite))
+            }
+            Roads::Subsample { shade, upscale, upscaled } => {
+                shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
+                upscale.record(cmd, self.shade.mapping(), self.irradiance.from(Access::ComputeWrite), upscaled)?;
+                Ok(upscaled.from(Access::ComputeWrite))
+            }
+            Roads::SubBuffers { copy, split, shade, gather, gathered } => {
+                copy.record(cmd, self.shade.mapping(), gbuffer, split)?;
+                let split = split.from(Access::ComputeWrite);
+                shade.record(cmd, frame, &self.shade, &self.direct, split, &self.irradiance)?;
+                gather.record(cmd, self.shade.mapping(), self.irradiance.from(Access::ComputeWrite), gathered)?;
+                Ok(gathered.from(Access::ComputeWrite))
+            }
+        }
+    }
+}
+
+impl FilterStage {
+    fn new(gpu: &Arc<Gpu>, inputs: &Inputs<'_>, resources: &mut Resources, choices: &Choices) -> Result<Option<Self>> {
+        let Choices { shading, mapping, kernel, .. } = choices;
+        if choices.filter == Filter::None {
+            return Ok(None);
+        }
+        let extent = inputs.view.extent;
+        let workgroup = shading.workgroup_constants();
+        let pitch = mapping.row_pitch();
+        let gauss = match choices.filter {
+            Filter::GaussFast => AnyGauss::Fast(
+                GaussFast::new(gpu, &workgroup, extent, pitch, *kernel)?,
+                ["packed", "horizontal"].map(|what| resources.image(&format!("{NAME}.filter.{what}"))),
+            ),
+            Filter::Gauss | Filter::None => AnyGauss::Walk(
+                Gauss::new(gpu, &workgroup, extent, pitch, *kernel)?,
+                resources.buffer(&format!("{NAME}.filter.horizontal")),
+            ),
+        };
+        let params = DiscontinuityParams {
+            normal_threshold: inputs.values.number("normal-threshold") as f32,
+            position_threshold: inputs.values.length("position-threshold", inputs.scene.bounds().diagonal()),
+            row_pitch: pitch,
+        };
+        Ok(Some(Self {
+            discontinuity: Discontinuity::new(gpu, shading, params)?,
+            flags: resources.buffer(&format!("{NAME}.discontinuity.flags")),
+            gauss,
+            irradiance: resources.buffer(&format!("{NAME}.filter.irradiance")),
+        }))
+    }
+
+    fn record<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'_, GBuffer>,
+        irradiance: Edge<'_, Buffer>,
+    ) -> Result<Edge<'a, Buffer>> {
+        self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
+        let flags = self.flags.from(Access::ComputeWrite);
+        match &self.gauss {
+            AnyGauss::Walk(gauss, between) => {
+                gauss.record(cmd, NAME, irradiance, flags, between, &self.irradiance)?;
+            }
+            AnyGauss::Fast(gauss, [packed, horizontal]) => {
+                gauss.record(cmd, NAME, irradiance, flags, [packed, horizontal], &self.irradiance)?;
+            }
+        }
+        Ok(self.irradiance.from(Access::ComputeWrite))
+    }
+}
+
+impl Frame for InterleavedFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let gbuffer = &self.gbuffer;
+        self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
+        let mut written = Access::ColorWrite;
+        if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
+            let lights = (&self.direct.lights, self.direct.light_count);
+            cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
+            written = Access::ComputeSample;
+        }
+        let gathered = self.record_roads(cmd, frame, written)?;
+        let irradiance = match &self.filter {
+            Some(filter) => filter.record(cmd, frame, gbuffer.from(Access::ComputeSample), gathered)?,
+            None => gathered,
+        };
+        let sampled = gbuffer.from(Access::ComputeSample);
+        self.composite.record(cmd, frame, &self.direct, sampled, irradiance, &self.color)?;
+        if let Some(blend) = &self.blend {
+            let lights = BlendLights {
+                lights: &self.direct.lights,
+                vpls: &self.shade.vpls,
+                bvh_nodes: &self.direct.bvh_nodes,
+                bvh_triangles: &self.direct.bvh_triangles,
+            };
+            let picture = self.color.from(Access::ComputeWrite);
+            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(), picture)?;
+        }
+        Ok(())
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        super::aov::read(self, gpu, name)
+    }
+}

@@ -1,0 +1,50 @@
+//! One pass over the un-split G-buffer, each pixel with its own subset; with a pattern of 1x1, plain deferred shading.
+//! Segovia 2006, section 3.1. Shader: branch.comp.
+//! reads  the G-buffer, the lights      writes  the irradiance  buffer, frame order, 8 B a pixel
+
+use super::super::NAME;
+use super::{ShadeGpu, constants};
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::interleaved_deferred::shade::branch as s;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::gbuffer::GBuffer;
+use std::sync::Arc;
+
+pub struct ShadeBranch {
+    pipeline: ComputePipeline,
+}
+
+impl ShadeBranch {
+    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
+        let shader = settings.position.pick(&s::COMP_HALF, &s::COMP_UNORM16, &s::COMP_DEPTH, &s::COMP_FLOAT);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(settings))? })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        shade: &ShadeGpu,
+        direct: &DirectGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        irradiance: &Buffer,
+    ) -> Result<()> {
+        let extent = gbuffer.resource.extent();
+        let pixels = extent.pixel_count();
+        let traffic = Traffic {
+            read_bytes: pixels * gbuffer.resource.surface_bytes(),
+            written_bytes: pixels * 8,
+            invocations: Some(pixels),
+        };
+        cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
+            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
+            let mut bound = shade.bound(frame, direct, irradiance);
+            bound.extend(gbuffer.resource.bound_surface());
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)
+        })
+    }
+}

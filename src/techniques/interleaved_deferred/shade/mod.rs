@@ -1,0 +1,79 @@
+//! Shading without shadow maps (SNSM): Segovia 2006, section 4.3. Every road sums the same function over its lights
+//! (irradiance.glsl): float, in the order of the list, packed to halves once.
+
+pub mod branch;
+pub mod sub_buffers;
+pub mod subsample;
+
+use super::NAME;
+use crate::error::Result;
+use crate::gpu::commands::Bound;
+use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
+use crate::gpu::{Access, Buffer, Gpu, upload};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::plan::{Plan, Resources};
+use std::sync::Arc;
+
+/// The lights of all subsets, on the host.
+pub struct SubsetLights {
+    pub vpls: Vec<VplBlock>,
+    /// Punctual lights joined to the subsets; empty without `--direct interleaved`.
+    pub lights: Vec<LightBlock>,
+    pub subsets: Vec<SubsetBlock>,
+}
+
+/// Plans the lists.
+pub fn plan(plan: &mut Plan, lights: &SubsetLights) {
+    let mut list = |what: &str, bytes: usize| plan.buffer("lights", format!("{NAME}.{what}"), bytes as u64);
+    list("vpls", size_of_val(&lights.vpls[..]));
+    list("subset_lights", size_of_val(&lights.lights[..]));
+    list("subsets", size_of_val(&lights.subsets[..]));
+}
+
+/// The lists on the device.
+pub struct ShadeGpu {
+    pub vpls: Buffer,
+    subset_lights: Buffer,
+    subsets: Buffer,
+    /// What every road of shading is told.
+    pub params: ShadeParams,
+}
+
+impl ShadeGpu {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, lights: &SubsetLights, params: ShadeParams) -> Result<Self> {
+        let mut filled = |what: &str, bytes: &[u8]| {
+            let buffer = resources.buffer(&format!("{NAME}.{what}"));
+            // Blended surfaces read virtual lights too.
+            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead | Access::GraphicsRead)?;
+            Ok(buffer)
+        };
+        Ok(Self {
+            vpls: filled("vpls", bytemuck::cast_slice(&lights.vpls))?,
+            subset_lights: filled("subset_lights", bytemuck::cast_slice(&lights.lights))?,
+            subsets: filled("subsets", bytemuck::cast_slice(&lights.subsets))?,
+            params,
+        })
+    }
+
+    pub fn mapping(&self) -> &MappingParams {
+        &self.params.mapping
+    }
+
+    /// What irradiance.glsl binds.
+    fn bound<'a>(&'a self, frame: &'a Buffer, direct: &'a DirectGpu, irradiance: &'a Buffer) -> Vec<(&'static str, Bound<'a>)> {
+        vec![
+            ("Frame", Bound::Buffer(frame)),
+            ("Vpls", Bound::Buffer(&self.vpls)),
+            ("SubsetLights", Bound::Buffer(&self.subset_lights)),
+            ("Subsets", Bound::Buffer(&self.subsets)),
+            ("BvhNodes", Bound::Buffer(&direct.bvh_nodes)),
+            ("BvhTriangles", Bound::Buffer(&direct.bvh_triangles)),
+            ("Irradiance", Bound::Buffer(irradiance)),
+        ]
+    }
+}
+
+/// The constants of every shading pipeline.
+fn constants(settings: &ShadingSettings) -> Vec<(&'static str, u32)> {
+    [&settings.workgroup_constants()[..], &settings.shadow_constants()].concat()
+}

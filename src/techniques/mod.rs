@@ -1,0 +1,114 @@
+//! The techniques: what each needs, and the table of all of them.
+//!
+//! A technique is asked in three steps, so that memory can be studied without a device: `prepare` does the host's part
+//! and plans (`Prepared::plan` is arithmetic), `Prepared::build` makes pipelines and takes the planned resources, and
+//! `Frame::record` writes the commands of one frame, in the order of the paper's overview figure.
+
+pub mod deferred;
+pub mod interleaved_deferred;
+
+use crate::bvh::LazyBvh;
+use crate::error::{Error, Result};
+use crate::frame::View;
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::lights::LightSet;
+use crate::plan::{Plan, Resources};
+use crate::report::image_file::Aov;
+use crate::resident::{SceneGpu, SceneStats};
+use crate::scene::Scene;
+use crate::settings::{Setting, Values};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Everything that the host's part of a technique may read.
+pub struct Inputs<'a> {
+    pub scene: &'a Scene,
+    pub stats: &'a SceneStats,
+    pub bvh: &'a LazyBvh,
+    pub view: &'a View,
+    pub lights: &'a LightSet,
+    pub values: &'a Values,
+}
+
+/// One way of making a picture.
+pub trait Technique: Sync {
+    /// Its name on the command line, in labels and in reports.
+    fn name(&self) -> &'static str;
+
+    /// One line for the list.
+    fn summary(&self) -> &'static str;
+
+    /// The built-in scene that shows it best.
+    fn scene(&self) -> &'static str;
+
+    /// Tables of the settings that it reads beside the common ones.
+    fn settings(&self) -> &'static [&'static [Setting]];
+
+    /// Names that `--aov` takes.
+    fn aovs(&self) -> &'static [&'static str];
+
+    /// The host's part, and the plan.
+    ///
+    /// Errors: settings that contradict each other or the scene (exit code 2).
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>>;
+}
+
+/// A technique whose host part is done.
+pub trait Prepared {
+    /// The resources of a frame.
+    fn plan(&self) -> &Plan;
+
+    /// Host passes with their time in nanoseconds; the same names as other passes have.
+    fn host_passes(&self) -> Vec<(String, u64)>;
+
+    /// Numbers for the report's `counters`.
+    fn counters(&self) -> BTreeMap<&'static str, f64>;
+
+    /// Settings that stand for more than their text: what `auto` and percentages came to.
+    fn resolved(&self) -> BTreeMap<&'static str, String>;
+
+    /// Punctual and virtual point lights that shaders loop over, for the frame's block.
+    fn light_counts(&self) -> [u32; 2];
+
+    /// Pipelines, and the planned resources taken out.
+    fn build(
+        self: Box<Self>,
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+    ) -> Result<Box<dyn Frame>>;
+}
+
+/// A technique on the device.
+pub trait Frame {
+    /// Records one frame. `frame`: the block of glsl/frame.glsl.
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()>;
+
+    /// The finished picture (RGBA32F) and how the frame touched it last.
+    fn picture(&self) -> (&Image, Access);
+
+    /// One intermediate result, read back after a frame.
+    ///
+    /// Errors: the settings leave its pass out (exit code 2).
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>;
+}
+
+/// Every technique.
+pub const ALL: &[&dyn Technique] = &[&interleaved_deferred::InterleavedDeferred, &deferred::Deferred];
+
+/// The technique of this name.
+///
+/// Errors: none has it (exit code 2).
+pub fn find(name: &str) -> Result<&'static dyn Technique> {
+    ALL.iter().copied().find(|technique| technique.name() == name).ok_or_else(|| {
+        let names: Vec<&str> = ALL.iter().map(|technique| technique.name()).collect();
+        Error::request(format!("--technique {name}: there is no such technique"))
+            .note(format!("there are {}", names.join(", ")))
+    })
+}
+
+/// An AOV that the settings leave out.
+fn left_out(technique: &str, aov: &str, why: &str) -> Error {
+    Error::request(format!("--aov {aov}: {technique} does not make it: {why}"))
+}
