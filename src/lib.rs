@@ -3,6 +3,7 @@
 
 pub mod error;
 pub mod report;
+pub mod sampling;
 pub mod scene;
 pub mod units;
 
