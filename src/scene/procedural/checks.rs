@@ -8,7 +8,7 @@ use crate::scene::{Mesh, Scene};
 pub fn assert_mesh_is_sound(mesh: &Mesh) {
     let name = &mesh.name;
     let count = mesh.positions.len();
-    assert!(mesh.triangle_count() > 0 && mesh.indices.len() % 3 == 0, "{name}");
+    assert!(mesh.triangle_count() > 0 && mesh.indices.len().is_multiple_of(3), "{name}");
     assert!(mesh.normals.len() == count && mesh.tangents.len() == count && mesh.uvs.len() == count, "{name}");
     assert!(mesh.indices.iter().all(|index| (*index as usize) < count), "{name}");
     assert!(mesh.positions.iter().all(|position| position.is_finite()), "{name}");

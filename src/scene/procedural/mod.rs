@@ -131,7 +131,10 @@ pub fn build(spec: &str, seed: u64) -> Option<Result<Scene>> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
+    use crate::scene::{AlphaMode, Material};
 
     fn made(spec: &str, seed: u64) -> Scene {
         build(spec, seed).expect("the name is known").expect("the parameters are good")
@@ -169,6 +172,19 @@ mod tests {
             checks::assert_scene_is_sound(&scene);
             assert_eq!(scene.triangle_count(), hall::planned_triangle_count(wanted));
         }
+    }
+
+    #[test]
+    fn the_hall_has_materials_and_lamps_of_many_kinds() {
+        let scene = made("hall:triangles=20000", 1);
+        let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
+        assert!(used.len() >= 24 && used.len() == scene.materials.len(), "{} materials", used.len());
+        assert!((8..=24).contains(&scene.lights.len()), "{} lights", scene.lights.len());
+        let has = |wanted: fn(&Material) -> bool| scene.materials.iter().any(wanted);
+        assert!(has(|material| matches!(material.alpha, AlphaMode::Mask { .. })));
+        assert!(has(|material| material.alpha == AlphaMode::Blend));
+        assert!(has(|material| material.metallic_roughness_texture.is_some()));
+        assert!(has(Material::is_emissive));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Curved quadrilaterals: what every procedural shape is made of.
 //!
-//! A patch is a function of two numbers. Counting its triangles costs nothing, so a scene can try tessellations until it
-//! meets its budget and evaluate only the last. Normals and tangents come from differences of that function, so that a
-//! shape is one formula and cannot disagree with its own normals.
+//! A patch is a function of two numbers. Counting its triangles costs nothing, so a scene can try tessellations until
+//! it meets its budget and evaluate only the last. Normals and tangents come from differences of that function, so that
+//! a shape is one formula and cannot disagree with its own normals.
 //!
 //! Only + - * / and sqrt are used, in f64: IEEE 754 fixes their results, libm's sine is another on every system.
 

@@ -121,8 +121,8 @@ pub fn turned(profile: &[Curve], turning: Turning) -> Vec<Patch> {
     turned_with(profile, turning, |_, _, _| 1.0)
 }
 
-/// A turned shape whose radius is scaled by `swell`: a function of the angle in turns, the curve's index in the profile,
-/// and the place along that curve, 0 to 1.
+/// A turned shape whose radius is scaled by `swell`: a function of the angle in turns, the curve's index in the
+/// profile, and the place along that curve, 0 to 1.
 pub fn turned_with(
     profile: &[Curve],
     turning: Turning,
@@ -214,7 +214,8 @@ pub fn moulding(profile: &[Curve], length_m: f64, tile_m: f64, detail: Detail) -
         .collect()
 }
 
-/// A round arch of stones over the x axis: half a ring between two radii, from y = 0, from z = `back_m` to `front_m`. Closed.
+/// A round arch of stones over the x axis: half a ring between two radii, from y = 0, from z = `back_m` to `front_m`.
+/// Closed.
 pub fn arch(radii_m: [f64; 2], back_m: f64, front_m: f64, stones: u32, detail: Detail) -> Vec<Patch> {
     let [inner_m, outer_m] = radii_m;
     let columns = detail.along(std::f64::consts::PI * outer_m, 4);

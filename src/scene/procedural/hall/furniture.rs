@@ -117,7 +117,7 @@ fn dais(materials: &Materials, details: Details) -> Vec<Piece> {
 fn lamps(materials: &Materials, details: Details) -> Vec<Piece> {
     let fine = details.fine;
     let turning = |around_m: f64| Turning { segments: fine.along(around_m, 6), repeats: 2, tile_m: 0.4, detail: fine };
-    let glass = |radius_m: f64| sphere(radius_m, fine.along(8.0 * radius_m, 4));
+    let glass = |radius_m: f64| sphere(radius_m, fine.along(8.0 * radius_m, if details.sketch { 4 } else { 8 }));
     let rod = |radius_m: f64, from_m: f64, to_m: f64| {
         let profile = [Curve::line([radius_m, from_m], [radius_m, to_m])];
         let detail = Detail::COARSE;
@@ -213,9 +213,9 @@ fn along_the_walls(materials: &Materials, details: Details) -> Vec<Piece> {
     let before_m = OUTER_M - 0.75;
     let urns = |which: usize| both_sides(before_m, 0.0, true, column_lines().skip(which).step_by(4));
     // Cloth that hangs in folds, gathered more toward the hem.
-    let veil = Patch::new(middle.along(6.0, 6), middle.along(3.5, 2), |s, t| {
+    let veil = Patch::new(middle.along(7.0, 20), middle.along(3.5, 1), |s, t| {
         let depth = 0.04 + 0.09 * (1.0 - t);
-        let fold = sin_cos_turns(5.0 * s + 0.15 * t).0 + 0.4 * sin_cos_turns(9.0 * s - 0.3 * t).0;
+        let fold = sin_cos_turns(5.0 * s + 0.15 * t).0 + 0.25 * sin_cos_turns(3.0 * s - 0.3 * t).0;
         Point { position: dvec3((s - 0.5) * 2.6, 0.7 + 3.7 * t, depth * fold), uv: dvec2(s * 2.0, 1.0 - t) }
     });
     let wall_middle_m = NAVE_M + 0.5 * WALL_M;

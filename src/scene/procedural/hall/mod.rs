@@ -4,7 +4,7 @@
 //! z runs along the nave from the stained-glass window (-16 m) to the door (+16 m), x across, the floor is y = 0. What
 //! repeats is one mesh drawn many times; the right side is the left one turned by half a turn.
 //!
-//! Every piece divides its curves and faces by one edge length. The longest road to a wanted number of triangles is
+//! Every piece divides its curves and faces by one edge length. A wanted number of triangles is met by
 //! searching that length; what then is missing goes into the floor of the nave, which can take any number.
 
 mod furniture;
@@ -37,7 +37,7 @@ const SPRINGING_M: f64 = 4.6;
 /// Where the vault of the nave begins.
 const VAULT_M: f64 = 8.2;
 
-/// What a sketch leaves out.
+/// What a sketch leaves out. The lights of its lamps stay: brightness does not depend on the triangles.
 const ORNAMENTS: [&str; 17] = [
     "cornice",
     "string_course",
@@ -138,9 +138,9 @@ fn plan(materials: &Materials, wanted: u64) -> Vec<Piece> {
     let count = |pieces: &[Piece]| pieces.iter().map(Piece::triangle_count).sum::<u64>();
     // The floor should have its share: about a twentieth of what is seen.
     let budget = wanted - wanted / 20;
-    let (mut too_fine_m, mut coarse_m) = (0.005, 100.0);
+    let (mut too_fine_m, mut coarse_m) = (0.005_f64, 100.0_f64);
     for _ in 0..24 {
-        let middle_m = (too_fine_m * coarse_m as f64).sqrt();
+        let middle_m = (too_fine_m * coarse_m).sqrt();
         if count(&all_but_floor(middle_m)) > budget {
             too_fine_m = middle_m;
         } else {

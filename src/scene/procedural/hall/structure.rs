@@ -189,7 +189,7 @@ fn fine_along_only(fine: Detail) -> Detail {
 }
 
 fn aisles(materials: &Materials, details: Details) -> Vec<Piece> {
-    let Details { fine, middle, broad, .. } = details;
+    let Details { broad, .. } = details;
     let half = 0.5 * BAY_M;
     let wall = WallExtent { half_width_m: half, bottom_m: 0.0, top_m: 7.0 };
     let mut wall_patches = pierced_face(wall, WINDOW, 1.6, broad);
