@@ -1,8 +1,8 @@
 //! quincunx: a headless Vulkan renderer in which five papers on interleaved, inferred and decoupled shading run side
 //! by side: the same scene, the same lights, the same driver, the same ground truth.
 
-pub mod cli;
 pub mod bvh;
+pub mod cli;
 pub mod error;
 pub mod frame;
 pub mod gpu;
@@ -15,6 +15,7 @@ pub mod passes;
 pub mod plan;
 pub mod report;
 pub mod resident;
+pub mod sampling;
 pub mod scene;
 pub mod session;
 pub mod settings;

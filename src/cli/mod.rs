@@ -1,3 +1,54 @@
-//! The command line, one file a verb.
+//! The command line: one file per verb. Parse, run, print; the library does the rest.
 
+pub mod bench;
 pub mod compare;
+pub mod devices;
+mod job_args;
+pub mod render;
+pub mod scene;
+
+use crate::error::{Error, Result};
+use clap::Command;
+use std::io::Write;
+
+/// The program with its verbs.
+pub fn command() -> Command {
+    Command::new("quincunx")
+        .version(concat!(env!("CARGO_PKG_VERSION"), " (", env!("QUINCUNX_COMMIT"), ")"))
+        .about("A headless Vulkan renderer: interleaved, inferred and decoupled shading side by side")
+        .after_help(
+            "Exit codes: 0 done; 1 a comparison, a gate or --validate failed, or a picture holds NaN or infinity; 2 a bad \
+             request or file; 3 no fitting device; 4 the device failed or memory is too small; 130 interrupted.\n\n\
+             VK_DRIVER_FILES (VK_ICD_FILENAMES in older loaders) chooses drivers; NO_COLOR is honoured.",
+        )
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([render::command(), compare::command(), bench::command(), scene::command(), devices::command()])
+}
+
+/// Runs the verb of `argv`.
+pub fn run(argv: &[String]) -> Result<()> {
+    let matches = match command().try_get_matches_from(argv) {
+        Ok(matches) => matches,
+        // clap prints help to standard output, and its own words for what it cannot parse; exit code 2 for the latter.
+        Err(error) => error.exit(),
+    };
+    match matches.subcommand() {
+        Some(("render", matches)) => render::run(matches, argv),
+        Some(("compare", matches)) => compare::run(matches),
+        Some(("bench", matches)) => bench::run(matches, argv),
+        Some(("scene", matches)) => scene::run(matches),
+        Some(("devices", matches)) => devices::run(matches),
+        _ => unreachable!("clap requires one of the verbs"),
+    }
+}
+
+/// Prints to standard output; a reader that has gone (`| head`) is no failure.
+pub(crate) fn print(text: &str) -> Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => Err(Error::request(format!("cannot write to standard output: {error}"))),
+        Ok(()) => Ok(()),
+    }
+}

@@ -12,6 +12,9 @@ pub mod mipmaps;
 pub mod procedural;
 pub mod texture;
 
+use crate::error::{Error, Result};
+use std::path::Path;
+
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material};
@@ -41,6 +44,23 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// What was ignored or replaced on import, one sentence each, for the user to read.
     pub warnings: Vec<String>,
+}
+
+/// The scene that a name or a path stands for: a built-in one, with parameters after a colon, or a .gltf or .glb file.
+///
+/// Errors: no such scene, impossible parameters, a broken file (exit code 2).
+pub fn load(spec: &str, seed: u64) -> Result<Scene> {
+    if let Some(scene) = procedural::build(spec, seed) {
+        return scene;
+    }
+    let path = Path::new(spec);
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+    if !["gltf", "glb"].contains(&extension.as_str()) {
+        let names: Vec<&str> = procedural::ALL.iter().map(|built_in| built_in.name).collect();
+        return Err(Error::request(format!("scene {spec}: neither a built-in scene nor a .gltf or .glb file"))
+            .note(format!("built-in scenes: {}", names.join(", "))));
+    }
+    gltf::load(path)
 }
 
 impl Scene {

@@ -1,1 +1,222 @@
-//! Scenes that the program makes itself, seeded.
+//! Scenes that the program makes itself, seeded: the same on every machine.
+
+mod assembly;
+mod cornell;
+mod hall;
+mod lamps;
+mod patch;
+mod patterns;
+mod pictures;
+mod shapes;
+
+#[cfg(test)]
+mod checks;
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+/// Goes into every hash; raised whenever a generator makes something else from the same parameters.
+const GENERATOR_VERSION: u32 = 1;
+
+/// One number that a scene can be asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    pub key: &'static str,
+    pub description: &'static str,
+    pub default: u64,
+    /// Least and greatest value.
+    pub range: [u64; 2],
+}
+
+/// A scene that the program can make.
+pub struct BuiltIn {
+    pub name: &'static str,
+    /// One line.
+    pub description: &'static str,
+    pub parameters: &'static [Parameter],
+    make: fn(&Values, u64) -> Scene,
+}
+
+/// All of them, in the order in which help lists them.
+pub const ALL: &[BuiltIn] = &[
+    BuiltIn {
+        name: "cornell",
+        description: "the Cornell box: two blocks, a red and a green wall, a panel in the ceiling",
+        parameters: &[],
+        make: cornell::make,
+    },
+    BuiltIn {
+        name: "hall",
+        description: "a vaulted hall of fluted columns, inside: marble, brick, brass, glass, and lamps",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 5 %",
+            default: 256_000,
+            range: [hall::LEAST_TRIANGLES, 4_000_000],
+        }],
+        make: hall::make,
+    },
+    BuiltIn {
+        name: "lamps",
+        description: "objects on a plane under many coloured lamps (after Kircher & Lawrance 2009, figure 8)",
+        parameters: &[
+            Parameter { key: "objects", description: "how many objects stand there", default: 101, range: [1, 5000] },
+            Parameter { key: "lights", description: "how many point lights hang there", default: 81, range: [1, 5000] },
+        ],
+        make: lamps::make,
+    },
+];
+
+/// One value for each parameter of a scene, in its order.
+struct Values(Vec<(&'static str, u64)>);
+
+impl Values {
+    fn get(&self, key: &str) -> u64 {
+        let found = self.0.iter().find(|(name, _)| *name == key);
+        found.expect("a scene reads only the parameters that it lists").1
+    }
+}
+
+impl BuiltIn {
+    fn values(&self, arguments: Option<&str>) -> Result<Values> {
+        let mut values: Vec<_> = self.parameters.iter().map(|parameter| (parameter.key, parameter.default)).collect();
+        for argument in arguments.into_iter().flat_map(|arguments| arguments.split(',')) {
+            let Some((key, text)) = argument.split_once('=') else {
+                return Err(self.refusal(&format!("'{argument}' is not key=value")));
+            };
+            let Some(index) = self.parameters.iter().position(|parameter| parameter.key == key) else {
+                return Err(self.refusal(&format!("there is no parameter '{key}'")));
+            };
+            let [least, greatest] = self.parameters[index].range;
+            match text.parse::<u64>() {
+                Ok(value) if (least..=greatest).contains(&value) => values[index].1 = value,
+                _ => return Err(self.refusal(&format!("{key}={text}: must be a whole number, {least} to {greatest}"))),
+            }
+        }
+        Ok(Values(values))
+    }
+
+    fn refusal(&self, trouble: &str) -> Error {
+        let error = Error::request(format!("scene {}: {trouble}", self.name));
+        if self.parameters.is_empty() {
+            return error.note(format!("{} takes no parameters", self.name));
+        }
+        self.parameters.iter().fold(error, |error, parameter| {
+            let Parameter { key, description, default, range: [least, greatest] } = parameter;
+            error.note(format!("{key}={least} to {greatest}, default {default}: {description}"))
+        })
+    }
+}
+
+/// Makes the scene that `spec` names: `name` or `name:key=value,key=value`.
+///
+/// None where no built-in scene has that name: it may be a file. The error lists the parameters with their ranges where
+/// one is unknown, out of range or not a number. The same spec and seed give the same bytes everywhere.
+pub fn build(spec: &str, seed: u64) -> Option<Result<Scene>> {
+    let (name, arguments) = match spec.split_once(':') {
+        Some((name, arguments)) => (name, Some(arguments)),
+        None => (spec, None),
+    };
+    let built_in = ALL.iter().find(|built_in| built_in.name == name)?;
+    Some(built_in.values(arguments).map(|values| {
+        let mut scene = (built_in.make)(&values, seed);
+        let settings: Vec<_> = values.0.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        let settings = settings.join(",");
+        scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };
+        let identity = format!("{} seed={seed} version={GENERATOR_VERSION}", scene.name);
+        scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
+        scene
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::scene::{AlphaMode, Material};
+
+    fn made(spec: &str, seed: u64) -> Scene {
+        build(spec, seed).expect("the name is known").expect("the parameters are good")
+    }
+
+    #[test]
+    fn every_default_scene_is_sound_and_made_the_same_twice() {
+        for built_in in ALL {
+            let scene = made(built_in.name, 1);
+            checks::assert_scene_is_sound(&scene);
+            // The hall takes seconds: a smaller one is made by the same code.
+            let spec = if built_in.name == "hall" { "hall:triangles=20000" } else { built_in.name };
+            let [first, second] = [made(spec, 1), made(spec, 1)].map(|scene| (checks::fingerprint(&scene), scene.hash));
+            assert_eq!(first, second, "{spec}");
+        }
+    }
+
+    #[test]
+    fn cornell_has_its_walls_its_blocks_and_its_panel() {
+        let scene = made("cornell", 1);
+        assert_eq!(scene.triangle_count(), 2 * (5 + 1 + 2 * 5));
+        assert_eq!((scene.lights.len(), scene.cameras.len()), (1, 1));
+        let bounds = scene.bounds();
+        assert!((bounds.max - bounds.min).abs_diff_eq(glam::vec3(5.56, 5.488, 5.592), 1e-5), "{bounds:?}");
+    }
+
+    #[test]
+    fn the_hall_has_the_triangles_that_it_was_asked_for() {
+        for wanted in [hall::LEAST_TRIANGLES, 5000, 80_000, 256_000, 4_000_000] {
+            let count = hall::planned_triangle_count(wanted);
+            assert!(count.abs_diff(wanted) * 20 <= wanted, "{wanted} asked for, {count} planned");
+        }
+        for wanted in [5000, 80_000] {
+            let scene = made(&format!("hall:triangles={wanted}"), 1);
+            checks::assert_scene_is_sound(&scene);
+            assert_eq!(scene.triangle_count(), hall::planned_triangle_count(wanted));
+        }
+    }
+
+    #[test]
+    fn the_hall_has_materials_and_lamps_of_many_kinds() {
+        let scene = made("hall:triangles=20000", 1);
+        let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
+        assert!(used.len() >= 24 && used.len() == scene.materials.len(), "{} materials", used.len());
+        assert!((8..=24).contains(&scene.lights.len()), "{} lights", scene.lights.len());
+        let has = |wanted: fn(&Material) -> bool| scene.materials.iter().any(wanted);
+        assert!(has(|material| matches!(material.alpha, AlphaMode::Mask { .. })));
+        assert!(has(|material| material.alpha == AlphaMode::Blend));
+        assert!(has(|material| material.metallic_roughness_texture.is_some()));
+        assert!(has(Material::is_emissive));
+    }
+
+    #[test]
+    fn lamps_has_its_numbers_and_follows_its_seed() {
+        let scene = made("lamps:lights=7,objects=12", 3);
+        assert_eq!(scene.name, "lamps:objects=12,lights=7");
+        assert_eq!(scene.lights.len(), 7);
+        // Beside the objects there is the ground.
+        assert_eq!(scene.draws.len(), 13);
+        let other = made("lamps:lights=7,objects=12", 4);
+        assert_ne!(checks::fingerprint(&scene), checks::fingerprint(&other));
+        assert_ne!(scene.hash, other.hash);
+        checks::assert_scene_is_sound(&made("lamps:objects=5000,lights=5000", 1));
+        checks::assert_scene_is_sound(&made("lamps:objects=1,lights=1", 1));
+    }
+
+    #[test]
+    fn bad_parameters_are_refused_with_what_would_work() {
+        assert!(build("sponza.glb", 1).is_none());
+        for (spec, said) in [
+            ("lamps:lights=0", "lights=0: must be a whole number, 1 to 5000"),
+            ("lamps:lights=", "lights=: must be"),
+            ("lamps:lamp=3", "no parameter 'lamp'"),
+            ("hall:80000", "'80000' is not key=value"),
+            ("hall:triangles=1", "triangles=1: must be"),
+            ("cornell:width=3", "no parameter 'width'"),
+        ] {
+            let error = build(spec, 1).expect("the name is known").expect_err(spec);
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.message().contains(said), "{spec}: {error}");
+        }
+        let error = build("lamps:lights=x", 1).expect("the name is known").expect_err("x is no number");
+        assert!(error.to_string().contains("objects=1 to 5000, default 101"), "{error}");
+    }
+}

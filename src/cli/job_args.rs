@@ -1,0 +1,115 @@
+//! The flags of a job, made from the settings table: what `render` and `bench` share.
+
+use crate::error::Result;
+use crate::job::Job;
+use crate::settings::{COMMON, Setting};
+use crate::techniques::{self, Technique};
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Command};
+
+/// The technique that a command without --technique runs.
+pub const DEFAULT_TECHNIQUE: &str = "interleaved_deferred";
+
+/// Adds SCENE, --technique, --device, --validate and every setting.
+pub fn with_job_args(command: Command) -> Command {
+    let names = techniques::ALL.iter().map(|technique| technique.name());
+    let mut command = command
+        .arg(Arg::new("scene").value_name("SCENE").help(
+            "A built-in scene (`quincunx scene list`), with parameters as in hall:triangles=80000, or a .gltf or .glb \
+             file; default: the scene that shows the technique best",
+        ))
+        .arg(
+            Arg::new("technique")
+                .long("technique")
+                .value_name("NAME")
+                .value_parser(PossibleValuesParser::new(names))
+                .help(format!("What makes the picture; default {DEFAULT_TECHNIQUE}")),
+        )
+        .arg(
+            Arg::new("device")
+                .long("device")
+                .value_name("SUBSTRING|INDEX")
+                .help("Which device, as `quincunx devices` lists them; default: a GPU before a processor"),
+        )
+        .arg(
+            Arg::new("validate")
+                .long("validate")
+                .action(ArgAction::SetTrue)
+                .help("Run under the validation layer with synchronization checks; a message fails the command"),
+        )
+        .arg(Arg::new("quiet").long("quiet").action(ArgAction::SetTrue).help("Print nothing but errors"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON on standard output"));
+    for (heading, setting) in all_settings() {
+        command = command.arg(flag(setting).help_heading(heading));
+    }
+    command
+}
+
+/// Every setting once, under the heading of where it comes from first.
+fn all_settings() -> Vec<(String, &'static Setting)> {
+    let mut all: Vec<(String, &'static Setting)> = COMMON.iter().map(|setting| ("Common settings".to_owned(), setting)).collect();
+    for technique in techniques::ALL {
+        for table in technique.settings() {
+            let readers: Vec<&str> = techniques::ALL
+                .iter()
+                .filter(|other| other.settings().iter().any(|theirs| theirs[0].key == table[0].key))
+                .map(|other| other.name())
+                .collect();
+            for setting in table.iter() {
+                if all.iter().all(|(_, known)| known.key != setting.key) {
+                    all.push((format!("Settings of {}", readers.join(", ")), setting));
+                }
+            }
+        }
+    }
+    all
+}
+
+fn flag(setting: &'static Setting) -> Arg {
+    let mut help = format!("{} [{}] [default: {}]", setting.help, setting.range(), setting.default);
+    if !setting.unit.is_empty() {
+        help = format!("{help}, in {}", setting.unit);
+    }
+    if !setting.symbol.is_empty() {
+        help = format!("{help}, the paper's {}", setting.symbol);
+    }
+    if !setting.paper.is_empty() {
+        help = format!("{help} ({})", setting.paper);
+    }
+    Arg::new(setting.key).long(setting.key).value_name(value_name(setting)).allow_negative_numbers(true).help(help)
+}
+
+fn value_name(setting: &Setting) -> &'static str {
+    use crate::settings::Kind;
+    match setting.kind {
+        Kind::Integer { .. } | Kind::Number { .. } => "N",
+        Kind::Choice(_) => "NAME",
+        Kind::Pair { .. } => "NxM",
+        Kind::Length => "LENGTH",
+        Kind::Color => "COLOR",
+        Kind::Text(word) => word,
+    }
+}
+
+/// The technique that the flags name.
+pub fn technique(matches: &ArgMatches) -> Result<&'static dyn Technique> {
+    techniques::find(matches.get_one::<String>("technique").map_or(DEFAULT_TECHNIQUE, String::as_str))
+}
+
+/// The job that the flags describe.
+///
+/// Errors: a setting that the technique does not read, or an impossible value (exit code 2).
+pub fn job(matches: &ArgMatches, argv: &[String]) -> Result<Job> {
+    let technique = technique(matches)?;
+    let scene = matches.get_one::<String>("scene").map_or(technique.scene(), String::as_str);
+    let mut job = Job::new(scene, technique);
+    for (_, setting) in all_settings() {
+        if let Some(value) = matches.get_one::<String>(setting.key) {
+            job.set(setting.key, value)?;
+        }
+    }
+    job.device = matches.get_one::<String>("device").cloned();
+    job.validate = matches.get_flag("validate");
+    job.command = argv.to_vec();
+    Ok(job)
+}

@@ -1,0 +1,3 @@
+//! Where samples are: numbers only, the same on every machine.
+
+pub mod pcg;

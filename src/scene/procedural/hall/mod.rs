@@ -1,0 +1,198 @@
+//! A hall in the manner of a Roman basilica, seen from inside: a nave of eight bays under a coffered barrel vault, an
+//! aisle with groin vaults on each side, lamps and no sun. Closed all round, so that light bounces.
+//!
+//! z runs along the nave from the stained-glass window (-16 m) to the door (+16 m), x across, the floor is y = 0. What
+//! repeats is one mesh drawn many times; the right side is the left one turned by half a turn.
+//!
+//! Every piece divides its curves and faces by one edge length. A wanted number of triangles is met by
+//! searching that length; what then is missing goes into the floor of the nave, which can take any number.
+
+mod furniture;
+mod materials;
+mod structure;
+mod vaults;
+
+use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
+
+use self::materials::Materials;
+use super::Values;
+use super::assembly::{Assembly, place};
+use super::patch::{Detail, Patch, triangle_count};
+use super::shapes::{Mapping, face_of};
+use crate::scene::Scene;
+
+/// With fewer the arches would not be round.
+pub const LEAST_TRIANGLES: u64 = 5000;
+
+const BAY_M: f64 = 4.0;
+const BAY_COUNT: u32 = 8;
+const LENGTH_M: f64 = BAY_M * BAY_COUNT as f64;
+/// From the middle of the nave to its walls.
+const NAVE_M: f64 = 3.7;
+const WALL_M: f64 = 0.6;
+/// From the middle of the nave to the outer walls: an aisle is as wide as a bay is long, for square groin vaults.
+const OUTER_M: f64 = NAVE_M + WALL_M + BAY_M;
+/// Where the arches of the arcade and the vaults of the aisles begin.
+const SPRINGING_M: f64 = 4.6;
+/// Where the vault of the nave begins.
+const VAULT_M: f64 = 8.2;
+
+/// What a sketch leaves out. The lights of its lamps stay: brightness does not depend on the triangles.
+const ORNAMENTS: [&str; 17] = [
+    "cornice",
+    "string_course",
+    "rosettes",
+    "aisle_rib",
+    "pilaster",
+    "wainscot",
+    "nave_crown",
+    "nave_rod",
+    "aisle_crown",
+    "aisle_rod",
+    "candelabrum",
+    "candelabrum_glass",
+    "bench",
+    "plinth",
+    "copper_urn",
+    "blue_urn",
+    "veil_rail",
+];
+
+/// One mesh and where it stands.
+struct Piece {
+    name: &'static str,
+    material: usize,
+    patches: Vec<Patch>,
+    places: Vec<Mat4>,
+}
+
+impl Piece {
+    fn triangle_count(&self) -> u64 {
+        triangle_count(&self.patches) * self.places.len() as u64
+    }
+}
+
+/// The edge lengths of the hall's parts, for one common scale.
+#[derive(Clone, Copy)]
+struct Details {
+    /// Turned and carved pieces, which are seen closely.
+    fine: Detail,
+    /// Arches and vaults.
+    middle: Detail,
+    /// Flat walls.
+    broad: Detail,
+    /// So few triangles that mouldings and furniture would take them all: they are left out.
+    sketch: bool,
+}
+
+impl Details {
+    fn new(edge_m: f64) -> Self {
+        let detail = |factor: f64| Detail { edge_m: edge_m * factor };
+        Self { fine: detail(0.5), middle: detail(1.0), broad: detail(3.0), sketch: edge_m > 1.5 }
+    }
+}
+
+/// The middles of the bays along z.
+fn bays() -> impl Iterator<Item = f64> {
+    (0..BAY_COUNT).map(|bay| (f64::from(bay) + 0.5) * BAY_M - LENGTH_M * 0.5)
+}
+
+/// Where the columns stand along z: between the bays and at both ends.
+fn column_lines() -> impl Iterator<Item = f64> {
+    (0..=BAY_COUNT).map(|line| f64::from(line) * BAY_M - LENGTH_M * 0.5)
+}
+
+/// Both sides of the hall, for pieces that face +z in their own space: turned toward the middle of the nave, or away.
+fn both_sides(x_m: f64, y_m: f64, inward: bool, along: impl Iterator<Item = f64>) -> Vec<Mat4> {
+    let mut places = Vec::new();
+    for z in along {
+        for side in [-1.0, 1.0] {
+            let sine = if inward { -side } else { side };
+            places.push(place([sine, 0.0], 1.0, dvec3(side * x_m, y_m, z)));
+        }
+    }
+    places
+}
+
+fn nave_floor(material: usize, triangles: u64) -> Piece {
+    let quads = (triangles / 2).max(1);
+    let width_m = 2.0 * (NAVE_M + 0.05);
+    let columns = ((quads as f64 * width_m / LENGTH_M).sqrt().round() as u64).max(1);
+    let rows = (quads / columns).max(1);
+    let corners = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]]
+        .map(|[x, z]| dvec3(x * width_m * 0.5, 0.0, z * LENGTH_M * 0.5));
+    let floor = face_of(corners, Mapping::Repeat { tile_m: 3.7 }, columns as u32, rows as u32);
+    Piece { name: "nave_floor", material, patches: vec![floor], places: vec![Mat4::IDENTITY] }
+}
+
+/// All pieces, with `wanted` triangles within 5 %.
+fn plan(materials: &Materials, wanted: u64) -> Vec<Piece> {
+    let all_but_floor = |edge_m: f64| {
+        let details = Details::new(edge_m);
+        let mut pieces = structure::pieces(materials, details);
+        pieces.extend(vaults::pieces(materials, details));
+        pieces.extend(furniture::pieces(materials, details));
+        pieces.retain(|piece| !(details.sketch && ORNAMENTS.contains(&piece.name)));
+        pieces
+    };
+    let count = |pieces: &[Piece]| pieces.iter().map(Piece::triangle_count).sum::<u64>();
+    // The floor should have its share: about a twentieth of what is seen.
+    let budget = wanted - wanted / 20;
+    let (mut too_fine_m, mut coarse_m) = (0.005_f64, 100.0_f64);
+    for _ in 0..24 {
+        let middle_m = (too_fine_m * coarse_m).sqrt();
+        if count(&all_but_floor(middle_m)) > budget {
+            too_fine_m = middle_m;
+        } else {
+            coarse_m = middle_m;
+        }
+    }
+    let mut pieces = all_but_floor(coarse_m);
+    let rest = wanted.saturating_sub(count(&pieces));
+    pieces.push(nave_floor(materials.floor, rest));
+    pieces
+}
+
+/// How many triangles the hall has when `wanted` are asked for.
+#[cfg(test)]
+pub fn planned_triangle_count(wanted: u64) -> u64 {
+    plan(&Materials::default(), wanted).iter().map(Piece::triangle_count).sum()
+}
+
+/// The hall for `triangles`; the seed chooses the grain of its stones.
+pub fn make(values: &Values, seed: u64) -> Scene {
+    let mut assembly = Assembly::default();
+    let materials = materials::add(&mut assembly, seed as u32);
+    for piece in plan(&materials, values.get("triangles")) {
+        let mesh = assembly.mesh(piece.name, piece.material, &piece.patches);
+        for place in piece.places {
+            assembly.draw(mesh, place);
+        }
+    }
+    lights(&mut assembly);
+    for (name, eye, target, y_fov) in [
+        ("nave", dvec3(-2.5, 1.75, 13.3), dvec3(0.75, 3.2, -3.0), 1.0),
+        ("aisle", dvec3(-6.9, 1.7, 14.4), dvec3(-5.2, 2.2, 0.0), 0.95),
+        ("dais", dvec3(2.7, 2.0, 2.6), dvec3(-0.4, 1.3, -3.4), 0.8),
+        ("vault", dvec3(1.6, 1.2, 9.0), dvec3(-0.8, 8.6, -2.0), 1.05),
+        ("column", dvec3(-1.7, 2.6, 5.9), dvec3(-4.6, 3.9, 3.2), 0.85),
+    ] {
+        assembly.camera(name, eye, target, y_fov);
+    }
+    assembly.scene
+}
+
+/// Every lamp has its light a little outside of its glass, which would else stand in the way of every shadow ray.
+fn lights(assembly: &mut Assembly) {
+    const WARM: Vec3 = vec3(1.0, 0.74, 0.44);
+    for (kind, places, below_m, candela) in [
+        ("nave_lamp", furniture::nave_lamps(), 0.4, 38.0),
+        ("aisle_lamp", furniture::aisle_lamps(), 0.4, 15.0),
+        ("candelabrum", furniture::candelabra(), -furniture::CANDELABRUM_M - 0.32, 5.0),
+    ] {
+        for (index, position) in places.into_iter().enumerate() {
+            let position = position - DVec3::Y * below_m;
+            assembly.point_light(format!("{kind}_{index}"), position.as_vec3(), WARM * candela, None);
+        }
+    }
+}
