@@ -139,6 +139,7 @@ fn missing(instance: &ash::Instance, physical: vk::PhysicalDevice, caps: &Caps) 
         (features13.dynamic_rendering, "dynamicRendering"),
         (features13.synchronization2, "synchronization2"),
         (features13.maintenance4, "maintenance4"),
+        (features13.shader_demote_to_helper_invocation, "shaderDemoteToHelperInvocation"),
     ] {
         if present == 0 {
             missing.push(format!("feature {name}"));
@@ -248,7 +249,9 @@ impl Gpu {
         let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
             .dynamic_rendering(true)
             .synchronization2(true)
-            .maintenance4(true);
+            .maintenance4(true)
+            // What glslang makes of `discard`.
+            .shader_demote_to_helper_invocation(true);
         let features = vk::PhysicalDeviceFeatures::default()
             .sampler_anisotropy(caps.features.sampler_anisotropy)
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)

@@ -34,6 +34,11 @@ impl Block {
         Ok(block)
     }
 
+    /// Whether the host sees it.
+    pub fn is_mapped(&self) -> bool {
+        self.mapped.is_some()
+    }
+
     /// Where the host sees byte `offset`.
     pub fn mapped_at(&self, offset: u64) -> Option<NonNull<u8>> {
         // SAFETY: ranges lie inside the block, so the pointer stays inside the mapping.

@@ -125,7 +125,9 @@ impl Memory {
         let found = shared.then(|| {
             state.blocks.iter_mut().enumerate().find_map(|(index, slot)| {
                 let slot = slot.as_mut()?;
-                if slot.dedicated || slot.tiling != request.tiling || slot.block.type_index != choice.type_index {
+                let block = &slot.block;
+                let fits = block.type_index == choice.type_index && block.is_mapped() == choice.mapped;
+                if slot.dedicated || slot.tiling != request.tiling || !fits {
                     return None;
                 }
                 Some((index, slot.ranges.take(size, request.requirements.alignment)?))
