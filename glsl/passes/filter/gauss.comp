@@ -11,6 +11,8 @@ struct GaussParams {
     uint horizontal;
     // Taps on either side of the middle.
     uint radius;
+    // Bits of the flags that end a walk in this direction.
+    uint stop_bits;
     // -1 / (2 sigma^2), in 1/px^2.
     float falloff;
 };
@@ -35,18 +37,18 @@ void main() {
     float weights = 1.0;
     // Forward: a flagged pixel differs from the one after it, so it is still blended and ends the walk. A flagged
     // pixel itself does not walk forward at all.
-    bool open = flags[middle] == 0u;
+    bool open = (flags[middle] & params.stop_bits) == 0u;
     for (uint tap = 1u; tap <= min(params.radius, after) && open; tap++) {
         uint texel = middle + tap * step;
         float weight = exp(float(tap * tap) * params.falloff);
         sum += unpack_halves(source[texel]) * weight;
         weights += weight;
-        open = flags[texel] == 0u;
+        open = (flags[texel] & params.stop_bits) == 0u;
     }
     // Backward: a flagged pixel differs from the one after it, which is on this side: it ends the walk unblended.
     for (uint tap = 1u; tap <= min(params.radius, before); tap++) {
         uint texel = middle - tap * step;
-        if (flags[texel] != 0u) {
+        if ((flags[texel] & params.stop_bits) != 0u) {
             break;
         }
         float weight = exp(float(tap * tap) * params.falloff);

@@ -25,6 +25,11 @@ layout(set = 0, binding = 1, rg32ui) writeonly uniform uimage2D target;
 layout(std430, set = 0, binding = 1) writeonly buffer Target { uvec2 target[]; };
 #endif
 
+// Whether a walk in this direction stops, from the sum of two texels' flags (gauss_pack.comp).
+bool stops(float sum) {
+    return params.horizontal != 0u ? mod(sum, 4.0) > 0.25 : sum > 3.5;
+}
+
 float weight_at(uint tap) {
     return exp(float(tap * tap) * params.falloff);
 }
@@ -36,7 +41,7 @@ void walk(vec2 middle, vec2 direction, uint room, inout vec4 sum) {
         float weight = weight_at(tap) + (pair ? weight_at(tap + 1u) : 0.0);
         vec2 at = middle + direction * (float(tap) + (pair ? 0.5 : 0.0));
         vec4 fetched = textureLod(source, at / vec2(params.width_px, params.height_px), 0.0);
-        if (fetched.a > 0.0) {
+        if (stops(fetched.a * 2.0)) {
             return;
         }
         sum += vec4(fetched.rgb, 1.0) * weight;
@@ -54,7 +59,7 @@ void main() {
     uint after = params.horizontal != 0u ? params.width_px - 1u - pixel.x : params.height_px - 1u - pixel.y;
     vec4 own = texelFetch(source, ivec2(pixel), 0);
     vec4 sum = vec4(own.rgb, 1.0);
-    if (own.a == 0.0) {
+    if (!stops(own.a * 2.0)) {
         walk(middle, direction, after, sum);
     }
     walk(middle, -direction, before, sum);

@@ -1,5 +1,8 @@
-// Irradiance and its discontinuity flags into one image, for the filter that lets the sampler blend: rgb and flag as
+// Irradiance and its discontinuity flags into one image, for the filter that lets the sampler blend: rgb and flags as
 // half floats through an integer view, the same bits on every driver. Pass: src/passes/filter/gauss_pack.rs.
+//
+// The fourth half is 1 where a walk along x stops, plus 4 where one along y does: the mean of two texels still tells
+// which of the flags any of them has.
 #version 460
 #include "passes/gbuffer.glsl"
 
@@ -7,12 +10,12 @@ struct GaussPackParams {
     uint width_px;
     uint height_px;
     uint row_pitch;
+    // Bits of the flags that end a walk along x, and along y.
+    uint stop_bits_x;
+    uint stop_bits_y;
 };
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
-
-// 1 as a half float.
-const uint HALF_ONE = 0x3c00u;
 
 layout(push_constant) uniform Push { GaussPackParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Source { uvec2 source[]; };
@@ -26,6 +29,8 @@ void main() {
     }
     uint texel = pixel.y * params.row_pitch + pixel.x;
     uvec2 words = source[texel];
-    uint flag = flags[texel] != 0u ? HALF_ONE : 0u;
-    imageStore(target, ivec2(pixel), uvec4(words.x, (words.y & 0xffffu) | (flag << 16), 0u, 0u));
+    float stops = (flags[texel] & params.stop_bits_x) != 0u ? 1.0 : 0.0;
+    stops += (flags[texel] & params.stop_bits_y) != 0u ? 4.0 : 0.0;
+    uint last = packHalf2x16(vec2(stops, 0.0));
+    imageStore(target, ivec2(pixel), uvec4(words.x, (words.y & 0xffffu) | (last << 16), 0u, 0u));
 }

@@ -1,4 +1,5 @@
 // Discontinuity buffer (DB): does a pixel differ from its three positive neighbours? Segovia 2006, section 4.5.
+// Bit 0: from +x, bit 1: from +y, bit 2: from +xy. The paper's flag is whether any bit is set.
 // Pass: src/techniques/interleaved_deferred/discontinuity.rs.
 // variants: POSITION=half|unorm16|depth|float
 #version 460
@@ -28,18 +29,18 @@ void main() {
     bool surface = has_surface(normal_bits);
     vec3 normal_ws = unpack_normal(normal_bits);
     vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
-    bool differs = false;
+    uint bits = 0u;
     for (uint step = 1u; step < 4u; step++) {
         uvec2 other = min(pixel + uvec2(step & 1u, step >> 1), last);
-        uvec2 other_bits = normal_words(other);
-        bool other_surface = has_surface(other_bits);
+        uvec2 other_normal = normal_words(other);
+        bool other_surface = has_surface(other_normal);
+        bool differs = surface != other_surface;
         if (surface && other_surface) {
             vec3 away = unpack_position(frame, position_words(other), other) - position_ws;
-            differs = differs || 1.0 - dot(normal_ws, unpack_normal(other_bits)) > params.normal_threshold;
-            differs = differs || abs(dot(normal_ws, away)) > params.position_threshold;
-        } else {
-            differs = differs || surface != other_surface;
+            differs = 1.0 - dot(normal_ws, unpack_normal(other_normal)) > params.normal_threshold
+                || abs(dot(normal_ws, away)) > params.position_threshold;
         }
+        bits |= differs ? 1u << (step - 1u) : 0u;
     }
-    flags[pixel.y * params.row_pitch + pixel.x] = differs ? 1u : 0u;
+    flags[pixel.y * params.row_pitch + pixel.x] = bits;
 }

@@ -61,6 +61,7 @@ impl Gauss {
             row_pitch: self.row_pitch,
             horizontal: u32::from(horizontal),
             radius: self.kernel.radius(),
+            stop_bits: if horizontal { self.kernel.stop_bits.x } else { self.kernel.stop_bits.y },
             falloff: self.kernel.falloff(),
         };
         let bound =

@@ -64,7 +64,7 @@ impl GaussFast {
                 half_way.discard(Access::ComputeWrite),
                 target.discard(Access::ComputeWrite),
             ]);
-            self.pack.record(cmd, self.extent, self.row_pitch, source.resource, flags.resource, packed)?;
+            self.pack.record(cmd, self.extent, self.row_pitch, self.kernel.stop_bits, source.resource, flags.resource, packed)?;
             cmd.barriers([packed.from(Access::ComputeWrite).to(Access::ComputeSample)]);
             let sampled = |image| Bound::Sampled(image, self.linear.handle, Access::ComputeSample);
             let groups = self.horizontal.groups([self.extent.width, self.extent.height, 1]);

@@ -4,6 +4,20 @@ pub mod gauss;
 pub mod gauss_fast;
 pub mod gauss_pack;
 
+/// Which discontinuities end a walk: bits of the flags (1: differs from +x, 2: from +y, 4: from +xy).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StopBits {
+    pub x: u32,
+    pub y: u32,
+}
+
+impl StopBits {
+    /// Any of the three ends a walk in either direction: the paper's one flag.
+    pub const ANY: Self = Self { x: 7, y: 7 };
+    /// Only a step in the walk's own direction ends it.
+    pub const DIRECTIONAL: Self = Self { x: 1, y: 2 };
+}
+
 /// A separable Gaussian's shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kernel {
@@ -11,6 +25,7 @@ pub struct Kernel {
     pub taps: u32,
     /// Standard deviation in px.
     pub sigma: f32,
+    pub stop_bits: StopBits,
 }
 
 impl Kernel {

@@ -1,8 +1,12 @@
 //! Discontinuity buffer (DB): Segovia 2006, section 4.5 (SG10). Shader: discontinuity.comp.
-//! reads  the G-buffer      writes  discontinuity.flags  buffer, frame order, 4 B a pixel, 0 or 1
+//! reads  the G-buffer      writes  discontinuity.flags  buffer, frame order, 4 B a pixel, a bit a neighbour
 //!
 //! The paper leaves the measure open. Here: 1 - cos of the angle between the normals, and the distance of the
 //! neighbour from the pixel's tangent plane, which does not flag a floor seen at a grazing angle.
+//!
+//! Differs from the paper: one bit for each neighbour instead of one flag for all. With one flag, every pixel along a
+//! horizontal edge is flagged and finds its neighbours along x flagged too, so that it is not filtered at all; with
+//! `--discontinuity any` the filter reads the bits as the paper's flag.
 
 use super::NAME;
 use crate::error::Result;

@@ -8,7 +8,7 @@ use super::split::{Road, one_pass};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::MappingParams;
 use crate::passes::direct::{self, ShadingSettings};
-use crate::passes::filter::Kernel;
+use crate::passes::filter::{Kernel, StopBits};
 use crate::passes::gbuffer;
 use crate::plan::Plan;
 use crate::settings::Values;
@@ -82,7 +82,11 @@ fn kernel(values: &Values) -> Result<Kernel> {
         0.0 => taps as f32 / 3.0,
         sigma => sigma as f32,
     };
-    Ok(Kernel { taps, sigma })
+    let stop_bits = match values.text("discontinuity") {
+        "any" => StopBits::ANY,
+        _ => StopBits::DIRECTIONAL,
+    };
+    Ok(Kernel { taps, sigma, stop_bits })
 }
 
 /// The resources of a frame.

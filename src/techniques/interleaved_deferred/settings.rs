@@ -96,6 +96,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "standard deviation of the filter; 0: a third of the kernel, which weighs the pixels of a 4x4 pattern most evenly",
     },
     Setting {
+        key: "discontinuity",
+        symbol: "",
+        kind: Kind::Choice(&["directional", "any"]),
+        default: "directional",
+        unit: "",
+        paper: "Segovia 2006, 4.5",
+        help: "what ends a walk of the filter: a discontinuity in its own direction, or in any of the three (the paper's \
+               one flag, which leaves pixels along an edge unfiltered)",
+    },
+    Setting {
         key: "normal-threshold",
         symbol: "",
         kind: Kind::Number { min: 0.0, max: 2.0 },
