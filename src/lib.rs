@@ -1,6 +1,7 @@
 //! quincunx: a headless Vulkan renderer in which five papers on interleaved, inferred and decoupled shading run side
 //! by side: the same scene, the same lights, the same driver, the same ground truth.
 
+pub mod bench;
 pub mod bvh;
 pub mod cli;
 pub mod error;

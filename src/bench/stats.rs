@@ -1,0 +1,61 @@
+//! Paired ratios and their 95 % interval.
+
+use serde::Serialize;
+
+/// How many times as fast as the baseline a variant is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Ratio {
+    /// Geometric mean of the paired ratios.
+    pub mean: f64,
+    /// 95 % interval of that mean; None with fewer than two pairs.
+    pub interval: Option<[f64; 2]>,
+    pub pairs: usize,
+}
+
+/// `baseline[i]` and `variant[i]` were measured in the same round; at least one pair, all positive.
+///
+/// The interval is Student's, on logarithms: a ratio and its inverse are then the same finding.
+pub fn paired_ratio(baseline: &[f64], variant: &[f64]) -> Ratio {
+    assert!(!variant.is_empty() && baseline.len() == variant.len(), "rounds come in pairs");
+    let logs: Vec<f64> = baseline.iter().zip(variant).map(|(b, v)| (b / v).ln()).collect();
+    let count = logs.len() as f64;
+    let mean = logs.iter().sum::<f64>() / count;
+    let interval = (logs.len() > 1).then(|| {
+        let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let reach = t_quantile(logs.len() - 1) * (variance / count).sqrt();
+        [(mean - reach).exp(), (mean + reach).exp()]
+    });
+    Ratio { mean: mean.exp(), interval, pairs: logs.len() }
+}
+
+/// 97.5 % quantile of Student's t; beyond 30 degrees of freedom within 2 % of the normal one.
+fn t_quantile(freedom: usize) -> f64 {
+    const TABLE: [f64; 30] = [
+        12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
+        2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
+    ];
+    TABLE.get(freedom.wrapping_sub(1)).copied().unwrap_or(2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_pairs_have_a_ratio_without_width() {
+        let ratio = paired_ratio(&[4.0, 8.0, 2.0], &[2.0, 4.0, 1.0]);
+        assert!((ratio.mean - 2.0).abs() < 1e-12);
+        let [low, high] = ratio.interval.unwrap();
+        assert!((low - 2.0).abs() < 1e-9 && (high - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn drift_that_both_share_drops_out_and_noise_that_one_has_widens_the_interval() {
+        let shared = paired_ratio(&[10.0, 20.0, 40.0, 80.0], &[1.0, 2.0, 4.0, 8.0]);
+        assert!((shared.mean - 10.0).abs() < 1e-9);
+        let noisy = paired_ratio(&[10.0, 20.0, 10.0, 20.0], &[1.0; 4]);
+        let [low, high] = noisy.interval.unwrap();
+        assert!(low < noisy.mean && noisy.mean < high && high / low > 2.0);
+        assert_eq!(paired_ratio(&[2.0], &[1.0]).interval, None);
+    }
+}
