@@ -93,6 +93,10 @@ fn mirrored(name: &str) -> Result<(), String> {
     if file.exists() || folder.exists() {
         Ok(())
     } else {
-        Err(format!("glsl/{name}:1:1: a shader without its pass: neither {} nor {} exists", file.display(), folder.display()))
+        Err(format!(
+            "glsl/{name}:1:1: a shader without its pass: neither {} nor {} exists",
+            file.display(),
+            folder.display()
+        ))
     }
 }

@@ -98,7 +98,10 @@ impl Bvh {
         let depth = tree.depth(0);
         // A walk holds at most one waiting node a level, and one more.
         if depth + 1 > STACK {
-            return Err(Error::request(format!("the scene's tree is {depth} levels deep, {} can be walked", STACK - 1)));
+            return Err(Error::request(format!(
+                "the scene's tree is {depth} levels deep, {} can be walked",
+                STACK - 1
+            )));
         }
         let word = f32::from_bits;
         let nodes = tree

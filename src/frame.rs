@@ -34,8 +34,11 @@ impl View {
             Some(index) => Ok(Self { extent, camera: scene.cameras[index].clone(), made_up: false }),
             None => {
                 let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).take(12).collect();
-                Err(Error::request(format!("--camera {selector}: {} has no such camera", scene.name))
-                    .note(format!("it has {}: {}", scene.cameras.len(), names.join(", "))))
+                Err(Error::request(format!("--camera {selector}: {} has no such camera", scene.name)).note(format!(
+                    "it has {}: {}",
+                    scene.cameras.len(),
+                    names.join(", ")
+                )))
             }
         }
     }
@@ -53,9 +56,8 @@ impl View {
 
     fn clip_from_view(&self, picture_aspect: f32) -> Mat4 {
         match self.camera.projection {
-            Projection::Perspective { y_fov, aspect, z_near, z_far } => {
-                // A camera with an aspect of its own keeps its vertical angle; the picture's shape decides the width.
-                let _ = aspect;
+            // A camera with an aspect of its own keeps its vertical angle; the picture's shape decides the width.
+            Projection::Perspective { y_fov, aspect: _, z_near, z_far } => {
                 let y = 1.0 / (0.5 * y_fov).tan();
                 let x = y / picture_aspect;
                 // depth = near (far - z) / (z (far - near)): 1 at near, 0 at far; far may be infinite.
@@ -85,7 +87,14 @@ impl View {
     }
 
     /// The block that shaders read.
-    pub fn block(&self, bounds: &Bounds, background: Vec3, ambient: Vec3, light_count: u32, vpl_count: u32) -> FrameBlock {
+    pub fn block(
+        &self,
+        bounds: &Bounds,
+        background: Vec3,
+        ambient: Vec3,
+        light_count: u32,
+        vpl_count: u32,
+    ) -> FrameBlock {
         let clip_from_world = self.clip_from_world();
         // Double precision: the inverse is what `--position depth` reads positions back with.
         let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
@@ -118,11 +127,8 @@ impl View {
 fn framing(bounds: &Bounds, extent: Extent) -> Camera {
     const Y_FOV: f32 = 45.0 * std::f32::consts::PI / 180.0;
     const MARGIN: f32 = 1.05;
-    let (center, half) = if bounds.is_empty() {
-        (Vec3::ZERO, Vec3::ONE)
-    } else {
-        (bounds.center(), (bounds.max - bounds.min) * 0.5)
-    };
+    let (center, half) =
+        if bounds.is_empty() { (Vec3::ZERO, Vec3::ONE) } else { (bounds.center(), (bounds.max - bounds.min) * 0.5) };
     let tangent = (0.5 * Y_FOV).tan();
     let aspect = extent.width as f32 / extent.height as f32;
     let away = (half.y / tangent).max(half.x / (tangent * aspect)) * MARGIN;

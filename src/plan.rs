@@ -3,9 +3,13 @@
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Gpu, Image, ImageDescription};
 use crate::memory::kinds::Use;
+use crate::units::{Bytes, Extent};
 use ash::vk;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Format of finished pictures.
+pub const PICTURE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// What a resource is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,11 +72,18 @@ impl Plan {
         &mut self,
         group: &'static str,
         name: impl Into<String>,
-        extent: crate::units::Extent,
+        extent: Extent,
         format: vk::Format,
         usage: vk::ImageUsageFlags,
     ) {
         self.push(group, name, Shape::Image(ImageDescription { extent, format, level_count: 1, usage }));
+    }
+
+    /// The finished picture, RGBA32F: shaders store it, BLEND surfaces blend over it, the host reads it.
+    pub fn picture(&mut self, name: impl Into<String>, extent: Extent) {
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::STORAGE | Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC;
+        self.image("picture", name, extent, PICTURE_FORMAT, usage);
     }
 
     /// Sum of the bytes asked for.
@@ -91,8 +102,8 @@ impl Plan {
                 return Err(Error::device(format!(
                     "{} needs {}, and this device binds at most {} at once",
                     planned.name,
-                    crate::units::Bytes(bytes),
-                    crate::units::Bytes(max_storage_buffer_range_bytes)
+                    Bytes(bytes),
+                    Bytes(max_storage_buffer_range_bytes)
                 ))
                 .note("a smaller --size, or a scene with fewer triangles, would fit"));
             }

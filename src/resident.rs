@@ -13,7 +13,8 @@ use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// glsl/resident.glsl's bits.
@@ -340,13 +341,11 @@ impl Textures {
         upload::image(gpu, &white, &[255; 4], Access::FragmentSample)?;
         images.push(white);
         let mut samplers = Vec::new();
-        let mut sampler_of = BTreeMap::new();
+        let mut sampler_of = HashMap::new();
         for texture in &scene.textures {
-            let info = sampler_info(gpu, texture);
-            let key = format!("{:?}", texture.sampler);
-            if !sampler_of.contains_key(&key) {
-                sampler_of.insert(key, samplers.len());
-                samplers.push(Sampler::new(gpu, &info)?);
+            if let Entry::Vacant(slot) = sampler_of.entry(texture.sampler) {
+                slot.insert(samplers.len());
+                samplers.push(Sampler::new(gpu, &sampler_info(texture))?);
             }
         }
         if samplers.is_empty() {
@@ -358,7 +357,7 @@ impl Textures {
             Some(index) => {
                 let texture = &scene.textures[index];
                 let image = distinct.iter().position(|entry| *entry == (texture.image, texture.color_space));
-                let sampler = sampler_of[&format!("{:?}", texture.sampler)];
+                let sampler = sampler_of[&texture.sampler];
                 (images[image.expect("`distinct_images` lists it")].view, samplers[sampler].handle)
             }
         };
@@ -384,7 +383,7 @@ impl Textures {
     }
 }
 
-fn sampler_info(gpu: &Gpu, texture: &Texture) -> vk::SamplerCreateInfo<'static> {
+fn sampler_info(texture: &Texture) -> vk::SamplerCreateInfo<'static> {
     let filter = |linear| if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
     let wrap = |wrap| match wrap {
         Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
@@ -394,7 +393,6 @@ fn sampler_info(gpu: &Gpu, texture: &Texture) -> vk::SamplerCreateInfo<'static> 
     let sampler = &texture.sampler;
     // Anisotropy is left out on purpose: software drivers take several times as long for it, and pictures of different
     // drivers would differ by more than their rounding.
-    let _ = gpu;
     vk::SamplerCreateInfo::default()
         .mag_filter(filter(sampler.mag_linear))
         .min_filter(filter(sampler.min_linear))

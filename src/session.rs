@@ -64,14 +64,8 @@ impl Session {
     pub fn renderer(&self, technique: &dyn Technique, values: &Values, submits: Submits) -> Result<Renderer> {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
-        let inputs = Inputs {
-            scene: &self.scene,
-            stats: &self.stats,
-            bvh: &self.bvh,
-            view: &view,
-            lights: &lights,
-            values,
-        };
+        let inputs =
+            Inputs { scene: &self.scene, stats: &self.stats, bvh: &self.bvh, view: &view, lights: &lights, values };
         let prepared = technique.prepare(&inputs)?;
         let mut plan = prepared.plan().clone();
         let block_name = format!("{}.frame", technique.name());

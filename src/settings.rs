@@ -11,11 +11,20 @@ use std::collections::BTreeMap;
 /// What a value may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    Integer { min: u64, max: u64 },
-    Number { min: f64, max: f64 },
+    Integer {
+        min: u64,
+        max: u64,
+    },
+    Number {
+        min: f64,
+        max: f64,
+    },
     Choice(&'static [&'static str]),
     /// `NxM`, both in the range.
-    Pair { min: u32, max: u32 },
+    Pair {
+        min: u32,
+        max: u32,
+    },
     /// Metres, or a part of the scene's diagonal as `2%`.
     Length,
     /// Three numbers `R,G,B` of at least 0, or one for all three.
@@ -346,7 +355,15 @@ mod tests {
     use super::*;
 
     fn setting(kind: Kind) -> Setting {
-        Setting { key: "pattern", symbol: "n x m", kind, default: "4x4", unit: "px", paper: "Segovia 2006, 3", help: "" }
+        Setting {
+            key: "pattern",
+            symbol: "n x m",
+            kind,
+            default: "4x4",
+            unit: "px",
+            paper: "Segovia 2006, 3",
+            help: "",
+        }
     }
 
     #[test]

@@ -119,10 +119,8 @@ fn pass_ms(job: &Job, session: &Session, values: &Values) -> Result<Vec<(String,
 
 fn row(job: &Job, session: &Session, variant: &Variant) -> Result<Value> {
     let settings: BTreeMap<&str, &str> = variant.values.iter().collect();
-    let passes: serde_json::Map<String, Value> = pass_ms(job, session, &variant.values)?
-        .into_iter()
-        .map(|(name, ms)| (name, json!(ms)))
-        .collect();
+    let passes: serde_json::Map<String, Value> =
+        pass_ms(job, session, &variant.values)?.into_iter().map(|(name, ms)| (name, json!(ms))).collect();
     let traffic = variant.renderer.passes().iter().map(|pass| pass.traffic);
     Ok(json!({
         "schema": 1,
@@ -147,7 +145,8 @@ fn row(job: &Job, session: &Session, variant: &Variant) -> Result<Value> {
 /// The `render` command of a variant: every setting that is not at its default.
 fn repeating_command(job: &Job, variant: &Variant) -> Vec<String> {
     let defaults = Job::new(&job.scene, job.technique).values;
-    let mut command = ["quincunx", "render", &job.scene, "--technique", job.technique.name()].map(str::to_owned).to_vec();
+    let mut command =
+        ["quincunx", "render", &job.scene, "--technique", job.technique.name()].map(str::to_owned).to_vec();
     for (key, value) in variant.values.iter() {
         if defaults.text(key) != value {
             command.extend([format!("--{key}"), value.to_owned()]);

@@ -38,10 +38,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Write rows.jsonl there"),
         );
-    Command::new("bench")
-        .about("Measure")
-        .subcommand_required(true)
-        .subcommand(job_args::with_job_args(frame))
+    Command::new("bench").about("Measure").subcommand_required(true).subcommand(job_args::with_job_args(frame))
 }
 
 /// Measures and prints.
@@ -53,8 +50,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let repeat = *matches.get_one::<u32>("repeat").expect("it has a default") as usize;
     let folder = matches.get_one::<PathBuf>("output");
     if let Some(folder) = folder {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+        std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
     }
     let quiet = matches.get_flag("quiet");
     let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new((repeat * grid.len()) as u64) };
@@ -88,7 +84,13 @@ fn write_table(text: &mut String, rows: &[Value]) -> std::fmt::Result {
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let software = if first["device"]["type"] == "cpu" { ", software driver" } else { "" };
     let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    writeln!(text, "{} on {} ({}{software})", word(&first["scene"]["name"]), word(&first["device"]["name"]), word(&first["device"]["driver_info"]))?;
+    writeln!(
+        text,
+        "{} on {} ({}{software})",
+        word(&first["scene"]["name"]),
+        word(&first["device"]["name"]),
+        word(&first["device"]["driver_info"])
+    )?;
     writeln!(text, "speed-up over {}; error and overhead against --split none", word(&first["speed_up"]["baseline"]))?;
     writeln!(text)?;
     writeln!(

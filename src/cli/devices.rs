@@ -33,7 +33,11 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
 fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Result {
     let caps = &listed.caps;
     let identity = &caps.identity;
-    writeln!(text, "{index}: {} ({}, {}, Vulkan {})", identity.name, identity.device_type, identity.driver_info, identity.api)?;
+    writeln!(
+        text,
+        "{index}: {} ({}, {}, Vulkan {})",
+        identity.name, identity.device_type, identity.driver_info, identity.api
+    )?;
     if listed.missing.is_empty() {
         writeln!(text, "   fits: every technique and setting of this version runs here")?;
     } else {
@@ -62,9 +66,8 @@ fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Resul
         (features.memory_budget, "memory budget"),
         (limits.timestamp_period_ns > 0.0, "timestamps"),
     ];
-    let names = |present: bool| -> Vec<&str> {
-        all.iter().filter(|(has, _)| *has == present).map(|(_, name)| *name).collect()
-    };
+    let names =
+        |present: bool| -> Vec<&str> { all.iter().filter(|(has, _)| *has == present).map(|(_, name)| *name).collect() };
     writeln!(text, "   has {}", names(true).join(", "))?;
     writeln!(text, "   has no {}", names(false).join(", "))
 }

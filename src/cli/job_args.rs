@@ -47,7 +47,8 @@ pub fn with_job_args(command: Command) -> Command {
 
 /// Every setting once, under the heading of where it comes from first.
 fn all_settings() -> Vec<(String, &'static Setting)> {
-    let mut all: Vec<(String, &'static Setting)> = COMMON.iter().map(|setting| ("Common settings".to_owned(), setting)).collect();
+    let mut all: Vec<(String, &'static Setting)> =
+        COMMON.iter().map(|setting| ("Common settings".to_owned(), setting)).collect();
     for technique in techniques::ALL {
         for table in technique.settings() {
             let readers: Vec<&str> = techniques::ALL

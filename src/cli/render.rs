@@ -13,9 +13,11 @@ pub fn command() -> Command {
     job_args::with_job_args(
         Command::new("render")
             .about("Render a scene")
-            .arg(path("output", "FILE.exr|FILE.png").short('o').help(
-                "The picture; default SCENE-TECHNIQUE.png in the current folder",
-            ))
+            .arg(
+                path("output", "FILE.exr|FILE.png")
+                    .short('o')
+                    .help("The picture; default SCENE-TECHNIQUE.png in the current folder"),
+            )
             .arg(path("report", "FILE.json").help("Write the report: settings, times, memory, hashes"))
             .arg(
                 Arg::new("aov")

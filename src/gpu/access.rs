@@ -248,7 +248,11 @@ impl Barrier {
             .size(vk::WHOLE_SIZE)
     }
 
-    pub(super) fn image_barrier(&self, image: vk::Image, aspect: vk::ImageAspectFlags) -> vk::ImageMemoryBarrier2<'static> {
+    pub(super) fn image_barrier(
+        &self,
+        image: vk::Image,
+        aspect: vk::ImageAspectFlags,
+    ) -> vk::ImageMemoryBarrier2<'static> {
         let old_layout = if self.discard { vk::ImageLayout::UNDEFINED } else { self.from.layout() };
         vk::ImageMemoryBarrier2::default()
             .src_stage_mask(self.from.stages())

@@ -170,7 +170,8 @@ impl Commands {
                 }
             }
             let known = self.truth.entry(barrier.target).or_default();
-            let joins = !barrier.to.writes() && known.iter().all(|access| !access.writes() && access.layout() == barrier.to.layout());
+            let joins = !barrier.to.writes()
+                && known.iter().all(|access| !access.writes() && access.layout() == barrier.to.layout());
             *known = if joins { known.with(barrier.to) } else { barrier.to.into() };
         }
         if buffers.is_empty() && images.is_empty() {
@@ -237,7 +238,9 @@ impl Commands {
                         image_info[0].image_view(image.view).sampler(*sampler).image_layout(access.layout());
                     write.image_info(&image_info)
                 }
-                (kind, _) => panic!("{}: {} is a {kind:?} and was bound as something else", interface.label, binding.name),
+                (kind, _) => {
+                    panic!("{}: {} is a {kind:?} and was bound as something else", interface.label, binding.name)
+                }
             };
             // SAFETY: the set is fresh, the resources are alive and outlive the recorded frame.
             unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) };
@@ -311,7 +314,12 @@ impl Commands {
     }
 
     /// Binds a graphics pipeline, inside rendering. Draws follow on `buffer()`.
-    pub fn bind_graphics(&mut self, pipeline: &GraphicsPipeline, params: &[u8], bound: &[(&str, Bound<'_>)]) -> Result<()> {
+    pub fn bind_graphics(
+        &mut self,
+        pipeline: &GraphicsPipeline,
+        params: &[u8],
+        bound: &[(&str, Bound<'_>)],
+    ) -> Result<()> {
         // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
         unsafe {
             self.gpu.device.cmd_bind_pipeline(self.buffer(), vk::PipelineBindPoint::GRAPHICS, pipeline.handle);
@@ -353,8 +361,7 @@ impl Commands {
             offset: vk::Offset2D::default(),
             extent: vk::Extent2D { width: extent.width, height: extent.height },
         };
-        let mut info =
-            vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
+        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
         if let Some(depth_info) = &depth_info {
             info = info.depth_attachment(depth_info);
         }

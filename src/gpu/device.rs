@@ -243,9 +243,8 @@ impl Gpu {
         let (physical, caps) = choose(&instance, request.selector.as_deref())?;
         let queue_family = probe::queue_family(&instance, physical).expect("`choose` asked for it");
         let priorities = [1.0];
-        let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(queue_family)
-            .queue_priorities(&priorities)];
+        let queues =
+            [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
         let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
             .dynamic_rendering(true)
             .synchronization2(true)

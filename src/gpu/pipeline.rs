@@ -136,7 +136,11 @@ impl Specialization {
         let mut data = Vec::new();
         for (name, value) in constants {
             if let Some(constant) = shader.constants.iter().find(|constant| constant.name == *name) {
-                entries.push(vk::SpecializationMapEntry { constant_id: constant.id, offset: data.len() as u32, size: 4 });
+                entries.push(vk::SpecializationMapEntry {
+                    constant_id: constant.id,
+                    offset: data.len() as u32,
+                    size: 4,
+                });
                 data.extend_from_slice(&value.to_ne_bytes());
             }
         }
@@ -171,7 +175,8 @@ impl ComputePipeline {
         let workgroup = shader.workgroup.map(|side| match side {
             Side::Fixed(value) => value,
             Side::Constant(id) => {
-                let constant = shader.constants.iter().find(|constant| constant.id == id).expect("reflected by build.rs");
+                let constant =
+                    shader.constants.iter().find(|constant| constant.id == id).expect("reflected by build.rs");
                 constants.iter().find(|(name, _)| *name == constant.name).map_or(constant.default, |(_, value)| *value)
             }
         });
@@ -197,8 +202,8 @@ impl ComputePipeline {
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(interface.layout);
         // SAFETY: every handle is alive and every pointer outlives the call.
         let made = unsafe { gpu.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
-        let handle = made
-            .map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", shader.label())))?[0];
+        let handle =
+            made.map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", shader.label())))?[0];
         gpu.name(handle, &shader.label());
         Ok(Self { gpu: gpu.clone(), interface, handle, workgroup })
     }
@@ -287,11 +292,12 @@ impl GraphicsPipeline {
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default()
             .vertex_binding_descriptions(&buffers)
             .vertex_attribute_descriptions(&attributes);
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let assembly =
+            vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let multisample =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(description.depth_format.is_some())
             .depth_write_enable(description.depth_write)
@@ -329,8 +335,8 @@ impl GraphicsPipeline {
             .push_next(&mut rendering);
         // SAFETY: every handle is alive and every pointer outlives the call.
         let made = unsafe { gpu.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
-        let handle = made
-            .map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", interface.label)))?[0];
+        let handle =
+            made.map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", interface.label)))?[0];
         gpu.name(handle, &interface.label);
         Ok(Self { gpu: gpu.clone(), interface, handle })
     }

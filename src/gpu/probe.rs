@@ -112,10 +112,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
         heaps: memory
             .memory_heaps_as_slice()
             .iter()
-            .map(|heap| Heap {
-                bytes: heap.size,
-                device_local: heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL),
-            })
+            .map(|heap| Heap { bytes: heap.size, device_local: heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL) })
             .collect(),
         memory_types: memory
             .memory_types_as_slice()

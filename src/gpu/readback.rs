@@ -26,9 +26,11 @@ pub fn image(gpu: &Arc<Gpu>, source: &Image, last: Access) -> Result<Vec<u8>> {
     let mut cmd = Commands::begin(gpu, "readback", Submits::One)?;
     // The frame's fence was waited for; the left side is there for the layout and for visibility.
     cmd.assume(source.from(last).to(Access::TransferRead));
-    let region = vk::BufferImageCopy::default()
-        .image_subresource(source.whole_level(0))
-        .image_extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 });
+    let region = vk::BufferImageCopy::default().image_subresource(source.whole_level(0)).image_extent(vk::Extent3D {
+        width: extent.width,
+        height: extent.height,
+        depth: 1,
+    });
     // SAFETY: both are alive until the fence; the landing buffer holds all texels.
     unsafe {
         let layout = Access::TransferRead.layout();

@@ -59,7 +59,9 @@ impl Cull {
         let (lights, light_count) = lights;
         let traffic = Traffic {
             read_bytes: extent.pixel_count() * gbuffer.resource.surface_bytes()
-                + tile_count(extent) * u64::from(light_count) * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
+                + tile_count(extent)
+                    * u64::from(light_count)
+                    * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
             written_bytes: mask_bytes(extent, light_count),
             invocations: Some(tile_count(extent)),
         };

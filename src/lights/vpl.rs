@@ -346,7 +346,8 @@ mod tests {
     fn the_flux_that_lands_is_the_flux_that_leaves() {
         let scene = floor(0.5);
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[point(1.0)], &Walk { count: 4096, bounces: 1, emissive: false, seed: 3 }).unwrap();
+        let found =
+            walk(&scene, &bvh, &[point(1.0)], &Walk { count: 4096, bounces: 1, emissive: false, seed: 3 }).unwrap();
         assert_eq!(found.vpls.len(), 4096);
         // Half of 4 pi I goes down and nearly all of that lands on a floor of 50 m; half of it is kept; a Lambert patch
         // that sends the flux F has the intensity F / pi along its normal.

@@ -118,7 +118,8 @@ impl Memory {
         let size = request.requirements.size;
         let mut state = self.state();
         if size > self.max_allocation_bytes {
-            return Err(self.refused(&state, request, choice.type_index, "one allocation may not be that large here")
+            return Err(self
+                .refused(&state, request, choice.type_index, "one allocation may not be that large here")
                 .note(format!("the device allows {} an allocation", Bytes(self.max_allocation_bytes))));
         }
         let shared = self.strategy == Strategy::Linear && size < LINEAR_BLOCK_BYTES / 2;
@@ -140,7 +141,8 @@ impl Memory {
                 let block = Block::allocate(&self.device, choice.type_index, block_bytes, choice.mapped)
                     .map_err(|result| self.refused(&state, request, choice.type_index, &result.to_string()))?;
                 let mut ranges = Linear::new(block_bytes);
-                let offset = ranges.take(size, request.requirements.alignment).expect("a new block holds its first range");
+                let offset =
+                    ranges.take(size, request.requirements.alignment).expect("a new block holds its first range");
                 let block = Shared { block, tiling: request.tiling, ranges, dedicated: !shared };
                 let free = state.blocks.iter().position(Option::is_none);
                 let index = free.unwrap_or_else(|| {

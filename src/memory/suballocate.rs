@@ -27,7 +27,10 @@ impl Linear {
 
     /// One range of `bytes` is not used any more. True when it was the last one.
     pub fn give_back(&mut self, bytes: u64) -> bool {
-        assert!(self.live_count > 0 && bytes <= self.next_byte, "a range comes back to a block that it did not come from");
+        assert!(
+            self.live_count > 0 && bytes <= self.next_byte,
+            "a range comes back to a block that it did not come from"
+        );
         self.live_count -= 1;
         self.live_count == 0
     }

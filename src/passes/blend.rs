@@ -12,6 +12,7 @@ use crate::gpu::commands::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::BlendParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, SceneGpu};
 use crate::scene::AlphaMode;
 use ash::vk;
@@ -38,7 +39,6 @@ impl Blend {
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
         view: &View,
-        picture_format: vk::Format,
         least_squared: f32,
         constants: &[(&str, u32)],
     ) -> Result<Option<Self>> {
@@ -59,7 +59,7 @@ impl Blend {
                 fragment: Some(&crate::gpu::shader::passes::blend::FRAG),
                 constants,
                 vertex_buffers: &mesh::VERTEX_BUFFERS,
-                color_formats: &[picture_format],
+                color_formats: &[PICTURE_FORMAT],
                 blend_over: true,
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,

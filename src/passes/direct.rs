@@ -86,11 +86,22 @@ impl ShadingSettings {
 }
 
 /// Plans the list of lights and the tree, as resources of `technique`.
-pub fn plan(plan: &mut Plan, technique: &str, light_count: usize, settings: &ShadingSettings, tree: &Bvh, extent: Extent) {
+pub fn plan(
+    plan: &mut Plan,
+    technique: &str,
+    light_count: usize,
+    settings: &ShadingSettings,
+    tree: &Bvh,
+    extent: Extent,
+) {
     let bytes = |count: usize, size: usize| count as u64 * size as u64;
     plan.buffer("lights", format!("{technique}.lights"), bytes(light_count, size_of::<LightBlock>()));
     plan.buffer("bvh", format!("{technique}.bvh.nodes"), bytes(tree.nodes.len(), size_of::<BvhNodeBlock>()));
-    plan.buffer("bvh", format!("{technique}.bvh.triangles"), bytes(tree.triangles.len(), size_of::<BvhTriangleBlock>()));
+    plan.buffer(
+        "bvh",
+        format!("{technique}.bvh.triangles"),
+        bytes(tree.triangles.len(), size_of::<BvhTriangleBlock>()),
+    );
     if settings.cull && light_count > 0 {
         cull::plan(plan, technique, extent, light_count as u32);
     }

@@ -178,11 +178,8 @@ impl Edge<'_, GBuffer> {
     /// All that compute shaders sample becomes readable by them.
     pub fn to_sampled(self) -> Vec<Barrier> {
         let gbuffer = self.resource;
-        let mut barriers: Vec<Barrier> = gbuffer
-            .attachments()
-            .into_iter()
-            .map(|image| image.from(self.from).to(Access::ComputeSample))
-            .collect();
+        let mut barriers: Vec<Barrier> =
+            gbuffer.attachments().into_iter().map(|image| image.from(self.from).to(Access::ComputeSample)).collect();
         if gbuffer.position_storage == PositionStorage::Depth {
             let from = if self.from == Access::ColorWrite.into() { Access::DepthWrite.into() } else { self.from };
             barriers.push(gbuffer.depth.from(from).to(Access::ComputeSample));

@@ -148,9 +148,8 @@ impl Report {
                 frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(milliseconds).collect();
             let stamps: Vec<f64> =
                 frames.iter().filter_map(|frame| frame.passes[index].timestamp_ns).map(milliseconds).collect();
-            let disagrees = |(wall, stamp): (&f64, &f64)| {
-                *wall >= JUDGED_FROM_MS && (wall - stamp).abs() > DISAGREEMENT * wall
-            };
+            let disagrees =
+                |(wall, stamp): (&f64, &f64)| *wall >= JUDGED_FROM_MS && (wall - stamp).abs() > DISAGREEMENT * wall;
             if walls.iter().zip(&stamps).any(disagrees) {
                 warnings.push(format!("{}: timestamp and wall time differ by over 10 %", pass.name));
             }
@@ -249,7 +248,12 @@ impl Report {
             line(format!("  note: {}", string(warning)));
         }
         let device = &document["device"];
-        line(format!("{}  ({}, Vulkan {})", string(&device["name"]), string(&device["driver_info"]), string(&device["api"])));
+        line(format!(
+            "{}  ({}, Vulkan {})",
+            string(&device["name"]),
+            string(&device["driver_info"]),
+            string(&device["api"])
+        ));
         for pass in document["passes"].as_array().into_iter().flatten() {
             if let Some(ms) = pass["ms"]["median"].as_f64() {
                 let place = if pass["where"].is_string() { "  (host, once)" } else { "" };

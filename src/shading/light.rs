@@ -118,7 +118,8 @@ mod tests {
     fn a_spot_is_full_inside_its_inner_cone_and_dark_outside_its_outer_cone() {
         let spot = block(&light(LightKind::Spot { inner_angle: 0.3, outer_angle: 0.6 }), 0.0);
         assert_eq!(incident_from(&spot, Vec3::ZERO).2, Vec3::splat(2.0));
-        let at = |angle: f32| incident_from(&spot, Vec3::new(2.0 * angle.tan(), 0.0, 0.0)).2.x * (2.0 / angle.cos()).powi(2);
+        let at =
+            |angle: f32| incident_from(&spot, Vec3::new(2.0 * angle.tan(), 0.0, 0.0)).2.x * (2.0 / angle.cos()).powi(2);
         assert!((at(0.29) - 8.0).abs() < 1e-3);
         assert!(at(0.61).abs() < 1e-6);
         let half = ((0.45f32.cos() - 0.6f32.cos()) / (0.3f32.cos() - 0.6f32.cos())).powi(2);

@@ -96,7 +96,8 @@ mod tests {
 
     #[test]
     fn a_hole_is_where_alpha_falls_below_the_cutoff() {
-        let image = Image { name: String::new(), width: 2, height: 1, rgba8: vec![255, 255, 255, 255, 255, 255, 255, 0] };
+        let image =
+            Image { name: String::new(), width: 2, height: 1, rgba8: vec![255, 255, 255, 255, 255, 255, 255, 0] };
         let sampler = Sampler { wrap_u: Wrap::ClampToEdge, ..Sampler::default() };
         let texture = Texture { image: 0, sampler, color_space: ColorSpace::Srgb };
         let scene = Scene { images: vec![image], textures: vec![texture], ..Scene::default() };

@@ -190,8 +190,7 @@ fn compile(
     let defines: Vec<(&str, Option<&str>)> = defines.iter().map(|define| (define.as_str(), Some("1"))).collect();
     let mut includes = Includes { texts: &sources.texts, root: name.to_owned() };
     let fault = |error: glslang::error::GlslangError| faults_of(name, &error.to_string());
-    let input =
-        ShaderInput::new(&source, stage, &options, Some(&defines[..]), Some(&mut includes)).map_err(fault)?;
+    let input = ShaderInput::new(&source, stage, &options, Some(&defines[..]), Some(&mut includes)).map_err(fault)?;
     let shader = compiler.create_shader(input).map_err(fault)?;
     shader.compile().map_err(fault)
 }

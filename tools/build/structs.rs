@@ -47,7 +47,9 @@ impl Structs {
         for definition in &definitions {
             match generate(&module, &definition.name) {
                 Ok(rust) => structs.push(Struct { file: definition.file.clone(), name: definition.name.clone(), rust }),
-                Err(fault) => return Err(vec![format!("glsl/{}:1:1: struct {}: {fault}", definition.file, definition.name)]),
+                Err(fault) => {
+                    return Err(vec![format!("glsl/{}:1:1: struct {}: {fault}", definition.file, definition.name)]);
+                }
             }
         }
         Ok(Self(structs))
@@ -62,7 +64,8 @@ pub fn portable(sources: &Sources, entry: &EntryPoint, variant: &Variant) -> Res
 
 fn parse(words: &[u32]) -> Result<naga::Module, String> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let options = spv::Options { adjust_coordinate_space: false, strict_capabilities: true, block_ctx_dump_prefix: None };
+    let options =
+        spv::Options { adjust_coordinate_space: false, strict_capabilities: true, block_ctx_dump_prefix: None };
     let module = spv::parse_u8_slice(&bytes, &options).map_err(|error| error.to_string())?;
     Validator::new(ValidationFlags::all(), Capabilities::all())
         .validate(&module)
@@ -116,7 +119,8 @@ fn interface(definitions: &[Definition]) -> String {
         writeln!(touches, "    sum += interface{binding}.values.length();").expect("writing to a string");
     }
     let sink = definitions.len();
-    writeln!(text, "layout(std430, set = 0, binding = {sink}) buffer Sink {{ int sink; }};").expect("writing to a string");
+    writeln!(text, "layout(std430, set = 0, binding = {sink}) buffer Sink {{ int sink; }};")
+        .expect("writing to a string");
     writeln!(text, "void main() {{\n    int sum = 0;\n{touches}    sink = sum;\n}}").expect("writing to a string");
     text
 }

@@ -15,9 +15,16 @@ pub struct Row {
     stage: &'static str,
     file: String,
     bindings: Vec<Binding>,
-    params: Option<(String, u32, Vec<(String, u32)>)>,
+    params: Option<Params>,
     constants: Vec<(String, u32, u32)>,
     workgroup: [Side; 3],
+}
+
+/// A push-constant block: its struct, and where the members lie.
+struct Params {
+    name: String,
+    size_bytes: u32,
+    members: Vec<(String, u32)>,
 }
 
 struct Binding {
@@ -113,8 +120,8 @@ fn kind_of(kind: &DescriptorType) -> Result<&'static str, String> {
     })
 }
 
-/// The one struct that a push-constant block holds: its name, its size, its members' offsets.
-fn params_of(ty: &Type) -> Result<(String, u32, Vec<(String, u32)>), String> {
+/// The one struct that a push-constant block holds.
+fn params_of(ty: &Type) -> Result<Params, String> {
     let fault = "a push-constant block holds exactly one struct named ...Params";
     let Type::Struct(block) = ty else { return Err(fault.to_owned()) };
     let [member] = &block.members[..] else { return Err(fault.to_owned()) };
@@ -125,8 +132,8 @@ fn params_of(ty: &Type) -> Result<(String, u32, Vec<(String, u32)>), String> {
         let field = member.name.clone().ok_or("a member has no name")?;
         members.push((field, member.offset.ok_or("a member has no offset")? as u32));
     }
-    let size = params.nbyte().ok_or("the struct has no size")? as u32;
-    Ok((name, size, members))
+    let size_bytes = params.nbyte().ok_or("the struct has no size")? as u32;
+    Ok(Params { name, size_bytes, members })
 }
 
 /// The axis of the workgroup whose size constant `spec_id` is.
@@ -136,7 +143,11 @@ fn workgroup_side(entry: &spirq::prelude::EntryPoint, spec_id: u32) -> Option<ch
 }
 
 /// OpExecutionMode LocalSize gives numbers, LocalSizeId (what glslang writes for Vulkan 1.3) gives constants.
-fn workgroup_of(entry: &spirq::prelude::EntryPoint, constants: &[(String, u32, u32)], words: &[u32]) -> Result<[Side; 3], String> {
+fn workgroup_of(
+    entry: &spirq::prelude::EntryPoint,
+    constants: &[(String, u32, u32)],
+    words: &[u32],
+) -> Result<[Side; 3], String> {
     use spirq::spirv::ExecutionMode;
     let mut sides = [Side::Fixed(1); 3];
     for mode in &entry.exec_modes {
@@ -226,7 +237,12 @@ pub fn write(table: &Table, structs: &Structs) -> String {
             root.at(&module).items.push_str(&item.rust);
             let path = format!("{}::{}", module.replace('/', "::"), item.name);
             writeln!(names, "    pub use super::{path};").expect("writing to a string");
-            write!(layouts, "(\"{}\", ::core::mem::size_of::<{path}>() as u32, {path}::LAYOUT), ", item.name).expect("writing to a string");
+            write!(
+                layouts,
+                "StructLayout {{ name: \"{}\", size_bytes: ::core::mem::size_of::<{path}>() as u32, members: {path}::LAYOUT }}, ",
+                item.name
+            )
+            .expect("writing to a string");
         }
     }
     let mut text = String::from("// Written by build.rs from glsl/. Do not edit.\n");
@@ -235,7 +251,7 @@ pub fn write(table: &Table, structs: &Structs) -> String {
         text,
         "/// Every shader in every variant.\npub static ALL: &[&Shader] = &[{all}];\n\
          /// Every struct: its name, size in bytes and members' offsets, as naga read them.\n\
-         pub static LAYOUTS: &[(&str, u32, &[(&str, u32)])] = &[{layouts}];\n\
+         pub static LAYOUTS: &[StructLayout] = &[{layouts}];\n\
          /// Every struct by its bare name.\npub mod structs {{\n{names}}}\n"
     )
     .expect("writing to a string");
@@ -258,11 +274,12 @@ impl Row {
         writeln!(text, "],")?;
         match &self.params {
             None => writeln!(text, "params: None,")?,
-            Some((name, size, members)) => {
-                let members: String = members.iter().map(|(name, offset)| format!("(\"{name}\", {offset}), ")).collect();
+            Some(Params { name, size_bytes, members }) => {
+                let members: String =
+                    members.iter().map(|(name, offset)| format!("(\"{name}\", {offset}), ")).collect();
                 writeln!(
                     text,
-                    "params: Some(ParamsLayout {{ name: \"{name}\", size_bytes: {size}, members: &[{members}] }}),"
+                    "params: Some(ParamsLayout {{ name: \"{name}\", size_bytes: {size_bytes}, members: &[{members}] }}),"
                 )?;
             }
         }

@@ -19,7 +19,13 @@ pub struct Gauss {
 
 impl Gauss {
     /// `workgroup`: WORKGROUP_X and WORKGROUP_Y.
-    pub fn new(gpu: &Arc<Gpu>, workgroup: &[(&str, u32)], extent: Extent, row_pitch: u32, kernel: Kernel) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        workgroup: &[(&str, u32)],
+        extent: Extent,
+        row_pitch: u32,
+        kernel: Kernel,
+    ) -> Result<Self> {
         let pipeline = ComputePipeline::new(gpu, &crate::gpu::shader::passes::filter::gauss::COMP, workgroup)?;
         Ok(Self { pipeline, extent, row_pitch, kernel })
     }
@@ -54,7 +60,14 @@ impl Gauss {
         })
     }
 
-    fn direction(&self, cmd: &mut Commands, horizontal: bool, source: &Buffer, flags: &Buffer, target: &Buffer) -> Result<()> {
+    fn direction(
+        &self,
+        cmd: &mut Commands,
+        horizontal: bool,
+        source: &Buffer,
+        flags: &Buffer,
+        target: &Buffer,
+    ) -> Result<()> {
         let params = GaussParams {
             width_px: self.extent.width,
             height_px: self.extent.height,

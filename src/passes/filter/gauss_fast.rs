@@ -26,7 +26,13 @@ pub struct GaussFast {
 }
 
 impl GaussFast {
-    pub fn new(gpu: &Arc<Gpu>, workgroup: &[(&str, u32)], extent: Extent, row_pitch: u32, kernel: Kernel) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        workgroup: &[(&str, u32)],
+        extent: Extent,
+        row_pitch: u32,
+        kernel: Kernel,
+    ) -> Result<Self> {
         Ok(Self {
             pack: GaussPack::new(gpu, workgroup)?,
             horizontal: ComputePipeline::new(gpu, &shader::COMP_IMAGE, workgroup)?,
@@ -64,7 +70,15 @@ impl GaussFast {
                 half_way.discard(Access::ComputeWrite),
                 target.discard(Access::ComputeWrite),
             ]);
-            self.pack.record(cmd, self.extent, self.row_pitch, self.kernel.stop_bits, source.resource, flags.resource, packed)?;
+            self.pack.record(
+                cmd,
+                self.extent,
+                self.row_pitch,
+                self.kernel.stop_bits,
+                source.resource,
+                flags.resource,
+                packed,
+            )?;
             cmd.barriers([packed.from(Access::ComputeWrite).to(Access::ComputeSample)]);
             let sampled = |image| Bound::Sampled(image, self.linear.handle, Access::ComputeSample);
             let groups = self.horizontal.groups([self.extent.width, self.extent.height, 1]);

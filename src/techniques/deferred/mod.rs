@@ -17,15 +17,11 @@ use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::settings::{SHADING, Setting};
-use ash::vk;
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 const NAME: &str = "deferred";
-
-/// Format of finished pictures.
-pub const PICTURE: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 pub struct Deferred;
 
@@ -60,14 +56,9 @@ impl Technique for Deferred {
         direct::plan(&mut plan, NAME, lights.len(), &settings, tree, extent);
         // No virtual lights: what blended surfaces bind in their place.
         plan.buffer("lights", "deferred.vpls", 0);
-        plan.image("picture", "deferred.shade.color", extent, PICTURE, picture_usage());
+        plan.picture("deferred.shade.color", extent);
         Ok(Box::new(PreparedDeferred { settings, lights, plan }))
     }
-}
-
-/// How a finished picture is used.
-pub fn picture_usage() -> vk::ImageUsageFlags {
-    vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC
 }
 
 struct PreparedDeferred {
@@ -111,7 +102,7 @@ impl Prepared for PreparedDeferred {
             gbuffer_pass: GBufferPass::new(gpu, scene, settings.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
             shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some())?,
-            blend: Blend::new(gpu, scene, inputs.view, PICTURE, 0.0, &settings.light_constants())?,
+            blend: Blend::new(gpu, scene, inputs.view, 0.0, &settings.light_constants())?,
             gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
             direct,
             vpls: resources.buffer("deferred.vpls"),

@@ -37,7 +37,10 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
         ("discontinuity.flags", _) => match &frame.filter {
             Some(filter) => {
                 let bytes = readback::buffer(gpu, &filter.flags, filter.flags.bytes, Access::ComputeRead)?;
-                let flags = rows(frame, bytes.chunks_exact(4).map(|flag| u32::from_le_bytes([flag[0], flag[1], flag[2], flag[3]])));
+                let flags = rows(
+                    frame,
+                    bytes.chunks_exact(4).map(|flag| u32::from_le_bytes([flag[0], flag[1], flag[2], flag[3]])),
+                );
                 Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(flags) })
             }
             None => Err(left_out(NAME, name, why_no_filter)),

@@ -24,11 +24,11 @@ use crate::passes::gbuffer::{GBuffer, GBufferPass};
 use crate::plan::Resources;
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::techniques::deferred::PICTURE;
 use crate::techniques::{Frame, Inputs};
 use std::sync::Arc;
 
 /// How pixels meet their lights.
+#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
 pub enum Roads {
     Branch(ShadeBranch),
     Subsample { shade: ShadeSubsample, upscale: Upscale, upscaled: Buffer },
@@ -43,6 +43,7 @@ pub struct FilterStage {
     pub irradiance: Buffer,
 }
 
+#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
 enum AnyGauss {
     Walk(Gauss, Buffer),
     Fast(GaussFast, [Image; 2]),
@@ -105,7 +106,7 @@ impl InterleavedFrame {
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, shading, has_emissive, direct.masks.is_some(), params)?,
             color: resources.image(&format!("{NAME}.composite.color")),
-            blend: Blend::new(gpu, scene, inputs.view, PICTURE, least * least, &shading.light_constants())?,
+            blend: Blend::new(gpu, scene, inputs.view, least * least, &shading.light_constants())?,
             gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
             direct,
             shade,

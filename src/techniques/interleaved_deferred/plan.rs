@@ -13,7 +13,6 @@ use crate::passes::gbuffer;
 use crate::plan::Plan;
 use crate::settings::Values;
 use crate::techniques::Inputs;
-use crate::techniques::deferred::{PICTURE, picture_usage};
 use crate::units::Extent;
 use ash::vk;
 
@@ -123,7 +122,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lights: &SubsetLights, direc
             filter_image(&mut plan, "horizontal", extent);
         }
     }
-    plan.image("picture", format!("{NAME}.composite.color"), extent, PICTURE, picture_usage());
+    plan.picture(format!("{NAME}.composite.color"), extent);
     Ok(plan)
 }
 

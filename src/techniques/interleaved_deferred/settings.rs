@@ -109,7 +109,7 @@ pub const SETTINGS: &[Setting] = &[
         key: "normal-threshold",
         symbol: "",
         kind: Kind::Number { min: 0.0, max: 2.0 },
-        default: "0.1",
+        default: "0.3",
         unit: "",
         paper: "Segovia 2006, 4.5",
         help: "a neighbour is across a discontinuity where 1 - cos of the angle between the normals is greater",

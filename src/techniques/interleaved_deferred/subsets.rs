@@ -91,8 +91,9 @@ mod tests {
 
     #[test]
     fn neighbours_go_to_different_subsets() {
-        let blocks: Vec<LightBlock> =
-            (0..16).map(|index| LightBlock { position_ws: [index as f32, 0.0, 0.0, 0.0], ..LightBlock::zeroed() }).collect();
+        let blocks: Vec<LightBlock> = (0..16)
+            .map(|index| LightBlock { position_ws: [index as f32, 0.0, 0.0, 0.0], ..LightBlock::zeroed() })
+            .collect();
         let bounds = Bounds { min: Vec3::ZERO, max: Vec3::new(16.0, 1.0, 1.0) };
         let order: Vec<f32> = dealt(&blocks, &bounds, 4).iter().map(|light| light.position_ws[0]).collect();
         assert_eq!(order[..4], [0.0, 4.0, 8.0, 12.0]);

@@ -60,7 +60,12 @@ impl ShadeGpu {
     }
 
     /// What irradiance.glsl binds.
-    fn bound<'a>(&'a self, frame: &'a Buffer, direct: &'a DirectGpu, irradiance: &'a Buffer) -> Vec<(&'static str, Bound<'a>)> {
+    fn bound<'a>(
+        &'a self,
+        frame: &'a Buffer,
+        direct: &'a DirectGpu,
+        irradiance: &'a Buffer,
+    ) -> Vec<(&'static str, Bound<'a>)> {
         vec![
             ("Frame", Bound::Buffer(frame)),
             ("Vpls", Bound::Buffer(&self.vpls)),

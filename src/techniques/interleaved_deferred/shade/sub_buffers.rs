@@ -35,11 +35,8 @@ impl ShadeSubBuffers {
     ) -> Result<()> {
         let mapping = shade.mapping();
         let texels = mapping.texel_count();
-        let traffic = Traffic {
-            read_bytes: texels * self.texel_bytes,
-            written_bytes: texels * 8,
-            invocations: Some(texels),
-        };
+        let traffic =
+            Traffic { read_bytes: texels * self.texel_bytes, written_bytes: texels * 8, invocations: Some(texels) };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             let SubBuffers { position, normal } = split.resource;
             cmd.barriers([
