@@ -115,6 +115,16 @@ impl Shader {
     }
 }
 
+/// The variant with these values, one for each axis in the order of the shader's `// variants:` line. Asking for one that
+/// is not there is a programmer's mistake.
+pub fn variant(variants: &'static [&'static Shader], values: &[&str]) -> &'static Shader {
+    let suffix: String = values.iter().map(|value| format!("_{}", value.to_uppercase().replace('-', "_"))).collect();
+    variants
+        .iter()
+        .find(|shader| shader.variant.split_once('_').is_some_and(|(_, rest)| rest == &suffix[1..]))
+        .unwrap_or_else(|| panic!("{} has no variant {suffix}", variants[0].name))
+}
+
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 use crate::error::Result;
 use crate::gpu::commands::Bound;
 use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::lights::cull::COMP_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::Plan;
@@ -35,13 +37,7 @@ pub struct Cull {
 
 impl Cull {
     pub fn new(gpu: &Arc<Gpu>, position: PositionStorage) -> Result<Self> {
-        use crate::gpu::shader::lights::cull as shader;
-        let shader = match position {
-            PositionStorage::Half => &shader::COMP_HALF,
-            PositionStorage::Unorm16 => &shader::COMP_UNORM16,
-            PositionStorage::Depth => &shader::COMP_DEPTH,
-            PositionStorage::Float => &shader::COMP_FLOAT,
-        };
+        let shader = variant(COMP_VARIANTS, &[position.name()]);
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &[])? })
     }
 

@@ -14,7 +14,8 @@ use crate::error::Result;
 use crate::gpu::commands::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
-use crate::gpu::shader::Shader;
+use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
@@ -62,15 +63,20 @@ impl PositionStorage {
         }
     }
 
-    /// The variant of a shader that has the axis POSITION, given in the order half, unorm16, depth, float.
-    pub fn pick<T>(self, half: T, unorm16: T, depth: T, float: T) -> T {
+    /// The value of `--position`, and of the shaders' axis POSITION.
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Half => half,
-            Self::Unorm16 => unorm16,
-            Self::Depth => depth,
-            Self::Float => float,
+            Self::Half => "half",
+            Self::Unorm16 => "unorm16",
+            Self::Depth => "depth",
+            Self::Float => "float",
         }
     }
+}
+
+/// The value of the shaders' axis EMISSIVE.
+pub fn emissive_name(has_emissive: bool) -> &'static str {
+    if has_emissive { "on" } else { "off" }
 }
 
 const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
@@ -222,36 +228,6 @@ pub struct GBufferPass {
     mask: GraphicsPipeline,
 }
 
-fn fragment(position: PositionStorage, has_emissive: bool, mask: bool) -> &'static Shader {
-    use crate::gpu::shader::passes::gbuffer as s;
-    match (has_emissive, mask) {
-        (false, false) => position.pick(
-            &s::FRAG_HALF_OFF_OPAQUE,
-            &s::FRAG_UNORM16_OFF_OPAQUE,
-            &s::FRAG_DEPTH_OFF_OPAQUE,
-            &s::FRAG_FLOAT_OFF_OPAQUE,
-        ),
-        (false, true) => position.pick(
-            &s::FRAG_HALF_OFF_MASK,
-            &s::FRAG_UNORM16_OFF_MASK,
-            &s::FRAG_DEPTH_OFF_MASK,
-            &s::FRAG_FLOAT_OFF_MASK,
-        ),
-        (true, false) => position.pick(
-            &s::FRAG_HALF_ON_OPAQUE,
-            &s::FRAG_UNORM16_ON_OPAQUE,
-            &s::FRAG_DEPTH_ON_OPAQUE,
-            &s::FRAG_FLOAT_ON_OPAQUE,
-        ),
-        (true, true) => position.pick(
-            &s::FRAG_HALF_ON_MASK,
-            &s::FRAG_UNORM16_ON_MASK,
-            &s::FRAG_DEPTH_ON_MASK,
-            &s::FRAG_FLOAT_ON_MASK,
-        ),
-    }
-}
-
 impl GBufferPass {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, position: PositionStorage, has_emissive: bool) -> Result<Self> {
         let mut formats = vec![WORDS, WORDS];
@@ -259,12 +235,12 @@ impl GBufferPass {
             formats.push(WORDS);
         }
         formats.extend(position.image_format());
-        let pipeline = |mask: bool| {
+        let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: &crate::gpu::shader::passes::mesh::VERT,
-                    fragment: Some(fragment(position, has_emissive, mask)),
+                    fragment: Some(variant(FRAG_VARIANTS, &[position.name(), emissive_name(has_emissive), alpha])),
                     constants: &[],
                     vertex_buffers: &mesh::VERTEX_BUFFERS,
                     color_formats: &formats,
@@ -276,7 +252,7 @@ impl GBufferPass {
                 },
             )
         };
-        Ok(Self { opaque: pipeline(false)?, mask: pipeline(true)? })
+        Ok(Self { opaque: pipeline("opaque")?, mask: pipeline("mask")? })
     }
 
     pub fn record(

@@ -88,13 +88,16 @@ mod tests {
     }
 
     #[test]
-    fn no_brdf_makes_light_and_a_white_lambert_surface_loses_none() {
+    fn a_white_lambert_surface_loses_no_light_and_ggx_makes_little() {
         for roughness in [0.3, 0.6, 1.0] {
             for metallic in [0.0, 1.0] {
                 let surface = Surface { base_color: Vec3::ONE, metallic, roughness };
                 for incidence in [0.0, 0.7, 1.2] {
                     let ggx = reflected(Brdf::Ggx, &surface, incidence);
-                    assert!(ggx > 0.3 && ggx < 1.02, "roughness {roughness}, metallic {metallic}: {ggx}");
+                    // glTF weighs the diffuse part by 1 - F of the half vector of each direction, the specular part by F
+                    // of the mirror's: at grazing angles a white dielectric gives up to a tenth too much.
+                    let most = if metallic == 1.0 { 1.01 } else { 1.11 };
+                    assert!(ggx > 0.3 && ggx < most, "roughness {roughness}, metallic {metallic}: {ggx}");
                 }
             }
         }

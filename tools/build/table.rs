@@ -230,6 +230,18 @@ pub fn write(table: &Table, structs: &Structs) -> String {
         row.write(&mut root.at(&row.name).items).expect("writing to a string");
         write!(all, "&{}::{}, ", row.name.replace('/', "::"), row.constant).expect("writing to a string");
     }
+    for rows in table.rows.chunk_by(|a, b| a.name == b.name && a.extension() == b.extension()) {
+        if rows.len() > 1 {
+            let list: String = rows.iter().map(|row| format!("&{}, ", row.constant)).collect();
+            let items = &mut root.at(&rows[0].name).items;
+            writeln!(
+                items,
+                "/// Every variant, for `shader::variant`.\npub static {}_VARIANTS: &[&Shader] = &[{list}];",
+                rows[0].extension()
+            )
+            .expect("writing to a string");
+        }
+    }
     let mut names = String::new();
     let mut layouts = String::new();
     for (module, items) in by_module(structs) {
@@ -259,6 +271,11 @@ pub fn write(table: &Table, structs: &Structs) -> String {
 }
 
 impl Row {
+    /// `COMP`, of the constant `COMP_BUFFER`.
+    fn extension(&self) -> &str {
+        self.constant.split('_').next().unwrap_or(&self.constant)
+    }
+
     fn write(&self, text: &mut String) -> std::fmt::Result {
         writeln!(text, "pub static {}: Shader = Shader {{", self.constant)?;
         writeln!(text, "name: \"{}\", variant: \"{}\", stage: Stage::{},", self.name, self.constant, self.stage)?;

@@ -4,10 +4,11 @@
 use crate::error::Result;
 use crate::gpu::commands::Bound;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::techniques::deferred::shade as s;
+use crate::gpu::shader::techniques::deferred::shade::COMP_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, emissive_name};
 use std::sync::Arc;
 
 pub struct Shade {
@@ -16,33 +17,8 @@ pub struct Shade {
 
 impl Shade {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, has_emissive: bool, tiled: bool) -> Result<Self> {
-        let position = settings.position;
-        let shader = match (has_emissive, tiled) {
-            (false, false) => position.pick(
-                &s::COMP_HALF_OFF_NONE,
-                &s::COMP_UNORM16_OFF_NONE,
-                &s::COMP_DEPTH_OFF_NONE,
-                &s::COMP_FLOAT_OFF_NONE,
-            ),
-            (false, true) => position.pick(
-                &s::COMP_HALF_OFF_TILED,
-                &s::COMP_UNORM16_OFF_TILED,
-                &s::COMP_DEPTH_OFF_TILED,
-                &s::COMP_FLOAT_OFF_TILED,
-            ),
-            (true, false) => position.pick(
-                &s::COMP_HALF_ON_NONE,
-                &s::COMP_UNORM16_ON_NONE,
-                &s::COMP_DEPTH_ON_NONE,
-                &s::COMP_FLOAT_ON_NONE,
-            ),
-            (true, true) => position.pick(
-                &s::COMP_HALF_ON_TILED,
-                &s::COMP_UNORM16_ON_TILED,
-                &s::COMP_DEPTH_ON_TILED,
-                &s::COMP_FLOAT_ON_TILED,
-            ),
-        };
+        let cull = if tiled { "tiled" } else { "none" };
+        let shader = variant(COMP_VARIANTS, &[settings.position.name(), emissive_name(has_emissive), cull]);
         let constants = [&settings.workgroup_constants()[..], &settings.light_constants()].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }

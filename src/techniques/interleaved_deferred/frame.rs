@@ -1,4 +1,4 @@
-//! Interleaved deferred shading on the device: its passes, its resources, and `record`, which reads like figure 3.
+//! Interleaved deferred shading on the device: its passes and its resources. `mod.rs` records them.
 
 use super::NAME;
 use super::composite::Composite;
@@ -16,15 +16,14 @@ use crate::error::Result;
 use crate::gpu::shader::structs::{CompositeParams, DiscontinuityParams, LightBlock, ShadeParams};
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
 use crate::lights::cull::Cull;
-use crate::passes::blend::{Blend, BlendLights};
+use crate::passes::blend::Blend;
 use crate::passes::direct::DirectGpu;
 use crate::passes::filter::gauss::Gauss;
 use crate::passes::filter::gauss_fast::GaussFast;
 use crate::passes::gbuffer::{GBuffer, GBufferPass};
 use crate::plan::Resources;
-use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::techniques::{Frame, Inputs};
+use crate::techniques::Inputs;
 use std::sync::Arc;
 
 /// How pixels meet their lights.
@@ -50,18 +49,18 @@ enum AnyGauss {
 }
 
 pub struct InterleavedFrame {
-    gbuffer_pass: GBufferPass,
+    pub gbuffer_pass: GBufferPass,
     pub gbuffer: GBuffer,
-    cull: Option<Cull>,
-    direct: DirectGpu,
+    pub cull: Option<Cull>,
+    pub direct: DirectGpu,
     pub shade: ShadeGpu,
     pub roads: Roads,
     /// What shading writes: sub-buffers, cells or frame order, as the road has it.
     pub irradiance: Buffer,
     pub filter: Option<FilterStage>,
-    composite: Composite,
-    color: Image,
-    blend: Option<Blend>,
+    pub composite: Composite,
+    pub color: Image,
+    pub blend: Option<Blend>,
 }
 
 impl InterleavedFrame {
@@ -114,7 +113,7 @@ impl InterleavedFrame {
     }
 
     /// Split, shade, gather: the irradiance in frame order.
-    fn record_roads(&self, cmd: &mut Commands, frame: &Buffer, written: Access) -> Result<Edge<'_, Buffer>> {
+    pub fn record_roads(&self, cmd: &mut Commands, frame: &Buffer, written: Access) -> Result<Edge<'_, Buffer>> {
         let gbuffer = self.gbuffer.from(written);
         match &self.roads {
             Roads::Branch(shade) => {
@@ -169,7 +168,7 @@ impl FilterStage {
         }))
     }
 
-    fn record<'a>(
+    pub fn record<'a>(
         &'a self,
         cmd: &mut Commands,
         frame: &Buffer,
@@ -187,44 +186,5 @@ impl FilterStage {
             }
         }
         Ok(self.irradiance.from(Access::ComputeWrite))
-    }
-}
-
-impl Frame for InterleavedFrame {
-    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
-        let gbuffer = &self.gbuffer;
-        self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
-        let mut written = Access::ColorWrite;
-        if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
-            let lights = (&self.direct.lights, self.direct.light_count);
-            cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
-            written = Access::ComputeSample;
-        }
-        let gathered = self.record_roads(cmd, frame, written)?;
-        let irradiance = match &self.filter {
-            Some(filter) => filter.record(cmd, frame, gbuffer.from(Access::ComputeSample), gathered)?,
-            None => gathered,
-        };
-        let sampled = gbuffer.from(Access::ComputeSample);
-        self.composite.record(cmd, frame, &self.direct, sampled, irradiance, &self.color)?;
-        if let Some(blend) = &self.blend {
-            let lights = BlendLights {
-                lights: &self.direct.lights,
-                vpls: &self.shade.vpls,
-                bvh_nodes: &self.direct.bvh_nodes,
-                bvh_triangles: &self.direct.bvh_triangles,
-            };
-            let picture = self.color.from(Access::ComputeWrite);
-            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(), picture)?;
-        }
-        Ok(())
-    }
-
-    fn picture(&self) -> (&Image, Access) {
-        (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
-    }
-
-    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        super::aov::read(self, gpu, name)
     }
 }

@@ -29,11 +29,13 @@ pub mod upscale;
 
 use super::{Frame, Inputs, Prepared, Technique};
 use crate::error::{Error, Result};
-use crate::gpu::Gpu;
 use crate::gpu::shader::structs::LightBlock;
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::vpl;
+use crate::passes::blend::BlendLights;
 use crate::passes::direct;
 use crate::plan::{Plan, Resources};
+use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::settings::{SHADING, Setting};
 use frame::InterleavedFrame;
@@ -182,5 +184,44 @@ impl Prepared for PreparedInterleaved {
     ) -> Result<Box<dyn Frame>> {
         let Self { choices, lights, direct_lights, .. } = *self;
         Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights, &direct_lights)?))
+    }
+}
+
+impl Frame for InterleavedFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let gbuffer = &self.gbuffer;
+        self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
+        let mut written = Access::ColorWrite;
+        if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
+            let lights = (&self.direct.lights, self.direct.light_count);
+            cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
+            written = Access::ComputeSample;
+        }
+        let gathered = self.record_roads(cmd, frame, written)?;
+        let irradiance = match &self.filter {
+            Some(filter) => filter.record(cmd, frame, gbuffer.from(Access::ComputeSample), gathered)?,
+            None => gathered,
+        };
+        let sampled = gbuffer.from(Access::ComputeSample);
+        self.composite.record(cmd, frame, &self.direct, sampled, irradiance, &self.color)?;
+        if let Some(blend) = &self.blend {
+            let lights = BlendLights {
+                lights: &self.direct.lights,
+                vpls: &self.shade.vpls,
+                bvh_nodes: &self.direct.bvh_nodes,
+                bvh_triangles: &self.direct.bvh_triangles,
+            };
+            let picture = self.color.from(Access::ComputeWrite);
+            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(), picture)?;
+        }
+        Ok(())
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        aov::read(self, gpu, name)
     }
 }

@@ -7,7 +7,8 @@ use super::{ShadeGpu, constants};
 use crate::error::Result;
 use crate::gpu::commands::Bound;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers as s;
+use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers::COMP_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
 use std::sync::Arc;
@@ -19,7 +20,7 @@ pub struct ShadeSubBuffers {
 
 impl ShadeSubBuffers {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
-        let shader = settings.position.pick(&s::COMP_HALF, &s::COMP_UNORM16, &s::COMP_DEPTH, &s::COMP_FLOAT);
+        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
         let pipeline = ComputePipeline::new(gpu, shader, &constants(settings))?;
         Ok(Self { pipeline, texel_bytes: 8 + settings.position.bytes() })
     }

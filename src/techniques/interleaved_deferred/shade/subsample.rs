@@ -5,7 +5,8 @@ use super::super::NAME;
 use super::{ShadeGpu, constants};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::techniques::interleaved_deferred::shade::subsample as s;
+use crate::gpu::shader::techniques::interleaved_deferred::shade::subsample::COMP_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::GBuffer;
@@ -17,7 +18,7 @@ pub struct ShadeSubsample {
 
 impl ShadeSubsample {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
-        let shader = settings.position.pick(&s::COMP_HALF, &s::COMP_UNORM16, &s::COMP_DEPTH, &s::COMP_FLOAT);
+        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(settings))? })
     }
 

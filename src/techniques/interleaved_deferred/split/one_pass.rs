@@ -9,7 +9,8 @@ use crate::error::Result;
 use crate::gpu::commands::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
-use crate::gpu::shader::techniques::interleaved_deferred::split::one_pass as s;
+use crate::gpu::shader::techniques::interleaved_deferred::split::one_pass::COMP_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::GBuffer;
@@ -43,7 +44,7 @@ pub struct OnePass {
 
 impl OnePass {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
-        let shader = settings.position.pick(&s::COMP_HALF, &s::COMP_UNORM16, &s::COMP_DEPTH, &s::COMP_FLOAT);
+        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &settings.workgroup_constants())? })
     }
 

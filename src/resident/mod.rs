@@ -3,19 +3,20 @@
 //!
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
-use crate::error::{Error, Result};
+mod textures;
+
+use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
 use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape};
-use crate::scene::{AlphaMode, ColorSpace, Scene, Texture, Wrap, mipmaps};
+use crate::scene::{AlphaMode, ColorSpace, Scene, mipmaps};
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::sync::Arc;
+use textures::Textures;
 
 /// glsl/resident.glsl's bits.
 const BASE_COLOR_TEXTURE: u32 = 1;
@@ -23,9 +24,6 @@ const METALLIC_ROUGHNESS_TEXTURE: u32 = 2;
 const NORMAL_TEXTURE: u32 = 4;
 const EMISSIVE_TEXTURE: u32 = 8;
 const DOUBLE_SIDED: u32 = 16;
-
-/// Textures of a material, in the order of set 1's bindings.
-const TEXTURES_PER_MATERIAL: usize = 4;
 
 /// What a vertex carries beside its position.
 #[repr(C)]
@@ -316,157 +314,4 @@ fn material_block(material: &crate::scene::Material) -> MaterialBlock {
             | bit(material.emissive_texture.is_some(), EMISSIVE_TEXTURE)
             | bit(material.double_sided, DOUBLE_SIDED),
     }
-}
-
-/// Images, samplers, and a set of four for each material.
-struct Textures {
-    images: Vec<Image>,
-    samplers: Vec<Sampler>,
-    layout: vk::DescriptorSetLayout,
-    pool: vk::DescriptorPool,
-    sets: Vec<vk::DescriptorSet>,
-}
-
-impl Textures {
-    fn new(gpu: &Arc<Gpu>, scene: &Scene, resources: &mut Resources) -> Result<Self> {
-        let distinct = distinct_images(scene);
-        let mut images = Vec::with_capacity(distinct.len() + 1);
-        for (index, (image, color_space)) in distinct.iter().enumerate() {
-            let target = resources.image(&format!("scene.textures.{index}"));
-            let levels = mipmaps::levels(&scene.images[*image], *color_space);
-            upload::image(gpu, &target, &levels, Access::FragmentSample)?;
-            images.push(target);
-        }
-        let white = resources.image("scene.textures.white");
-        upload::image(gpu, &white, &[255; 4], Access::FragmentSample)?;
-        images.push(white);
-        let mut samplers = Vec::new();
-        let mut sampler_of = HashMap::new();
-        for texture in &scene.textures {
-            if let Entry::Vacant(slot) = sampler_of.entry(texture.sampler) {
-                slot.insert(samplers.len());
-                samplers.push(Sampler::new(gpu, &sampler_info(texture))?);
-            }
-        }
-        if samplers.is_empty() {
-            samplers.push(Sampler::clamped(gpu, vk::Filter::NEAREST)?);
-        }
-        let white_index = images.len() - 1;
-        let view_of = |texture: Option<usize>| match texture {
-            None => (images[white_index].view, samplers[0].handle),
-            Some(index) => {
-                let texture = &scene.textures[index];
-                let image = distinct.iter().position(|entry| *entry == (texture.image, texture.color_space));
-                let sampler = sampler_of[&texture.sampler];
-                (images[image.expect("`distinct_images` lists it")].view, samplers[sampler].handle)
-            }
-        };
-        let infos: Vec<[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]> = scene
-            .materials
-            .iter()
-            .map(|material| {
-                [
-                    material.base_color_texture,
-                    material.metallic_roughness_texture,
-                    material.normal_texture,
-                    material.emissive_texture,
-                ]
-                .map(|texture| {
-                    let (view, sampler) = view_of(texture);
-                    let layout = Access::FragmentSample.layout();
-                    vk::DescriptorImageInfo::default().image_view(view).sampler(sampler).image_layout(layout)
-                })
-            })
-            .collect();
-        let (layout, pool, sets) = material_sets(gpu, &infos)?;
-        Ok(Self { images, samplers, layout, pool, sets })
-    }
-}
-
-fn sampler_info(texture: &Texture) -> vk::SamplerCreateInfo<'static> {
-    let filter = |linear| if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
-    let wrap = |wrap| match wrap {
-        Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
-        Wrap::MirroredRepeat => vk::SamplerAddressMode::MIRRORED_REPEAT,
-        Wrap::ClampToEdge => vk::SamplerAddressMode::CLAMP_TO_EDGE,
-    };
-    let sampler = &texture.sampler;
-    // Anisotropy is left out on purpose: software drivers take several times as long for it, and pictures of different
-    // drivers would differ by more than their rounding.
-    vk::SamplerCreateInfo::default()
-        .mag_filter(filter(sampler.mag_linear))
-        .min_filter(filter(sampler.min_linear))
-        .mipmap_mode(match sampler.mip_linear {
-            Some(true) => vk::SamplerMipmapMode::LINEAR,
-            Some(false) | None => vk::SamplerMipmapMode::NEAREST,
-        })
-        .address_mode_u(wrap(sampler.wrap_u))
-        .address_mode_v(wrap(sampler.wrap_v))
-        .address_mode_w(vk::SamplerAddressMode::REPEAT)
-        // glTF's NEAREST and LINEAR without a level: only the finest one.
-        .max_lod(if sampler.mip_linear.is_some() { vk::LOD_CLAMP_NONE } else { 0.25 })
-}
-
-type MaterialSets = (vk::DescriptorSetLayout, vk::DescriptorPool, Vec<vk::DescriptorSet>);
-
-fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]]) -> Result<MaterialSets> {
-    let kind = vk::DescriptorType::COMBINED_IMAGE_SAMPLER;
-    let bindings: Vec<_> = (0..TEXTURES_PER_MATERIAL as u32)
-        .map(|binding| {
-            vk::DescriptorSetLayoutBinding::default()
-                .binding(binding)
-                .descriptor_type(kind)
-                .descriptor_count(1)
-                .stage_flags(vk::ShaderStageFlags::FRAGMENT)
-        })
-        .collect();
-    let fail = |result| Error::device(format!("making the descriptor sets of {} materials: {result}", infos.len()));
-    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-    // SAFETY: a live device; the bindings outlive the call.
-    let layout = unsafe { gpu.device.create_descriptor_set_layout(&info, None) }.map_err(fail)?;
-    let count = infos.len().max(1) as u32;
-    let sizes = [vk::DescriptorPoolSize { ty: kind, descriptor_count: count * TEXTURES_PER_MATERIAL as u32 }];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
-    // SAFETY: a live device.
-    let pool = match unsafe { gpu.device.create_descriptor_pool(&info, None) } {
-        Ok(pool) => pool,
-        Err(result) => {
-            // SAFETY: never used.
-            unsafe { gpu.device.destroy_descriptor_set_layout(layout, None) };
-            return Err(fail(result));
-        }
-    };
-    let layouts = vec![layout; infos.len()];
-    if infos.is_empty() {
-        return Ok((layout, pool, Vec::new()));
-    }
-    let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
-    // SAFETY: pool and layout are alive and the pool holds as many sets.
-    let sets = match unsafe { gpu.device.allocate_descriptor_sets(&info) } {
-        Ok(sets) => sets,
-        Err(result) => {
-            // SAFETY: never used.
-            unsafe {
-                gpu.device.destroy_descriptor_pool(pool, None);
-                gpu.device.destroy_descriptor_set_layout(layout, None);
-            }
-            return Err(fail(result));
-        }
-    };
-    let writes: Vec<_> = sets
-        .iter()
-        .zip(infos)
-        .flat_map(|(set, images)| {
-            images.chunks(1).enumerate().map(move |(binding, image)| {
-                vk::WriteDescriptorSet::default()
-                    .dst_set(*set)
-                    .dst_binding(binding as u32)
-                    .descriptor_type(kind)
-                    .image_info(image)
-            })
-        })
-        .collect();
-    // SAFETY: the sets are fresh; views and samplers live as long as the sets.
-    unsafe { gpu.device.update_descriptor_sets(&writes, &[]) };
-    Ok((layout, pool, sets))
 }
