@@ -25,8 +25,12 @@ fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=tools/build");
     println!("cargo::rerun-if-changed=build.rs");
     // The report says which commit it came from; outside a checkout it says "unknown".
-    println!("cargo::rerun-if-changed=.git/HEAD");
-    println!("cargo::rerun-if-changed=.git/logs/HEAD");
+    // A path that does not exist would make every build run this again.
+    for path in [".git/HEAD", ".git/logs/HEAD"] {
+        if Path::new(path).exists() {
+            println!("cargo::rerun-if-changed={path}");
+        }
+    }
     println!("cargo::rustc-env=QUINCUNX_COMMIT={}", commit());
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     match generate(Path::new("glsl"), &out) {

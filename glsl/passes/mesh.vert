@@ -1,4 +1,5 @@
 // Vertex stage that every pass over the scene's triangles shares. Draws: src/passes/mesh.rs.
+// portable: yes
 #version 460
 #include "frame.glsl"
 #include "resident.glsl"

@@ -225,7 +225,8 @@ impl Gpu {
         let entry = load_entry()?;
         let log = request.validate.then(|| Box::new(validation::Log::default()));
         let (instance, has_names) = create_instance(&entry, log.as_deref())?;
-        let opened = Self::open_on(entry, instance.clone(), has_names, log, request);
+        // The library must outlive the instance, also when opening fails: `entry` is kept here until then.
+        let opened = Self::open_on(entry.clone(), instance.clone(), has_names, log, request);
         if opened.is_err() {
             // SAFETY: `open_on` destroys what it made before it fails.
             unsafe { instance.destroy_instance(None) };
