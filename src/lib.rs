@@ -1,5 +1,41 @@
-//! quincunx: a headless Vulkan renderer in which five papers on interleaved, inferred and decoupled shading run side
-//! by side: the same scene, the same lights, the same driver, the same ground truth.
+//! quincunx: a headless Vulkan renderer in which papers on interleaved, inferred and decoupled shading run side by side:
+//! the same scene, the same lights, the same driver, the same ground truth.
+//!
+//! # Techniques
+//!
+//! - [`techniques::interleaved_deferred`]: Segovia et al. 2006, virtual point lights interleaved over a pattern
+//! - [`techniques::deferred`]: plain deferred shading of punctual lights, the baseline
+//!
+//! # A picture in ten lines
+//!
+//! ```no_run
+//! use quincunx::job::Job;
+//!
+//! let technique = quincunx::techniques::find("interleaved_deferred")?;
+//! let mut job = Job::new("cornell", technique);
+//! job.set("size", "640x360")?;
+//! job.set("pattern", "4x4")?;
+//! job.output = Some("cornell.exr".into());
+//! let outcome = job.run()?;
+//! println!("{}", outcome.report.text());
+//! # Ok::<(), quincunx::Error>(())
+//! ```
+//!
+//! # The road, and the rooms along it
+//!
+//! Arguments become a [`job`], a job loads a [`scene`], a technique makes a [`plan`] of it, a [`session`] makes the plan
+//! real, frames are recorded through [`gpu`] out of [`memory`], and what comes out is a [`report`].
+//!
+//! | room | what lives there |
+//! | --- | --- |
+//! | [`cli`] | one file per verb: parse, run, print |
+//! | [`settings`] | every number that a technique reads, as one table |
+//! | [`scene`] | triangles, materials, lights, cameras; glTF and built-in scenes; no Vulkan |
+//! | [`resident`] | the scene in device memory |
+//! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
+//! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
+//! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
+//! | [`metrics`], [`bench`] | errors of pictures; times of variants, in turn |
 
 pub mod bench;
 pub mod bvh;
