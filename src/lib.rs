@@ -35,7 +35,7 @@
 //! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
 //! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
-//! | [`metrics`], [`bench`] | errors of pictures; times of variants, in turn |
+//! | [`metrics`], [`mod@bench`] | errors of pictures; times of variants, in turn |
 
 pub mod bench;
 pub mod bvh;
