@@ -16,7 +16,7 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
     if let Some(aov) = frame.gbuffer.aov(gpu, name) {
         return aov;
     }
-    let why_no_split = "--split one-pass copies; none, subsample and branch do not";
+    let why_no_split = "of the roads of --split only one-pass copies";
     let why_no_filter = "--filter none, --split none, --split subsample and a pattern of 1x1 leave it out";
     let rgb = |values: Vec<[f32; 3]>| Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(values) });
     match (name, &frame.roads) {
@@ -32,7 +32,9 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
             let texels = texels(gpu, &frame.irradiance, decode::halves)?;
             rgb(cells(frame, &texels))
         }
-        ("shade.irradiance", Roads::Branch(_)) => rgb(in_frame_order(frame, gpu, &frame.irradiance)?),
+        ("shade.irradiance", Roads::Branch(_) | Roads::Strided(_)) => {
+            rgb(in_frame_order(frame, gpu, &frame.irradiance)?)
+        }
         ("gather.irradiance", Roads::SubBuffers { gathered, .. }) => rgb(in_frame_order(frame, gpu, gathered)?),
         ("discontinuity.flags", _) => match &frame.filter {
             Some(filter) => {

@@ -6,6 +6,7 @@ use super::discontinuity::Discontinuity;
 use super::gather::Gather;
 use super::plan::{Choices, Filter};
 use super::shade::branch::ShadeBranch;
+use super::shade::strided::{Dispatches, ShadeStrided};
 use super::shade::sub_buffers::ShadeSubBuffers;
 use super::shade::subsample::ShadeSubsample;
 use super::shade::{ShadeGpu, SubsetLights};
@@ -30,6 +31,7 @@ use std::sync::Arc;
 #[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
 pub enum Roads {
     Branch(ShadeBranch),
+    Strided(ShadeStrided),
     Subsample { shade: ShadeSubsample, upscale: Upscale, upscaled: Buffer },
     SubBuffers { copy: OnePass, split: SubBuffers, shade: ShadeSubBuffers, gather: Gather, gathered: Buffer },
 }
@@ -78,11 +80,17 @@ impl InterleavedFrame {
         let tree = shading.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading, tree)?;
         let least = inputs.values.length("vpl-clamp", inputs.scene.bounds().diagonal());
-        let params =
-            ShadeParams { mapping: *mapping, least_squared: least * least, weight: choices.subset_count() as f32 };
+        let params = ShadeParams {
+            mapping: *mapping,
+            least_squared: least * least,
+            weight: choices.subset_count() as f32,
+            subset_first: 0,
+        };
         let shade = ShadeGpu::new(gpu, resources, lights, params)?;
         let roads = match road {
             Road::None | Road::Branch => Roads::Branch(ShadeBranch::new(gpu, shading)?),
+            Road::Indirect => Roads::Strided(ShadeStrided::new(gpu, shading, Dispatches::PerSubset)?),
+            Road::Remap => Roads::Strided(ShadeStrided::new(gpu, shading, Dispatches::One)?),
             Road::Subsample => Roads::Subsample {
                 shade: ShadeSubsample::new(gpu, shading)?,
                 upscale: Upscale::new(gpu, shading)?,
@@ -117,6 +125,10 @@ impl InterleavedFrame {
         let gbuffer = self.gbuffer.from(written);
         match &self.roads {
             Roads::Branch(shade) => {
+                shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
+                Ok(self.irradiance.from(Access::ComputeWrite))
+            }
+            Roads::Strided(shade) => {
                 shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
                 Ok(self.irradiance.from(Access::ComputeWrite))
             }

@@ -99,7 +99,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lights: &SubsetLights, direc
     direct::plan(&mut plan, NAME, direct_light_count, shading, tree, extent);
     shade::plan(&mut plan, lights);
     match road {
-        Road::None | Road::Branch => plan.buffer("irradiance", format!("{NAME}.shade.irradiance"), frame_bytes),
+        Road::None | Road::Branch | Road::Indirect | Road::Remap => {
+            plan.buffer("irradiance", format!("{NAME}.shade.irradiance"), frame_bytes)
+        }
         Road::Subsample => {
             plan.buffer("irradiance", format!("{NAME}.shade.irradiance"), mapping.sub_texel_count() * 8);
             plan.buffer("irradiance", format!("{NAME}.upscale.irradiance"), frame_bytes);

@@ -16,12 +16,13 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "split",
         symbol: "",
-        kind: Kind::Choice(&["none", "subsample", "branch", "one-pass"]),
+        kind: Kind::Choice(&["none", "subsample", "branch", "indirect", "remap", "one-pass"]),
         default: "one-pass",
         unit: "",
         paper: "Segovia 2006, 3.1-3.2",
         help: "how pixels meet their subset: every light on every pixel (none), all lights at one pixel of a pattern \
-               (subsample), each pixel looping over its own (branch), or a copy into n x m sub-buffers (one-pass)",
+               (subsample), each pixel looping over its own (branch), a subset at a time at the pattern's stride, in a \
+               dispatch each (indirect) or in one (remap), or a copy into n x m sub-buffers (one-pass)",
     },
     Setting {
         key: "vpls",

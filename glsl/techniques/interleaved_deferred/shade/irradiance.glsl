@@ -21,6 +21,8 @@ struct ShadeParams {
     float least_squared;
     // n * m: the mean over a pattern is the sum over all lights.
     float weight;
+    // First subset of this dispatch; 0 where a dispatch has them all.
+    uint subset_first;
 };
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;

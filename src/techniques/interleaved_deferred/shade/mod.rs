@@ -2,6 +2,7 @@
 //! (irradiance.glsl): float, in the order of the list, packed to halves once.
 
 pub mod branch;
+pub mod strided;
 pub mod sub_buffers;
 pub mod subsample;
 

@@ -11,6 +11,10 @@ pub enum Road {
     Subsample,
     /// One pass over the un-split G-buffer, each pixel looping over its own subset.
     Branch,
+    /// A dispatch a subset over the un-split G-buffer, at the pattern's stride.
+    Indirect,
+    /// The same in one dispatch, workgroups numbered by subset.
+    Remap,
     /// A copy into sub-buffers in one pass.
     OnePass,
 }
@@ -22,6 +26,8 @@ impl Road {
             "none" => Self::None,
             "subsample" => Self::Subsample,
             "branch" => Self::Branch,
+            "indirect" => Self::Indirect,
+            "remap" => Self::Remap,
             "one-pass" => Self::OnePass,
             other => panic!("--split {other} was checked"),
         }

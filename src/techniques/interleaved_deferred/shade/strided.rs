@@ -1,0 +1,70 @@
+//! Each subset over the un-split G-buffer at the pattern's stride: no copy. Shader: strided.comp.
+//! reads  the G-buffer, the lights      writes  the irradiance  buffer, frame order, 8 B a pixel
+//!
+//! `--split indirect` dispatches once a subset (Segovia 2006, section 3.1, bound by memory latency there); `--split
+//! remap` once for all, with workgroups numbered so that each shades one subset.
+
+use super::super::NAME;
+use super::{ShadeGpu, constants};
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::ShadeParams;
+use crate::gpu::shader::techniques::interleaved_deferred::shade::strided::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::gbuffer::GBuffer;
+use std::sync::Arc;
+
+/// How many subsets a dispatch shades.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dispatches {
+    One,
+    PerSubset,
+}
+
+pub struct ShadeStrided {
+    pipeline: ComputePipeline,
+    dispatches: Dispatches,
+}
+
+impl ShadeStrided {
+    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, dispatches: Dispatches) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(settings))?, dispatches })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        shade: &ShadeGpu,
+        direct: &DirectGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        irradiance: &Buffer,
+    ) -> Result<()> {
+        let mapping = shade.mapping();
+        let pixels = gbuffer.resource.extent().pixel_count();
+        let traffic = Traffic {
+            read_bytes: pixels * gbuffer.resource.surface_bytes(),
+            written_bytes: pixels * 8,
+            invocations: Some(mapping.texel_count()),
+        };
+        cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
+            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
+            let mut bound = shade.bound(frame, direct, irradiance);
+            bound.extend(gbuffer.resource.bound_surface());
+            let [x, ..] = self.pipeline.groups([mapping.sub_texel_count() as u32, 1, 1]);
+            let mut dispatch = |subset_first: u32, subset_count: u32| {
+                let params = ShadeParams { subset_first, ..shade.params };
+                // No barrier between subsets: they write different pixels.
+                cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&params), &bound, [x, 1, subset_count])
+            };
+            match self.dispatches {
+                Dispatches::One => dispatch(0, mapping.subset_count()),
+                Dispatches::PerSubset => (0..mapping.subset_count()).try_for_each(|subset| dispatch(subset, 1)),
+            }
+        })
+    }
+}
