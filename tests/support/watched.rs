@@ -124,6 +124,6 @@ pub fn values(technique: &str, changes: Changes<'_>) -> Values {
 }
 
 /// `first` and then `second`, which wins.
-pub fn both<'a>(first: Changes<'a>, second: Changes<'a>) -> Vec<(&'a str, &'a str)> {
+pub fn both<'a>(first: &[(&'a str, &'a str)], second: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a str)> {
     first.iter().chain(second).copied().collect()
 }
