@@ -9,8 +9,8 @@ use quincunx::gpu::commands::Submits;
 use quincunx::gpu::{Access, Buffer, Commands, Gpu, readback, upload};
 use quincunx::memory::kinds::Use;
 use quincunx::passes::decode;
-use quincunx::passes::filter::Kernel;
 use quincunx::passes::filter::gauss::Gauss;
+use quincunx::passes::filter::{Kernel, StopBits};
 use quincunx::units::Extent;
 use std::sync::Arc;
 use support::watched::{Watched, both, require_silence, watched_device};
@@ -21,15 +21,6 @@ const TECHNIQUE: &str = "interleaved_deferred";
 /// lies between two halves may go either way on the two sides. Subnormal halves are 2^-24 apart.
 const RELATIVE_BOUND: f32 = 1.0 / 512.0;
 const SUBNORMAL_STEP: f32 = 1.0 / 16_777_216.0;
-
-/// Which bits of a flag end a walk.
-const STOP_BITS_X: u32 = !0;
-const STOP_BITS_Y: u32 = !0;
-
-/// The device's kernel.
-fn kernel(taps: u32, sigma: f32) -> Kernel {
-    Kernel { taps, sigma }
-}
 
 /// What the filter sees: irradiance and flags, row-major.
 struct Frame {
@@ -52,23 +43,16 @@ fn to_half(value: Vec3) -> [f32; 3] {
 }
 
 /// The twin: both directions, rounded to half floats after each.
-fn filtered(frame: &Frame, steps: Steps, taps: u32, sigma: f32) -> Vec<[f32; 3]> {
-    let horizontal = one_direction(frame, &frame.irradiance, true, steps, taps, sigma);
-    one_direction(frame, &horizontal, false, steps, taps, sigma)
+fn filtered(frame: &Frame, steps: Steps, kernel: Kernel) -> Vec<[f32; 3]> {
+    let horizontal = one_direction(frame, &frame.irradiance, true, steps, kernel);
+    one_direction(frame, &horizontal, false, steps, kernel)
 }
 
-fn one_direction(
-    frame: &Frame,
-    source: &[[f32; 3]],
-    along_x: bool,
-    steps: Steps,
-    taps: u32,
-    sigma: f32,
-) -> Vec<[f32; 3]> {
+fn one_direction(frame: &Frame, source: &[[f32; 3]], along_x: bool, steps: Steps, kernel: Kernel) -> Vec<[f32; 3]> {
     let (width, height) = (i64::from(frame.extent.width), i64::from(frame.extent.height));
-    let radius = i64::from(taps / 2);
+    let (radius, sigma) = (i64::from(kernel.taps / 2), kernel.sigma);
     let weight = |tap: i64| (-0.5 * (tap * tap) as f32 / (sigma * sigma)).exp();
-    let stop_bits = if along_x { STOP_BITS_X } else { STOP_BITS_Y };
+    let stop_bits = if along_x { kernel.stop_bits.x } else { kernel.stop_bits.y };
     let (length, stride) = if along_x { (width, 1) } else { (height, width) };
     let stops = |texel: i64| frame.flags[texel as usize] & stop_bits != 0;
     let value = |texel: i64| Vec3::from_array(source[texel as usize]);
@@ -128,10 +112,17 @@ fn a_frames_filter_is_its_twin() {
     let watched = Watched::open("cornell");
     for (extent, pattern) in [(Extent::new(160, 90), "4x4"), (Extent::new(97, 53), "3x2"), (Extent::new(5, 3), "2x2")] {
         for (filter, steps) in [("gauss", Steps::Single), ("gauss-fast", Steps::Pairs)] {
-            for (taps, sigma) in [(5, 0.0), (7, 1.3), (17, 6.0)] {
+            for (taps, sigma, ends) in [
+                (5, 0.0, "directional"),
+                (7, 1.3, "directional"),
+                (17, 6.0, "directional"),
+                (5, 0.0, "any"),
+                (11, 3.0, "any"),
+            ] {
                 let (size, kernel, deviation) = (extent.to_string(), taps.to_string(), sigma.to_string());
                 let common = [("size", size.as_str()), ("pattern", pattern), ("vpls", "64"), ("filter", filter)];
-                let changes = both(&common, &[("kernel", &kernel), ("sigma", &deviation)]);
+                let own = [("kernel", kernel.as_str()), ("sigma", &deviation), ("discontinuity", ends)];
+                let changes = both(&common, &own);
                 let renderer = watched.render(TECHNIQUE, &changes);
                 let frame = Frame {
                     extent,
@@ -141,7 +132,8 @@ fn a_frames_filter_is_its_twin() {
                 let flagged = frame.flags.iter().filter(|flag| **flag != 0).count();
                 assert!(flagged > 0 && flagged < frame.flags.len(), "{flagged} of {} are flagged", frame.flags.len());
                 let sigma = if sigma == 0.0 { taps as f32 / 3.0 } else { sigma };
-                let expected = filtered(&frame, steps, taps, sigma);
+                let stop_bits = if ends == "any" { StopBits::ANY } else { StopBits::DIRECTIONAL };
+                let expected = filtered(&frame, steps, Kernel { taps, sigma, stop_bits });
                 let slack = |index| match steps {
                     Steps::Single => Vec3::ZERO,
                     Steps::Pairs => sampler_slack(&frame, taps, index),
@@ -153,14 +145,14 @@ fn a_frames_filter_is_its_twin() {
     }
 }
 
-/// Flags by normals alone: a threshold of a kilometre leaves positions out.
+/// Flags by normals alone: a threshold of a kilometre leaves positions out. Bit 0 is +x, bit 1 +y, bit 2 +xy.
 #[test]
 fn flags_stand_where_normals_turn() {
     let watched = Watched::open("cornell");
     for extent in [Extent::new(160, 90), Extent::new(97, 53)] {
         let size = extent.to_string();
-        let changes = [("size", size.as_str()), ("vpls", "64"), ("position-threshold", "1000")];
-        let renderer = watched.render(TECHNIQUE, &changes);
+        let own = [("position-threshold", "1000"), ("normal-threshold", "0.1")];
+        let renderer = watched.render(TECHNIQUE, &both(&[("size", size.as_str()), ("vpls", "64")], &own));
         let normals = watched.rgb(&renderer, "gbuffer.normal");
         let flags = watched.integers(&renderer, "discontinuity.flags");
         let normal = |x: u32, y: u32| {
@@ -174,9 +166,9 @@ fn flags_stand_where_normals_turn() {
                     (false, false) => 1.0 - own.dot(other) > 0.1,
                     (own, other) => own != other,
                 };
-                let expected = [(1, 0), (0, 1), (1, 1)].iter().any(|(dx, dy)| differs(normal(x + dx, y + dy)));
-                let found = flags[(y * extent.width + x) as usize] != 0;
-                assert_eq!(found, expected, "{extent} ({x}, {y})");
+                let neighbours = [(1, 0), (0, 1), (1, 1)].map(|(dx, dy)| u32::from(differs(normal(x + dx, y + dy))));
+                let expected = neighbours[0] | neighbours[1] << 1 | neighbours[2] << 2;
+                assert_eq!(flags[(y * extent.width + x) as usize], expected, "{extent} ({x}, {y})");
             }
         }
     }
@@ -203,7 +195,7 @@ fn thresholds_switch_discontinuities_off() {
 }
 
 /// The pass by itself, on irradiance and flags that no scene gives.
-fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, taps: u32, sigma: f32, workgroup: [u32; 2]) -> Vec<[f32; 3]> {
+fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2]) -> Vec<[f32; 3]> {
     let Extent { width, height } = frame.extent;
     let pitch = width.next_multiple_of(2);
     let texel_count = u64::from(pitch * height);
@@ -228,7 +220,7 @@ fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, taps: u32, sigma: f32, workgroup: [u
     upload::buffer(gpu, &source, &halves, Access::ComputeRead).unwrap();
     upload::buffer(gpu, &flag_buffer, bytemuck::cast_slice(&flags), Access::ComputeRead).unwrap();
     let workgroup = [("WORKGROUP_X", workgroup[0]), ("WORKGROUP_Y", workgroup[1])];
-    let gauss = Gauss::new(gpu, &workgroup, frame.extent, pitch, kernel(taps, sigma)).unwrap();
+    let gauss = Gauss::new(gpu, &workgroup, frame.extent, pitch, kernel).unwrap();
     let mut cmd = Commands::begin(gpu, "test", Submits::One).unwrap();
     let readable = Access::ComputeRead;
     gauss.record(&mut cmd, "test", source.from(readable), flag_buffer.from(readable), &between, &target).unwrap();
@@ -270,12 +262,15 @@ fn gauss_is_its_twin_on_noise() {
     ] {
         let color = |index: usize| [0, 1, 2].map(|channel| 10.0 * noise(3 * index + channel));
         for density in [0.0, 0.1, 0.6, 1.0] {
-            let flag = |index: usize| u32::from(noise(index + 1_000_003) < density);
-            let frame = frame_of(extent, color, flag);
+            let bit = |index: usize, bit: usize| u32::from(noise(index + bit * 1_000_003) < density) << (bit - 1);
+            let frame = frame_of(extent, color, |index| bit(index, 1) | bit(index, 2) | bit(index, 3));
             for (taps, sigma) in [(5, 5.0 / 3.0), (7, 2.0), (17, 4.0)] {
-                let found = run_gauss(&gpu, &frame, taps, sigma, workgroup);
-                let what = format!("{extent}, {taps} taps, {density} flagged");
-                require_close(&found, &filtered(&frame, Steps::Single, taps, sigma), |_| Vec3::ZERO, extent, &what);
+                for stop_bits in [StopBits::DIRECTIONAL, StopBits::ANY] {
+                    let kernel = Kernel { taps, sigma, stop_bits };
+                    let found = run_gauss(&gpu, &frame, kernel, workgroup);
+                    let what = format!("{extent}, {kernel:?}, {density} flagged");
+                    require_close(&found, &filtered(&frame, Steps::Single, kernel), |_| Vec3::ZERO, extent, &what);
+                }
             }
         }
     }
@@ -287,7 +282,8 @@ fn a_constant_irradiance_stays_as_it_is() {
     let extent = Extent::new(67, 43);
     for level in [0.0, 0.25, 3.7, 60_000.0] {
         let frame = frame_of(extent, |_| [level, 0.5 * level, level], |index| u32::from(noise(index) < 0.2));
-        let found = run_gauss(&gpu, &frame, 7, 2.0, [64, 1]);
+        let kernel = Kernel { taps: 7, sigma: 2.0, stop_bits: StopBits::ANY };
+        let found = run_gauss(&gpu, &frame, kernel, [64, 1]);
         // A weighted mean of one half is that half within float rounding, which the way to half floats takes away.
         assert_eq!(found, frame.irradiance, "level {level}");
     }
@@ -298,11 +294,18 @@ fn a_flagged_column_keeps_its_two_sides_apart() {
     let gpu = Gpu::open(&watched_device()).unwrap();
     let extent = Extent::new(32, 8);
     let is_left = |index: usize| index % 32 <= 15;
-    let frame =
-        frame_of(extent, |index| if is_left(index) { [1.0; 3] } else { [9.0; 3] }, |index| u32::from(index % 32 == 15));
-    let found = run_gauss(&gpu, &frame, 17, 4.0, [64, 1]);
-    assert_eq!(found, frame.irradiance, "nothing crosses the flagged column");
-    assert_eq!(filtered(&frame, Steps::Pairs, 17, 4.0), frame.irradiance, "nor in pairs");
+    let sides = |index| if is_left(index) { [1.0; 3] } else { [9.0; 3] };
+    let frame = frame_of(extent, sides, |index| u32::from(index % 32 == 15));
+    for stop_bits in [StopBits::DIRECTIONAL, StopBits::ANY] {
+        let kernel = Kernel { taps: 17, sigma: 4.0, stop_bits };
+        assert_eq!(run_gauss(&gpu, &frame, kernel, [64, 1]), frame.irradiance, "{stop_bits:?}");
+        assert_eq!(filtered(&frame, Steps::Pairs, kernel), frame.irradiance, "in pairs, {stop_bits:?}");
+    }
+    // Along x, a step in y is no obstacle to a directional walk, and one to the paper's flag.
+    let steps = frame_of(extent, sides, |index| if index % 32 == 15 { 2 } else { 0 });
+    let run = |stop_bits| run_gauss(&gpu, &steps, Kernel { taps: 17, sigma: 4.0, stop_bits }, [64, 1]);
+    assert_ne!(run(StopBits::DIRECTIONAL), steps.irradiance);
+    assert_eq!(run(StopBits::ANY), steps.irradiance);
 }
 
 /// Pairs share one weight, so the two filters differ; on a ramp the errors of both sides cancel.
@@ -311,7 +314,8 @@ fn pairs_are_as_good_as_single_steps_on_a_ramp() {
     let extent = Extent::new(64, 48);
     let ramp = |index: usize| [1.0 + 0.01 * (index % 64) as f32, 2.0 + 0.02 * (index / 64) as f32, 3.0];
     let frame = frame_of(extent, ramp, |_| 0);
-    let [single, pairs] = [Steps::Single, Steps::Pairs].map(|steps| filtered(&frame, steps, 5, 5.0 / 3.0));
+    let kernel = Kernel { taps: 5, sigma: 5.0 / 3.0, stop_bits: StopBits::ANY };
+    let [single, pairs] = [Steps::Single, Steps::Pairs].map(|steps| filtered(&frame, steps, kernel));
     for (index, (single, pairs)) in single.iter().zip(&pairs).enumerate() {
         let (x, y) = (index as u32 % extent.width, index as u32 / extent.width);
         let inside = x >= 2 && y >= 2 && x < extent.width - 2 && y < extent.height - 2;
