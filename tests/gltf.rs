@@ -10,6 +10,7 @@ use glam::{Mat3, Vec2, Vec3};
 use quincunx::scene::{AlphaMode, ColorSpace, LightKind, Projection, Scene, Wrap, gltf};
 use serde_json::json;
 use support::gltf_file::{F32, GltfFile, U8, U16, U32, load_bytes, write};
+use support::shared_scenes;
 
 #[test]
 fn a_bare_triangle_gets_flat_normals_and_the_default_material() {
@@ -272,14 +273,6 @@ fn points_lines_and_empty_primitives_draw_nothing() {
     let scene = file.load().unwrap();
     assert_eq!((scene.meshes.len(), scene.draws.len()), (1, 1));
     assert!(scene.warnings[0].starts_with("4 primitives of points or lines"), "{:?}", scene.warnings);
-}
-
-fn shared_scenes() -> Option<PathBuf> {
-    let folder = std::env::var_os("QUINCUNX_SCENES").map(PathBuf::from);
-    if folder.is_none() {
-        println!("skipped: QUINCUNX_SCENES is not set");
-    }
-    folder
 }
 
 /// Triangles, point lights, directional lights, cameras, materials, and how many of them MASK and BLEND.

@@ -25,9 +25,11 @@ layout(set = 0, binding = 1, rg32ui) writeonly uniform uimage2D target;
 layout(std430, set = 0, binding = 1) writeonly buffer Target { uvec2 target[]; };
 #endif
 
-// Whether a walk in this direction stops, from the sum of two texels' flags (gauss_pack.comp).
+// Whether a walk in this direction stops, from the sum of two texels' flags (gauss_pack.comp). A fetch is off by the
+// sampler's rounding, so 4 may come as 3.9999998, whose remainder would pass for a stop.
 bool stops(float sum) {
-    return params.horizontal != 0u ? mod(sum, 4.0) > 0.25 : sum > 3.5;
+    uint stops = uint(sum + 0.5);
+    return params.horizontal != 0u ? (stops & 3u) != 0u : stops >= 4u;
 }
 
 float weight_at(uint tap) {

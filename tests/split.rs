@@ -1,0 +1,94 @@
+//! Split then gather is the identity on the device, seen in the stages that a frame leaves (Segovia 2006, figure 3).
+
+mod support;
+
+use quincunx::gpu::commands::Submits;
+use quincunx::techniques::interleaved_deferred::mapping::mapping;
+use quincunx::units::Extent;
+use support::watched::Watched;
+
+const TECHNIQUE: &str = "interleaved_deferred";
+
+/// A picture of sub-buffers side by side, back in frame order: what stands at place i shows pixel `shown[i]`.
+fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32; 2]) -> Vec<[f32; 3]> {
+    let mapping = mapping(extent, pattern);
+    let mut place_of = vec![usize::MAX; mapping.texel_count() as usize];
+    for (place, texel) in mapping.side_by_side().into_iter().enumerate() {
+        place_of[texel as usize] = place;
+    }
+    let pixels = (0..extent.height).flat_map(|y| (0..extent.width).map(move |x| [x, y]));
+    pixels.map(|pixel| side_by_side[place_of[mapping.texel_of(pixel) as usize]]).collect()
+}
+
+#[test]
+fn every_sub_buffer_comes_back_where_it_was() {
+    let watched = Watched::open("cornell");
+    for (extent, pattern) in [
+        (Extent::new(160, 90), [1, 1]),
+        (Extent::new(160, 90), [4, 4]),
+        (Extent::new(161, 91), [4, 4]),
+        (Extent::new(161, 91), [5, 7]),
+        (Extent::new(97, 53), [8, 6]),
+        (Extent::new(63, 64), [2, 1]),
+        (Extent::new(63, 41), [1, 3]),
+        // A pattern larger than the frame: most sub-buffers hold nothing but padding.
+        (Extent::new(9, 7), [16, 16]),
+        (Extent::new(1, 1), [2, 2]),
+    ] {
+        let (size, text) = (extent.to_string(), format!("{}x{}", pattern[0], pattern[1]));
+        let renderer = watched.render(TECHNIQUE, &[("size", &size), ("pattern", &text), ("vpls", "256")]);
+        let stage = |name: &str| watched.rgb(&renderer, name);
+        let what = format!("{extent} in {text}");
+        assert_eq!(back_in_frame_order(&stage("split.normal"), extent, pattern), stage("gbuffer.normal"), "{what}");
+        let gathered = stage("gather.irradiance");
+        assert_eq!(back_in_frame_order(&stage("shade.irradiance"), extent, pattern), gathered, "{what}");
+        assert!(gathered.iter().any(|irradiance| irradiance[0] > 0.0), "{what}: it is dark");
+    }
+}
+
+#[test]
+fn both_roads_shade_the_same_irradiance() {
+    let watched = Watched::open("cornell");
+    let common = [("size", "97x53"), ("pattern", "5x7"), ("vpls", "128")];
+    let gathered = watched.rgb(&watched.render(TECHNIQUE, &common), "gather.irradiance");
+    let branch = watched.render(TECHNIQUE, &support::watched::both(&common, &[("split", "branch")]));
+    assert_eq!(watched.rgb(&branch, "shade.irradiance"), gathered);
+}
+
+#[test]
+fn a_stage_that_the_settings_leave_out_is_refused() {
+    let watched = Watched::open("cornell");
+    let common = [("size", "33x17"), ("vpls", "64")];
+    let filtered = ["discontinuity.flags", "filter.irradiance"];
+    let split = ["split.normal", "gather.irradiance"];
+    for (change, missing) in [
+        (("split", "none"), [split, filtered].concat()),
+        (("split", "subsample"), [split, filtered].concat()),
+        (("split", "branch"), split.to_vec()),
+        (("filter", "none"), filtered.to_vec()),
+        (("pattern", "1x1"), filtered.to_vec()),
+        (("pattern", "2x2"), vec![]),
+    ] {
+        let renderer = watched.render(TECHNIQUE, &support::watched::both(&common, &[change]));
+        for name in quincunx::techniques::find(TECHNIQUE).unwrap().aovs() {
+            match renderer.aov(name) {
+                Ok(_) => assert!(!missing.contains(name), "{change:?} made {name}"),
+                Err(error) => {
+                    assert!(missing.contains(name), "{change:?}: {error}");
+                    assert_eq!(error.exit_code(), 2);
+                    assert!(error.message().contains(&format!("--aov {name}")), "{error}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn fewer_lights_than_subsets_are_refused() {
+    let watched = Watched::open("cornell");
+    let refused = watched.try_renderer(TECHNIQUE, &[("vpls", "15"), ("size", "8x8")], Submits::One).err().unwrap();
+    assert_eq!(refused.exit_code(), 2);
+    assert!(refused.message().contains("15 lights for the 16 subsets"), "{refused}");
+    let renderer = watched.render(TECHNIQUE, &[("vpls", "16"), ("size", "8x8")]);
+    assert!(renderer.picture().unwrap().mean()[0] > 0.0);
+}

@@ -1,0 +1,129 @@
+//! A session under the validation layer, in which every message is a failure.
+
+use quincunx::error::Result;
+use quincunx::gpu::commands::Submits;
+use quincunx::gpu::{DeviceRequest, Gpu};
+use quincunx::job::settings_of;
+use quincunx::memory::Strategy;
+use quincunx::report::image_file::AovChannels;
+use quincunx::report::picture::Picture;
+use quincunx::scene::{self, Scene};
+use quincunx::session::{Renderer, Session};
+use quincunx::settings::Values;
+use quincunx::techniques;
+
+/// Settings that differ from their defaults.
+pub type Changes<'a> = &'a [(&'a str, &'a str)];
+
+/// A device with the validation layer and nothing else out of the ordinary.
+pub fn watched_device() -> DeviceRequest {
+    DeviceRequest { validate: true, ..DeviceRequest::default() }
+}
+
+/// Fails with the messages that the validation layer has for `gpu`.
+pub fn require_silence(gpu: &Gpu, what: &str) {
+    let messages = gpu.take_validation_messages();
+    let text: Vec<String> = messages.iter().map(|message| format!("{}\n  {}", message.id, message.text)).collect();
+    assert!(text.is_empty(), "{what}: {} validation messages\n{}", text.len(), text.join("\n"));
+}
+
+/// A scene on a watched device.
+pub struct Watched {
+    pub session: Session,
+}
+
+impl Watched {
+    /// The scene that `spec` names, as on the command line.
+    pub fn open(spec: &str) -> Self {
+        Self::with_scene(scene::load(spec, 1).unwrap())
+    }
+
+    pub fn with_scene(scene: Scene) -> Self {
+        Self::with_request(&watched_device(), scene)
+    }
+
+    pub fn with_strategy(strategy: Strategy, spec: &str) -> Self {
+        Self::with_request(&DeviceRequest { strategy, ..watched_device() }, scene::load(spec, 1).unwrap())
+    }
+
+    pub fn with_request(request: &DeviceRequest, scene: Scene) -> Self {
+        assert!(request.validate, "a test watches its device");
+        let session = Session::open(request, scene).unwrap();
+        require_silence(&session.gpu, "opening the session");
+        Self { session }
+    }
+
+    /// One technique with its settings, after one frame in one submit.
+    pub fn render(&self, technique: &str, changes: Changes<'_>) -> Renderer {
+        self.render_as(technique, changes, Submits::One)
+    }
+
+    pub fn render_as(&self, technique: &str, changes: Changes<'_>, submits: Submits) -> Renderer {
+        let what = format!("{technique} with {changes:?}");
+        let renderer = self.try_renderer(technique, changes, submits).unwrap_or_else(|error| panic!("{what}: {error}"));
+        renderer.frame().unwrap_or_else(|error| panic!("{what}: {error}"));
+        require_silence(&self.session.gpu, &what);
+        renderer
+    }
+
+    pub fn try_renderer(&self, technique: &str, changes: Changes<'_>, submits: Submits) -> Result<Renderer> {
+        self.session.renderer(techniques::find(technique)?, &values(technique, changes), submits)
+    }
+
+    /// The picture of one frame.
+    pub fn picture(&self, technique: &str, changes: Changes<'_>) -> Picture {
+        let picture = self.render(technique, changes).picture().unwrap();
+        require_silence(&self.session.gpu, "reading the picture back");
+        picture
+    }
+
+    /// The picture's hash.
+    pub fn hash(&self, technique: &str, changes: Changes<'_>) -> String {
+        self.picture(technique, changes).hash().unwrap()
+    }
+
+    /// A stage of three channels.
+    pub fn rgb(&self, renderer: &Renderer, name: &str) -> Vec<[f32; 3]> {
+        let aov = renderer.aov(name).unwrap();
+        require_silence(&self.session.gpu, name);
+        match aov.channels {
+            AovChannels::Rgb(texels) => texels,
+            other => panic!("{name} is no RGB stage: {other:?}"),
+        }
+    }
+
+    /// A stage of whole numbers.
+    pub fn integers(&self, renderer: &Renderer, name: &str) -> Vec<u32> {
+        let aov = renderer.aov(name).unwrap();
+        require_silence(&self.session.gpu, name);
+        match aov.channels {
+            AovChannels::YU32(texels) => texels,
+            other => panic!("{name} is no stage of whole numbers: {other:?}"),
+        }
+    }
+}
+
+impl Drop for Watched {
+    fn drop(&mut self) {
+        // A panic on its way out says more than what it left behind.
+        if !std::thread::panicking() {
+            require_silence(&self.session.gpu, "the whole test");
+        }
+    }
+}
+
+/// The technique's settings with some changed.
+pub fn values(technique: &str, changes: Changes<'_>) -> Values {
+    let settings = settings_of(techniques::find(technique).unwrap());
+    let mut values = Values::defaults(&settings);
+    for (key, text) in changes {
+        let setting = settings.iter().find(|setting| setting.key == *key);
+        values.set(setting.unwrap_or_else(|| panic!("{technique} does not read --{key}")), text).unwrap();
+    }
+    values
+}
+
+/// `first` and then `second`, which wins.
+pub fn both<'a>(first: &[(&'a str, &'a str)], second: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a str)> {
+    first.iter().chain(second).copied().collect()
+}
