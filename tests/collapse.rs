@@ -12,6 +12,10 @@ const PATTERNS: [&str; 7] = ["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"];
 /// The second is divided by none of the patterns, and by no SIMD width.
 const SIZES: [&str; 2] = ["640x360", "641x359"];
 
+/// Every road of `--split` that must give the picture of `branch`.
+const ROADS: [Changes<'_>; 4] =
+    [&[("split", "branch")], &[("split", "indirect")], &[("split", "remap")], &[("split", "one-pass")]];
+
 /// The same picture from every road that must give it.
 fn require_one_hash(watched: &Watched, technique: &str, common: Changes<'_>, variants: &[Changes<'_>]) -> String {
     let mut hashes = BTreeMap::new();
@@ -24,15 +28,14 @@ fn require_one_hash(watched: &Watched, technique: &str, common: Changes<'_>, var
 }
 
 #[test]
-fn one_pass_is_branch_for_every_pattern_and_size() {
+fn every_road_is_branch_for_every_pattern_and_size() {
     let watched = Watched::open("cornell");
     for size in SIZES {
         let mut seen = Vec::new();
         for filter in ["none", "gauss"] {
             for pattern in PATTERNS {
                 let common = [("vpls", "64"), ("size", size), ("filter", filter), ("pattern", pattern)];
-                let roads: [Changes<'_>; 2] = [&[("split", "branch")], &[("split", "one-pass")]];
-                seen.push((pattern, require_one_hash(&watched, INTERLEAVED, &common, &roads)));
+                seen.push((pattern, require_one_hash(&watched, INTERLEAVED, &common, &ROADS)));
             }
         }
         // Hashes that never differ would prove nothing: only 1x1 is not filtered.
@@ -44,9 +47,10 @@ fn one_pass_is_branch_for_every_pattern_and_size() {
 #[test]
 fn the_pattern_of_one_pixel_is_plain_deferred_shading() {
     let watched = Watched::open("cornell");
-    let roads: [Changes<'_>; 4] = [
+    let roads: [Changes<'_>; 5] = [
         &[("split", "none")],
         &[("split", "branch"), ("pattern", "1x1")],
+        &[("split", "remap"), ("pattern", "1x1")],
         &[("split", "one-pass"), ("pattern", "1x1")],
         &[("split", "one-pass"), ("pattern", "1x1"), ("filter", "none")],
     ];
@@ -62,8 +66,7 @@ fn every_way_of_holding_positions_splits_the_same() {
     for position in ["half", "unorm16", "depth", "float"] {
         for size in SIZES {
             let common = [("vpls", "64"), ("size", size), ("pattern", "3x2"), ("position", position)];
-            let roads: [Changes<'_>; 2] = [&[("split", "branch")], &[("split", "one-pass")]];
-            hashes.push(require_one_hash(&watched, INTERLEAVED, &common, &roads));
+            hashes.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
         }
     }
     hashes.sort();
@@ -74,7 +77,6 @@ fn every_way_of_holding_positions_splits_the_same() {
 #[test]
 fn lights_joined_to_the_subsets_split_the_same() {
     let watched = Watched::open("lamps:objects=10,lights=24");
-    let roads: [Changes<'_>; 2] = [&[("split", "branch")], &[("split", "one-pass")]];
     for (pattern, shadow) in [("2x2", "none"), ("4x4", "ray"), ("5x7", "none")] {
         let common = [
             ("vpls", "64"),
@@ -83,7 +85,7 @@ fn lights_joined_to_the_subsets_split_the_same() {
             ("pattern", pattern),
             ("direct-shadow", shadow),
         ];
-        require_one_hash(&watched, INTERLEAVED, &common, &roads);
+        require_one_hash(&watched, INTERLEAVED, &common, &ROADS);
     }
     let one: [Changes<'_>; 2] = [&[("split", "none")], &[("pattern", "1x1")]];
     require_one_hash(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "interleaved")], &one);
@@ -109,8 +111,7 @@ fn culling_changes_no_pixel_of_a_map() {
     let culls: [Changes<'_>; 2] = [&[("cull", "none")], &[("cull", "tiled")]];
     let common = [("size", "323x177"), ("vpls", "32"), ("lights", "40")];
     require_one_hash(&watched, INTERLEAVED, &common, &culls);
-    let roads: [Changes<'_>; 2] = [&[("split", "branch")], &[("split", "one-pass")]];
-    require_one_hash(&watched, INTERLEAVED, &common, &roads);
+    require_one_hash(&watched, INTERLEAVED, &common, &ROADS);
 }
 
 #[test]
