@@ -55,6 +55,7 @@ pub struct RecordedPass {
 /// A frame being recorded.
 pub struct Commands {
     gpu: Arc<Gpu>,
+    name: String,
     submits: Submits,
     pool: vk::CommandPool,
     buffers: Vec<vk::CommandBuffer>,
@@ -90,6 +91,7 @@ impl Commands {
             .map_err(|result| Error::device(format!("creating the command pool of {name}: {result}")))?;
         let mut commands = Self {
             gpu: gpu.clone(),
+            name: name.to_owned(),
             submits,
             pool,
             buffers: Vec::new(),
@@ -126,6 +128,7 @@ impl Commands {
         let buffer = unsafe { device.allocate_command_buffers(&info) }.map_err(fail)?[0];
         // SAFETY: fresh from the pool.
         unsafe { device.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default()) }.map_err(fail)?;
+        self.gpu.name(buffer, &format!("{}.{}", self.name, self.buffers.len()));
         self.buffers.push(buffer);
         Ok(())
     }
@@ -262,7 +265,10 @@ impl Commands {
             let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(*pool).set_layouts(&layouts);
             // SAFETY: a live pool and layout; a full pool answers with an error and is followed by a new one.
             match unsafe { self.gpu.device.allocate_descriptor_sets(&info) } {
-                Ok(sets) => return Ok(sets[0]),
+                Ok(sets) => {
+                    self.gpu.name(sets[0], &interface.label);
+                    return Ok(sets[0]);
+                }
                 Err(result) if fresh => {
                     return Err(Error::device(format!("{}: allocating descriptors: {result}", interface.label)));
                 }
@@ -392,6 +398,7 @@ impl Commands {
         // SAFETY: a live device.
         let fence = unsafe { self.gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }
             .map_err(|result| Error::device(format!("creating a fence: {result}")))?;
+        self.gpu.name(fence, &self.name);
         Ok(Recorded { commands: self, fence })
     }
 }

@@ -296,7 +296,7 @@ impl Gpu {
         // SAFETY: the family and index were asked for above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
-        let memory = Arc::new(Memory::new(device.clone(), &caps, request.strategy));
+        let memory = Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy));
         Ok(Self {
             caps,
             device,

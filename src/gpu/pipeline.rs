@@ -74,6 +74,8 @@ impl Interface {
         // SAFETY: as above.
         match unsafe { gpu.device.create_pipeline_layout(&info, None) } {
             Ok(layout) => {
+                gpu.name(own, &label);
+                gpu.name(layout, &label);
                 let owned = vec![own];
                 Ok(Self { gpu: gpu.clone(), layout, set_layouts, owned, bindings, push_stages, push_bytes, label })
             }
@@ -111,6 +113,7 @@ impl<'a> Module<'a> {
         // SAFETY: build.rs wrote valid SPIR-V; the words outlive the call.
         let handle = unsafe { gpu.device.create_shader_module(&info, None) }
             .map_err(|result| Error::device(format!("creating shader {}: {result}", shader.label())))?;
+        gpu.name(handle, &shader.label());
         Ok(Self { gpu, handle })
     }
 }

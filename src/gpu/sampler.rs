@@ -12,10 +12,11 @@ pub struct Sampler {
 
 impl Sampler {
     /// Errors: the driver refuses (exit code 4).
-    pub fn new(gpu: &Arc<Gpu>, info: &vk::SamplerCreateInfo<'_>) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, name: &str, info: &vk::SamplerCreateInfo<'_>) -> Result<Self> {
         // SAFETY: a live device; the info's pointers outlive the call.
         let handle = unsafe { gpu.device.create_sampler(info, None) }
             .map_err(|result| Error::device(format!("creating a sampler: {result}")))?;
+        gpu.name(handle, name);
         Ok(Self { gpu: gpu.clone(), handle })
     }
 
@@ -28,7 +29,8 @@ impl Sampler {
             .address_mode_u(edge)
             .address_mode_v(edge)
             .address_mode_w(edge);
-        Self::new(gpu, &info)
+        let name = if filter == vk::Filter::LINEAR { "sampler.linear" } else { "sampler.nearest" };
+        Self::new(gpu, name, &info)
     }
 }
 

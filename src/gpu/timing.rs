@@ -34,6 +34,7 @@ impl Timestamps {
         // SAFETY: a live device.
         let pool = unsafe { gpu.device.create_query_pool(&info, None) }
             .map_err(|result| Error::device(format!("creating {} timestamps: {result}", 2 * pass_count)))?;
+        gpu.name(pool, "timestamps");
         Ok(Some(Self { gpu: gpu.clone(), pool, pass_count }))
     }
 

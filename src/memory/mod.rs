@@ -15,6 +15,7 @@ use ash::vk;
 use block::Block;
 use kinds::{Kinds, Use};
 use ledger::{Entry, Ledger};
+use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard};
 use suballocate::Linear;
 
@@ -73,6 +74,7 @@ unsafe impl Sync for Allocation {}
 /// Memory blocks, the choice of types, and the ledger of one device.
 pub struct Memory {
     device: ash::Device,
+    names: Option<ash::ext::debug_utils::Device>,
     kinds: Kinds,
     strategy: Strategy,
     max_allocation_bytes: u64,
@@ -94,9 +96,16 @@ struct Shared {
 }
 
 impl Memory {
-    pub fn new(device: ash::Device, caps: &Caps, strategy: Strategy) -> Self {
+    /// `names`: where memory blocks get the names that tools show.
+    pub fn new(
+        device: ash::Device,
+        names: Option<ash::ext::debug_utils::Device>,
+        caps: &Caps,
+        strategy: Strategy,
+    ) -> Self {
         Self {
             device,
+            names,
             kinds: Kinds::new(caps),
             strategy,
             max_allocation_bytes: caps.limits.max_allocation_bytes,
@@ -150,6 +159,7 @@ impl Memory {
                     state.blocks.len() - 1
                 });
                 state.ledger.block_made(block_bytes);
+                self.name(&block.block, index);
                 state.blocks[index] = Some(block);
                 (index, offset)
             }
@@ -167,6 +177,13 @@ impl Memory {
             reason: choice.reason,
         });
         Ok(Allocation { memory: self.clone(), block: index as u32, range_bytes: size, entry, handle, offset, mapped })
+    }
+
+    fn name(&self, block: &Block, index: usize) {
+        let (Some(names), Ok(text)) = (&self.names, CString::new(format!("memory_block.{index}"))) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(block.handle).object_name(&text);
+        // SAFETY: the memory was just made from this device. A refused name costs nothing but the name.
+        let _ = unsafe { names.set_debug_utils_object_name(&info) };
     }
 
     fn refused(&self, state: &State, request: &Request<'_>, type_index: u32, why: &str) -> Error {

@@ -41,7 +41,8 @@ impl Textures {
         for texture in &scene.textures {
             if let Entry::Vacant(slot) = sampler_of.entry(texture.sampler) {
                 slot.insert(samplers.len());
-                samplers.push(Sampler::new(gpu, &sampler_info(texture))?);
+                let name = format!("scene.sampler.{}", samplers.len());
+                samplers.push(Sampler::new(gpu, &name, &sampler_info(texture))?);
             }
         }
         if samplers.is_empty() {
@@ -164,5 +165,8 @@ fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATE
         .collect();
     // SAFETY: the sets are fresh; views and samplers live as long as the sets.
     unsafe { gpu.device.update_descriptor_sets(&writes, &[]) };
+    for (index, set) in sets.iter().enumerate() {
+        gpu.name(*set, &format!("scene.material.{index}"));
+    }
     Ok((layout, pool, sets))
 }
