@@ -225,10 +225,10 @@ impl Gpu {
         let entry = load_entry()?;
         let log = request.validate.then(|| Box::new(validation::Log::default()));
         let (instance, has_names) = create_instance(&entry, log.as_deref())?;
-        // The library must outlive the instance, also when opening fails: `entry` is kept here until then.
+        // A clone, because the last entry to go unloads the library, and with it the function that destroys the instance.
         let opened = Self::open_on(entry.clone(), instance.clone(), has_names, log, request);
         if opened.is_err() {
-            // SAFETY: `open_on` destroys what it made before it fails.
+            // SAFETY: `open_on` destroys what it made before it fails; `entry` still holds the library.
             unsafe { instance.destroy_instance(None) };
         }
         opened.map(Arc::new)
