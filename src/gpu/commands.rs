@@ -195,10 +195,14 @@ impl Commands {
     fn check_left_side(&self, barrier: &Barrier) {
         if cfg!(debug_assertions) {
             let truth = self.truth.get(&barrier.target).copied().unwrap_or_default();
-            // Scene resources enter a frame readable: their first left side is what the upload left.
-            let first = truth == AccessSet::UNTOUCHED && barrier.from.iter().all(|access| !access.writes());
+            // Scene resources enter a frame readable: their first left side is what the upload left. A writer before the
+            // first touch never was.
+            let right = match truth {
+                AccessSet::UNTOUCHED => barrier.from.iter().all(|access| !access.writes()),
+                truth => barrier.from.contains(truth),
+            };
             assert!(
-                first || barrier.from.contains(truth),
+                right,
                 "a barrier to {:?} waits for {:?}, but the resource was last touched by {truth:?}",
                 barrier.to,
                 barrier.from
