@@ -1,0 +1,325 @@
+//! The program from outside: exit codes, what it says, and which files it leaves.
+
+mod support;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+
+/// The program in an empty folder.
+struct Program {
+    folder: tempfile::TempDir,
+}
+
+/// What a run left.
+struct Ran {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+impl Program {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    fn run(&self, arguments: &[&str]) -> Ran {
+        self.run_with(arguments, &[])
+    }
+
+    fn run_with(&self, arguments: &[&str], variables: &[(&str, &str)]) -> Ran {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
+        command.current_dir(self.folder.path()).args(arguments).envs(variables.iter().copied());
+        Ran::of(command)
+    }
+
+    /// Names in the folder, sorted.
+    fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().to_str().unwrap().to_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// A run that must fail with `code` and say all of `words`, print nothing else and leave no new file.
+    fn fails(&self, arguments: &[&str], code: i32, words: &[&str]) {
+        let before = self.files();
+        let ran = self.run(arguments);
+        assert_eq!(ran.code, code, "{arguments:?}: {}", ran.err);
+        assert!(ran.err.starts_with("error: "), "{arguments:?}: {}", ran.err);
+        for word in words {
+            assert!(ran.err.contains(word), "{arguments:?} does not say {word}: {}", ran.err);
+        }
+        assert_eq!(ran.out, "", "{arguments:?}");
+        assert_eq!(self.files(), before, "{arguments:?} left something");
+    }
+}
+
+impl Ran {
+    fn of(mut command: Command) -> Self {
+        let output = command.output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Self {
+            code: output.status.code().expect("it ended by itself"),
+            out: text(output.stdout),
+            err: text(output.stderr),
+        }
+    }
+
+    /// It succeeded and had nothing to complain about.
+    fn fine(self) -> Self {
+        assert_eq!(self.code, 0, "{}", self.err);
+        assert_eq!(self.err, "");
+        self
+    }
+
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {}", self.out))
+    }
+}
+
+/// A picture that costs next to nothing.
+const SMALL: [&str; 6] = ["render", "cornell", "--size", "32x18", "--vpls", "16"];
+
+fn small<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    SMALL.iter().chain(more).copied().collect()
+}
+
+#[test]
+fn a_scene_that_cannot_be_read_is_a_bad_request() {
+    let program = Program::new();
+    program.fails(&["render", "missing.glb"], 2, &["missing.glb"]);
+    std::fs::write(program.path("text.glb"), "this is no glTF").unwrap();
+    program.fails(&["render", "text.glb"], 2, &["text.glb"]);
+    std::fs::write(program.path("empty.gltf"), "").unwrap();
+    program.fails(&["render", "empty.gltf"], 2, &["empty.gltf"]);
+    program.fails(&["render", "nowhere"], 2, &["nowhere", "cornell, hall, lamps"]);
+    program.fails(&["render", "lamps:lights=0"], 2, &["lights=0", "1 to 5000"]);
+    program.fails(&["render", "cornell:size=3"], 2, &["cornell"]);
+}
+
+#[test]
+fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
+    let program = Program::new();
+    program.fails(
+        &small(&["--pattern", "0x6"]),
+        2,
+        &["interleaved_deferred", "--pattern 0x6", "1 to 64", "Segovia 2006"],
+    );
+    program.fails(&small(&["--pattern", "65x1"]), 2, &["1 to 64"]);
+    program.fails(&small(&["--kernel", "6"]), 2, &["--kernel 6", "odd", "5 to 17"]);
+    program.fails(&small(&["--kernel", "19"]), 2, &["--kernel 19", "5 to 17"]);
+    program.fails(&small(&["--split", "twice"]), 2, &["--split twice", "one-pass"]);
+    program.fails(&["render", "cornell", "--size", "0x18"], 2, &["--size 0x18", "1 to 16384"]);
+    program.fails(&small(&["--camera", "door"]), 2, &["--camera door", "cornell"]);
+    let few = ["render", "cornell", "--size", "32x18", "--vpls", "8", "--pattern", "4x4"];
+    program.fails(&few, 2, &["8 lights for the 16 subsets", "--vpls 16 or more"]);
+    program.fails(
+        &["render", "cornell", "--technique", "forwards"],
+        2,
+        &["forwards", "interleaved_deferred", "deferred"],
+    );
+    let unread = ["render", "cornell", "--technique", "deferred", "--pattern", "4x4"];
+    program.fails(&unread, 2, &["deferred: it does not read --pattern"]);
+    program.fails(&small(&["--patern", "4x4"]), 2, &["--patern"]);
+    program.fails(&small(&["--aov", "split.colour"]), 2, &["split.colour", "split.normal"]);
+    program.fails(&small(&["--split", "none", "--aov", "split.normal"]), 2, &["--aov split.normal", "one-pass"]);
+    program.fails(&small(&["--filter", "none", "--aov", "filter.irradiance"]), 2, &["--aov filter.irradiance"]);
+    program.fails(&small(&["--rig", "none", "--lights", "many"]), 2, &["--lights many"]);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_a_bad_request_and_nothing_half_written_stays() {
+    let program = Program::new();
+    program.fails(&small(&["-o", "no/such/folder/a.png"]), 2, &["no/such/folder"]);
+    program.fails(&small(&["--report", "no/such/folder/a.json"]), 2, &["no/such/folder"]);
+    program.fails(&small(&["-o", "a.jpg"]), 2, &["a.jpg", ".png or .exr"]);
+    program.fails(&small(&["-o", "noextension"]), 2, &["noextension"]);
+    std::fs::create_dir(program.path("folder.png")).unwrap();
+    program.fails(&small(&["-o", "folder.png"]), 2, &["folder.png"]);
+    std::fs::create_dir(program.path("folder.json")).unwrap();
+    let ran = program.run(&small(&["-o", "a.png", "--report", "folder.json"]));
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("folder.json"), "{}", ran.err);
+    // /proc takes no files from anybody, root included.
+    if Path::new("/proc/self").is_dir() {
+        program.fails(&small(&["-o", "/proc/a.png"]), 2, &["/proc/a.png"]);
+    }
+}
+
+#[test]
+fn without_a_driver_or_a_fitting_device_it_says_so() {
+    let program = Program::new();
+    let nowhere = [("VK_DRIVER_FILES", "/nonexistent"), ("VK_ICD_FILENAMES", "/nonexistent")];
+    for command in [&SMALL[..], &["devices"], &["devices", "--json"]] {
+        let ran = program.run_with(command, &nowhere);
+        assert_eq!(ran.code, 3, "{command:?}: {}", ran.err);
+        assert!(ran.err.starts_with("error: ") && ran.err.contains("VK_DRIVER_FILES"), "{}", ran.err);
+        assert_eq!(ran.out, "", "{command:?}");
+    }
+    assert_eq!(program.files(), [] as [&str; 0]);
+    // What is there is listed.
+    program.fails(&small(&["--device", "no such device"]), 3, &["no such device", "\n       0: ", "fits"]);
+    program.fails(&small(&["--device", "99"]), 3, &["99", "\n       0: "]);
+}
+
+#[test]
+fn json_is_one_document_with_the_keys_of_the_design() {
+    let program = Program::new();
+    let ran = program.run(&small(&["--json", "--aov", "split.normal,filter.irradiance", "-o", "a.exr"])).fine();
+    let report = ran.json();
+    for key in [
+        "schema",
+        "quincunx",
+        "command",
+        "device",
+        "scene",
+        "technique",
+        "settings",
+        "image",
+        "aovs",
+        "passes",
+        "total_ms",
+        "memory",
+        "counters",
+    ] {
+        assert!(!report[key].is_null(), "there is no {key}: {report:#}");
+    }
+    for (object, keys) in [
+        ("quincunx", &["version", "commit"][..]),
+        ("device", &["name", "type", "driver", "driver_info", "api"]),
+        ("scene", &["name", "hash", "triangles", "draws", "lights", "materials"]),
+        ("image", &["width", "height", "mean", "hash", "path"]),
+        ("memory", &["planned_bytes", "allocated_bytes", "memory_block_bytes", "peak_bytes", "groups", "resources"]),
+        ("total_ms", &["median", "min", "max", "samples"]),
+    ] {
+        for key in keys {
+            assert!(!report[object][key].is_null(), "{object} has no {key}: {}", report[object]);
+        }
+    }
+    assert_eq!(report["schema"], 1);
+    assert_eq!(report["technique"], "interleaved_deferred");
+    assert_eq!((&report["image"]["width"], &report["image"]["height"]), (&32.into(), &18.into()));
+    assert_eq!(report["settings"]["pattern"], "4x4");
+    assert_eq!(report["settings"]["vpls"], 16);
+    assert_eq!(report["scene"]["triangles"], 32);
+    let names: Vec<&str> = report["aovs"].as_array().unwrap().iter().map(|aov| aov["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["split.normal", "filter.irradiance"]);
+    let command: Vec<&str> = report["command"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+    assert_eq!(command[1..5], ["render", "cornell", "--size", "32x18"]);
+    for resource in report["memory"]["resources"].as_array().unwrap() {
+        for key in ["name", "group", "bytes", "bound_bytes", "memory_block", "offset"] {
+            assert!(!resource[key].is_null(), "a resource has no {key}: {resource}");
+        }
+    }
+    let passes = |report: &Value| -> Vec<String> {
+        report["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let expected = ["vpls", "gbuffer", "split", "shade", "gather", "discontinuity", "filter", "composite"];
+    assert_eq!(passes(&report), expected.map(|pass| format!("interleaved_deferred.{pass}")));
+    // The same document as a file, with the times of each pass.
+    let ran = program.run(&small(&["--profile", "--quiet", "-o", "b.png", "--report", "b.json"])).fine();
+    assert_eq!(ran.out, "");
+    let profile: Value = serde_json::from_str(&std::fs::read_to_string(program.path("b.json")).unwrap()).unwrap();
+    assert_eq!(passes(&profile), passes(&report));
+    assert!(profile["passes"].as_array().unwrap().iter().all(|pass| pass["ms"]["median"].is_number()), "{profile:#}");
+    assert_eq!(profile["image"]["hash"], report["image"]["hash"]);
+}
+
+#[test]
+fn the_same_command_gives_the_same_hash_and_the_same_file() {
+    let program = Program::new();
+    let run = |file: &str| program.run(&small(&["--json", "-o", file])).fine().json()["image"]["hash"].clone();
+    assert_eq!(run("a.png"), run("b.png"));
+    let read = |file: &str| std::fs::read(program.path(file)).unwrap();
+    assert!(read("a.png") == read("b.png"), "the files differ");
+    let other = program.run(&small(&["--json", "--seed", "2", "-o", "c.png"])).fine().json()["image"]["hash"].clone();
+    assert_ne!(run("a.png"), other, "a seed changes the virtual point lights");
+}
+
+#[test]
+fn without_o_the_picture_goes_into_the_current_folder() {
+    let program = Program::new();
+    let ran = program.run(&SMALL).fine();
+    assert!(ran.out.contains("wrote cornell-interleaved_deferred.png"), "{}", ran.out);
+    program
+        .run(&["render", "lamps:objects=3,lights=2", "--technique", "deferred", "--size", "32x18", "--quiet"])
+        .fine();
+    assert_eq!(program.files(), ["cornell-interleaved_deferred.png", "lamps-deferred.png"]);
+}
+
+#[test]
+fn stages_go_into_layers_of_an_exr_and_beside_a_png() {
+    let program = Program::new();
+    let stages = "gbuffer.normal,gbuffer.color,shade.irradiance,gather.irradiance,discontinuity.flags";
+    program.run(&small(&["--quiet", "--aov", stages, "-o", "a.exr"])).fine();
+    assert_eq!(program.files(), ["a.exr"]);
+    program.run(&small(&["--quiet", "--aov", "gbuffer.normal,discontinuity.flags", "-o", "b.png"])).fine();
+    assert_eq!(program.files(), ["a.exr", "b.discontinuity.flags.png", "b.gbuffer.normal.png", "b.png"]);
+    // An EXR holds what was rendered; a PNG of it is the same to half a code.
+    program.run(&["compare", "b.png", "a.exr", "--min", "psnr=inf"]).fine();
+}
+
+#[test]
+fn validate_has_nothing_to_say() {
+    let program = Program::new();
+    for more in [&[][..], &["--split", "none"], &["--filter", "gauss-fast", "--cull", "tiled"], &["--profile"]] {
+        let mut arguments = small(&["--validate", "--quiet"]);
+        arguments.extend(more);
+        // Messages at closing, such as a leaked object, come on standard error.
+        assert_eq!(program.run(&arguments).fine().out, "");
+    }
+    let deferred =
+        ["render", "lamps:objects=3,lights=3", "--technique", "deferred", "--size", "33x17", "--validate", "--quiet"];
+    assert_eq!(program.run(&deferred).fine().out, "");
+}
+
+#[test]
+fn a_failed_gate_exits_with_1_and_prints_all_the_same() {
+    let program = Program::new();
+    program.run(&small(&["--quiet", "-o", "a.exr"])).fine();
+    program.run(&small(&["--quiet", "-o", "b.exr", "--seed", "2"])).fine();
+    program.run(&["compare", "a.exr", "a.exr", "--max", "rmse=0"]).fine();
+    let ran = program.run(&["compare", "a.exr", "b.exr", "--max", "rmse=0", "--json"]);
+    assert_eq!(ran.code, 1);
+    assert_eq!(ran.json()["gates"][0]["passed"], false);
+    assert!(ran.err.starts_with("error: comparing a.exr with b.exr: rmse is "), "{}", ran.err);
+    program.fails(&["compare", "a.exr", "missing.exr"], 2, &["missing.exr"]);
+}
+
+#[test]
+fn devices_and_scenes_are_listed() {
+    let program = Program::new();
+    let document = program.run(&["devices", "--json"]).fine().json();
+    let devices = document["devices"].as_array().unwrap();
+    assert!(!devices.is_empty());
+    for device in devices {
+        assert!(device["caps"]["identity"]["name"].is_string(), "{device:#}");
+        assert!(device["missing"].is_array(), "{device:#}");
+    }
+    assert!(program.run(&["devices"]).fine().out.starts_with("0: "));
+    let scenes = program.run(&["scene", "list"]).fine().out;
+    for name in ["cornell", "hall", "lamps", "hall:triangles=N"] {
+        assert!(scenes.contains(name), "{scenes}");
+    }
+    assert_eq!(program.files(), [] as [&str; 0]);
+}
+
+#[test]
+fn help_names_every_setting() {
+    let program = Program::new();
+    let help = program.run(&["render", "--help"]).fine().out;
+    for technique in quincunx::techniques::ALL {
+        for setting in quincunx::job::settings_of(*technique) {
+            assert!(help.contains(&format!("--{} ", setting.key)), "--{} is not in the help", setting.key);
+        }
+    }
+    let ran = program.run(&[]);
+    assert_eq!((ran.code, ran.out.as_str()), (2, ""));
+    assert!(program.run(&["--version"]).fine().out.starts_with("quincunx "));
+}

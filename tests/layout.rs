@@ -1,0 +1,175 @@
+//! The house rules that a program can check: the mirror, the walls between rooms, the size of files, valid shaders.
+
+mod support;
+
+use quincunx::gpu::shader;
+use std::collections::BTreeSet;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const ENTRY_POINTS: [&str; 4] = ["vert", "geom", "frag", "comp"];
+const MOST_LINES: usize = 500;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every file below `folder`, with its path from there, sorted.
+fn files(folder: &str) -> Vec<PathBuf> {
+    fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { walk(&path, found) } else { found.push(path) }
+        }
+    }
+    let folder = root().join(folder);
+    let mut found = Vec::new();
+    walk(&folder, &mut found);
+    found.sort();
+    found.into_iter().map(|path| path.strip_prefix(&folder).unwrap().to_owned()).collect()
+}
+
+fn entry_points() -> Vec<PathBuf> {
+    let is_entry =
+        |path: &PathBuf| path.extension().is_some_and(|extension| ENTRY_POINTS.iter().any(|e| *e == extension));
+    files("glsl").into_iter().filter(is_entry).collect()
+}
+
+/// The module that a file of src/ is: `techniques::deferred::shade`.
+fn module_of(file: &Path) -> String {
+    let words: Vec<&str> = file.iter().map(|word| word.to_str().unwrap()).collect();
+    let path = words.join("::");
+    let path = path.strip_suffix(".rs").unwrap_or(&path);
+    path.strip_suffix("::mod").unwrap_or(path).to_owned()
+}
+
+/// Lines of a Rust file that are neither comment nor test.
+fn code(file: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(root().join("src").join(file)).unwrap();
+    let before_tests = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+    before_tests.lines().filter(|line| !line.trim_start().starts_with("//")).map(str::to_owned).collect()
+}
+
+/// Lines of code below src/`room` that name one of `words`.
+fn mentions(room: &str, words: &[&str]) -> Vec<String> {
+    files("src")
+        .iter()
+        .filter(|file| file.starts_with(room) && file.extension().is_some_and(|extension| extension == "rs"))
+        .flat_map(|file| {
+            let lines = code(file).into_iter().filter(|line| words.iter().any(|word| line.contains(word)));
+            lines.map(|line| format!("src/{}: {}", file.display(), line.trim())).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+#[test]
+fn every_shader_is_valid_for_vulkan_1_3() {
+    let folder = tempfile::tempdir().unwrap();
+    for shader in shader::ALL {
+        let file = folder.path().join(shader.label());
+        std::fs::write(&file, shader.spirv).unwrap();
+        let output = match Command::new("spirv-val").args(["--target-env", "vulkan1.3"]).arg(&file).output() {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                return support::skip("spirv-val is not installed (Debian and Ubuntu: apt-get install spirv-tools)");
+            }
+            output => output.unwrap(),
+        };
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{}: {said}", shader.label());
+    }
+}
+
+#[test]
+fn every_entry_point_has_its_pass_and_its_rows_in_the_table() {
+    let tabled: BTreeSet<&str> = shader::ALL.iter().map(|shader| shader.name).collect();
+    let entries = entry_points();
+    for entry in &entries {
+        let name = entry.with_extension("");
+        let file = root().join("src").join(&name).with_extension("rs");
+        let module = root().join("src").join(&name).join("mod.rs");
+        assert!(file.is_file() || module.is_file(), "glsl/{} has no src/{}.rs", entry.display(), name.display());
+        assert!(tabled.contains(name.to_str().unwrap()), "glsl/{} is not in the table", entry.display());
+    }
+    let written: BTreeSet<String> =
+        entries.iter().map(|entry| entry.with_extension("").to_str().unwrap().to_owned()).collect();
+    for name in tabled {
+        assert!(written.contains(name), "{name} is in the table and not in glsl/");
+    }
+}
+
+#[test]
+fn no_file_is_longer_than_can_be_read_at_once() {
+    let mut long = Vec::new();
+    for folder in ["src", "glsl", "tools/build"] {
+        for file in files(folder) {
+            let Ok(text) = std::fs::read_to_string(root().join(folder).join(&file)) else { continue };
+            let lines = text.lines().count();
+            if lines > MOST_LINES {
+                long.push(format!("{folder}/{}: {lines} lines", file.display()));
+            }
+        }
+    }
+    assert_eq!(long, [] as [&str; 0]);
+}
+
+#[test]
+fn every_file_says_why_it_exists() {
+    for file in files("src").iter().filter(|file| file.extension().is_some_and(|extension| extension == "rs")) {
+        let text = std::fs::read_to_string(root().join("src").join(file)).unwrap();
+        assert!(text.starts_with("//! "), "src/{} has no header", file.display());
+    }
+    for file in files("glsl") {
+        let text = std::fs::read_to_string(root().join("glsl").join(&file)).unwrap();
+        assert!(text.starts_with("// "), "glsl/{} has no header", file.display());
+    }
+}
+
+#[test]
+fn the_floor_knows_no_technique_and_no_scene() {
+    for room in ["gpu", "memory"] {
+        let words = ["techniques", "crate::scene", "crate::passes", "crate::lights", "crate::cli", "crate::job"];
+        let found: Vec<String> = mentions(room, &words)
+            .into_iter()
+            // The table of shaders mirrors glsl/, names of techniques included; nothing of them is in it.
+            .filter(|line| !line.contains("gpu::shader::techniques"))
+            .collect();
+        assert_eq!(found, [] as [&str; 0], "{room}");
+    }
+    assert_eq!(mentions("scene", &["vk::", "ash::", "crate::gpu", "crate::techniques"]), [] as [&str; 0]);
+}
+
+#[test]
+fn techniques_do_not_import_each_other() {
+    let modules: BTreeSet<String> = files("src").iter().map(|file| module_of(file)).collect();
+    let techniques: Vec<&str> = quincunx::techniques::ALL.iter().map(|technique| technique.name()).collect();
+    let mut found = Vec::new();
+    for technique in &techniques {
+        assert!(modules.contains(&format!("techniques::{technique}")), "{technique} has no folder");
+        let others = techniques.iter().filter(|other| other != &technique);
+        for other in others {
+            let words =
+                [format!("techniques::{other}::"), format!("super::super::{other}"), format!("techniques::{other};")];
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let lines = mentions(&format!("techniques/{technique}"), &words);
+            found.extend(lines.into_iter().filter(|line| !line.contains(&format!("shader::techniques::{technique}"))));
+        }
+    }
+    assert_eq!(found, [] as [&str; 0]);
+}
+
+#[test]
+fn passes_and_lights_know_no_technique() {
+    for room in ["passes", "lights", "shading", "sampling"] {
+        assert_eq!(mentions(room, &["crate::techniques", "crate::cli", "crate::job"]), [] as [&str; 0], "{room}");
+    }
+}
+
+#[test]
+fn memory_is_allocated_in_one_room() {
+    let outside: Vec<String> = mentions("", &[".allocate_memory(", ".free_memory("])
+        .into_iter()
+        .filter(|line| !line.starts_with("src/memory/"))
+        .collect();
+    assert_eq!(outside, [] as [&str; 0]);
+}
