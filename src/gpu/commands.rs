@@ -204,8 +204,7 @@ impl Commands {
             assert!(
                 right,
                 "a barrier to {:?} waits for {:?}, but the resource was last touched by {truth:?}",
-                barrier.to,
-                barrier.from
+                barrier.to, barrier.from
             );
         }
     }
