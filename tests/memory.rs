@@ -187,6 +187,8 @@ fn what_is_planned_is_what_is_made() {
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "none"), ("position", "depth")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "branch"), ("filter", "gauss-fast")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "subsample"), ("cull", "tiled")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "indirect"), ("pattern", "5x7")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "remap"), ("position", "half")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("filter", "none"), ("direct", "none")]),
         (
             "hall:triangles=8000",

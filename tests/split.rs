@@ -65,6 +65,8 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
         (("split", "none"), [split, filtered].concat()),
         (("split", "subsample"), [split, filtered].concat()),
         (("split", "branch"), split.to_vec()),
+        (("split", "indirect"), split.to_vec()),
+        (("split", "remap"), split.to_vec()),
         (("filter", "none"), filtered.to_vec()),
         (("pattern", "1x1"), filtered.to_vec()),
         (("pattern", "2x2"), vec![]),
