@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::gpu::DeviceRequest;
 use crate::gpu::commands::{FrameTime, Submits};
+use crate::gpu::validation::Log;
 use crate::interrupt;
 use crate::memory::Strategy;
 use crate::memory::ledger::Snapshot;
@@ -100,7 +101,10 @@ impl Job {
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
         let report = self.report(&session, &renderer, &memory, &times, &picture, &aovs, &path)?;
         self.write(&path, &picture, &aovs, &report)?;
-        self.judge(&session)?;
+        let log = session.gpu.validation_log();
+        // Closing says what was leaked: only then is the log whole.
+        drop((renderer, session));
+        judge(log.as_deref())?;
         Ok(Outcome { report, picture, path })
     }
 
@@ -201,16 +205,16 @@ impl Job {
         }
         Ok(())
     }
+}
 
-    /// Errors: the validation layer has said something (exit code 1).
-    fn judge(&self, session: &Session) -> Result<()> {
-        let messages = session.gpu.take_validation_messages();
-        match messages.first() {
-            None => Ok(()),
-            Some(first) => {
-                let count = messages.len();
-                Err(Error::gate(format!("--validate: {count} messages, the first is {}", first.id)).note(&first.text))
-            }
+/// Errors: the validation layer has said something (exit code 1).
+pub fn judge(log: Option<&Log>) -> Result<()> {
+    let messages = log.map(Log::take).unwrap_or_default();
+    match messages.first() {
+        None => Ok(()),
+        Some(first) => {
+            let count = messages.len();
+            Err(Error::gate(format!("--validate: {count} messages, the first is {}", first.id)).note(&first.text))
         }
     }
 }

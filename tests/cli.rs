@@ -271,7 +271,7 @@ fn validate_has_nothing_to_say() {
     for more in [&[][..], &["--split", "none"], &["--filter", "gauss-fast", "--cull", "tiled"], &["--profile"]] {
         let mut arguments = small(&["--validate", "--quiet"]);
         arguments.extend(more);
-        // Messages at closing, such as a leaked object, come on standard error.
+        // Messages at closing, such as a leaked object, fail the command too.
         assert_eq!(program.run(&arguments).fine().out, "");
     }
     let deferred =

@@ -5,10 +5,10 @@
 
 use super::stats::{Ratio, paired_ratio};
 use super::sweep::{Point, label};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::interrupt;
-use crate::job::Job;
+use crate::job::{Job, judge};
 use crate::metrics;
 use crate::report::picture::Picture;
 use crate::report::run::{median, spread};
@@ -75,10 +75,9 @@ pub fn frames(job: &mut Job, grid: &[Point], repeat: usize, progress: &dyn Fn(us
         }
         rows.push(row);
     }
-    let messages = session.gpu.take_validation_messages();
-    if let Some(first) = messages.first() {
-        return Err(Error::gate(format!("--validate: {} messages, the first is {}", messages.len(), first.id)));
-    }
+    let log = session.gpu.validation_log();
+    drop((variants, session));
+    judge(log.as_deref())?;
     Ok(Rows { rows, interrupted })
 }
 

@@ -36,6 +36,7 @@ pub struct Gpu {
     names: Option<ash::ext::debug_utils::Device>,
     validation: Option<Validation>,
     instance: ash::Instance,
+    physical: vk::PhysicalDevice,
     /// Serialises submits: a queue is externally synchronised.
     pub(super) submit_lock: Mutex<()>,
     // The loaded library stays as long as anything that came from it.
@@ -45,7 +46,7 @@ pub struct Gpu {
 struct Validation {
     functions: ash::ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
-    log: Box<validation::Log>,
+    log: Arc<validation::Log>,
 }
 
 /// A device that `devices` lists.
@@ -223,7 +224,7 @@ impl Gpu {
     /// Errors: no loader, driver or fitting device (exit code 3); the validation layer is missing (2).
     pub fn open(request: &DeviceRequest) -> Result<Arc<Self>> {
         let entry = load_entry()?;
-        let log = request.validate.then(|| Box::new(validation::Log::default()));
+        let log = request.validate.then(|| Arc::new(validation::Log::default()));
         let (instance, has_names) = create_instance(&entry, log.as_deref())?;
         // A clone, because the last entry to go unloads the library, and with it the function that destroys the instance.
         let opened = Self::open_on(entry.clone(), instance.clone(), has_names, log, request);
@@ -238,7 +239,7 @@ impl Gpu {
         entry: ash::Entry,
         instance: ash::Instance,
         has_names: bool,
-        log: Option<Box<validation::Log>>,
+        log: Option<Arc<validation::Log>>,
         request: &DeviceRequest,
     ) -> Result<Self> {
         let (physical, caps) = choose(&instance, request.selector.as_deref())?;
@@ -306,6 +307,7 @@ impl Gpu {
             names,
             validation,
             instance,
+            physical,
             submit_lock: Mutex::new(()),
             _entry: entry,
         })
@@ -332,6 +334,27 @@ impl Gpu {
         }
     }
 
+    /// The log that outlives the device, for what is said while it closes; None without `validate`.
+    pub fn validation_log(&self) -> Option<Arc<validation::Log>> {
+        self.validation.as_ref().map(|validation| validation.log.clone())
+    }
+
+    /// The greatest image of this description that the device makes, in bytes; 0 where it makes none.
+    pub(super) fn greatest_image_bytes(&self, info: &vk::ImageCreateInfo<'_>) -> u64 {
+        // SAFETY: a live instance and the physical device that this device was made from.
+        let properties = unsafe {
+            self.instance.get_physical_device_image_format_properties(
+                self.physical,
+                info.format,
+                info.image_type,
+                info.tiling,
+                info.usage,
+                info.flags,
+            )
+        };
+        properties.map_or(0, |properties| properties.max_resource_size)
+    }
+
     /// What the validation layer has said since the last call; empty without `validate`.
     pub fn take_validation_messages(&self) -> Vec<validation::Message> {
         self.validation.as_ref().map(|validation| validation.log.take()).unwrap_or_default()
@@ -348,9 +371,6 @@ impl Drop for Gpu {
             self.device.destroy_device(None);
             if let Some(validation) = &self.validation {
                 validation.functions.destroy_debug_utils_messenger(validation.messenger, None);
-                for message in validation.log.take() {
-                    eprintln!("validation, at closing: {}: {}", message.id, message.text);
-                }
             }
             self.instance.destroy_instance(None);
         }

@@ -4,7 +4,7 @@ use super::Gpu;
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use crate::memory::{Allocation, Request, Tiling};
-use crate::units::Extent;
+use crate::units::{Bytes, Extent};
 use ash::vk;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
@@ -82,6 +82,15 @@ impl Image {
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
+        let (bytes, most) = (description.bytes(), gpu.greatest_image_bytes(&info));
+        if bytes > most {
+            return Err(Error::device(format!(
+                "{name} ({extent}, {format:?}) needs {}, and this device makes such images up to {}",
+                Bytes(bytes),
+                Bytes(most)
+            ))
+            .note("a smaller --size would fit"));
+        }
         // SAFETY: a live device; the info has no pointers.
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
