@@ -271,7 +271,7 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
         ];
         let renderer = watched.render("interleaved_deferred", &changes);
         let walk = vpl::Walk { count, bounces: 1, emissive: false, seed: 5 };
-        let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).unwrap().vpls;
+        let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;
         let mapping = mapping(renderer.view.extent, pattern);
         let subsets = subsets(mapping.subset_count(), count, 0);
         let diagonal = session.scene.bounds().diagonal();

@@ -34,7 +34,7 @@ void main() {
     vec3 normal_ws = normal_at(material);
     Surface surface = Surface(base_color.rgb, metallic_roughness.x, metallic_roughness.y);
     vec3 eye_ws = to_eye(frame, in_position_ws);
-    vec3 radiance = emissive_at(material) + albedo_of(surface) * frame.ambient.rgb;
+    vec3 radiance = emissive_at(material) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
     for (uint light = 0u; light < frame.light_count; light++) {
         radiance += shade_light(lights[light], surface, in_position_ws, normal_ws, eye_ws);
     }

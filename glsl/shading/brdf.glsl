@@ -20,6 +20,13 @@ vec3 albedo_of(Surface surface) {
     return surface.base_color * (1.0 - surface.metallic);
 }
 
+// Part of a radiance that comes from everywhere that a surface sends on: its diffuse part, and beside Lambert its mirror
+// part at normal incidence, so that metals are not black under ambient light.
+vec3 ambient_reflectance(uint kind, Surface surface) {
+    vec3 f0 = kind == BRDF_LAMBERT ? vec3(0.0) : mix(vec3(0.04), surface.base_color, surface.metallic);
+    return (1.0 - f0) * albedo_of(surface) + f0;
+}
+
 // The BRDF in 1/sr, without the cosine. All vectors are unit length; `n_dot_l` is positive.
 //
 // GGX: Smith's height-correlated visibility, Schlick's Fresnel with F0 = mix(0.04, base colour, metallic), diffuse

@@ -267,6 +267,14 @@ impl Report {
         for warning in document.get("timing_warnings").and_then(Value::as_array).into_iter().flatten() {
             line(format!("  note: {}", string(warning)));
         }
+        let counter = |key: &str| document["counters"][key].as_f64();
+        if let (Some(found), Some(wanted)) = (counter("vpls_found"), counter("vpls"))
+            && found < wanted
+        {
+            line(format!(
+                "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
+            ));
+        }
         let bytes = |key: &str| Bytes(document["memory"][key].as_u64().unwrap_or_default());
         line(format!(
             "memory: {} planned, {} allocated, {} in memory blocks",

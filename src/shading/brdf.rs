@@ -38,6 +38,16 @@ impl Surface {
     }
 }
 
+/// Part of a radiance that comes from everywhere that a surface sends on, 0 to 1: its diffuse part, and beside Lambert
+/// its mirror part at normal incidence.
+pub fn ambient_reflectance(kind: Brdf, surface: &Surface) -> Vec3 {
+    let f0 = match kind {
+        Brdf::Lambert => Vec3::ZERO,
+        Brdf::BlinnPhong | Brdf::Ggx => Vec3::splat(0.04).lerp(surface.base_color, surface.metallic),
+    };
+    (Vec3::ONE - f0) * surface.albedo() + f0
+}
+
 /// The BRDF in 1/sr, without the cosine; all vectors unit length.
 pub fn evaluate(kind: Brdf, surface: &Surface, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
     let diffuse = surface.albedo() / PI;
@@ -103,6 +113,18 @@ mod tests {
         }
         let white = Surface { base_color: Vec3::ONE, metallic: 0.0, roughness: 1.0 };
         assert!((reflected(Brdf::Lambert, &white, 0.9) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_white_surface_sends_all_ambient_light_on_and_a_metal_its_color() {
+        let color = Vec3::new(0.9, 0.5, 0.2);
+        for metallic in [0.0, 0.5, 1.0] {
+            let white = Surface { base_color: Vec3::ONE, metallic, roughness: 0.5 };
+            assert!((ambient_reflectance(Brdf::Ggx, &white) - 1.0).max_element() < 1e-6);
+        }
+        let metal = Surface { base_color: color, metallic: 1.0, roughness: 0.5 };
+        assert_eq!(ambient_reflectance(Brdf::Ggx, &metal), color);
+        assert_eq!(ambient_reflectance(Brdf::Lambert, &metal), Vec3::ZERO);
     }
 
     #[test]

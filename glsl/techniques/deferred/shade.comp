@@ -18,7 +18,7 @@ void main() {
     vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
     vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
     Surface surface = Surface(base_color, roughness_metallic.y, roughness_metallic.x);
-    precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * frame.ambient.rgb;
+    precise vec3 radiance = emitted_at(pixel) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
     radiance += direct_light(pixel, surface, position_ws, normal_ws);
     imageStore(color, ivec2(pixel), vec4(radiance, 1.0));
 }

@@ -27,7 +27,8 @@ void main() {
     vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
     Surface surface = Surface(base_color, roughness_metallic.y, roughness_metallic.x);
     vec3 received = unpack_halves(irradiance[pixel.y * params.row_pitch + pixel.x]);
-    precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * (received / PI + frame.ambient.rgb);
+    precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
+    radiance += ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
     if (params.direct_full != 0u) {
         vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
         radiance += direct_light(pixel, surface, position_ws, unpack_normal(normal_bits));

@@ -96,7 +96,7 @@ impl Technique for InterleavedDeferred {
         };
         let bvh = inputs.bvh.over(inputs.scene)?;
         let started = Instant::now();
-        let found = vpl::walk(inputs.scene, bvh, &inputs.lights.lights, &walk)?;
+        let found = vpl::walk(inputs.scene, bvh, &inputs.lights.lights, &walk);
         let walk_ns = started.elapsed().as_nanos() as u64;
         let mut direct_lights = direct::light_blocks(inputs.lights, values);
         if values.text("direct") == "none" {
@@ -133,6 +133,7 @@ impl Technique for InterleavedDeferred {
             plan,
             walk_ns,
             walk_count: found.walk_count,
+            found_count: found.found_count,
             resolved,
         }))
     }
@@ -145,6 +146,7 @@ struct PreparedInterleaved {
     plan: Plan,
     walk_ns: u64,
     walk_count: u32,
+    found_count: u32,
     resolved: BTreeMap<&'static str, String>,
 }
 
@@ -162,6 +164,7 @@ impl Prepared for PreparedInterleaved {
         BTreeMap::from([
             ("lights", self.direct_lights.len() as f64),
             ("vpls", self.lights.vpls.len() as f64),
+            ("vpls_found", f64::from(self.found_count)),
             ("light_walks", f64::from(self.walk_count)),
             ("subset_lights_per_pixel", joined as f64 / f64::from(self.choices.subset_count())),
         ])
