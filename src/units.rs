@@ -44,11 +44,6 @@ impl Extent {
     pub fn pixel_count(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
-
-    /// The same extent made divisible: each side rounded up to a multiple of `multiple`.
-    pub fn rounded_up_to(self, multiple: [u32; 2]) -> Self {
-        Self { width: self.width.next_multiple_of(multiple[0]), height: self.height.next_multiple_of(multiple[1]) }
-    }
 }
 
 impl fmt::Display for Extent {
@@ -66,10 +61,5 @@ mod tests {
         assert_eq!(Bytes(512).to_string(), "512 B");
         assert_eq!(Bytes(4_152_361).to_string(), "3.96 MiB");
         assert_eq!(Bytes(3 << 30).to_string(), "3.00 GiB");
-    }
-
-    #[test]
-    fn an_extent_rounds_up_to_a_pattern() {
-        assert_eq!(Extent::new(641, 359).rounded_up_to([5, 7]), Extent::new(645, 364));
     }
 }

@@ -70,11 +70,6 @@ impl Blend {
         Ok(Some(Self { pipeline, calls, params: BlendParams { least_squared } }))
     }
 
-    /// How many draws it blends.
-    pub fn draw_count(&self) -> usize {
-        self.calls.len()
-    }
-
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
