@@ -94,7 +94,7 @@ impl Job {
         let path = self.output.clone().unwrap_or_else(|| default_path(&scene, self.technique));
         let session = Session::open(&self.device_request(), scene)?;
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
-        let renderer = session.renderer(self.technique, &self.values, submits)?;
+        let renderer = session.renderer(self.technique, &self.values, &self.aovs, submits)?;
         let memory = session.gpu.memory.snapshot();
         let times = self.frames(&renderer)?;
         let picture = renderer.picture()?;

@@ -42,6 +42,7 @@ pub struct Renderer {
     pub resolved: BTreeMap<&'static str, String>,
     /// Of the frame; the scene's own plan is `SceneStats::plan`.
     pub plan: Plan,
+    aovs: Vec<String>,
 }
 
 impl Session {
@@ -58,23 +59,34 @@ impl Session {
         Ok(Self { gpu, scene, stats, scene_gpu, bvh: LazyBvh::default() })
     }
 
-    /// Makes a technique real for these settings, and records its frame.
+    /// Makes a technique real for these settings, and records its frame. `aovs`: the stages that will be read back.
     ///
     /// Errors: impossible settings (exit code 2); memory (4).
-    pub fn renderer(&self, technique: &dyn Technique, values: &Values, submits: Submits) -> Result<Renderer> {
+    pub fn renderer(
+        &self,
+        technique: &dyn Technique,
+        values: &Values,
+        aovs: &[String],
+        submits: Submits,
+    ) -> Result<Renderer> {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
-        let inputs =
-            Inputs { scene: &self.scene, stats: &self.stats, bvh: &self.bvh, view: &view, lights: &lights, values };
+        let inputs = Inputs {
+            caps: &self.gpu.caps,
+            scene: &self.scene,
+            stats: &self.stats,
+            bvh: &self.bvh,
+            view: &view,
+            lights: &lights,
+            values,
+        };
+        let plan = frame_plan(technique, &inputs, aovs)?;
         let prepared = technique.prepare(&inputs)?;
-        let mut plan = prepared.plan().clone();
-        let block_name = format!("{}.frame", technique.name());
-        plan.host_buffer("frame", &block_name, size_of::<FrameBlock>() as u64);
         let mut resources = Resources::make(&self.gpu, &plan)?;
         let [light_count, vpl_count] = prepared.light_counts();
         let background = values.color("background");
         let numbers = view.block(&self.scene.bounds(), background, lights.ambient, light_count, vpl_count);
-        let mut block = resources.buffer(&block_name);
+        let mut block = resources.buffer(&block_name(technique));
         block.mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
         let (host_passes, resolved) = (prepared.host_passes(), prepared.resolved());
         let mut counters = prepared.counters();
@@ -83,6 +95,10 @@ impl Session {
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
+        if cfg!(debug_assertions) {
+            let names: Vec<&str> = cmd.passes().iter().map(|pass| pass.name.as_str()).collect();
+            resources.assert_recorded(&plan, &names, cmd.touched());
+        }
         Ok(Renderer {
             recorded: cmd.finish()?,
             frame,
@@ -95,8 +111,27 @@ impl Session {
             counters,
             resolved,
             plan,
+            aovs: aovs.to_vec(),
         })
     }
+}
+
+/// The whole plan of a frame: the technique's, the block of numbers that every technique has, and `aovs` kept until they
+/// are read back.
+///
+/// Errors: as `Technique::plan`.
+pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String]) -> Result<Plan> {
+    let mut plan = technique.plan(inputs)?;
+    plan.host_buffer("frame", block_name(technique), size_of::<FrameBlock>() as u64);
+    for aov in aovs {
+        // An AOV that is no resource of this plan is refused when it is read, with the reason.
+        plan.read_back(&format!("{}.{aov}", technique.name()));
+    }
+    Ok(plan)
+}
+
+fn block_name(technique: &dyn Technique) -> String {
+    format!("{}.frame", technique.name())
 }
 
 impl Renderer {
@@ -128,10 +163,12 @@ impl Renderer {
         Ok(Picture { extent: image.description.extent, pixels })
     }
 
-    /// One of the last frame's intermediate results.
+    /// One of the last frame's intermediate results, which `Session::renderer` was asked for: others share their bytes
+    /// with what came after them.
     ///
     /// Errors: the settings leave its pass out (exit code 2).
     pub fn aov(&self, name: &str) -> Result<Aov> {
+        assert!(self.aovs.iter().any(|asked| asked == name), "the renderer was not asked for {name}");
         self.frame.aov(&self.gpu, name)
     }
 }

@@ -155,7 +155,7 @@ fn a_submit_for_each_pass_changes_no_pixel() {
     let watched = Watched::open("cornell");
     for changes in [&[("size", "161x91"), ("vpls", "64")][..], &[("size", "161x91"), ("split", "none")]] {
         let together = watched.hash(INTERLEAVED, changes);
-        let apart = watched.render_as(INTERLEAVED, changes, Submits::PerPass);
+        let apart = watched.render_as(INTERLEAVED, changes, &[], Submits::PerPass);
         assert_eq!(apart.picture().unwrap().hash().unwrap(), together, "{changes:?}");
     }
 }

@@ -16,6 +16,8 @@ use std::sync::Arc;
 use support::watched::{Watched, both, require_silence, watched_device};
 
 const TECHNIQUE: &str = "interleaved_deferred";
+/// What these tests read back.
+const STAGES: [&str; 4] = ["gbuffer.normal", "gather.irradiance", "discontinuity.flags", "filter.irradiance"];
 
 /// Device and host round to half floats twice, once a direction, each time by at most 2^-11 of the value; a value that
 /// lies between two halves may go either way on the two sides. Subnormal halves are 2^-24 apart.
@@ -123,7 +125,7 @@ fn a_frames_filter_is_its_twin() {
                 let common = [("size", size.as_str()), ("pattern", pattern), ("vpls", "64"), ("filter", filter)];
                 let own = [("kernel", kernel.as_str()), ("sigma", &deviation), ("discontinuity", ends)];
                 let changes = both(&common, &own);
-                let renderer = watched.render(TECHNIQUE, &changes);
+                let renderer = watched.render_stages(TECHNIQUE, &changes, &STAGES);
                 let frame = Frame {
                     extent,
                     irradiance: watched.rgb(&renderer, "gather.irradiance"),
@@ -152,7 +154,8 @@ fn flags_stand_where_normals_turn() {
     for extent in [Extent::new(160, 90), Extent::new(97, 53)] {
         let size = extent.to_string();
         let own = [("position-threshold", "1000"), ("normal-threshold", "0.1")];
-        let renderer = watched.render(TECHNIQUE, &both(&[("size", size.as_str()), ("vpls", "64")], &own));
+        let renderer =
+            watched.render_stages(TECHNIQUE, &both(&[("size", size.as_str()), ("vpls", "64")], &own), &STAGES);
         let normals = watched.rgb(&renderer, "gbuffer.normal");
         let flags = watched.integers(&renderer, "discontinuity.flags");
         let normal = |x: u32, y: u32| {
@@ -180,7 +183,7 @@ fn thresholds_switch_discontinuities_off() {
     let watched = Watched::open("cornell");
     let common = [("size", "97x53"), ("vpls", "64")];
     let flagged = |changes: &[(&str, &str)]| {
-        let renderer = watched.render(TECHNIQUE, &both(&common, changes));
+        let renderer = watched.render_stages(TECHNIQUE, &both(&common, changes), &STAGES);
         watched.integers(&renderer, "discontinuity.flags").iter().filter(|flag| **flag != 0).count()
     };
     let all = flagged(&[]);
@@ -335,8 +338,8 @@ fn gauss_fast_is_close_to_gauss_where_no_flag_is() {
     let extent = Extent::new(161, 91);
     let size = extent.to_string();
     let common = [("size", size.as_str()), ("vpls", "512"), ("pattern", "4x4")];
-    let gauss = watched.render(TECHNIQUE, &common);
-    let fast = watched.render(TECHNIQUE, &both(&common, &[("filter", "gauss-fast")]));
+    let gauss = watched.render_stages(TECHNIQUE, &common, &STAGES);
+    let fast = watched.render_stages(TECHNIQUE, &both(&common, &[("filter", "gauss-fast")]), &STAGES);
     let flags = watched.integers(&gauss, "discontinuity.flags");
     let [slow, fast] = [&gauss, &fast].map(|renderer| watched.rgb(renderer, "filter.irradiance"));
     let at = |x: u32, y: u32| (y * extent.width + x) as usize;

@@ -219,7 +219,8 @@ fn joined_lights_give_the_same_irradiance() {
         ("pattern", "1x1"),
         ("vpls", "16"),
     ];
-    let renderer = watched.render("interleaved_deferred", &changes);
+    let stages = ["gbuffer.normal", "shade.irradiance", "gather.irradiance"];
+    let renderer = watched.render_stages("interleaved_deferred", &changes, &stages);
     for (found, point) in watched.rgb(&renderer, "gather.irradiance").iter().zip(points(&renderer)) {
         let expected: DVec3 = lights.iter().map(|light| irradiance(light, 0.0, point).1).sum();
         let found = Vec3::from_array(*found).as_dvec3();
@@ -269,7 +270,8 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
             ("vpls", &vpls),
             ("seed", "5"),
         ];
-        let renderer = watched.render("interleaved_deferred", &changes);
+        let stages = ["gbuffer.normal", "shade.irradiance", "gather.irradiance"];
+        let renderer = watched.render_stages("interleaved_deferred", &changes, &stages);
         let walk = vpl::Walk { count, bounces: 1, emissive: false, seed: 5 };
         let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;
         let mapping = mapping(renderer.view.extent, pattern);

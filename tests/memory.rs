@@ -131,7 +131,7 @@ fn the_ledger_counts_what_the_driver_was_asked_for() {
             let memory = &watched.session.gpu.memory;
             require_ledger_as_counted(&memory.snapshot(), "the scene");
             let changes = [("size", "161x91"), ("vpls", "64")];
-            let first = watched.render("interleaved_deferred", &changes);
+            let first = watched.render_stages("interleaved_deferred", &changes, &["split.normal"]);
             require_ledger_as_counted(&memory.snapshot(), "a renderer");
             let second = watched.render("deferred", &[("size", "640x360"), ("direct-shadow", "ray")]);
             require_ledger_as_counted(&memory.snapshot(), "a second renderer");
@@ -223,7 +223,7 @@ fn what_is_planned_is_what_is_made() {
 fn a_refused_request_leaves_nothing_behind() {
     counted(Strategy::Linear, "cornell", |watched| {
         let before = watched.session.gpu.memory.snapshot();
-        let refused = watched.try_renderer("interleaved_deferred", &[("vpls", "8")], Submits::One);
+        let refused = watched.try_renderer("interleaved_deferred", &[("vpls", "8")], &[], Submits::One);
         assert_eq!(refused.err().unwrap().exit_code(), 2);
         let after = watched.session.gpu.memory.snapshot();
         assert_eq!(after.bound_bytes(), before.bound_bytes());
@@ -240,7 +240,7 @@ fn memory_that_is_refused_leaves_nothing_behind() {
         let changes = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
         for refused_at in 0.. {
             counter().until_refusal = Some(refused_at);
-            let made = watched.try_renderer("interleaved_deferred", &changes, Submits::One);
+            let made = watched.try_renderer("interleaved_deferred", &changes, &[], Submits::One);
             let refused = counter().until_refusal.is_none();
             counter().until_refusal = None;
             let Err(error) = made else {

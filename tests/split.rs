@@ -8,6 +8,8 @@ use quincunx::units::Extent;
 use support::watched::Watched;
 
 const TECHNIQUE: &str = "interleaved_deferred";
+/// What these tests read back.
+const STAGES: &[&str] = &["gbuffer.normal", "split.normal", "shade.irradiance", "gather.irradiance"];
 
 /// A picture of sub-buffers side by side, back in frame order: what stands at place i shows pixel `shown[i]`.
 fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32; 2]) -> Vec<[f32; 3]> {
@@ -36,7 +38,8 @@ fn every_sub_buffer_comes_back_where_it_was() {
         (Extent::new(1, 1), [2, 2]),
     ] {
         let (size, text) = (extent.to_string(), format!("{}x{}", pattern[0], pattern[1]));
-        let renderer = watched.render(TECHNIQUE, &[("size", &size), ("pattern", &text), ("vpls", "256")]);
+        let changes = [("size", size.as_str()), ("pattern", text.as_str()), ("vpls", "256")];
+        let renderer = watched.render_stages(TECHNIQUE, &changes, STAGES);
         let stage = |name: &str| watched.rgb(&renderer, name);
         let what = format!("{extent} in {text}");
         assert_eq!(back_in_frame_order(&stage("split.normal"), extent, pattern), stage("gbuffer.normal"), "{what}");
@@ -50,8 +53,8 @@ fn every_sub_buffer_comes_back_where_it_was() {
 fn both_roads_shade_the_same_irradiance() {
     let watched = Watched::open("cornell");
     let common = [("size", "97x53"), ("pattern", "5x7"), ("vpls", "128")];
-    let gathered = watched.rgb(&watched.render(TECHNIQUE, &common), "gather.irradiance");
-    let branch = watched.render(TECHNIQUE, &support::watched::both(&common, &[("split", "branch")]));
+    let gathered = watched.rgb(&watched.render_stages(TECHNIQUE, &common, STAGES), "gather.irradiance");
+    let branch = watched.render_stages(TECHNIQUE, &support::watched::both(&common, &[("split", "branch")]), STAGES);
     assert_eq!(watched.rgb(&branch, "shade.irradiance"), gathered);
 }
 
@@ -59,6 +62,7 @@ fn both_roads_shade_the_same_irradiance() {
 fn a_stage_that_the_settings_leave_out_is_refused() {
     let watched = Watched::open("cornell");
     let common = [("size", "33x17"), ("vpls", "64")];
+    let stages = quincunx::techniques::find(TECHNIQUE).unwrap().aovs();
     let filtered = ["discontinuity.flags", "filter.irradiance"];
     let split = ["split.normal", "gather.irradiance"];
     for (change, missing) in [
@@ -71,8 +75,9 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
         (("pattern", "1x1"), filtered.to_vec()),
         (("pattern", "2x2"), vec![]),
     ] {
-        let renderer = watched.render(TECHNIQUE, &support::watched::both(&common, &[change]));
-        for name in quincunx::techniques::find(TECHNIQUE).unwrap().aovs() {
+        let changes = support::watched::both(&common, &[change]);
+        let renderer = watched.render_stages(TECHNIQUE, &changes, stages);
+        for name in stages {
             match renderer.aov(name) {
                 Ok(_) => assert!(!missing.contains(name), "{change:?} made {name}"),
                 Err(error) => {
@@ -88,7 +93,7 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
 #[test]
 fn fewer_lights_than_subsets_are_refused() {
     let watched = Watched::open("cornell");
-    let refused = watched.try_renderer(TECHNIQUE, &[("vpls", "15"), ("size", "8x8")], Submits::One).err().unwrap();
+    let refused = watched.try_renderer(TECHNIQUE, &[("vpls", "15"), ("size", "8x8")], &[], Submits::One).err().unwrap();
     assert_eq!(refused.exit_code(), 2);
     assert!(refused.message().contains("15 lights for the 16 subsets"), "{refused}");
     let renderer = watched.render(TECHNIQUE, &[("vpls", "16"), ("size", "8x8")]);

@@ -55,7 +55,7 @@ pub fn frames(job: &mut Job, grid: &[Point], repeat: usize, progress: &dyn Fn(us
     let session = Session::open(&job.device_request(), job.load_scene()?)?;
     let mut variants = Vec::new();
     for (label, values) in settings {
-        let renderer = session.renderer(job.technique, &values, Submits::One)?;
+        let renderer = session.renderer(job.technique, &values, &[], Submits::One)?;
         // The first frame compiles shaders; it is not timed, and its picture is the variant's.
         renderer.frame()?;
         let picture = renderer.picture()?;
@@ -104,7 +104,7 @@ fn rounds(variants: &mut [Variant], repeat: usize, progress: &dyn Fn(usize, usiz
 
 /// Median milliseconds of each device pass of these settings.
 fn pass_ms(job: &Job, session: &Session, values: &Values) -> Result<Vec<(String, f64)>> {
-    let renderer = session.renderer(job.technique, values, Submits::PerPass)?;
+    let renderer = session.renderer(job.technique, values, &[], Submits::PerPass)?;
     renderer.frame()?;
     let frames = (0..PASS_FRAMES).map(|_| renderer.frame()).collect::<Result<Vec<_>>>()?;
     let times = renderer.passes().iter().enumerate().map(|(index, pass)| {
@@ -171,7 +171,7 @@ impl Reference {
         if plain.set("split", "none").is_err() {
             return Ok(None);
         }
-        let renderer = session.renderer(job.technique, &plain.values, Submits::One)?;
+        let renderer = session.renderer(job.technique, &plain.values, &[], Submits::One)?;
         renderer.frame()?;
         let picture = renderer.picture()?;
         let passes = pass_ms(job, session, &plain.values)?;

@@ -116,6 +116,15 @@ impl AccessSet {
         self.0 & other.0 == other.0
     }
 
+    /// What is known after one more access: readers join readers, but for those of an image in another layout, which
+    /// the transition waited for; a writer stands alone.
+    pub fn after(self, access: Access) -> Self {
+        let of_buffers = |access: Access| access.layout() == vk::ImageLayout::UNDEFINED;
+        let same = |known: Access| known.layout() == access.layout() || of_buffers(known) || of_buffers(access);
+        let joins = !access.writes() && self.iter().all(|known| !known.writes() && same(known));
+        if joins { self.with(access) } else { access.into() }
+    }
+
     pub fn with(self, access: Access) -> Self {
         Self(self.0 | access.bit())
     }
@@ -177,8 +186,9 @@ pub struct Barrier {
     pub(super) discard: bool,
 }
 
+/// What a barrier is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Target {
+pub enum Target {
     Buffer(vk::Buffer),
     Image(vk::Image, vk::ImageAspectFlags),
 }
@@ -186,19 +196,22 @@ pub(super) enum Target {
 impl Edge<'_, Buffer> {
     /// The next access: the right side.
     pub fn to(self, access: Access) -> Barrier {
-        Barrier { target: Target::Buffer(self.resource.handle), from: self.from, to: access, discard: false }
+        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false }
     }
 }
 
 impl Edge<'_, Image> {
     /// The next access: the right side.
     pub fn to(self, access: Access) -> Barrier {
-        let target = Target::Image(self.resource.handle, self.resource.aspect());
-        Barrier { target, from: self.from, to: access, discard: false }
+        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false }
     }
 }
 
 impl Buffer {
+    pub fn target(&self) -> Target {
+        Target::Buffer(self.handle)
+    }
+
     /// States who touched it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
@@ -206,12 +219,15 @@ impl Buffer {
 
     /// First touch of the frame, old contents not needed.
     pub fn discard(&self, access: Access) -> Barrier {
-        let target = Target::Buffer(self.handle);
-        Barrier { target, from: AccessSet::UNTOUCHED, to: access, discard: true }
+        Barrier { target: self.target(), from: AccessSet::UNTOUCHED, to: access, discard: true }
     }
 }
 
 impl Image {
+    pub fn target(&self) -> Target {
+        Target::Image(self.handle, self.aspect())
+    }
+
     /// States who touched it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
@@ -219,8 +235,7 @@ impl Image {
 
     /// First touch of the frame, old contents not needed.
     pub fn discard(&self, access: Access) -> Barrier {
-        let target = Target::Image(self.handle, self.aspect());
-        Barrier { target, from: AccessSet::UNTOUCHED, to: access, discard: true }
+        Barrier { target: self.target(), from: AccessSet::UNTOUCHED, to: access, discard: true }
     }
 }
 

@@ -4,10 +4,9 @@
 //! Debug builds keep the truth of who touched what last and hold every barrier's left side against it.
 
 use super::access::{AccessSet, Barrier, Target};
-use super::buffer::Buffer;
+use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
 use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
-use super::shader::BindingKind;
 use super::timing::{PassTime, Timestamps};
 use super::{Access, Gpu};
 use crate::error::{Error, Result};
@@ -35,21 +34,20 @@ pub struct Traffic {
     pub invocations: Option<u64>,
 }
 
-/// Something a shader binds, by its name in GLSL.
-#[derive(Clone, Copy)]
-pub enum Bound<'a> {
-    Buffer(&'a Buffer),
-    /// Through a storage image descriptor; layout GENERAL.
-    Storage(&'a Image),
-    /// Through a sampler, layout as `access` has it.
-    Sampled(&'a Image, vk::Sampler, Access),
-}
-
 /// A named pass in a recorded frame.
 #[derive(Clone, Debug)]
 pub struct RecordedPass {
     pub name: String,
     pub traffic: Traffic,
+}
+
+/// A barrier's right side, and the pass that stated it.
+#[derive(Clone, Copy, Debug)]
+pub struct Touched {
+    /// Index into the frame's passes.
+    pub pass: usize,
+    pub target: Target,
+    pub access: Access,
 }
 
 /// A frame being recorded.
@@ -59,10 +57,11 @@ pub struct Commands {
     submits: Submits,
     pool: vk::CommandPool,
     buffers: Vec<vk::CommandBuffer>,
-    descriptor_pools: Vec<vk::DescriptorPool>,
+    descriptors: Descriptors,
     passes: Vec<RecordedPass>,
     timestamps: Option<Timestamps>,
     truth: HashMap<Target, AccessSet>,
+    touched: Vec<Touched>,
 }
 
 /// A frame that can be run again and again.
@@ -95,10 +94,11 @@ impl Commands {
             submits,
             pool,
             buffers: Vec::new(),
-            descriptor_pools: Vec::new(),
+            descriptors: Descriptors::new(gpu),
             passes: Vec::new(),
             timestamps: None,
             truth: HashMap::new(),
+            touched: Vec::new(),
         };
         gpu.name(pool, name);
         if submits == Submits::PerPass {
@@ -173,9 +173,10 @@ impl Commands {
                 }
             }
             let known = self.truth.entry(barrier.target).or_default();
-            let joins = !barrier.to.writes()
-                && known.iter().all(|access| !access.writes() && access.layout() == barrier.to.layout());
-            *known = if joins { known.with(barrier.to) } else { barrier.to.into() };
+            *known = known.after(barrier.to);
+            if let Some(pass) = self.passes.len().checked_sub(1) {
+                self.touched.push(Touched { pass, target: barrier.target, access: barrier.to });
+            }
         }
         if buffers.is_empty() && images.is_empty() {
             return;
@@ -183,6 +184,16 @@ impl Commands {
         let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
         // SAFETY: the buffer is being recorded, outside rendering; the resources are alive.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
+    }
+
+    /// The passes recorded so far.
+    pub fn passes(&self) -> &[RecordedPass] {
+        &self.passes
+    }
+
+    /// What they touched, as their barriers say.
+    pub fn touched(&self) -> &[Touched] {
+        &self.touched
     }
 
     /// A barrier whose left side lies in an earlier submit: the caller vouches for it.
@@ -211,74 +222,12 @@ impl Commands {
 
     /// Writes a set for `interface` from what is bound by name, and binds it as set 0.
     fn bind(&mut self, point: vk::PipelineBindPoint, interface: &Interface, bound: &[(&str, Bound<'_>)]) -> Result<()> {
-        for (name, _) in bound {
-            let known = interface.bindings.iter().any(|binding| binding.name == *name);
-            assert!(known, "{}: nothing is called {name}", interface.label);
-        }
-        if interface.bindings.is_empty() {
-            return Ok(());
-        }
-        let set = self.allocate_set(interface)?;
-        for binding in &interface.bindings {
-            let (_, value) = bound
-                .iter()
-                .find(|(name, _)| *name == binding.name)
-                .unwrap_or_else(|| panic!("{}: {} is not bound", interface.label, binding.name));
-            let mut buffer_info = [vk::DescriptorBufferInfo::default()];
-            let mut image_info = [vk::DescriptorImageInfo::default()];
-            let write = vk::WriteDescriptorSet::default()
-                .dst_set(set)
-                .dst_binding(binding.binding)
-                .descriptor_type(binding.kind.descriptor_type());
-            let write = match (binding.kind, value) {
-                (BindingKind::StorageBuffer | BindingKind::UniformBuffer, Bound::Buffer(buffer)) => {
-                    buffer_info[0] = buffer_info[0].buffer(buffer.handle).range(vk::WHOLE_SIZE);
-                    write.buffer_info(&buffer_info)
-                }
-                (BindingKind::StorageImage, Bound::Storage(image)) => {
-                    image_info[0] = image_info[0].image_view(image.storage_view).image_layout(vk::ImageLayout::GENERAL);
-                    write.image_info(&image_info)
-                }
-                (BindingKind::CombinedImageSampler, Bound::Sampled(image, sampler, access)) => {
-                    image_info[0] =
-                        image_info[0].image_view(image.view).sampler(*sampler).image_layout(access.layout());
-                    write.image_info(&image_info)
-                }
-                (kind, _) => {
-                    panic!("{}: {} is a {kind:?} and was bound as something else", interface.label, binding.name)
-                }
-            };
-            // SAFETY: the set is fresh, the resources are alive and outlive the recorded frame.
-            unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) };
-        }
+        let Some(set) = self.descriptors.set(interface, bound)? else { return Ok(()) };
         // SAFETY: the buffer is being recorded; the set was made for this layout.
         unsafe {
             self.gpu.device.cmd_bind_descriptor_sets(self.buffer(), point, interface.layout, 0, &[set], &[]);
         }
         Ok(())
-    }
-
-    fn allocate_set(&mut self, interface: &Interface) -> Result<vk::DescriptorSet> {
-        let layouts = [interface.set_layouts[0]];
-        for fresh in [false, true] {
-            if fresh {
-                self.descriptor_pools.push(new_descriptor_pool(&self.gpu)?);
-            }
-            let Some(pool) = self.descriptor_pools.last() else { continue };
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(*pool).set_layouts(&layouts);
-            // SAFETY: a live pool and layout; a full pool answers with an error and is followed by a new one.
-            match unsafe { self.gpu.device.allocate_descriptor_sets(&info) } {
-                Ok(sets) => {
-                    self.gpu.name(sets[0], &interface.label);
-                    return Ok(sets[0]);
-                }
-                Err(result) if fresh => {
-                    return Err(Error::device(format!("{}: allocating descriptors: {result}", interface.label)));
-                }
-                Err(_) => {}
-            }
-        }
-        unreachable!("the second round returns")
     }
 
     fn push(&self, interface: &Interface, params: &[u8]) {
@@ -406,28 +355,10 @@ impl Commands {
     }
 }
 
-fn new_descriptor_pool(gpu: &Gpu) -> Result<vk::DescriptorPool> {
-    // Enough for any frame of today; a frame that needs more gets a second pool.
-    let sizes = [
-        (vk::DescriptorType::STORAGE_BUFFER, 256),
-        (vk::DescriptorType::UNIFORM_BUFFER, 64),
-        (vk::DescriptorType::STORAGE_IMAGE, 64),
-        (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 128),
-    ]
-    .map(|(ty, descriptor_count)| vk::DescriptorPoolSize { ty, descriptor_count });
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(64).pool_sizes(&sizes);
-    // SAFETY: a live device.
-    unsafe { gpu.device.create_descriptor_pool(&info, None) }
-        .map_err(|result| Error::device(format!("creating a descriptor pool: {result}")))
-}
-
 impl Drop for Commands {
     fn drop(&mut self) {
         // SAFETY: nothing recorded here is running: `Recorded::run` waits for its fences.
         unsafe {
-            for pool in &self.descriptor_pools {
-                self.gpu.device.destroy_descriptor_pool(*pool, None);
-            }
             self.gpu.device.destroy_command_pool(self.pool, None);
         }
     }

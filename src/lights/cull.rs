@@ -4,7 +4,7 @@
 //! Beyond its range a light adds exactly 0, so a mask that leaves it out changes no bit of the picture.
 
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::lights::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
@@ -29,6 +29,11 @@ fn tile_count(extent: Extent) -> u64 {
 /// Plans the masks, as a resource of `technique`.
 pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, light_count: u32) {
     plan.buffer("lights", format!("{technique}.cull.masks"), mask_bytes(extent, light_count));
+}
+
+/// The masks, as `access` touches them.
+pub fn masks(technique: &str, access: Access) -> (String, Access) {
+    (format!("{technique}.cull.masks"), access)
 }
 
 pub struct Cull {
@@ -62,7 +67,7 @@ impl Cull {
             invocations: Some(tile_count(extent)),
         };
         cmd.pass(&format!("{technique}.cull"), traffic, |cmd| {
-            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([masks.discard(Access::ComputeWrite)]);
             let mut bound = gbuffer.resource.bound_surface();
             bound.extend([

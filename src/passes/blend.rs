@@ -5,10 +5,10 @@
 //! Their indirect light is the sum over all virtual point lights, not a subset: a blended surface has no neighbours to
 //! filter with, and what it shows is what `--split none` would.
 
-use super::mesh;
+use super::{gbuffer, mesh};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::BlendParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
@@ -24,6 +24,11 @@ pub struct BlendLights<'a> {
     pub vpls: &'a Buffer,
     pub bvh_nodes: &'a Buffer,
     pub bvh_triangles: &'a Buffer,
+}
+
+/// What the pass touches: depth, and the picture of this full name.
+pub fn touches(technique: &str, picture: &str) -> [(String, Access); 2] {
+    [gbuffer::depth_tested(technique), (picture.to_owned(), Access::ColorWrite)]
 }
 
 pub struct Blend {

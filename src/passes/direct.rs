@@ -3,7 +3,7 @@
 
 use crate::bvh::{Bvh, LazyBvh};
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Buffer, Gpu, upload};
 use crate::lights::{LightSet, cull};
@@ -79,6 +79,11 @@ impl ShadingSettings {
         [("BRDF_KIND", self.brdf as u32), shadow, offset]
     }
 
+    /// Whether lists of lights for tiles are made.
+    pub fn culls(&self, light_count: usize) -> bool {
+        self.cull && light_count > 0
+    }
+
     /// The tree that shadow rays walk: the scene's, or the empty one where no ray is cast.
     pub fn tree<'a>(&self, bvh: &'a LazyBvh, scene: &Scene) -> Result<&'a Bvh> {
         if self.shadow == DirectShadow::None { Ok(bvh.empty()) } else { bvh.over(scene) }
@@ -102,7 +107,7 @@ pub fn plan(
         format!("{technique}.bvh.triangles"),
         bytes(tree.triangles.len(), size_of::<BvhTriangleBlock>()),
     );
-    if settings.cull && light_count > 0 {
+    if settings.culls(light_count) {
         cull::plan(plan, technique, extent, light_count as u32);
     }
 }
@@ -138,7 +143,7 @@ impl DirectGpu {
             light_count: lights.len() as u32,
             bvh_nodes: filled("bvh.nodes", bytemuck::cast_slice(&tree.nodes))?,
             bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
-            masks: (settings.cull && !lights.is_empty()).then(|| resources.buffer(&format!("{technique}.cull.masks"))),
+            masks: settings.culls(lights.len()).then(|| resources.buffer(&format!("{technique}.cull.masks"))),
         })
     }
 

@@ -11,7 +11,7 @@
 
 use super::{decode, mesh};
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
@@ -87,17 +87,48 @@ pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, position: Position
     use vk::ImageUsageFlags as Usage;
     let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
     let mut image = |what: &str, format, usage| {
-        plan.image("gbuffer", format!("{technique}.gbuffer.{what}"), extent, format, usage);
+        plan.image("gbuffer", full(technique, what), extent, format, usage);
     };
-    image("normal", WORDS, color);
-    image("color", WORDS, color);
-    if has_emissive {
-        image("emissive", WORDS, color);
-    }
-    if let Some(format) = position.image_format() {
-        image("position", format, color);
+    for what in color_images(position, has_emissive) {
+        let format = position.image_format().filter(|_| what == "position");
+        image(what, format.unwrap_or(WORDS), color);
     }
     image("depth", DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC);
+}
+
+/// What the pass that fills it touches.
+pub fn written(technique: &str, position: PositionStorage, has_emissive: bool) -> Vec<(String, Access)> {
+    let images = color_images(position, has_emissive).into_iter().map(|what| (what, Access::ColorWrite));
+    images.chain([("depth", Access::DepthWrite)]).map(|(what, access)| (full(technique, what), access)).collect()
+}
+
+/// What a compute pass touches that reads normal and position.
+pub fn surface(technique: &str, position: PositionStorage) -> Vec<(String, Access)> {
+    let place = if position.image_format().is_some() { "position" } else { "depth" };
+    ["normal", place].map(|what| (full(technique, what), Access::ComputeSample)).to_vec()
+}
+
+/// What a compute pass touches that reads all of it.
+pub fn shading(technique: &str, position: PositionStorage, has_emissive: bool) -> Vec<(String, Access)> {
+    let materials = ["color"].into_iter().chain(has_emissive.then_some("emissive"));
+    let mut touches = surface(technique, position);
+    touches.extend(materials.map(|what| (full(technique, what), Access::ComputeSample)));
+    touches
+}
+
+/// What a pass touches that tests depth without writing it.
+pub fn depth_tested(technique: &str) -> (String, Access) {
+    (full(technique, "depth"), Access::DepthTest)
+}
+
+fn color_images(position: PositionStorage, has_emissive: bool) -> Vec<&'static str> {
+    let emissive = has_emissive.then_some("emissive");
+    let position = position.image_format().map(|_| "position");
+    ["normal", "color"].into_iter().chain(emissive).chain(position).collect()
+}
+
+fn full(technique: &str, what: &str) -> String {
+    format!("{technique}.gbuffer.{what}")
 }
 
 /// The images of one G-buffer.
@@ -120,7 +151,7 @@ impl GBuffer {
         position_storage: PositionStorage,
         has_emissive: bool,
     ) -> Result<Self> {
-        let mut image = |what: &str| resources.image(&format!("{technique}.gbuffer.{what}"));
+        let mut image = |what: &str| resources.image(&full(technique, what));
         Ok(Self {
             position_storage,
             normal: image("normal"),
@@ -181,15 +212,24 @@ impl GBuffer {
 }
 
 impl Edge<'_, GBuffer> {
-    /// All that compute shaders sample becomes readable by them.
-    pub fn to_sampled(self) -> Vec<Barrier> {
+    /// Normal and position become readable by compute shaders.
+    pub fn surface_to_sampled(self) -> Vec<Barrier> {
         let gbuffer = self.resource;
-        let mut barriers: Vec<Barrier> =
-            gbuffer.attachments().into_iter().map(|image| image.from(self.from).to(Access::ComputeSample)).collect();
-        if gbuffer.position_storage == PositionStorage::Depth {
-            let from = if self.from == Access::ColorWrite.into() { Access::DepthWrite.into() } else { self.from };
-            barriers.push(gbuffer.depth.from(from).to(Access::ComputeSample));
-        }
+        let position = match &gbuffer.position {
+            Some(position) => position.from(self.from),
+            None if self.from == Access::ColorWrite.into() => gbuffer.depth.from(Access::DepthWrite),
+            None => gbuffer.depth.from(self.from),
+        };
+        vec![gbuffer.normal.from(self.from).to(Access::ComputeSample), position.to(Access::ComputeSample)]
+    }
+
+    /// All that a composite reads becomes readable by compute shaders. Colour and emission are read by no pass before
+    /// it, whoever read the surface.
+    pub fn shading_to_sampled(self) -> Vec<Barrier> {
+        let gbuffer = self.resource;
+        let materials = [Some(&gbuffer.color), gbuffer.emissive.as_ref()].into_iter().flatten();
+        let mut barriers = self.surface_to_sampled();
+        barriers.extend(materials.map(|image| image.from(Access::ColorWrite).to(Access::ComputeSample)));
         barriers
     }
 }

@@ -1,7 +1,7 @@
 //! The vertex stage that passes over triangles share, and the loop that draws with it. Shader: mesh.vert.
 //! reads  scene.positions, scene.attributes, scene.indices, scene.draws, the frame's block
 
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsPipeline, VertexBuffer};
 use crate::gpu::{Buffer, Commands};
 use crate::resident::{DrawCall, SceneGpu, VertexAttributes};

@@ -1,8 +1,8 @@
 //! The techniques: what each needs, and the table of all of them.
 //!
-//! A technique is asked in three steps, so that memory can be studied without a device: `prepare` does the host's part
-//! and plans (`Prepared::plan` is arithmetic), `Prepared::build` makes pipelines and takes the planned resources, and
-//! `Frame::record` writes the commands of one frame, in the order of the paper's overview figure.
+//! A technique is asked in four steps, so that memory can be studied without a device: `plan` is arithmetic, `prepare`
+//! does the host's part, `Prepared::build` makes pipelines and takes the planned resources, and `Frame::record` writes
+//! the commands of one frame, in the order of the paper's overview figure.
 
 pub mod deferred;
 pub mod interleaved_deferred;
@@ -10,7 +10,7 @@ pub mod interleaved_deferred;
 use crate::bvh::LazyBvh;
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
@@ -20,8 +20,9 @@ use crate::settings::{Setting, Values};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Everything that the host's part of a technique may read.
+/// Everything that the plan and the host's part of a technique may read.
 pub struct Inputs<'a> {
+    pub caps: &'a Caps,
     pub scene: &'a Scene,
     pub stats: &'a SceneStats,
     pub bvh: &'a LazyBvh,
@@ -47,17 +48,19 @@ pub trait Technique: Sync {
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
 
-    /// The host's part, and the plan.
+    /// What a frame needs. Arithmetic, but for the tree of shadow rays, whose size only building it tells.
     ///
-    /// Errors: settings that contradict each other or the scene (exit code 2).
+    /// Errors: settings that contradict each other, the scene or the device (exit code 2).
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan>;
+
+    /// The host's part.
+    ///
+    /// Errors: as `plan`.
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>>;
 }
 
 /// A technique whose host part is done.
 pub trait Prepared {
-    /// The resources of a frame.
-    fn plan(&self) -> &Plan;
-
     /// Host passes with their time in nanoseconds; the same names as other passes have.
     fn host_passes(&self) -> Vec<(String, u64)>;
 

@@ -55,19 +55,32 @@ impl Watched {
 
     /// One technique with its settings, after one frame in one submit.
     pub fn render(&self, technique: &str, changes: Changes<'_>) -> Renderer {
-        self.render_as(technique, changes, Submits::One)
+        self.render_as(technique, changes, &[], Submits::One)
     }
 
-    pub fn render_as(&self, technique: &str, changes: Changes<'_>, submits: Submits) -> Renderer {
+    /// The same, whose `stages` can be read back.
+    pub fn render_stages(&self, technique: &str, changes: Changes<'_>, stages: &[&str]) -> Renderer {
+        self.render_as(technique, changes, stages, Submits::One)
+    }
+
+    pub fn render_as(&self, technique: &str, changes: Changes<'_>, stages: &[&str], submits: Submits) -> Renderer {
         let what = format!("{technique} with {changes:?}");
-        let renderer = self.try_renderer(technique, changes, submits).unwrap_or_else(|error| panic!("{what}: {error}"));
+        let made = self.try_renderer(technique, changes, stages, submits);
+        let renderer = made.unwrap_or_else(|error| panic!("{what}: {error}"));
         renderer.frame().unwrap_or_else(|error| panic!("{what}: {error}"));
         require_silence(&self.session.gpu, &what);
         renderer
     }
 
-    pub fn try_renderer(&self, technique: &str, changes: Changes<'_>, submits: Submits) -> Result<Renderer> {
-        self.session.renderer(techniques::find(technique)?, &values(technique, changes), submits)
+    pub fn try_renderer(
+        &self,
+        technique: &str,
+        changes: Changes<'_>,
+        stages: &[&str],
+        submits: Submits,
+    ) -> Result<Renderer> {
+        let stages: Vec<String> = stages.iter().map(|stage| (*stage).to_owned()).collect();
+        self.session.renderer(techniques::find(technique)?, &values(technique, changes), &stages, submits)
     }
 
     /// The picture of one frame.

@@ -5,7 +5,7 @@
 use super::Kernel;
 use super::gauss_pack::GaussPack;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::filter::gauss_fast as shader;

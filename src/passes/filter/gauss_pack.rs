@@ -3,7 +3,7 @@
 
 use super::StopBits;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::GaussPackParams;
 use crate::gpu::{Buffer, Commands, Gpu, Image};

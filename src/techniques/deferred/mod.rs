@@ -9,8 +9,8 @@ use super::{Frame, Inputs, Prepared, Technique, left_out};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
-use crate::lights::cull::Cull;
-use crate::passes::blend::{Blend, BlendLights};
+use crate::lights::cull::{self, Cull};
+use crate::passes::blend::{self, Blend, BlendLights};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::plan::{Plan, Resources};
@@ -22,6 +22,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 const NAME: &str = "deferred";
+/// The finished picture.
+const COLOR: &str = "deferred.shade.color";
 
 pub struct Deferred;
 
@@ -46,32 +48,49 @@ impl Technique for Deferred {
         gbuffer::AOVS
     }
 
-    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let settings = ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.bounds().diagonal());
-        let lights = direct::light_blocks(inputs.lights, inputs.values);
-        let extent = inputs.view.extent;
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        let settings = settings(inputs);
+        let (extent, position, has_emissive) = (inputs.view.extent, settings.position, inputs.stats.has_emissive);
+        let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
-        gbuffer::plan(&mut plan, NAME, extent, settings.position, inputs.stats.has_emissive);
+        gbuffer::plan(&mut plan, NAME, extent, position, has_emissive);
         let tree = settings.tree(inputs.bvh, inputs.scene)?;
-        direct::plan(&mut plan, NAME, lights.len(), &settings, tree, extent);
+        direct::plan(&mut plan, NAME, light_count, &settings, tree, extent);
         // No virtual lights: what blended surfaces bind in their place.
         plan.buffer("lights", "deferred.vpls", 0);
-        plan.picture("deferred.shade.color", extent);
-        Ok(Box::new(PreparedDeferred { settings, lights, plan }))
+        plan.picture(COLOR, extent);
+        plan.pass(format!("{NAME}.gbuffer"), gbuffer::written(NAME, position, has_emissive));
+        let masks = settings.culls(light_count).then_some(NAME);
+        if masks.is_some() {
+            let written = cull::masks(NAME, Access::ComputeWrite);
+            plan.pass(format!("{NAME}.cull"), gbuffer::surface(NAME, position).into_iter().chain([written]));
+        }
+        let mut shaded = gbuffer::shading(NAME, position, has_emissive);
+        shaded.extend(masks.map(|technique| cull::masks(technique, Access::ComputeRead)));
+        shaded.push((COLOR.to_owned(), Access::ComputeWrite));
+        plan.pass(format!("{NAME}.shade"), shaded);
+        if inputs.stats.has_blend {
+            plan.pass(format!("{NAME}.blend"), blend::touches(NAME, COLOR));
+        }
+        Ok(plan)
     }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        Ok(Box::new(PreparedDeferred { settings: settings(inputs), lights }))
+    }
+}
+
+fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
+    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.bounds().diagonal())
 }
 
 struct PreparedDeferred {
     settings: ShadingSettings,
     lights: Vec<LightBlock>,
-    plan: Plan,
 }
 
 impl Prepared for PreparedDeferred {
-    fn plan(&self) -> &Plan {
-        &self.plan
-    }
-
     fn host_passes(&self) -> Vec<(String, u64)> {
         Vec::new()
     }
@@ -106,7 +125,7 @@ impl Prepared for PreparedDeferred {
             gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
             direct,
             vpls: resources.buffer("deferred.vpls"),
-            color: resources.image("deferred.shade.color"),
+            color: resources.image(COLOR),
         }))
     }
 }

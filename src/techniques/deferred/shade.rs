@@ -2,7 +2,7 @@
 //! reads  the G-buffer, the lights, the tree      writes  deferred.shade.color  image, RGBA32F, frame extent
 
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deferred::shade::COMP_VARIANTS;
 use crate::gpu::shader::variant;
@@ -39,7 +39,7 @@ impl Shade {
             invocations: Some(pixels),
         };
         cmd.pass("deferred.shade", traffic, |cmd| {
-            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers(gbuffer.shading_to_sampled());
             cmd.barriers([color.discard(Access::ComputeWrite)]);
             cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
             let mut bound = gbuffer.resource.bound_shading();

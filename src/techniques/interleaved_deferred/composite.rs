@@ -3,7 +3,7 @@
 
 use super::NAME;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::CompositeParams;
 use crate::gpu::shader::techniques::interleaved_deferred::composite::COMP_VARIANTS;
@@ -49,7 +49,7 @@ impl Composite {
             invocations: Some(pixels),
         };
         cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {
-            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers(gbuffer.shading_to_sampled());
             cmd.barriers([irradiance.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
             cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
             let mut bound = gbuffer.resource.bound_shading();

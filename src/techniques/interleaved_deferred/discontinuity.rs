@@ -10,7 +10,7 @@
 
 use super::NAME;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::{DiscontinuityParams, MappingParams};
 use crate::gpu::shader::techniques::interleaved_deferred::discontinuity::COMP_VARIANTS;
@@ -46,7 +46,7 @@ impl Discontinuity {
             invocations: Some(pixels),
         };
         cmd.pass(&format!("{NAME}.discontinuity"), traffic, |cmd| {
-            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([flags.discard(Access::ComputeWrite)]);
             let mut bound = gbuffer.resource.bound_surface();
             bound.extend([("Frame", Bound::Buffer(frame)), ("Flags", Bound::Buffer(flags))]);

@@ -28,7 +28,7 @@ pub mod subsets;
 pub mod upscale;
 
 use super::{Frame, Inputs, Prepared, Technique};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::vpl;
@@ -81,6 +81,10 @@ impl Technique for InterleavedDeferred {
         AOVS
     }
 
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&Choices::new(inputs)?, inputs)
+    }
+
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
         let values = inputs.values;
@@ -89,7 +93,7 @@ impl Technique for InterleavedDeferred {
             text => text == "on",
         };
         let walk = vpl::Walk {
-            count: values.integer("vpls") as u32,
+            count: choices.vpl_count,
             bounces: values.integer("vpl-bounces") as u32,
             emissive,
             seed: values.integer("seed") as u32,
@@ -99,19 +103,9 @@ impl Technique for InterleavedDeferred {
         let found = vpl::walk(inputs.scene, bvh, &inputs.lights.lights, &walk);
         let walk_ns = started.elapsed().as_nanos() as u64;
         let mut direct_lights = direct::light_blocks(inputs.lights, values);
-        if values.text("direct") == "none" {
-            direct_lights.clear();
-        }
+        direct_lights.truncate(choices.direct_count as usize);
         let joined: &[LightBlock] = if choices.direct_interleaved { &direct_lights } else { &[] };
         let subset_count = choices.subset_count();
-        if ((found.vpls.len() + joined.len()) as u64) < u64::from(subset_count) {
-            return Err(Error::request(format!(
-                "{NAME}: {} lights for the {subset_count} subsets of --pattern {}: each subset needs one",
-                found.vpls.len() + joined.len(),
-                values.text("pattern")
-            ))
-            .note(format!("--vpls {subset_count} or more, or a smaller --pattern")));
-        }
         // The order depends on the pattern: dealt for the whole, then cut.
         let bounds = inputs.scene.bounds();
         let lights = SubsetLights {
@@ -119,7 +113,6 @@ impl Technique for InterleavedDeferred {
             lights: subsets::dealt(joined, &bounds, subset_count),
             vpls: found.vpls,
         };
-        let plan = plan::plan(&choices, inputs, &lights, direct_lights.len())?;
         let clamp = values.length("vpl-clamp", bounds.diagonal());
         let resolved = BTreeMap::from([
             ("emissive", if emissive { "on" } else { "off" }.to_owned()),
@@ -130,7 +123,6 @@ impl Technique for InterleavedDeferred {
             choices,
             lights,
             direct_lights,
-            plan,
             walk_ns,
             walk_count: found.walk_count,
             found_count: found.found_count,
@@ -143,7 +135,6 @@ struct PreparedInterleaved {
     choices: Choices,
     lights: SubsetLights,
     direct_lights: Vec<LightBlock>,
-    plan: Plan,
     walk_ns: u64,
     walk_count: u32,
     found_count: u32,
@@ -151,10 +142,6 @@ struct PreparedInterleaved {
 }
 
 impl Prepared for PreparedInterleaved {
-    fn plan(&self) -> &Plan {
-        &self.plan
-    }
-
     fn host_passes(&self) -> Vec<(String, u64)> {
         vec![(format!("{NAME}.vpls"), self.walk_ns)]
     }

@@ -3,7 +3,7 @@
 
 use super::NAME;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};

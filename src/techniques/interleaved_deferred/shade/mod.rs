@@ -8,7 +8,7 @@ pub mod subsample;
 
 use super::NAME;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
 use crate::gpu::{Access, Buffer, Gpu, upload};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
@@ -23,12 +23,14 @@ pub struct SubsetLights {
     pub subsets: Vec<SubsetBlock>,
 }
 
-/// Plans the lists.
-pub fn plan(plan: &mut Plan, lights: &SubsetLights) {
-    let mut list = |what: &str, bytes: usize| plan.buffer("lights", format!("{NAME}.{what}"), bytes as u64);
-    list("vpls", size_of_val(&lights.vpls[..]));
-    list("subset_lights", size_of_val(&lights.lights[..]));
-    list("subsets", size_of_val(&lights.subsets[..]));
+/// Plans the lists: virtual point lights, punctual lights joined to the subsets, subsets.
+pub fn plan(plan: &mut Plan, vpl_count: u32, joined_count: u32, subset_count: u32) {
+    let mut list = |what: &str, count: u32, size: usize| {
+        plan.buffer("lights", format!("{NAME}.{what}"), u64::from(count) * size as u64);
+    };
+    list("vpls", vpl_count, size_of::<VplBlock>());
+    list("subset_lights", joined_count, size_of::<LightBlock>());
+    list("subsets", subset_count, size_of::<SubsetBlock>());
 }
 
 /// The lists on the device.

@@ -51,7 +51,7 @@ impl ShadeStrided {
             invocations: Some(mapping.texel_count()),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct, irradiance);
             bound.extend(gbuffer.resource.bound_surface());

@@ -5,7 +5,7 @@ use super::super::NAME;
 use super::super::split::one_pass::SubBuffers;
 use super::{ShadeGpu, constants};
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers::COMP_VARIANTS;
 use crate::gpu::shader::variant;

@@ -6,7 +6,7 @@
 
 use super::super::NAME;
 use crate::error::Result;
-use crate::gpu::commands::Bound;
+use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::one_pass::COMP_VARIANTS;
@@ -27,6 +27,11 @@ pub struct SubBuffers {
 pub fn plan(plan: &mut Plan, mapping: &MappingParams, position_bytes: u64) {
     plan.buffer("split", format!("{NAME}.split.position"), mapping.texel_count() * position_bytes);
     plan.buffer("split", format!("{NAME}.split.normal"), mapping.texel_count() * 8);
+}
+
+/// The sub-buffers, as `access` touches them.
+pub fn touches(access: Access) -> [(String, Access); 2] {
+    ["position", "normal"].map(|what| (format!("{NAME}.split.{what}"), access))
 }
 
 impl SubBuffers {
@@ -63,7 +68,7 @@ impl OnePass {
             invocations: Some(pairs.iter().map(|side| u64::from(*side)).product()),
         };
         cmd.pass(&format!("{NAME}.split"), traffic, |cmd| {
-            cmd.barriers(gbuffer.to_sampled());
+            cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([split.position.discard(Access::ComputeWrite), split.normal.discard(Access::ComputeWrite)]);
             let mut bound = gbuffer.resource.bound_surface();
             bound.extend([

@@ -1,12 +1,19 @@
-//! Plan: the resources that a frame needs, by arithmetic alone; and `Resources`, the same made real.
+//! Plan: what a frame needs, by arithmetic alone: its resources, and which pass touches which of them how.
+//!
+//! A resource that passes touch is transient: it lives from its first pass to its last, and its bytes may be another's
+//! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept.
+
+mod lifetimes;
+mod resources;
+
+pub use lifetimes::{Lifetime, Peak};
+pub use resources::Resources;
 
 use crate::error::{Error, Result};
-use crate::gpu::{Buffer, Gpu, Image, ImageDescription};
+use crate::gpu::{Access, ImageDescription};
 use crate::memory::kinds::Use;
 use crate::units::{Bytes, Extent};
 use ash::vk;
-use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Format of finished pictures.
 pub const PICTURE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -26,6 +33,23 @@ pub struct Planned {
     /// Row of the memory table.
     pub group: &'static str,
     pub shape: Shape,
+    /// Needed after the frame: the picture, and stages that the user asked for.
+    pub read_back: bool,
+}
+
+/// One pass's use of one transient resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Touch {
+    /// Index into `Plan::resources`.
+    pub resource: usize,
+    pub access: Access,
+}
+
+/// A pass, and the transient resources that it touches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlannedPass {
+    pub name: String,
+    pub touches: Vec<Touch>,
 }
 
 impl Planned {
@@ -38,10 +62,12 @@ impl Planned {
     }
 }
 
-/// The resources of a frame.
+/// The resources and the passes of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Plan {
     pub resources: Vec<Planned>,
+    /// In the order of recording.
+    pub passes: Vec<PlannedPass>,
 }
 
 impl Plan {
@@ -64,7 +90,33 @@ impl Plan {
     pub fn push(&mut self, group: &'static str, name: impl Into<String>, shape: Shape) {
         let name = name.into();
         assert!(self.resources.iter().all(|planned| planned.name != name), "{name} is planned twice");
-        self.resources.push(Planned { name, group, shape });
+        self.resources.push(Planned { name, group, shape, read_back: false });
+    }
+
+    /// The next pass, with every transient resource that it touches, by full name; a resource that it touches in two
+    /// ways stands there twice, in that order.
+    pub fn pass(&mut self, name: impl Into<String>, touches: impl IntoIterator<Item = (String, Access)>) {
+        let touches = touches
+            .into_iter()
+            .map(|(resource, access)| {
+                let index = self.index(&resource).unwrap_or_else(|| panic!("no resource is called {resource}"));
+                Touch { resource: index, access }
+            })
+            .collect();
+        self.passes.push(PlannedPass { name: name.into(), touches });
+    }
+
+    /// The resource of this name is read back after the frame. False where the plan has none.
+    pub fn read_back(&mut self, name: &str) -> bool {
+        let index = self.index(name);
+        if let Some(index) = index {
+            self.resources[index].read_back = true;
+        }
+        index.is_some()
+    }
+
+    fn index(&self, name: &str) -> Option<usize> {
+        self.resources.iter().position(|planned| planned.name == name)
     }
 
     /// An image of one level.
@@ -83,7 +135,9 @@ impl Plan {
     pub fn picture(&mut self, name: impl Into<String>, extent: Extent) {
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::STORAGE | Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC;
-        self.image("picture", name, extent, PICTURE_FORMAT, usage);
+        let name = name.into();
+        self.image("picture", name.as_str(), extent, PICTURE_FORMAT, usage);
+        self.read_back(&name);
     }
 
     /// Sum of the bytes asked for.
@@ -109,45 +163,5 @@ impl Plan {
             }
         }
         Ok(())
-    }
-}
-
-/// The plan made real: each pass takes its resources out by name.
-#[derive(Default)]
-pub struct Resources {
-    buffers: BTreeMap<String, Buffer>,
-    images: BTreeMap<String, Image>,
-}
-
-impl Resources {
-    /// Makes every resource of the plan.
-    ///
-    /// Errors: memory is too small or a limit is passed (exit code 4).
-    pub fn make(gpu: &Arc<Gpu>, plan: &Plan) -> Result<Self> {
-        plan.check(gpu.caps.limits.max_storage_buffer_range_bytes)?;
-        let mut resources = Self::default();
-        for planned in &plan.resources {
-            match planned.shape {
-                Shape::Buffer { bytes, flags, usage } => {
-                    let buffer = Buffer::new(gpu, &planned.name, planned.group, bytes, flags, usage)?;
-                    resources.buffers.insert(planned.name.clone(), buffer);
-                }
-                Shape::Image(description) => {
-                    let image = Image::new(gpu, &planned.name, planned.group, description)?;
-                    resources.images.insert(planned.name.clone(), image);
-                }
-            }
-        }
-        Ok(resources)
-    }
-
-    /// Takes a buffer out. The plan has it: another name is a programmer's mistake.
-    pub fn buffer(&mut self, name: &str) -> Buffer {
-        self.buffers.remove(name).unwrap_or_else(|| panic!("the plan has no buffer {name}, or it was taken"))
-    }
-
-    /// Takes an image out. The plan has it: another name is a programmer's mistake.
-    pub fn image(&mut self, name: &str) -> Image {
-        self.images.remove(name).unwrap_or_else(|| panic!("the plan has no image {name}, or it was taken"))
     }
 }

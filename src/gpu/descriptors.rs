@@ -1,0 +1,124 @@
+//! Descriptor sets, written from what a pass binds by name. They live as long as the frame that was recorded with them.
+
+use super::buffer::Buffer;
+use super::image::Image;
+use super::pipeline::Interface;
+use super::shader::BindingKind;
+use super::{Access, Gpu};
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::Arc;
+
+/// Something a shader binds, by its name in GLSL.
+#[derive(Clone, Copy)]
+pub enum Bound<'a> {
+    Buffer(&'a Buffer),
+    /// Through a storage image descriptor; layout GENERAL.
+    Storage(&'a Image),
+    /// Through a sampler, layout as `access` has it.
+    Sampled(&'a Image, vk::Sampler, Access),
+}
+
+/// The sets of one recorded frame.
+pub struct Descriptors {
+    gpu: Arc<Gpu>,
+    pools: Vec<vk::DescriptorPool>,
+}
+
+impl Descriptors {
+    pub fn new(gpu: &Arc<Gpu>) -> Self {
+        Self { gpu: gpu.clone(), pools: Vec::new() }
+    }
+
+    /// A set for `interface`, written from what is bound by name; None where its shaders bind nothing.
+    ///
+    /// Errors: the driver has no more room for sets (exit code 4).
+    pub fn set(&mut self, interface: &Interface, bound: &[(&str, Bound<'_>)]) -> Result<Option<vk::DescriptorSet>> {
+        for (name, _) in bound {
+            let known = interface.bindings.iter().any(|binding| binding.name == *name);
+            assert!(known, "{}: nothing is called {name}", interface.label);
+        }
+        if interface.bindings.is_empty() {
+            return Ok(None);
+        }
+        let set = self.allocate(interface)?;
+        for binding in &interface.bindings {
+            let (_, value) = bound
+                .iter()
+                .find(|(name, _)| *name == binding.name)
+                .unwrap_or_else(|| panic!("{}: {} is not bound", interface.label, binding.name));
+            let mut buffer_info = [vk::DescriptorBufferInfo::default()];
+            let mut image_info = [vk::DescriptorImageInfo::default()];
+            let write = vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(binding.binding)
+                .descriptor_type(binding.kind.descriptor_type());
+            let write = match (binding.kind, value) {
+                (BindingKind::StorageBuffer | BindingKind::UniformBuffer, Bound::Buffer(buffer)) => {
+                    buffer_info[0] = buffer_info[0].buffer(buffer.handle).range(vk::WHOLE_SIZE);
+                    write.buffer_info(&buffer_info)
+                }
+                (BindingKind::StorageImage, Bound::Storage(image)) => {
+                    image_info[0] = image_info[0].image_view(image.storage_view).image_layout(vk::ImageLayout::GENERAL);
+                    write.image_info(&image_info)
+                }
+                (BindingKind::CombinedImageSampler, Bound::Sampled(image, sampler, access)) => {
+                    image_info[0] =
+                        image_info[0].image_view(image.view).sampler(*sampler).image_layout(access.layout());
+                    write.image_info(&image_info)
+                }
+                (kind, _) => {
+                    panic!("{}: {} is a {kind:?} and was bound as something else", interface.label, binding.name)
+                }
+            };
+            // SAFETY: the set is fresh, the resources are alive and outlive the recorded frame.
+            unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) };
+        }
+        Ok(Some(set))
+    }
+
+    fn allocate(&mut self, interface: &Interface) -> Result<vk::DescriptorSet> {
+        let layouts = [interface.set_layouts[0]];
+        for fresh in [false, true] {
+            if fresh {
+                self.pools.push(new_pool(&self.gpu)?);
+            }
+            let Some(pool) = self.pools.last() else { continue };
+            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(*pool).set_layouts(&layouts);
+            // SAFETY: a live pool and layout; a full pool answers with an error and is followed by a new one.
+            match unsafe { self.gpu.device.allocate_descriptor_sets(&info) } {
+                Ok(sets) => {
+                    self.gpu.name(sets[0], &interface.label);
+                    return Ok(sets[0]);
+                }
+                Err(result) if fresh => {
+                    return Err(Error::device(format!("{}: allocating descriptors: {result}", interface.label)));
+                }
+                Err(_) => {}
+            }
+        }
+        unreachable!("the second round returns")
+    }
+}
+
+fn new_pool(gpu: &Gpu) -> Result<vk::DescriptorPool> {
+    // Enough for any frame of today; a frame that needs more gets a second pool.
+    let sizes = [
+        (vk::DescriptorType::STORAGE_BUFFER, 256),
+        (vk::DescriptorType::UNIFORM_BUFFER, 64),
+        (vk::DescriptorType::STORAGE_IMAGE, 64),
+        (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 128),
+    ]
+    .map(|(ty, descriptor_count)| vk::DescriptorPoolSize { ty, descriptor_count });
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(64).pool_sizes(&sizes);
+    // SAFETY: a live device.
+    unsafe { gpu.device.create_descriptor_pool(&info, None) }
+        .map_err(|result| Error::device(format!("creating a descriptor pool: {result}")))
+}
+
+impl Drop for Descriptors {
+    fn drop(&mut self) {
+        // SAFETY: nothing recorded with the sets is running.
+        unsafe { self.pools.iter().for_each(|pool| self.gpu.device.destroy_descriptor_pool(*pool, None)) };
+    }
+}

@@ -1,0 +1,113 @@
+//! Lifetimes: from which pass to which a resource is needed, and how many bytes live in each pass.
+
+use super::Plan;
+use crate::gpu::AccessSet;
+
+/// First and last pass of a transient resource, inclusive. A resource that is read back after the frame lives in the
+/// pass after the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lifetime {
+    pub first: usize,
+    pub last: usize,
+}
+
+/// The greatest sum of live bytes, and where it falls.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Peak {
+    pub bytes: u64,
+    pub pass: String,
+}
+
+/// What stands for the pass after the last.
+const READBACK: &str = "readback";
+
+impl Plan {
+    /// Lives inside a frame; None: kept from frame to frame.
+    pub fn lifetime(&self, resource: usize) -> Option<Lifetime> {
+        let touching = || {
+            let touches = |pass: &super::PlannedPass| pass.touches.iter().any(|touch| touch.resource == resource);
+            self.passes.iter().enumerate().filter(move |(_, pass)| touches(pass)).map(|(index, _)| index)
+        };
+        let first = touching().next()?;
+        let last = if self.resources[resource].read_back { Some(self.passes.len()) } else { touching().next_back() };
+        Some(Lifetime { first, last: last? })
+    }
+
+    /// Whether the resource lives inside a frame: its bytes may be another's before and after.
+    pub fn is_transient(&self, resource: usize) -> bool {
+        self.lifetime(resource).is_some()
+    }
+
+    /// Name of the pass of this index; `readback` after the last.
+    pub fn pass_name(&self, index: usize) -> &str {
+        self.passes.get(index).map_or(READBACK, |pass| pass.name.as_str())
+    }
+
+    /// The accesses that whoever takes the bytes over waits for: the last write, or all reads since.
+    pub fn last_accesses(&self, resource: usize) -> AccessSet {
+        let touches = self.passes.iter().flat_map(|pass| &pass.touches).filter(|touch| touch.resource == resource);
+        touches.fold(AccessSet::UNTOUCHED, |known, touch| known.after(touch.access))
+    }
+
+    /// Greatest sum of `bound_bytes` (one a resource, in order) over the passes, `kept_bytes` more in each.
+    pub fn peak(&self, bound_bytes: &[u64], kept_bytes: u64) -> Peak {
+        let live = |pass: usize| {
+            let lives = |resource: &usize| {
+                self.lifetime(*resource).is_none_or(|lifetime| lifetime.first <= pass && pass <= lifetime.last)
+            };
+            kept_bytes + (0..self.resources.len()).filter(lives).map(|resource| bound_bytes[resource]).sum::<u64>()
+        };
+        // The first of equals: a later pass must need more to be called the peak.
+        let (pass, bytes) = (0..self.passes.len().max(1))
+            .map(|pass| (pass, live(pass)))
+            .rev()
+            .max_by_key(|(_, bytes)| *bytes)
+            .expect("at least one");
+        Peak { bytes, pass: self.pass_name(pass).to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::Access;
+
+    fn plan() -> Plan {
+        let mut plan = Plan::default();
+        for (name, bytes) in [("kept", 100), ("a", 1000), ("b", 2000), ("c", 4000)] {
+            plan.buffer("test", name, bytes);
+        }
+        let touch = |name: &str, access| (name.to_owned(), access);
+        plan.pass("first", [touch("a", Access::ComputeWrite)]);
+        plan.pass("second", [touch("a", Access::ComputeRead), touch("b", Access::ComputeWrite)]);
+        plan.pass("third", [touch("b", Access::GraphicsRead), touch("c", Access::ComputeWrite)]);
+        plan.pass("fourth", [touch("b", Access::ComputeRead), touch("c", Access::ComputeRead)]);
+        plan
+    }
+
+    #[test]
+    fn a_resource_lives_from_its_first_pass_to_its_last() {
+        let mut plan = plan();
+        let of = |plan: &Plan, index| plan.lifetime(index).map(|lifetime| (lifetime.first, lifetime.last));
+        assert_eq!([of(&plan, 0), of(&plan, 1), of(&plan, 2)], [None, Some((0, 1)), Some((1, 3))]);
+        plan.read_back("a");
+        assert_eq!(of(&plan, 1), Some((0, 4)));
+        assert_eq!(plan.pass_name(4), "readback");
+    }
+
+    #[test]
+    fn the_peak_falls_where_most_bytes_live() {
+        let plan = plan();
+        let bytes: Vec<u64> = plan.resources.iter().map(|planned| planned.bytes()).collect();
+        let peak = plan.peak(&bytes, 10);
+        assert_eq!((peak.bytes, peak.pass.as_str()), (10 + 100 + 2000 + 4000, "third"));
+    }
+
+    #[test]
+    fn who_takes_bytes_over_waits_for_every_reader_since_the_last_write() {
+        let plan = plan();
+        assert_eq!(plan.last_accesses(2), Access::GraphicsRead | Access::ComputeRead);
+        assert_eq!(plan.last_accesses(1), Access::ComputeRead.into());
+        assert_eq!(plan.last_accesses(0), AccessSet::UNTOUCHED);
+    }
+}
