@@ -6,8 +6,11 @@ use crate::gpu::commands::{FrameTime, Submits};
 use crate::gpu::validation::Log;
 use crate::interrupt;
 use crate::memory::Strategy;
+use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
+use crate::plan::Requirements;
 use crate::report::image_file::{Aov, AovChannels, ExrPrecision, WriteOptions, write};
+use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
@@ -174,7 +177,10 @@ impl Job {
         report.image(picture, path)?;
         report.aovs(aovs, picture.extent);
         report.times(renderer, times, self.profile);
-        report.memory(&session.stats.plan(), &renderer.plan, memory);
+        let requirements = Requirements::Device(&session.gpu);
+        let kinds = Kinds::new(&session.gpu.caps);
+        let plans = (&session.stats.plan(), &renderer.plan);
+        report.memory(&MemoryTable::new(plans.0, plans.1, requirements, &kinds, Some(memory))?);
         report.counters(&renderer.counters);
         Ok(report)
     }

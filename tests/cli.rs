@@ -323,3 +323,32 @@ fn help_names_every_setting() {
     assert_eq!((ran.code, ran.out.as_str()), (2, ""));
     assert!(program.run(&["--version"]).fine().out.starts_with("quincunx "));
 }
+
+#[test]
+fn memory_is_planned_without_any_driver() {
+    let program = Program::new();
+    let plan = ["memory", "cornell", "--size", "64x32", "--vpls", "32", "--plan"];
+    let nowhere = [("VK_DRIVER_FILES", "/nowhere.json"), ("VK_ICD_FILENAMES", "/nowhere.json")];
+    let ran = program.run_with(&[&plan[..], &["--json"]].concat(), &nowhere).fine();
+    let study = &ran.json()["techniques"][0];
+    assert_eq!(
+        (study["technique"].as_str(), study["device"].as_str()),
+        (Some("interleaved_deferred"), Some("lavapipe-22.3.6"))
+    );
+    let rows = study["memory"]["resources"].as_array().unwrap();
+    let normal = rows.iter().find(|row| row["name"] == "interleaved_deferred.split.normal").unwrap();
+    assert_eq!((normal["bytes"].as_u64(), normal["bound_bytes"].as_u64()), (Some(64 * 32 * 8), Some(64 * 32 * 8)));
+    assert_eq!(
+        (&normal["first_pass"], &normal["last_pass"]),
+        (&"interleaved_deferred.split".into(), &"interleaved_deferred.shade".into())
+    );
+    let both = ["--technique", "deferred", "--technique", "interleaved_deferred", "-o", "out"];
+    let ran = program.run_with(&[&plan[..], &both].concat(), &nowhere).fine();
+    assert!(ran.out.contains("deferred: cornell on lavapipe-22.3.6") && ran.out.contains(" planned, "), "{}", ran.out);
+    for file in ["memory-deferred.txt", "memory-deferred.json", "memory-interleaved_deferred.txt"] {
+        assert!(Path::new(&program.path(&format!("out/{file}"))).exists(), "{file}");
+    }
+    program.fails(&[&plan[..], &["--caps", "voodoo"]].concat(), 2, &["voodoo", "lavapipe-22.3.6"]);
+    program.fails(&[&plan[..], &["--technique", "deferred"]].concat(), 2, &["--vpls"]);
+    program.fails(&[&plan[..], &["--pattern", "8x8"]].concat(), 2, &["32 lights for the 64 subsets"]);
+}

@@ -7,6 +7,7 @@ pub mod commands;
 pub mod descriptors;
 pub mod device;
 pub mod image;
+pub mod known;
 pub mod pipeline;
 pub mod probe;
 pub mod readback;

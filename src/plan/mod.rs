@@ -4,9 +4,11 @@
 //! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept.
 
 mod lifetimes;
+mod requirements;
 mod resources;
 
 pub use lifetimes::{Lifetime, Peak};
+pub use requirements::{Requirement, Requirements};
 pub use resources::Resources;
 
 use crate::error::{Error, Result};
@@ -23,6 +25,16 @@ pub const PICTURE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub enum Shape {
     Buffer { bytes: u64, flags: vk::BufferUsageFlags, usage: Use },
     Image(ImageDescription),
+}
+
+impl Shape {
+    /// Who writes and reads it.
+    pub fn usage(&self) -> Use {
+        match self {
+            Self::Buffer { usage, .. } => *usage,
+            Self::Image(_) => Use::Device,
+        }
+    }
 }
 
 /// One resource of the plan.
