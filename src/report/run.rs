@@ -3,8 +3,8 @@
 
 use crate::error::Result;
 use crate::gpu::caps::Identity;
-use crate::gpu::commands::FrameTime;
 use crate::gpu::image::ImageDescription;
+use crate::gpu::recorded::FrameTime;
 use crate::memory::ledger::Snapshot;
 use crate::plan::{Plan, Shape};
 use crate::report::image_file::{Aov, AovChannels};
