@@ -98,8 +98,8 @@ impl Summary {
     fn legend(&self) -> String {
         let baseline = self.rows[0]["baseline"].as_str().unwrap_or_default();
         format!(
-            "time ratios to {baseline}, of {} rounds; errors against --split none; {MARK}: no other is as good in time and \
-             rmse, and better in one",
+            "time ratios to {baseline}, of {} rounds; errors against --split none; {MARK}: nothing beats it in time or rmse \
+             without losing in the other",
             self.rows[0]["repeat"]
         )
     }
