@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::DeviceRequest;
-use crate::gpu::commands::{FrameTime, Submits};
+use crate::gpu::commands::Submits;
+use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
 use crate::interrupt;
 use crate::memory::Strategy;

@@ -3,8 +3,9 @@
 use crate::bvh::LazyBvh;
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::gpu::commands::{FrameTime, Recorded, RecordedPass, Submits};
+use crate::gpu::commands::{RecordedPass, Submits};
 use crate::gpu::readback;
+use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
 use crate::lights::LightSet;
@@ -140,6 +141,14 @@ impl Renderer {
     /// Errors: the device fails (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
         self.recorded.run()
+    }
+
+    /// Makes the first `pass_count` passes of a frame that was recorded with a submit a pass. It makes no picture: that
+    /// is read after a whole frame.
+    ///
+    /// Errors: the device fails (exit code 4).
+    pub fn frame_first(&self, pass_count: usize) -> Result<FrameTime> {
+        self.recorded.run_first(pass_count)
     }
 
     /// The passes of a frame, in order.

@@ -7,14 +7,14 @@ use super::access::{AccessSet, Barrier, Target};
 use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
 use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
-use super::timing::{PassTime, Timestamps};
+use super::recorded::Recorded;
+use super::timing::Timestamps;
 use super::{Access, Gpu};
 use crate::error::{Error, Result};
 use crate::units::Extent;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// How a frame is submitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,30 +52,16 @@ pub struct Touched {
 
 /// A frame being recorded.
 pub struct Commands {
-    gpu: Arc<Gpu>,
-    name: String,
-    submits: Submits,
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) name: String,
+    pub(super) submits: Submits,
     pool: vk::CommandPool,
-    buffers: Vec<vk::CommandBuffer>,
+    pub(super) buffers: Vec<vk::CommandBuffer>,
     descriptors: Descriptors,
-    passes: Vec<RecordedPass>,
-    timestamps: Option<Timestamps>,
+    pub(super) passes: Vec<RecordedPass>,
+    pub(super) timestamps: Option<Timestamps>,
     truth: HashMap<Target, AccessSet>,
     touched: Vec<Touched>,
-}
-
-/// A frame that can be run again and again.
-pub struct Recorded {
-    commands: Commands,
-    fence: vk::Fence,
-}
-
-/// What one run of a frame took.
-pub struct FrameTime {
-    /// First submit to last fence.
-    pub wall_ns: u64,
-    /// In the order of `Recorded::passes`.
-    pub passes: Vec<PassTime>,
 }
 
 /// Passes of one frame that can have timestamps.
@@ -351,71 +337,15 @@ impl Commands {
         let fence = unsafe { self.gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }
             .map_err(|result| Error::device(format!("creating a fence: {result}")))?;
         self.gpu.name(fence, &self.name);
-        Ok(Recorded { commands: self, fence })
+        Ok(Recorded::new(self, fence))
     }
 }
 
 impl Drop for Commands {
     fn drop(&mut self) {
-        // SAFETY: nothing recorded here is running: `Recorded::run` waits for its fences.
+        // SAFETY: nothing recorded here is running: `Recorded` waits for its fences.
         unsafe {
             self.gpu.device.destroy_command_pool(self.pool, None);
         }
-    }
-}
-
-impl Recorded {
-    pub fn passes(&self) -> &[RecordedPass] {
-        &self.commands.passes
-    }
-
-    /// Submits the frame and waits for it.
-    ///
-    /// Errors: the device is lost or out of memory (exit code 4).
-    pub fn run(&self) -> Result<FrameTime> {
-        let commands = &self.commands;
-        let started = Instant::now();
-        let mut walls = Vec::with_capacity(commands.buffers.len());
-        for buffer in &commands.buffers {
-            let submitted = Instant::now();
-            self.submit(*buffer)?;
-            walls.push(submitted.elapsed().as_nanos() as u64);
-        }
-        let wall_ns = started.elapsed().as_nanos() as u64;
-        let timestamps = match &commands.timestamps {
-            Some(timestamps) => timestamps.read_first(commands.passes.len())?,
-            None => Vec::new(),
-        };
-        let passes = (0..commands.passes.len())
-            .map(|pass| PassTime {
-                wall_ns: (commands.submits == Submits::PerPass).then(|| walls[pass]),
-                timestamp_ns: timestamps.get(pass).copied(),
-            })
-            .collect();
-        Ok(FrameTime { wall_ns, passes })
-    }
-
-    fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {
-        let gpu = &self.commands.gpu;
-        let fail = |result| match self.commands.passes.as_slice() {
-            [] => Error::device(format!("running commands: {result}")),
-            [first, ..] => Error::device(format!("running the frame of {}: {result}", first.name)),
-        };
-        let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(buffer)];
-        let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
-        let _one_at_a_time = gpu.submit_lock.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // SAFETY: the buffer is recorded and not running; the queue is locked; the fence is unsignalled.
-        unsafe {
-            gpu.device.queue_submit2(gpu.queue, &[submit], self.fence).map_err(fail)?;
-            gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(fail)?;
-            gpu.device.reset_fences(&[self.fence]).map_err(fail)
-        }
-    }
-}
-
-impl Drop for Recorded {
-    fn drop(&mut self) {
-        // SAFETY: `submit` waited for it.
-        unsafe { self.commands.gpu.device.destroy_fence(self.fence, None) };
     }
 }

@@ -11,9 +11,11 @@ pub mod known;
 pub mod pipeline;
 pub mod probe;
 pub mod readback;
+pub mod recorded;
 pub mod sampler;
 pub mod shader;
 pub mod timing;
+pub mod transfer;
 pub mod upload;
 pub mod validation;
 

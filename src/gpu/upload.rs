@@ -28,9 +28,7 @@ pub fn buffer(gpu: &Arc<Gpu>, target: &Buffer, bytes: &[u8], readers: impl Into<
     let staging = staging(gpu, &target.name, bytes)?;
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
-    let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size: bytes.len() as u64 };
-    // SAFETY: both buffers are alive until the fence; the region lies in both.
-    unsafe { gpu.device.cmd_copy_buffer(cmd.buffer(), staging.handle, target.handle, &[region]) };
+    cmd.copy_buffer(&staging, target);
     let mut last = AccessSet::from(Access::TransferWrite);
     for reader in readers.into().iter() {
         cmd.barriers([target.from(last).to(reader)]);

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::gpu::caps::Identity;
-use crate::gpu::commands::FrameTime;
+use crate::gpu::recorded::FrameTime;
 use crate::report::image_file::{Aov, AovChannels};
 use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;

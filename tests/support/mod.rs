@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub mod gltf_file;
+pub mod program;
 pub mod watched;
 
 use std::path::PathBuf;
