@@ -3,6 +3,7 @@
 //! A resource asks with its name, its group and its requirements; it gets an `Allocation`, a range in a memory block,
 //! which returns itself when dropped. The ledger keeps every byte's owner while it lives.
 
+pub mod alias;
 pub mod block;
 pub mod kinds;
 pub mod ledger;
