@@ -139,9 +139,9 @@ impl Job {
 
     /// The device that the request names.
     pub fn device_request(&self) -> DeviceRequest {
-        let strategy =
-            if self.values.text("allocation") == "dedicated" { Strategy::Dedicated } else { Strategy::Linear };
-        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, hook: None }
+        let strategy = Strategy::from_setting(self.values.text("allocation")).expect("the table holds its words");
+        let budget_bytes = self.values.bytes("memory-budget");
+        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, budget_bytes, hook: None }
     }
 
     fn frames(&self, renderer: &Renderer) -> Result<Vec<FrameTime>> {

@@ -200,6 +200,7 @@ impl Report {
                 "planned_bytes": scene.bytes() + frame.bytes(),
                 "allocated_bytes": snapshot.bound_bytes(),
                 "memory_block_bytes": snapshot.memory_block_bytes,
+                "memory_blocks": snapshot.blocks,
                 "peak_bytes": snapshot.peak_bytes,
                 "groups": snapshot.groups(),
                 "resources": resources,
