@@ -130,11 +130,13 @@ impl Job {
         Ok(())
     }
 
-    /// The scene that the request names.
+    /// The scene that the request names, its textures limited as it says.
     ///
     /// Errors: no such scene, or a broken file (exit code 2).
     pub fn load_scene(&self) -> Result<Scene> {
-        scene::load(&self.scene, self.values.integer("seed"))
+        let mut scene = scene::load(&self.scene, self.values.integer("seed"))?;
+        scene.texture_limit_px = self.values.integer("texture-limit") as u32;
+        Ok(scene)
     }
 
     /// The device that the request names.

@@ -179,6 +179,15 @@ pub const COMMON: &[Setting] = &[
         paper: "",
         help: "what memory blocks in one heap may sum up to; what would pass it is refused; none: the heap's size",
     },
+    Setting {
+        key: "texture-limit",
+        symbol: "",
+        kind: Kind::Integer { min: 0, max: 16384 },
+        default: "0",
+        unit: "px",
+        paper: "",
+        help: "greatest side of a texture: larger ones begin at a coarser level; 0: no limit",
+    },
 ];
 
 /// Settings of shading with a G-buffer, which several techniques read.

@@ -29,6 +29,31 @@ impl ImageDescription {
             })
             .sum()
     }
+
+    fn create_info(&self) -> vk::ImageCreateInfo<'static> {
+        let Self { extent, format, level_count, usage } = *self;
+        let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
+        vk::ImageCreateInfo::default()
+            .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
+            .mip_levels(level_count)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(usage)
+    }
+
+    /// What the driver requires of memory for such an image, without making one.
+    pub fn requirements(&self, gpu: &Gpu) -> vk::MemoryRequirements {
+        let info = self.create_info();
+        let query = vk::DeviceImageMemoryRequirements::default().create_info(&info);
+        let mut found = vk::MemoryRequirements2::default();
+        // SAFETY: a live device with maintenance4; the info outlives the call.
+        unsafe { gpu.device.get_device_image_memory_requirements(&query, &mut found) };
+        found.memory_requirements
+    }
 }
 
 /// Bytes of a texel of the formats that this program uses.
@@ -66,22 +91,12 @@ impl Image {
     ///
     /// Errors: a side is beyond the device's limit (exit code 2); the driver or the memory refuses (4).
     pub fn new(gpu: &Arc<Gpu>, name: &str, group: &str, description: ImageDescription) -> Result<Self> {
-        let ImageDescription { extent, format, level_count, usage } = description;
+        let ImageDescription { extent, format, .. } = description;
         let limit = gpu.caps.limits.max_image_side_px;
         if extent.width > limit || extent.height > limit {
             return Err(Error::request(format!("{name}: {extent} pixels: this device allows {limit} a side")));
         }
-        let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
-        let info = vk::ImageCreateInfo::default()
-            .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(format)
-            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
-            .mip_levels(level_count)
-            .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(usage);
+        let info = description.create_info();
         let (bytes, most) = (description.bytes(), gpu.greatest_image_bytes(&info));
         if bytes > most {
             return Err(Error::device(format!(
