@@ -108,6 +108,14 @@ impl Snapshot {
     }
 }
 
+/// Who holds bytes of its own: a resource, or an arena for all of its parts.
+struct Owner<'a> {
+    name: &'a str,
+    group: &'a str,
+    bytes: u64,
+    memory_type: u32,
+}
+
 /// Every live resource and arena.
 #[derive(Debug, Default)]
 pub struct Ledger {
@@ -173,35 +181,34 @@ impl Ledger {
         self.memory_block_bytes -= bytes;
     }
 
-    /// Sum of the live memory blocks.
-    pub fn memory_block_bytes(&self) -> u64 {
-        self.memory_block_bytes
-    }
-
-    /// Name, group and bytes of all that holds bytes of its own, by key.
-    fn owners(&self) -> BTreeMap<u64, (&str, &str, u64)> {
-        let own = self.entries.iter().filter(|(_, entry)| entry.arena.is_none());
-        let own = own.map(|(key, entry)| (*key, (entry.name.as_str(), entry.group.as_str(), entry.bound_bytes)));
-        let arenas =
-            self.arenas.iter().map(|(key, arena)| (*key, (arena.name.as_str(), arena.group.as_str(), arena.bytes)));
+    /// All that holds bytes of its own, by key.
+    fn owners(&self) -> BTreeMap<u64, Owner<'_>> {
+        let own = self.entries.iter().filter(|(_, entry)| entry.arena.is_none()).map(|(key, entry)| {
+            let Entry { name, group, bound_bytes: bytes, memory_type, .. } = entry;
+            (*key, Owner { name, group, bytes: *bytes, memory_type: *memory_type })
+        });
+        let arenas = self.arenas.iter().map(|(key, arena)| {
+            let ArenaEntry { name, group, bytes, memory_type, .. } = arena;
+            (*key, Owner { name, group, bytes: *bytes, memory_type: *memory_type })
+        });
         own.chain(arenas).collect()
     }
 
     /// Names of all that holds bytes of its own, by key.
     pub fn names(&self) -> impl Iterator<Item = (u64, &str)> {
-        self.owners().into_iter().map(|(key, (name, _, _))| (key, name))
+        self.owners().into_iter().map(|(key, owner)| (key, owner.name))
     }
 
     /// All that holds bytes of its own, as `name (size)`.
     pub fn all_owners(&self) -> Vec<String> {
-        self.owners().values().map(|(name, _, bytes)| format!("{name} ({})", Bytes(*bytes))).collect()
+        self.owners().values().map(|owner| format!("{} ({})", owner.name, Bytes(owner.bytes))).collect()
     }
 
-    /// The `count` groups that hold most, as `group (size)`.
-    pub fn greatest_groups(&self, count: usize) -> Vec<String> {
+    /// The `count` groups that hold most in memory types that `is_meant`, as `group (size)`.
+    pub fn greatest_groups(&self, count: usize, is_meant: impl Fn(u32) -> bool) -> Vec<String> {
         let mut groups: BTreeMap<&str, u64> = BTreeMap::new();
-        for (_, group, bytes) in self.owners().values() {
-            *groups.entry(group).or_insert(0) += bytes;
+        for owner in self.owners().values().filter(|owner| is_meant(owner.memory_type)) {
+            *groups.entry(owner.group).or_insert(0) += owner.bytes;
         }
         let mut groups: Vec<(&str, u64)> = groups.into_iter().collect();
         groups.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
@@ -240,7 +247,7 @@ mod tests {
         let snapshot = ledger.snapshot(Vec::new());
         assert_eq!((snapshot.asked_bytes(), snapshot.bound_bytes(), snapshot.peak_bytes), (210, 320, 384));
         assert_eq!(ledger.all_owners(), ["second (256 B)", "third (64 B)"]);
-        assert_eq!(ledger.greatest_groups(3), ["test (320 B)"]);
+        assert_eq!(ledger.greatest_groups(3, |_| true), ["test (320 B)"]);
         ledger.leave(second);
         ledger.leave(third);
         assert_eq!(ledger.snapshot(Vec::new()).bound_bytes(), 0);
@@ -258,7 +265,8 @@ mod tests {
         let snapshot = ledger.snapshot(Vec::new());
         assert_eq!((snapshot.bound_bytes(), snapshot.held_bytes(), snapshot.aliased_bytes()), (188, 108, 80));
         assert_eq!(snapshot.peak_bytes, 108);
-        assert_eq!(ledger.greatest_groups(1), ["aliased (100 B)"]);
+        assert_eq!(ledger.greatest_groups(1, |_| true), ["aliased (100 B)"]);
+        assert_eq!(ledger.greatest_groups(1, |memory_type| memory_type > 0), [] as [String; 0]);
         parts.into_iter().chain([own]).for_each(|key| ledger.leave(key));
         assert_eq!(ledger.all_owners(), ["arena (100 B)"]);
         ledger.leave_arena(arena);

@@ -10,6 +10,7 @@ pub mod block;
 pub mod kinds;
 pub mod ledger;
 pub mod pool;
+pub mod refusal;
 pub mod suballocate;
 
 use crate::error::{Error, Result};
@@ -20,7 +21,8 @@ use ash::vk;
 use block::Block;
 use kinds::{Choice, Kinds, Use};
 use ledger::{Entry, Ledger};
-use pool::{Ask, Misfit, Place, Pool, Refusal, Rules};
+use pool::{Ask, Misfit, Place, Pool, Rules};
+use refusal::Refusal;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -193,7 +195,7 @@ impl Memory {
                 Err(result) => {
                     state.pool.give_back(place.block, place.offset, ask.bytes);
                     return Err(Error::memory(format!("{}: {result}", allocating(ask, name, usage)))
-                        .note(held(state, state.ledger.memory_block_bytes())));
+                        .note(held(state, ask.type_index)));
                 }
             }
         }
@@ -246,12 +248,14 @@ fn allocating(ask: &Ask, name: &str, usage: Use) -> String {
     format!("allocating {name} ({}, {usage}, type {})", Bytes(ask.bytes), ask.type_index)
 }
 
-/// `block_bytes`: of the memory blocks in question.
-fn held(state: &State, block_bytes: u64) -> String {
-    match &state.ledger.greatest_groups(3)[..] {
-        [] => "nothing else is held".to_owned(),
-        groups => format!("{} are held in memory blocks; most of it is {}", Bytes(block_bytes), groups.join(", ")),
+/// What the heap of this memory type holds, and for whom.
+fn held(state: &State, type_index: u32) -> String {
+    let groups = state.ledger.greatest_groups(3, |other| state.pool.share_a_heap(other, type_index));
+    if groups.is_empty() {
+        return "nothing else is held".to_owned();
     }
+    let bytes = Bytes(state.pool.held_bytes(type_index));
+    format!("{bytes} are held in memory blocks, most of it by {}", groups.join(", "))
 }
 
 fn refuse(state: &mut State, ask: &Ask, name: &str, usage: Use, misfit: Misfit) -> Error {
@@ -267,7 +271,9 @@ fn refuse(state: &mut State, ask: &Ask, name: &str, usage: Use, misfit: Misfit) 
             let rules = state.pool.rules().clone();
             state.refusal = Some(Refusal { rules, held: held_now, name: name.to_owned(), ask: *ask });
             let limit = if is_budget { "the budget" } else { "the heap" };
-            Error::memory(format!("{what}: {limit} of {} is spent", Bytes(limit_bytes))).note(held(state, held_bytes))
+            let spent = if held_bytes > 0 { "spent" } else { "too small for it" };
+            Error::memory(format!("{what}: {limit} of {} is {spent}", Bytes(limit_bytes)))
+                .note(held(state, ask.type_index))
         }
     }
 }

@@ -1,17 +1,21 @@
 //! Which memory block, and where in it: the numbers of `Memory`, without a device.
 //!
 //! The pool decides before the driver is asked: what would pass a heap's size or the budget is refused here, because
-//! drivers such as lavapipe grant more than their heaps hold. Because it is numbers only, it can also answer what would
-//! have fit (`Refusal::fits_with`).
+//! drivers such as lavapipe grant more than their heaps hold.
 
 use super::ledger::BlockState;
 use super::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
 use super::{Strategy, Tiling};
 use crate::gpu::Caps;
-use std::collections::BTreeMap;
 
 /// Size of a shared memory block. Resources of at least half of it get a memory block of their own.
 pub const SHARED_BLOCK_BYTES: u64 = 16 << 20;
+
+/// Size of a new shared memory block where a heap or a budget has `left_bytes`: at most an eighth of it, so that a few
+/// half-empty blocks do not spend a small budget.
+fn shared_block_bytes(left_bytes: u64) -> u64 {
+    (left_bytes / 8).checked_ilog2().map_or(0, |power| 1 << power).min(SHARED_BLOCK_BYTES)
+}
 
 /// What a resource needs, as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +71,13 @@ impl Rules {
             max_allocation_bytes: caps.limits.max_allocation_bytes,
         }
     }
+
+    /// One memory type in one heap, which is the only limit.
+    #[cfg(test)]
+    pub fn of_one_heap(strategy: Strategy, heap_bytes: u64) -> Self {
+        let (heap_bytes, heap_of_type) = (vec![heap_bytes], vec![0]);
+        Self { strategy, budget_bytes: None, heap_bytes, heap_of_type, max_allocation_bytes: u64::MAX }
+    }
 }
 
 /// A memory block's numbers.
@@ -108,14 +119,14 @@ impl Pool {
         if is_shared && let Some(place) = self.join(ask) {
             return Ok(place);
         }
-        let heap = self.rules.heap_of_type[ask.type_index as usize];
+        let heap = self.heap_of(ask.type_index);
         let heap_bytes = self.rules.heap_bytes[heap];
         let limit_bytes = self.rules.budget_bytes.map_or(heap_bytes, |budget| budget.min(heap_bytes));
         let held_bytes = self.held_bytes[heap];
         let left = limit_bytes.saturating_sub(held_bytes);
-        // Where a whole shared block does not fit any more, one of the exact size may.
-        let is_shared = is_shared && left >= SHARED_BLOCK_BYTES;
-        let bytes = if is_shared { SHARED_BLOCK_BYTES } else { ask.bytes };
+        let shared_bytes = shared_block_bytes(left);
+        let is_shared = is_shared && ask.bytes < shared_bytes / 2;
+        let bytes = if is_shared { shared_bytes } else { ask.bytes };
         if bytes > left {
             return Err(Misfit::Spent { limit_bytes, held_bytes, is_budget: limit_bytes < heap_bytes });
         }
@@ -141,6 +152,20 @@ impl Pool {
         Ok(Place { block: index as u32, offset, new_block_bytes: Some(bytes) })
     }
 
+    fn heap_of(&self, type_index: u32) -> usize {
+        self.rules.heap_of_type[type_index as usize]
+    }
+
+    /// Both memory types lie in one heap.
+    pub fn share_a_heap(&self, type_index: u32, other: u32) -> bool {
+        self.heap_of(type_index) == self.heap_of(other)
+    }
+
+    /// Sum of the memory blocks in the heap of this memory type.
+    pub fn held_bytes(&self, type_index: u32) -> u64 {
+        self.held_bytes[self.heap_of(type_index)]
+    }
+
     fn join(&mut self, ask: &Ask) -> Option<Place> {
         self.blocks.iter_mut().enumerate().find_map(|(index, slot)| {
             let block = slot.as_mut()?;
@@ -160,9 +185,9 @@ impl Pool {
         if !ranges.ranges.give_back(offset, bytes) {
             return None;
         }
-        let heap = self.rules.heap_of_type[ranges.type_index as usize];
-        let block_bytes = ranges.bytes;
+        let (type_index, block_bytes) = (ranges.type_index, ranges.bytes);
         *slot = None;
+        let heap = self.heap_of(type_index);
         self.held_bytes[heap] -= block_bytes;
         Some(block_bytes)
     }
@@ -185,64 +210,13 @@ impl Pool {
     }
 }
 
-/// A named need.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Wanted {
-    pub name: String,
-    pub ask: Ask,
-    /// Given back before the next one is made: a staging buffer.
-    pub is_transient: bool,
-}
-
-/// What could not be placed, with everything that was held at that moment.
-#[derive(Clone, Debug)]
-pub struct Refusal {
-    pub rules: Rules,
-    /// In the order in which they were made.
-    pub held: Vec<(String, Ask)>,
-    pub name: String,
-    pub ask: Ask,
-}
-
-impl Refusal {
-    /// Whether it would have been placed, had the resources of these names been `wanted` so. Where not all of them were
-    /// held yet, the others must find room after it.
-    pub fn fits_with(&self, wanted: &[Wanted]) -> bool {
-        let mut to_come: BTreeMap<&str, &Wanted> = wanted.iter().map(|one| (one.name.as_str(), one)).collect();
-        let mut pool = Pool::new(self.rules.clone());
-        let mut is_placed = |ask: &Ask, is_transient: bool| match pool.place(ask) {
-            Ok(place) if is_transient => {
-                pool.give_back(place.block, place.offset, ask.bytes);
-                true
-            }
-            Ok(_) => true,
-            Err(_) => false,
-        };
-        let is_held = |one: &Wanted| self.held.iter().any(|(name, _)| *name == one.name);
-        let none_to_come =
-            !to_come.contains_key(self.name.as_str()) && wanted.iter().all(|one| one.is_transient || is_held(one));
-        let mut known = self.held.iter().map(|(name, ask)| (name, ask)).chain([(&self.name, &self.ask)]);
-        let fits = known.all(|(name, ask)| match to_come.remove(name.as_str()) {
-            Some(one) => is_placed(&one.ask, one.is_transient),
-            None => is_placed(ask, false),
-        });
-        if !fits || none_to_come {
-            return fits;
-        }
-        let rest = |is_transient| {
-            let later = wanted.iter().filter(move |one| one.is_transient == is_transient);
-            later.filter(|one| to_come.contains_key(one.name.as_str()))
-        };
-        rest(false).chain(rest(true)).all(|one| is_placed(&one.ask, one.is_transient))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::memory::Strategy;
     use proptest::prelude::{any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
     use proptest::strategy::Strategy as Made;
+    use std::collections::BTreeMap;
 
     const MIB: u64 = 1 << 20;
 
@@ -259,10 +233,6 @@ mod tests {
 
     fn ask(bytes: u64) -> Ask {
         Ask { bytes, alignment: 256, type_index: 0, mapped: false, tiling: Tiling::Linear, alone: false }
-    }
-
-    fn wanted(name: &str, bytes: u64, is_transient: bool) -> Wanted {
-        Wanted { name: name.to_owned(), ask: ask(bytes), is_transient }
     }
 
     fn asks() -> impl Made<Value = Vec<(Ask, bool)>> {
@@ -339,18 +309,26 @@ mod tests {
     }
 
     #[test]
-    fn where_no_shared_block_fits_one_of_the_exact_size_does() {
+    fn where_little_is_left_shared_blocks_are_small_and_large_resources_take_what_they_need() {
         for strategy in [Strategy::Linear, Strategy::Tlsf] {
             let mut pool = Pool::new(rules(strategy, Some(20 * MIB)));
-            assert_eq!(pool.place(&ask(7 * MIB)).unwrap().new_block_bytes, Some(SHARED_BLOCK_BYTES));
-            assert_eq!(pool.place(&ask(7 * MIB)).unwrap().new_block_bytes, None);
-            assert_eq!(pool.place(&ask(3 * MIB)).unwrap().new_block_bytes, Some(3 * MIB));
+            let mut place = |bytes| pool.place(&ask(bytes)).map(|place| place.new_block_bytes);
+            // An eighth of 20 MiB, rounded down to a power of two.
+            assert_eq!(place(1000), Ok(Some(2 * MIB)));
+            assert_eq!(place(MIB), Ok(None), "the shared block has room");
+            assert_eq!(place(7 * MIB), Ok(Some(7 * MIB)));
+            assert_eq!(place(10 * MIB), Ok(Some(10 * MIB)));
             let spent = Misfit::Spent { limit_bytes: 20 * MIB, held_bytes: 19 * MIB, is_budget: true };
-            assert_eq!(pool.place(&ask(3 * MIB)), Err(spent));
-            assert_eq!(pool.place(&ask(MIB)).unwrap().new_block_bytes, None, "the shared block has room");
+            assert_eq!(place(3 * MIB), Err(spent));
+            assert_eq!(place(MIB), Ok(Some(MIB)), "to the last byte");
+            assert_eq!(place(1000), Ok(None));
             // The other heap has a limit of its own.
             assert!(pool.place(&Ask { type_index: 1, ..ask(3 * MIB) }).is_ok());
         }
+        assert_eq!(
+            [1 << 40, 128 * MIB, 127 * MIB, 8, 7, 0].map(shared_block_bytes),
+            [16 * MIB, 16 * MIB, 8 * MIB, 1, 0, 0]
+        );
     }
 
     #[test]
@@ -364,24 +342,5 @@ mod tests {
             assert_eq!(pool.place(&ask(100 * MIB)), Err(spent));
             assert_eq!(pool.place(&ask(129 * MIB)), Err(Misfit::TooLarge { most_bytes: 128 * MIB }));
         }
-    }
-
-    #[test]
-    fn a_refusal_knows_what_would_have_fit() {
-        let name = |text: &str| text.to_owned();
-        let held = vec![(name("geometry"), ask(10 * MIB)), (name("texture.0"), ask(40 * MIB))];
-        let rules = rules(Strategy::Dedicated, Some(64 * MIB));
-        let refusal = Refusal { rules, held, name: name("picture"), ask: ask(20 * MIB) };
-        let smaller = |mib: u64| [wanted("texture.0", mib * MIB, false), wanted("upload.0", mib * MIB, true)];
-        assert!(!refusal.fits_with(&smaller(35)));
-        // Everything wanted is held: staging is over.
-        assert!(refusal.fits_with(&smaller(34)));
-        // Textures still to come count, and then the greatest staging buffer.
-        let more = |mib: u64, staging: u64| {
-            let mut all = smaller(10).to_vec();
-            all.extend([wanted("texture.1", mib * MIB, false), wanted("upload.1", staging * MIB, true)]);
-            refusal.fits_with(&all)
-        };
-        assert!(more(14, 10) && !more(25, 1) && !more(14, 11));
     }
 }

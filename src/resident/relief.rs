@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind};
 use crate::gpu::{Buffer, Gpu, upload};
 use crate::memory::Tiling;
 use crate::memory::kinds::Use;
-use crate::memory::pool::Wanted;
+use crate::memory::refusal::Wanted;
 use crate::plan::{Planned, Shape};
 use crate::scene::Scene;
 use crate::units::Bytes;

@@ -21,13 +21,15 @@ pub struct Counter {
     /// Bytes of each live allocation, by its handle.
     pub live: BTreeMap<u64, u64>,
     pub bytes_ever: u64,
+    /// Greatest sum of live allocations.
+    pub most_bytes: u64,
     /// Allocations still to come before one is refused; None: none is.
     pub until_refusal: Option<u32>,
 }
 
 impl Counter {
     pub const NEW: Self =
-        Self { allocate: None, free: None, live: BTreeMap::new(), bytes_ever: 0, until_refusal: None };
+        Self { allocate: None, free: None, live: BTreeMap::new(), bytes_ever: 0, most_bytes: 0, until_refusal: None };
 
     /// Whether this allocation is the one to refuse.
     fn refuses(&mut self) -> bool {
@@ -66,6 +68,7 @@ unsafe extern "system" fn counted_allocate(
         let mut counter = counter();
         counter.bytes_ever += bytes;
         assert!(counter.live.insert(handle, bytes).is_none(), "a live handle was given out again");
+        counter.most_bytes = counter.most_bytes.max(counter.live.values().sum());
     }
     result
 }

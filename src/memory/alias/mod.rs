@@ -72,7 +72,7 @@ pub fn place(spans: &[Span], mode: Mode) -> Placement {
     let (offsets, is_searched_through) = match mode {
         Mode::Off => (one_after_the_other(spans), false),
         Mode::Greedy => (greedy::offsets(spans), false),
-        Mode::Optimal => optimal::offsets(spans, greedy::offsets(spans), lower_bound_bytes),
+        Mode::Optimal => optimal::offsets(spans, greedy::offsets(spans)),
     };
     let total_bytes = total_bytes(spans, &offsets);
     let proven_optimal = is_searched_through || total_bytes == lower_bound_bytes;
