@@ -134,18 +134,20 @@ impl Job {
         Ok(())
     }
 
-    /// The scene that the request names.
+    /// The scene that the request names, its textures limited as it says.
     ///
     /// Errors: no such scene, or a broken file (exit code 2).
     pub fn load_scene(&self) -> Result<Scene> {
-        scene::load(&self.scene, self.values.integer("seed"))
+        let mut scene = scene::load(&self.scene, self.values.integer("seed"))?;
+        scene.texture_limit_px = self.values.integer("texture-limit") as u32;
+        Ok(scene)
     }
 
     /// The device that the request names.
     pub fn device_request(&self) -> DeviceRequest {
-        let strategy =
-            if self.values.text("allocation") == "dedicated" { Strategy::Dedicated } else { Strategy::Linear };
-        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, hook: None }
+        let strategy = Strategy::from_setting(self.values.text("allocation")).expect("the table holds its words");
+        let budget_bytes = self.values.bytes("memory-budget");
+        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, budget_bytes, hook: None }
     }
 
     fn frames(&self, renderer: &Renderer) -> Result<Vec<FrameTime>> {

@@ -1,7 +1,7 @@
 //! Session: the device with the scene in its memory. It makes any number of renderers; A B A B timing holds two.
 
 use crate::bvh::LazyBvh;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
 use crate::gpu::commands::{RecordedPass, Submits};
 use crate::gpu::readback;
@@ -12,7 +12,7 @@ use crate::lights::LightSet;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::report::picture::Picture;
-use crate::resident::{SceneGpu, SceneStats};
+use crate::resident::{self, SceneGpu, SceneStats};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
 use crate::techniques::{Frame, Inputs, Technique};
@@ -56,7 +56,8 @@ impl Session {
         }
         let gpu = Gpu::open(request)?;
         let stats = SceneStats::of(&scene);
-        let scene_gpu = Arc::new(SceneGpu::new(&gpu, &scene)?);
+        let uploaded = SceneGpu::new(&gpu, &scene).map_err(|error| resident::advise(error, &gpu, &scene));
+        let scene_gpu = Arc::new(uploaded?);
         Ok(Self { gpu, scene, stats, scene_gpu, bvh: LazyBvh::default() })
     }
 
@@ -70,6 +71,16 @@ impl Session {
         aovs: &[String],
         submits: Submits,
     ) -> Result<Renderer> {
+        self.make(technique, values, aovs, submits).map_err(|error| {
+            if error.kind() != ErrorKind::Memory {
+                return error;
+            }
+            let plan = format!("`memory --technique {}` prints the plan", technique.name());
+            resident::advise(error, &self.gpu, &self.scene).note(format!("a smaller --size would need less; {plan}"))
+        })
+    }
+
+    fn make(&self, technique: &dyn Technique, values: &Values, aovs: &[String], submits: Submits) -> Result<Renderer> {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
         let inputs = Inputs {

@@ -57,6 +57,54 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
 }
 
 #[test]
+fn a_budget_that_is_spent_says_what_would_help() {
+    let program = Program::new();
+    let budget = |text: &'static str| small(&["--memory-budget", text]);
+    program.fails(&budget("64MB"), 2, &["--memory-budget 64MB", "512MiB, 2GiB", "or none"]);
+    program.fails(&budget("0"), 2, &["--memory-budget 0", "the default is --memory-budget none"]);
+    program.fails(&small(&["--texture-limit", "16385"]), 2, &["--texture-limit 16385", "0 to 16384"]);
+    program.fails(&budget("4KiB"), 4, &["allocating scene.", "the budget of 4.00 KiB is "]);
+    let frame = ["render", "cornell", "--size", "640x360", "--vpls", "16", "--memory-budget", "8MiB"];
+    let help = "a smaller --size would need less; `memory --technique interleaved_deferred` prints the plan";
+    program.fails(&frame, 4, &["allocating interleaved_deferred.", "the budget of 8.00 MiB is spent", help]);
+    let textured = ["render", "hall:triangles=8000", "--size", "64x36", "--memory-budget", "30MiB"];
+    program.fails(
+        &textured,
+        4,
+        &["allocating scene.textures.", "most of it by scene.textures (", "--texture-limit 256"],
+    );
+    let limited = textured.iter().copied().chain(["--technique", "deferred", "--texture-limit", "256", "--json"]);
+    let report = program.run(&limited.collect::<Vec<_>>()).fine().json();
+    assert_eq!(
+        (&report["settings"]["texture-limit"], &report["settings"]["memory-budget"]),
+        (&256.into(), &"30MiB".into())
+    );
+    assert!(report["memory"]["memory_block_bytes"].as_u64().unwrap() <= 30 << 20);
+    assert_eq!(report["memory"]["planned_bytes"], sum_of(&report, "bytes"));
+    assert_eq!(report["memory"]["allocated_bytes"], sum_of(&report, "bound_bytes"));
+}
+
+/// Over the resources of a report.
+fn sum_of(report: &Value, key: &str) -> u64 {
+    report["memory"]["resources"].as_array().unwrap().iter().map(|one| one[key].as_u64().unwrap()).sum()
+}
+
+#[test]
+fn every_allocation_gives_the_same_picture_and_says_how_its_memory_blocks_are_filled() {
+    let program = Program::new();
+    let reports = ["linear", "dedicated", "tlsf"]
+        .map(|strategy| program.run(&small(&["--allocation", strategy, "--json", "-o", "a.png"])).fine().json());
+    for report in &reports {
+        assert_eq!(report["image"]["hash"], reports[0]["image"]["hash"]);
+        let blocks = report["memory"]["memory_blocks"].as_array().unwrap();
+        let sum = |key: &str| -> u64 { blocks.iter().map(|block| block[key].as_u64().unwrap()).sum() };
+        assert_eq!(report["memory"]["memory_block_bytes"], sum("bytes"));
+        assert_eq!(report["memory"]["allocated_bytes"], sum("used_bytes"));
+        assert!(blocks.iter().all(|block| block["fragmentation"].is_number()), "{blocks:?}");
+    }
+}
+
+#[test]
 fn an_output_that_cannot_be_written_is_a_bad_request_and_nothing_half_written_stays() {
     let program = Program::new();
     program.fails(&small(&["-o", "no/such/folder/a.png"]), 2, &["no/such/folder"]);

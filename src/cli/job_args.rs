@@ -87,6 +87,7 @@ fn value_name(setting: &Setting) -> &'static str {
         Kind::Choice(_) => "NAME",
         Kind::Pair { .. } => "NxM",
         Kind::Length => "LENGTH",
+        Kind::Bytes => "BYTES",
         Kind::Color => "COLOR",
         Kind::Text(word) => word,
     }

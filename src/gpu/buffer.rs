@@ -58,14 +58,14 @@ impl Buffer {
         }
     }
 
-    /// What the driver would ask for such a buffer, without making one.
+    /// What the driver requires of memory for such a buffer, without making one.
     pub fn requirements(gpu: &Gpu, bytes: u64, flags: vk::BufferUsageFlags) -> vk::MemoryRequirements {
         let info = vk::BufferCreateInfo::default().size(bytes).usage(flags);
         let query = vk::DeviceBufferMemoryRequirements::default().create_info(&info);
-        let mut answer = vk::MemoryRequirements2::default();
+        let mut found = vk::MemoryRequirements2::default();
         // SAFETY: a live device with maintenance4; the info outlives the call.
-        unsafe { gpu.device.get_device_buffer_memory_requirements(&query, &mut answer) };
-        answer.memory_requirements
+        unsafe { gpu.device.get_device_buffer_memory_requirements(&query, &mut found) };
+        found.memory_requirements
     }
 
     /// The host's view of the buffer. Panics where the buffer was not made for `Upload` or `Readback`.

@@ -29,9 +29,7 @@ impl ImageDescription {
             })
             .sum()
     }
-}
 
-impl ImageDescription {
     fn create_info(&self) -> vk::ImageCreateInfo<'static> {
         let Self { extent, format, level_count, usage } = *self;
         let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
@@ -47,14 +45,14 @@ impl ImageDescription {
             .usage(usage)
     }
 
-    /// What the driver would ask for such an image, without making one.
+    /// What the driver requires of memory for such an image, without making one.
     pub fn requirements(&self, gpu: &Gpu) -> vk::MemoryRequirements {
         let info = self.create_info();
         let query = vk::DeviceImageMemoryRequirements::default().create_info(&info);
-        let mut answer = vk::MemoryRequirements2::default();
+        let mut found = vk::MemoryRequirements2::default();
         // SAFETY: a live device with maintenance4; the info outlives the call.
-        unsafe { gpu.device.get_device_image_memory_requirements(&query, &mut answer) };
-        answer.memory_requirements
+        unsafe { gpu.device.get_device_image_memory_requirements(&query, &mut found) };
+        found.memory_requirements
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::error::Result;
 use crate::gpu::ImageDescription;
 use crate::memory::kinds::{Kinds, Use};
-use crate::memory::ledger::Snapshot;
+use crate::memory::ledger::{BlockState, Snapshot};
 use crate::plan::{Peak, Plan, Planned, Requirements, Shape};
 use crate::units::Bytes;
 use serde_json::{Value, json};
@@ -38,11 +38,12 @@ impl Row {
 }
 
 /// The memory of one technique on one scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct MemoryTable {
     rows: Vec<Row>,
     peak: Peak,
-    memory_block_bytes: Option<u64>,
+    /// Where it was made: what the driver was asked for, and each memory block.
+    made: Option<(u64, Vec<BlockState>)>,
 }
 
 impl MemoryTable {
@@ -85,7 +86,7 @@ impl MemoryTable {
         Ok(Self {
             rows,
             peak: frame.peak(&bound, kept_bytes),
-            memory_block_bytes: snapshot.map(|snapshot| snapshot.memory_block_bytes),
+            made: snapshot.map(|snapshot| (snapshot.memory_block_bytes, snapshot.blocks.clone())),
         })
     }
 
@@ -115,8 +116,9 @@ impl MemoryTable {
             "groups": self.groups(),
             "resources": self.rows.iter().map(row_json).collect::<Vec<_>>(),
         });
-        if let Some(bytes) = self.memory_block_bytes {
+        if let Some((bytes, blocks)) = &self.made {
             document["memory_block_bytes"] = json!(bytes);
+            document["memory_blocks"] = json!(blocks);
         }
         document
     }
