@@ -183,7 +183,8 @@ impl Job {
         let requirements = Requirements::Device(&session.gpu);
         let kinds = Kinds::new(&session.gpu.caps);
         let plans = (&session.stats.plan(), &renderer.plan);
-        report.memory(&MemoryTable::new(plans.0, plans.1, requirements, &kinds, Some(memory))?);
+        let sharing = renderer.sharing.clone();
+        report.memory(&MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(memory))?);
         report.counters(&renderer.counters);
         Ok(report)
     }

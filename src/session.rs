@@ -9,7 +9,7 @@ use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
 use crate::lights::LightSet;
-use crate::plan::{Plan, Resources};
+use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::report::image_file::Aov;
 use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats};
@@ -43,6 +43,8 @@ pub struct Renderer {
     pub resolved: BTreeMap<&'static str, String>,
     /// Of the frame; the scene's own plan is `SceneStats::plan`.
     pub plan: Plan,
+    /// Which of its resources lie in the same bytes.
+    pub sharing: Sharing,
     aovs: Vec<String>,
 }
 
@@ -94,7 +96,10 @@ impl Session {
         };
         let plan = frame_plan(technique, &inputs, aovs)?;
         let prepared = technique.prepare(&inputs)?;
-        let mut resources = Resources::make(&self.gpu, &plan)?;
+        let caps = &self.gpu.caps;
+        let requirements = Requirements::Device(&self.gpu);
+        let sharing = Sharing::of(&plan, requirements, caps, values);
+        let mut resources = Resources::make(&self.gpu, technique.name(), &plan, &sharing)?;
         let [light_count, vpl_count] = prepared.light_counts();
         let background = values.color("background");
         let numbers = view.block(&self.scene.bounds(), background, lights.ambient, light_count, vpl_count);
@@ -106,6 +111,7 @@ impl Session {
         counters.insert("blended_draws", blended.count() as f64);
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
+        cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
         if cfg!(debug_assertions) {
             let names: Vec<&str> = cmd.passes().iter().map(|pass| pass.name.as_str()).collect();
@@ -123,6 +129,7 @@ impl Session {
             counters,
             resolved,
             plan,
+            sharing,
             aovs: aovs.to_vec(),
         })
     }

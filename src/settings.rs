@@ -171,6 +171,16 @@ pub const COMMON: &[Setting] = &[
                each, or ranges in shared memory blocks wherever there is room",
     },
     Setting {
+        key: "alias",
+        symbol: "",
+        kind: Kind::Choice(&["greedy", "optimal", "off"]),
+        default: "greedy",
+        unit: "",
+        paper: "",
+        help: "resources of a frame that never live in the same pass share bytes: placed by the best of a few orders, by a \
+               search for the least sum, or never",
+    },
+    Setting {
         key: "memory-budget",
         symbol: "",
         kind: Kind::Bytes,

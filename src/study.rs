@@ -9,7 +9,7 @@ use crate::gpu::commands::Submits;
 use crate::job::{Job, judge};
 use crate::lights::LightSet;
 use crate::memory::kinds::Kinds;
-use crate::plan::Requirements;
+use crate::plan::{Requirements, Sharing};
 use crate::report::memory::MemoryTable;
 use crate::resident::SceneStats;
 use crate::session::{Session, frame_plan};
@@ -36,7 +36,9 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
         Inputs { caps, scene: &scene, stats: &stats, bvh: &bvh, view: &view, lights: &lights, values: &job.values };
     let frame = frame_plan(job.technique, &inputs, &job.aovs)?;
     let rules = caps.layout.as_ref().expect("known drivers say how they round");
-    let table = MemoryTable::new(&stats.plan(), &frame, Requirements::Rules(rules), &Kinds::new(caps), None)?;
+    let requirements = Requirements::Rules(rules);
+    let sharing = Sharing::of(&frame, requirements, caps, &job.values);
+    let table = MemoryTable::new(&stats.plan(), &frame, sharing, requirements, &Kinds::new(caps), None)?;
     Ok(Study { device: caps_name.to_owned(), scene: scene.name, table })
 }
 
@@ -50,7 +52,9 @@ pub fn made(job: &Job) -> Result<Study> {
     let caps = &session.gpu.caps;
     let requirements = Requirements::Device(&session.gpu);
     let kinds = Kinds::new(caps);
-    let table = MemoryTable::new(&session.stats.plan(), &renderer.plan, requirements, &kinds, Some(&snapshot))?;
+    let plans = (&session.stats.plan(), &renderer.plan);
+    let sharing = renderer.sharing.clone();
+    let table = MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(&snapshot))?;
     let study = Study { device: caps.identity.name.clone(), scene: session.scene.name.clone(), table };
     let log = session.gpu.validation_log();
     drop((renderer, session));

@@ -100,7 +100,7 @@ fn an_error_says_what_was_wanted_what_is_held_and_what_would_help() {
             .map(drop)
             .expect_err("the budget is small")
     };
-    let frame = render(70 * MIB, &[("size", "640x360")]);
+    let frame = render(70 * MIB, &[("size", "640x360"), ("alias", "off")]);
     let text = frame.to_string();
     assert!(frame.message().starts_with("allocating deferred."), "{text}");
     assert!(frame.message().contains("MiB, device-local, type "), "{text}");

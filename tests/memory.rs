@@ -13,7 +13,7 @@ use quincunx::session::Session;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use support::counted::{STRATEGIES, begin, counted, counted_device, counter, live_bytes};
-use support::watched::{Changes, Watched};
+use support::watched::{Changes, Watched, both};
 
 fn require_ledger_as_counted(snapshot: &Snapshot, what: &str) {
     assert_eq!(snapshot.memory_block_bytes, live_bytes(), "{what}: in memory blocks");
@@ -57,7 +57,8 @@ fn the_ledger_counts_what_the_driver_was_asked_for() {
 #[test]
 fn a_memory_block_for_each_resource_holds_what_the_driver_requires() {
     counted(Strategy::Dedicated, "cornell", |watched| {
-        let _renderer = watched.render("interleaved_deferred", &[("size", "161x91"), ("vpls", "64")]);
+        let changes = [("size", "161x91"), ("vpls", "64"), ("alias", "off")];
+        let _renderer = watched.render("interleaved_deferred", &changes);
         let snapshot = watched.session.gpu.memory.snapshot();
         assert_eq!(snapshot.memory_block_bytes, snapshot.bound_bytes());
         assert_eq!(counter().live.len(), snapshot.resources.len());
@@ -69,10 +70,11 @@ fn a_memory_block_for_each_resource_holds_what_the_driver_requires() {
 fn resources_in_shared_memory_blocks_do_not_overlap() {
     for strategy in [Strategy::Linear, Strategy::Tlsf] {
         counted(strategy, "hall:triangles=8000", |watched| {
-            let first = watched.render("interleaved_deferred", &[("size", "321x181"), ("vpls", "64")]);
-            let _second = watched.render("deferred", &[("size", "161x91"), ("cull", "tiled")]);
+            let alone = ("alias", "off");
+            let first = watched.render("interleaved_deferred", &[("size", "321x181"), ("vpls", "64"), alone]);
+            let _second = watched.render("deferred", &[("size", "161x91"), ("cull", "tiled"), alone]);
             drop(first);
-            let _third = watched.render("interleaved_deferred", &[("size", "161x91"), ("vpls", "64")]);
+            let _third = watched.render("interleaved_deferred", &[("size", "161x91"), ("vpls", "64"), alone]);
             let mut entries = watched.session.gpu.memory.snapshot().resources;
             entries.sort_by_key(|entry| (entry.memory_block, entry.offset));
             for pair in entries.windows(2) {
@@ -84,15 +86,60 @@ fn resources_in_shared_memory_blocks_do_not_overlap() {
     }
 }
 
+/// Two resources of one renderer lie in the same bytes only where no pass sees both, and what sharing saves is a third.
+#[test]
+fn resources_that_share_bytes_never_live_in_the_same_pass() {
+    let settings: [(&str, Changes<'_>); 4] = [
+        ("deferred", &[("cull", "tiled")]),
+        ("interleaved_deferred", &[]),
+        ("interleaved_deferred", &[("filter", "gauss-fast"), ("pattern", "5x7"), ("direct-shadow", "ray")]),
+        ("interleaved_deferred", &[("split", "subsample"), ("position", "depth")]),
+    ];
+    for (technique, changes) in settings {
+        for alias in ["greedy", "optimal"] {
+            counted(Strategy::Linear, "cornell", |watched| {
+                let size = [("size", "321x181"), ("vpls", "64"), ("alias", alias)];
+                let keys = if technique == "deferred" { &[size[0], size[2]][..] } else { &size };
+                let renderer = watched.render(technique, &both(changes, keys));
+                let plan = &renderer.plan;
+                let lifetime = |name: &str| {
+                    let index = plan.resources.iter().position(|planned| planned.name == name).unwrap();
+                    plan.lifetime(index).unwrap()
+                };
+                let snapshot = watched.session.gpu.memory.snapshot();
+                let parts: Vec<_> = snapshot.resources.iter().filter(|entry| entry.arena.is_some()).collect();
+                let mut sharing_count = 0;
+                for (index, one) in parts.iter().enumerate() {
+                    for other in &parts[..index] {
+                        let bytes = one.memory_block == other.memory_block
+                            && one.offset < other.offset + other.bound_bytes
+                            && other.offset < one.offset + one.bound_bytes;
+                        let (a, b) = (lifetime(&one.name), lifetime(&other.name));
+                        assert!(!bytes || a.last < b.first || b.last < a.first, "{} and {}", one.name, other.name);
+                        sharing_count += usize::from(bytes);
+                    }
+                }
+                assert!(sharing_count > 0, "{technique} {changes:?}: nothing is shared");
+                assert_eq!(snapshot.aliased_bytes(), renderer.sharing.aliased_bytes());
+                let transient: u64 = parts.iter().map(|part| part.bound_bytes).sum();
+                let saved = snapshot.aliased_bytes() as f64 / transient as f64;
+                let least = if changes.is_empty() { 1.0 / 3.0 } else { 0.0 };
+                assert!(saved > least, "{technique} {changes:?}: {saved} of the transient bytes are saved");
+            });
+        }
+    }
+}
+
 /// Renderers that overlap in time leave holes: TLSF takes them again, so that the same frames need fewer bytes.
 #[test]
 fn what_returns_to_a_tlsf_block_is_taken_again() {
     let [linear, tlsf] = [Strategy::Linear, Strategy::Tlsf].map(|strategy| {
         let mut most = 0;
         counted(strategy, "cornell", |watched| {
-            let mut held = watched.render("deferred", &[("size", "320x180")]);
+            let changes = [("size", "320x180"), ("alias", "off")];
+            let mut held = watched.render("deferred", &changes);
             for _ in 0..8 {
-                let next = watched.render("deferred", &[("size", "320x180")]);
+                let next = watched.render("deferred", &changes);
                 most = most.max(live_bytes());
                 held = next;
             }
@@ -165,7 +212,10 @@ fn a_refused_request_leaves_nothing_behind() {
 #[test]
 fn memory_that_is_refused_leaves_nothing_behind() {
     let changes = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
-    for strategy in STRATEGIES {
+    for (strategy, alias) in
+        STRATEGIES.into_iter().flat_map(|strategy| ["off", "greedy"].map(|alias| (strategy, alias)))
+    {
+        let changes = both(&changes, &[("alias", alias)]);
         counted(strategy, "cornell", |watched| {
             let memory = &watched.session.gpu.memory;
             let before = memory.snapshot();
@@ -178,7 +228,11 @@ fn memory_that_is_refused_leaves_nothing_behind() {
                 counter().until_refusal = None;
                 let Err(error) = made else {
                     assert!(!refused, "allocation {refused_at} was refused, and nobody noticed");
-                    let least = if strategy == Strategy::Dedicated { 21 } else { 2 };
+                    let least = match (strategy, alias) {
+                        (Strategy::Dedicated, "off") => 21,
+                        (Strategy::Dedicated, _) => 9,
+                        _ => 2,
+                    };
                     assert!(refused_at >= least, "{strategy:?}: only {refused_at} allocations");
                     break;
                 };

@@ -47,11 +47,13 @@ pub fn changed<'a, 'b>(
 
 /// All variants share a device and a scene: what is settled with those cannot differ.
 fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
-    if values.text("allocation") != job.values.text("allocation") {
-        let text = values.text("allocation");
-        return Err(Error::request(format!(
-            "--allocation {text}: it is settled when the device opens, for all variants; each needs a bench of its own"
-        )));
+    for key in ["allocation", "memory-budget", "texture-limit"] {
+        let text = values.text(key);
+        if text != job.values.text(key) {
+            return Err(Error::request(format!(
+                "--{key} {text}: it is settled when the device opens, for all variants; each needs a bench of its own"
+            )));
+        }
     }
     let seed = values.integer("seed");
     if seed != job.values.integer("seed") && scene::load(&job.scene, seed)?.hash != scene_hash {

@@ -62,7 +62,11 @@ pub struct Commands {
     pub(super) timestamps: Option<Timestamps>,
     truth: HashMap<Target, AccessSet>,
     touched: Vec<Touched>,
+    heirs: Heirs,
 }
+
+/// For each resource that takes bytes over, those who had them before it in the frame.
+pub type Heirs = HashMap<Target, Vec<Target>>;
 
 /// Passes of one frame that can have timestamps.
 const MAX_PASS_COUNT: u32 = 256;
@@ -85,6 +89,7 @@ impl Commands {
             timestamps: None,
             truth: HashMap::new(),
             touched: Vec::new(),
+            heirs: Heirs::new(),
         };
         gpu.name(pool, name);
         if submits == Submits::PerPass {
@@ -148,10 +153,14 @@ impl Commands {
 
     /// One pipeline barrier for all of `barriers`; those that wait for nothing are left out.
     pub fn barriers(&mut self, barriers: impl IntoIterator<Item = Barrier>) {
+        let mut memory = Vec::new();
         let mut buffers = Vec::new();
         let mut images = Vec::new();
         for barrier in barriers {
             self.check_left_side(&barrier);
+            if barrier.takes_over() {
+                memory.push(barrier.memory_barrier());
+            }
             if barrier.is_needed() {
                 match barrier.target {
                     Target::Buffer(buffer) => buffers.push(barrier.buffer_barrier(buffer)),
@@ -167,7 +176,10 @@ impl Commands {
         if buffers.is_empty() && images.is_empty() {
             return;
         }
-        let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
+        let info = vk::DependencyInfo::default()
+            .memory_barriers(&memory)
+            .buffer_memory_barriers(&buffers)
+            .image_memory_barriers(&images);
         // SAFETY: the buffer is being recorded, outside rendering; the resources are alive.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
     }
@@ -188,9 +200,25 @@ impl Commands {
         self.barriers([barrier]);
     }
 
-    /// A programmer's mistake: `record` says that somebody else wrote.
+    /// Tells whose bytes each resource takes over, for the check of left sides.
+    pub fn set_heirs(&mut self, heirs: Heirs) {
+        self.heirs = heirs;
+    }
+
+    /// A programmer's mistake: `record` says that somebody else wrote, or the plan that nobody did.
     fn check_left_side(&self, barrier: &Barrier) {
-        if cfg!(debug_assertions) {
+        if cfg!(debug_assertions) && barrier.discard {
+            let touched = |target: &Target| self.truth.get(target).copied().unwrap_or_default();
+            assert_eq!(touched(&barrier.target), AccessSet::UNTOUCHED, "a first touch that is the second");
+            for before in self.heirs.get(&barrier.target).into_iter().flatten() {
+                let left = touched(before);
+                assert!(
+                    barrier.from.contains(left),
+                    "bytes are taken over from {:?}, and it was {left:?}",
+                    barrier.from
+                );
+            }
+        } else if cfg!(debug_assertions) {
             let truth = self.truth.get(&barrier.target).copied().unwrap_or_default();
             // Scene resources enter a frame readable: their first left side is what the upload left. A writer before the
             // first touch never was.

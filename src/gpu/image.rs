@@ -1,6 +1,7 @@
 //! An image: handle, view, description, allocation.
 
-use super::Gpu;
+use super::access::AccessSet;
+use super::{Berth, Gpu};
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use crate::memory::{Allocation, Request, Tiling};
@@ -83,14 +84,22 @@ pub struct Image {
     pub storage_view: vk::ImageView,
     pub name: String,
     pub description: ImageDescription,
+    /// Last accesses of whoever had its bytes before it in the frame.
+    pub(super) takes_over: AccessSet,
     allocation: ManuallyDrop<Allocation>,
 }
 
 impl Image {
-    /// Makes an image in device memory.
+    /// Makes an image in device memory, in bytes from `berth`.
     ///
     /// Errors: a side is beyond the device's limit (exit code 2); the driver or the memory refuses (4).
-    pub fn new(gpu: &Arc<Gpu>, name: &str, group: &str, description: ImageDescription) -> Result<Self> {
+    pub fn at(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        group: &str,
+        description: ImageDescription,
+        berth: Berth<'_>,
+    ) -> Result<Self> {
         let ImageDescription { extent, format, .. } = description;
         let limit = gpu.caps.limits.max_image_side_px;
         if extent.width > limit || extent.height > limit {
@@ -109,12 +118,13 @@ impl Image {
         // SAFETY: a live device; the info has no pointers.
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
-        match Self::bind(gpu, name, group, description, handle) {
+        match Self::bind(gpu, name, group, description, handle, berth) {
             Ok((allocation, view, storage_view)) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
-                Ok(Self { gpu: gpu.clone(), handle, view, storage_view, name, description, allocation })
+                let (gpu, takes_over) = (gpu.clone(), berth.takes_over());
+                Ok(Self { gpu, handle, view, storage_view, name, description, takes_over, allocation })
             }
             Err(error) => {
                 // SAFETY: never used.
@@ -130,12 +140,13 @@ impl Image {
         group: &str,
         description: ImageDescription,
         handle: vk::Image,
+        berth: Berth<'_>,
     ) -> Result<(Allocation, vk::ImageView, vk::ImageView)> {
         // SAFETY: the image was made from this device.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
         let bytes = description.bytes();
         let request = Request { name, group, bytes, requirements, usage: Use::Device, tiling: Tiling::Optimal };
-        let allocation = gpu.memory.allocate(&request)?;
+        let allocation = berth.allocate(&gpu.memory, &request)?;
         // SAFETY: fresh memory of an allowed type, in bounds, bound once.
         unsafe { gpu.device.bind_image_memory(handle, allocation.handle, allocation.offset) }
             .map_err(|result| Error::device(format!("binding image {name}: {result}")))?;

@@ -1,6 +1,7 @@
 //! A thin floor over ash: device, commands, barriers, buffers, images, pipelines. It knows no technique and no scene.
 
 pub mod access;
+pub mod berth;
 pub mod buffer;
 pub mod caps;
 pub mod commands;
@@ -20,6 +21,7 @@ pub mod upload;
 pub mod validation;
 
 pub use access::{Access, AccessSet, Barrier, Edge, Target};
+pub use berth::Berth;
 pub use buffer::Buffer;
 pub use caps::Caps;
 pub use commands::{Commands, Traffic};

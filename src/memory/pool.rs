@@ -8,13 +8,18 @@ use super::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
 use super::{Strategy, Tiling};
 use crate::gpu::Caps;
 
-/// Size of a shared memory block. Resources of at least half of it get a memory block of their own.
+/// Greatest size of a shared memory block. Resources of at least half of it get a memory block of their own.
 pub const SHARED_BLOCK_BYTES: u64 = 16 << 20;
+/// Size of the first shared memory block of its kind.
+const FIRST_BLOCK_BYTES: u64 = 1 << 20;
 
-/// Size of a new shared memory block where a heap or a budget has `left_bytes`: at most an eighth of it, so that a few
-/// half-empty blocks do not spend a small budget.
-fn shared_block_bytes(left_bytes: u64) -> u64 {
-    (left_bytes / 8).checked_ilog2().map_or(0, |power| 1 << power).min(SHARED_BLOCK_BYTES)
+/// Size of a new shared memory block beside `sibling_count` others of its kind, for a resource of `bytes`, where a heap or
+/// a budget has `left_bytes`. Each is twice as large as the one before, so that a small scene is not held in large,
+/// nearly empty blocks; and at most an eighth of what is left, so that a few half-empty ones do not spend a small budget.
+fn shared_block_bytes(sibling_count: usize, bytes: u64, left_bytes: u64) -> u64 {
+    let grown = FIRST_BLOCK_BYTES << sibling_count.min(16);
+    let wanted = grown.max((4 * bytes).next_power_of_two()).min(SHARED_BLOCK_BYTES);
+    (left_bytes / 8).checked_ilog2().map_or(0, |power| 1 << power).min(wanted)
 }
 
 /// What a resource needs, as numbers.
@@ -99,6 +104,14 @@ pub struct Pool {
     held_bytes: Vec<u64>,
 }
 
+impl Ranges {
+    /// Whether `ask` is of the block's kind and shares.
+    fn may_join(&self, ask: &Ask) -> bool {
+        let same = self.type_index == ask.type_index && self.mapped == ask.mapped && self.tiling == ask.tiling;
+        self.is_shared && same
+    }
+}
+
 impl Pool {
     pub fn new(rules: Rules) -> Self {
         let held_bytes = vec![0; rules.heap_bytes.len()];
@@ -124,7 +137,7 @@ impl Pool {
         let limit_bytes = self.rules.budget_bytes.map_or(heap_bytes, |budget| budget.min(heap_bytes));
         let held_bytes = self.held_bytes[heap];
         let left = limit_bytes.saturating_sub(held_bytes);
-        let shared_bytes = shared_block_bytes(left);
+        let shared_bytes = shared_block_bytes(self.sibling_count(ask), ask.bytes, left);
         let is_shared = is_shared && ask.bytes < shared_bytes / 2;
         let bytes = if is_shared { shared_bytes } else { ask.bytes };
         if bytes > left {
@@ -168,14 +181,15 @@ impl Pool {
 
     fn join(&mut self, ask: &Ask) -> Option<Place> {
         self.blocks.iter_mut().enumerate().find_map(|(index, slot)| {
-            let block = slot.as_mut()?;
-            let fits = block.type_index == ask.type_index && block.mapped == ask.mapped && block.tiling == ask.tiling;
-            if !block.is_shared || !fits {
-                return None;
-            }
+            let block = slot.as_mut().filter(|block| block.may_join(ask))?;
             let offset = block.ranges.take(ask.bytes, ask.alignment)?;
             Some(Place { block: index as u32, offset, new_block_bytes: None })
         })
+    }
+
+    /// Shared memory blocks that `ask` may join, were there room.
+    fn sibling_count(&self, ask: &Ask) -> usize {
+        self.blocks.iter().flatten().filter(|block| block.may_join(ask)).count()
     }
 
     /// A range of `place` is not used any more. The memory block's bytes, where it was the last one: it ends now.
@@ -313,22 +327,25 @@ mod tests {
         for strategy in [Strategy::Linear, Strategy::Tlsf] {
             let mut pool = Pool::new(rules(strategy, Some(20 * MIB)));
             let mut place = |bytes| pool.place(&ask(bytes)).map(|place| place.new_block_bytes);
-            // An eighth of 20 MiB, rounded down to a power of two.
-            assert_eq!(place(1000), Ok(Some(2 * MIB)));
+            // Four times as much is wanted; an eighth of 20 MiB, rounded down to a power of two, is given.
+            assert_eq!(place(MIB - 1000), Ok(Some(2 * MIB)));
             assert_eq!(place(MIB), Ok(None), "the shared block has room");
             assert_eq!(place(7 * MIB), Ok(Some(7 * MIB)));
             assert_eq!(place(10 * MIB), Ok(Some(10 * MIB)));
             let spent = Misfit::Spent { limit_bytes: 20 * MIB, held_bytes: 19 * MIB, is_budget: true };
             assert_eq!(place(3 * MIB), Err(spent));
             assert_eq!(place(MIB), Ok(Some(MIB)), "to the last byte");
-            assert_eq!(place(1000), Ok(None));
+            assert_eq!(place(100), Ok(None));
             // The other heap has a limit of its own.
             assert!(pool.place(&Ask { type_index: 1, ..ask(3 * MIB) }).is_ok());
         }
         assert_eq!(
-            [1 << 40, 128 * MIB, 127 * MIB, 8, 7, 0].map(shared_block_bytes),
+            [1 << 40, 128 * MIB, 127 * MIB, 8, 7, 0].map(|left| shared_block_bytes(4, 1, left)),
             [16 * MIB, 16 * MIB, 8 * MIB, 1, 0, 0]
         );
+        // The first of its kind is small, the fifth is full-grown; a resource takes at most a quarter of a new one.
+        assert_eq!([0, 1, 4, 9].map(|siblings| shared_block_bytes(siblings, 1, 1 << 40) / MIB), [1, 2, 16, 16]);
+        assert_eq!(shared_block_bytes(0, 3 * MIB, 1 << 40), 16 * MIB);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::gpu::ImageDescription;
 use crate::memory::kinds::{Kinds, Use};
 use crate::memory::ledger::{BlockState, Snapshot};
-use crate::plan::{Peak, Plan, Planned, Requirements, Shape};
+use crate::plan::{Peak, Plan, Planned, PlannedArena, Requirements, Shape, Sharing};
 use crate::units::Bytes;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -28,6 +28,12 @@ struct Row {
     passes: Option<[String; 2]>,
     /// Memory block and offset, where it was made.
     place: Option<(u32, u64)>,
+    /// Arena, and offset in it.
+    shared: Option<(usize, u64)>,
+    /// Who lies in some of the same bytes in other passes.
+    shares_with: Vec<String>,
+    /// Bytes that passes touch.
+    touched_bytes: u64,
 }
 
 impl Row {
@@ -42,25 +48,29 @@ impl Row {
 pub struct MemoryTable {
     rows: Vec<Row>,
     peak: Peak,
+    sharing: Sharing,
     /// Where it was made: what the driver was asked for, and each memory block.
     made: Option<(u64, Vec<BlockState>)>,
 }
 
 impl MemoryTable {
-    /// `scene` and `frame`: what is kept, and what a frame needs. `snapshot`: the ledger, where the plans were made real.
+    /// `scene` and `frame`: what is kept, and what a frame needs, with which of its resources share bytes. `snapshot`: the
+    /// ledger, where the plans were made real.
     ///
     /// Errors: no memory type fits a resource (exit code 4).
     pub fn new(
         scene: &Plan,
         frame: &Plan,
+        sharing: Sharing,
         requirements: Requirements<'_>,
         kinds: &Kinds,
         snapshot: Option<&Snapshot>,
     ) -> Result<Self> {
         let mut rows = Vec::new();
-        for (plan, index) in [scene, frame].iter().flat_map(|plan| (0..plan.resources.len()).map(move |at| (plan, at)))
-        {
-            rows.push(row(plan, index, requirements, kinds)?);
+        for (plan, sharing) in [(scene, &Sharing::default()), (frame, &sharing)] {
+            for index in 0..plan.resources.len() {
+                rows.push(row(plan, sharing, index, requirements, kinds)?);
+            }
         }
         let kept_bytes = rows[..scene.resources.len()].iter().map(|row| row.bound_bytes).sum();
         let bound: Vec<u64> = rows[scene.resources.len()..].iter().map(|row| row.bound_bytes).collect();
@@ -80,12 +90,16 @@ impl MemoryTable {
                     reason: entry.reason,
                     passes: None,
                     place,
+                    shared: None,
+                    shares_with: Vec::new(),
+                    touched_bytes: 0,
                 }),
             }
         }
         Ok(Self {
             rows,
             peak: frame.peak(&bound, kept_bytes),
+            sharing,
             made: snapshot.map(|snapshot| (snapshot.memory_block_bytes, snapshot.blocks.clone())),
         })
     }
@@ -96,6 +110,10 @@ impl MemoryTable {
 
     fn allocated_bytes(&self) -> u64 {
         self.rows.iter().map(|row| row.bound_bytes).sum()
+    }
+
+    fn touched_bytes(&self) -> u64 {
+        self.rows.iter().map(|row| row.touched_bytes).sum()
     }
 
     fn groups(&self) -> BTreeMap<&str, u64> {
@@ -111,6 +129,9 @@ impl MemoryTable {
         let mut document = json!({
             "planned_bytes": self.planned_bytes(),
             "allocated_bytes": self.allocated_bytes(),
+            "aliased_bytes": self.sharing.aliased_bytes(),
+            "touched_bytes": self.touched_bytes(),
+            "arenas": self.sharing.arenas.iter().map(arena_json).collect::<Vec<_>>(),
             "peak_bytes": self.peak.bytes,
             "peak_pass": self.peak.pass,
             "groups": self.groups(),
@@ -143,6 +164,10 @@ impl MemoryTable {
                 Some([first, last]) if first == last => short(first).to_owned(),
                 Some([first, last]) => format!("{} to {}", short(first), short(last)),
             };
+            let lives = match row.shared {
+                Some((_, offset)) => format!("{lives}, shared from {offset}"),
+                None => lives,
+            };
             writeln!(
                 text,
                 "{:<widest$}  {:>12} {:>12} {:>6} {:>6} {:>5}  {:<34} {lives}",
@@ -167,9 +192,11 @@ impl MemoryTable {
         }
         writeln!(
             text,
-            "{} planned, {} allocated, peak {} in {}",
+            "{} planned, {} allocated, {} of it saved by sharing, {} touched, peak {} in {}",
             Bytes(self.planned_bytes()),
             Bytes(self.allocated_bytes()),
+            Bytes(self.sharing.aliased_bytes()),
+            Bytes(self.touched_bytes()),
             Bytes(self.peak.bytes),
             short(&self.peak.pass)
         )
@@ -210,6 +237,10 @@ fn row_json(row: &Row) -> Value {
         document["format"] = json!(format!("{format:?}"));
         document["extent"] = json!(extent.to_string());
     }
+    document["touched_bytes"] = json!(row.touched_bytes);
+    if let Some((arena, offset)) = row.shared {
+        document["arena"] = json!({ "index": arena, "offset": offset, "shares_with": row.shares_with });
+    }
     if let Some((memory_block, offset)) = row.place {
         document["memory_block"] = json!(memory_block);
         document["offset"] = json!(offset);
@@ -217,7 +248,18 @@ fn row_json(row: &Row) -> Value {
     document
 }
 
-fn row(plan: &Plan, index: usize, requirements: Requirements<'_>, kinds: &Kinds) -> Result<Row> {
+fn arena_json(arena: &PlannedArena) -> Value {
+    let parts_bytes: u64 = arena.parts.iter().map(|part| part.bound_bytes).sum();
+    json!({
+        "bytes": arena.bytes,
+        "alignment_bytes": arena.alignment_bytes,
+        "parts": arena.parts.len(),
+        "parts_bytes": parts_bytes,
+        "proven_optimal": arena.proven_optimal,
+    })
+}
+
+fn row(plan: &Plan, sharing: &Sharing, index: usize, requirements: Requirements<'_>, kinds: &Kinds) -> Result<Row> {
     let planned: &Planned = &plan.resources[index];
     let required = requirements.of(&planned.shape);
     let choice = kinds.choose(planned.shape.usage(), required.memory_type_bits);
@@ -236,5 +278,8 @@ fn row(plan: &Plan, index: usize, requirements: Requirements<'_>, kinds: &Kinds)
         reason: choice.reason,
         passes,
         place: None,
+        shared: sharing.part(index).map(|(arena, part)| (arena, part.offset)),
+        shares_with: sharing.shares_with(index).into_iter().map(|other| plan.resources[other].name.clone()).collect(),
+        touched_bytes: planned.touched_bytes,
     })
 }

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
 use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
-use crate::plan::{Plan, Resources, Shape};
+use crate::plan::{Plan, Resources, Shape, Sharing};
 use crate::scene::{AlphaMode, ColorSpace, Scene, mipmaps};
 use crate::units::Extent;
 use ash::vk;
@@ -175,7 +175,7 @@ impl SceneGpu {
     /// Errors: memory is too small or a limit is passed (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, scene: &Scene) -> Result<Self> {
         let stats = SceneStats::of(scene);
-        let mut resources = Resources::make(gpu, &stats.plan())?;
+        let mut resources = Resources::make(gpu, "scene", &stats.plan(), &Sharing::default())?;
         let geometry = Geometry::of(scene);
         let send = |buffer: &Buffer, bytes: &[u8], access| upload::buffer(gpu, buffer, bytes, access);
         let positions = resources.buffer("scene.positions");
