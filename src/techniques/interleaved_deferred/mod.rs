@@ -117,6 +117,7 @@ impl Technique for InterleavedDeferred {
         let resolved = BTreeMap::from([
             ("emissive", if emissive { "on" } else { "off" }.to_owned()),
             ("vpl-clamp", format!("{clamp}")),
+            ("texels", choices.shading.texels.to_string()),
             ("sigma", format!("{}", choices.kernel.sigma)),
         ]);
         Ok(Box::new(PreparedInterleaved {

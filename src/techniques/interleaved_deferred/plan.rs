@@ -48,7 +48,7 @@ pub struct Choices {
 impl Choices {
     /// Errors: an even kernel, fewer lights than subsets (exit code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
-        let Inputs { values, lights, scene, view, .. } = inputs;
+        let Inputs { caps, values, lights, scene, view, .. } = inputs;
         let road = Road::from_setting(values.text("split"));
         let pattern = if road == Road::None { [1, 1] } else { values.pair("pattern") };
         let mapping = mapping(view.extent, pattern);
@@ -62,7 +62,7 @@ impl Choices {
         };
         let direct = values.text("direct");
         let choices = Self {
-            shading: ShadingSettings::new(values, lights, scene.bounds().diagonal()),
+            shading: ShadingSettings::new(values, lights, scene.bounds().diagonal(), caps),
             road,
             mapping,
             filter,
