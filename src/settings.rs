@@ -25,6 +25,11 @@ pub enum Kind {
         min: u32,
         max: u32,
     },
+    /// `NxM`, or `N` for both, in the range.
+    Sides {
+        min: u32,
+        max: u32,
+    },
     /// Metres, or a part of the scene's diagonal as `2%`.
     Length,
     /// Three numbers `R,G,B` of at least 0, or one for all three.
@@ -227,6 +232,7 @@ impl Setting {
             Kind::Number { min, max } => format!("{min} to {max}"),
             Kind::Choice(choices) => choices.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
+            Kind::Sides { min, max } => format!("N or NxM, each {min} to {max}"),
             Kind::Length => "metres, or P% of the scene's diagonal".to_owned(),
             Kind::Color => "R,G,B or one number, each at least 0".to_owned(),
             Kind::Text(word) => word.to_owned(),
@@ -246,6 +252,9 @@ impl Setting {
             Kind::Pair { min, max } => {
                 parse_pair(text).is_some_and(|pair| pair.iter().all(|side| (min..=max).contains(side)))
             }
+            Kind::Sides { min, max } => {
+                parse_sides(text).is_some_and(|sides| sides.iter().all(|side| (min..=max).contains(side)))
+            }
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Color => parse_color(text).is_some(),
             Kind::Text(_) => true,
@@ -262,6 +271,13 @@ impl Setting {
 fn parse_pair(text: &str) -> Option<[u32; 2]> {
     let (first, second) = text.split_once('x')?;
     Some([first.parse().ok()?, second.parse().ok()?])
+}
+
+fn parse_sides(text: &str) -> Option<[u32; 2]> {
+    match text.parse() {
+        Ok(side) => Some([side; 2]),
+        Err(_) => parse_pair(text),
+    }
 }
 
 fn parse_length(text: &str, diagonal: f64) -> Option<f64> {
@@ -331,6 +347,11 @@ impl Values {
         self.parsed(key, parse_pair)
     }
 
+    /// Of `Kind::Sides`.
+    pub fn sides(&self, key: &str) -> [u32; 2] {
+        self.parsed(key, parse_sides)
+    }
+
     pub fn extent(&self, key: &str) -> Extent {
         let [width, height] = self.pair(key);
         Extent::new(width, height)
@@ -384,6 +405,7 @@ mod tests {
     fn what_cannot_be_read_is_refused() {
         for (kind, wrong) in [
             (Kind::Pair { min: 1, max: 9 }, &["", "x", "3", "3x", "-1x2", "3x2x1", "99999999999x1"][..]),
+            (Kind::Sides { min: 1, max: 9 }, &["", "x", "0", "10", "3x", "3x10", "3x2x1"]),
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),

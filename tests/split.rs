@@ -11,15 +11,13 @@ const TECHNIQUE: &str = "interleaved_deferred";
 /// What these tests read back.
 const STAGES: &[&str] = &["gbuffer.normal", "split.normal", "shade.irradiance", "gather.irradiance"];
 
-/// A picture of sub-buffers side by side, back in frame order: what stands at place i shows pixel `shown[i]`.
+/// A picture of sub-buffers side by side, back in frame order: each place says which pixel it shows.
 fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32; 2]) -> Vec<[f32; 3]> {
-    let mapping = mapping(extent, pattern);
-    let mut place_of = vec![usize::MAX; mapping.texel_count() as usize];
-    for (place, texel) in mapping.side_by_side().into_iter().enumerate() {
-        place_of[texel as usize] = place;
+    let mut pixels = vec![[f32::NAN; 3]; extent.pixel_count() as usize];
+    for (shown, [x, y]) in side_by_side.iter().zip(mapping(extent, pattern, pattern).side_by_side()) {
+        pixels[(y * extent.width + x) as usize] = *shown;
     }
-    let pixels = (0..extent.height).flat_map(|y| (0..extent.width).map(move |x| [x, y]));
-    pixels.map(|pixel| side_by_side[place_of[mapping.texel_of(pixel) as usize]]).collect()
+    pixels
 }
 
 #[test]
