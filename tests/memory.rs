@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::ffi::{CStr, c_void};
 use std::mem::transmute;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use support::watched::{Changes, Watched, watched_device};
+use support::watched::{Changes, Watched, both, watched_device};
 
 /// What went past the hook. A hook is a plain function, so there is one counter in the process, and one test at a time.
 struct Counter {
@@ -190,6 +190,15 @@ fn what_is_planned_is_what_is_made() {
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "indirect"), ("pattern", "5x7")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "remap"), ("position", "half")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("filter", "none"), ("direct", "none")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "stencil"), ("position", "depth")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "depth"), ("filter", "gauss-fast")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("storage", "image"), ("position", "float")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("block", "24x10")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("storage", "image")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "tile"), ("pattern", "5x7")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "layered"), ("position", "depth")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "fragment"), ("position", "half")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "fragment"), ("fragment-passes", "1")]),
         (
             "hall:triangles=8000",
             "interleaved_deferred",
@@ -237,22 +246,25 @@ fn memory_that_is_refused_leaves_nothing_behind() {
     counted(Strategy::Dedicated, "cornell", |watched| {
         let memory = &watched.session.gpu.memory;
         let before = memory.snapshot();
-        let changes = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
-        for refused_at in 0.. {
-            counter().until_refusal = Some(refused_at);
-            let made = watched.try_renderer("interleaved_deferred", &changes, &[], Submits::One);
-            let refused = counter().until_refusal.is_none();
-            counter().until_refusal = None;
-            let Err(error) = made else {
-                assert!(!refused, "allocation {refused_at} was refused, and nobody noticed");
-                assert!(refused_at > 20, "only {refused_at} allocations");
-                break;
-            };
-            assert_eq!(error.exit_code(), 4, "{error}");
-            assert!(error.message().contains("allocating "), "{error}");
-            let after = memory.snapshot();
-            assert_eq!(after.bound_bytes(), before.bound_bytes(), "refused at {refused_at}: {error}");
-            require_ledger_as_counted(&after, "after a refusal");
+        let common = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
+        for split in ["one-pass", "two-pass", "fragment", "stencil"] {
+            let changes = both(&common, &[("split", split)]);
+            for refused_at in 0.. {
+                counter().until_refusal = Some(refused_at);
+                let made = watched.try_renderer("interleaved_deferred", &changes, &[], Submits::One);
+                let refused = counter().until_refusal.is_none();
+                counter().until_refusal = None;
+                let Err(error) = made else {
+                    assert!(!refused, "{split}: allocation {refused_at} was refused, and nobody noticed");
+                    assert!(refused_at > 20, "{split}: only {refused_at} allocations");
+                    break;
+                };
+                assert_eq!(error.exit_code(), 4, "{error}");
+                assert!(error.message().contains("allocating "), "{error}");
+                let after = memory.snapshot();
+                assert_eq!(after.bound_bytes(), before.bound_bytes(), "{split}, refused at {refused_at}: {error}");
+                require_ledger_as_counted(&after, "after a refusal");
+            }
         }
     });
 }
