@@ -133,14 +133,12 @@ fn every_way_of_holding_positions_splits_the_same() {
     let watched = Watched::open("cornell");
     let mut hashes = Vec::new();
     for position in ["half", "unorm16", "depth", "float"] {
-        for size in ["160x90", "161x91"] {
-            let common = [("vpls", "64"), ("size", size), ("pattern", "3x2"), ("position", position)];
-            hashes.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
-        }
+        let common = [("vpls", "64"), ("size", "161x91"), ("pattern", "3x2"), ("position", position)];
+        hashes.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
     }
     hashes.sort();
     hashes.dedup();
-    assert_eq!(hashes.len(), 8, "positions round differently, so their pictures differ");
+    assert_eq!(hashes.len(), 4, "positions round differently, so their pictures differ");
 }
 
 #[test]
@@ -180,10 +178,19 @@ fn culling_changes_no_pixel_of_a_map() {
     let culls: [Changes<'_>; 2] = [&[("cull", "none")], &[("cull", "tiled")]];
     let common = [("size", "323x177"), ("vpls", "32"), ("lights", "40")];
     require_one_hash(&watched, INTERLEAVED, &common, &culls);
+    // One road of each kind.
+    let roads = [ROADS[0], ROADS[1], ROADS[3], ROADS[4], ROADS[5], ROADS[12], ROADS[14], ROADS[15], ROADS[18]];
+    require_one_hash(&watched, INTERLEAVED, &common, &roads);
+}
+
+/// The depth buffer holds positions: lists of lights, the road and the filter sample it, and BLEND surfaces test it last.
+#[test]
+fn every_road_is_branch_under_blended_surfaces() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [("size", "161x91"), ("vpls", "32"), ("position", "depth"), ("cull", "tiled")];
     require_one_hash(&watched, INTERLEAVED, &common, &ROADS);
-    // The depth buffer holds positions, for lists of lights, for the road and for the filter; BLEND surfaces test it last.
-    let common = [("size", "161x91"), ("vpls", "32"), ("lights", "40"), ("position", "depth"), ("cull", "tiled")];
-    require_one_hash(&watched, INTERLEAVED, &common, &ROADS);
+    let renderer = watched.render(INTERLEAVED, &common);
+    assert!(renderer.counters["blended_draws"] > 0.0);
 }
 
 #[test]

@@ -5,9 +5,16 @@
 //! filtered where no discontinuity is, and multiplied with the albedo last.
 //!
 //! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend.
+//! With `--split two-pass`, and `fragment` in two passes, split is split.blocks and split.translate, and gather is
+//! gather.translate and gather.blocks. Roads that copy nothing have neither; before the shading of `stencil` and `depth`
+//! stands mask.
 //!
 //! Differs from the paper
-//! - compute shaders copy and shade, where the paper drew quads; a sub-buffer is a stretch of a buffer, not a region
+//! - by default compute shaders copy, where the paper drew; `--split fragment` draws, with the paper's look-up textures
+//! - sub-buffers are tiled in an image, as in the paper's figure 3, with `--storage image`; in buffers, the default on
+//!   software drivers, they lie one after the other
+//! - compute shaders shade sub-buffers, where the paper drew quads
+//! - sub-buffers are padded to whole patterns or blocks, so the tiled buffer is at least as large as the frame, not equal
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
 //! - secondary lights are never shadowed (SNSM), as in the paper's section 6.2
 //!
