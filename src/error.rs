@@ -14,8 +14,10 @@ pub enum ErrorKind {
     Request,
     /// No Vulkan driver, or no device that fits. Exit code 3.
     NoDevice,
-    /// The device failed, or memory is too small. Exit code 4.
+    /// The device failed. Exit code 4.
     Device,
+    /// Memory, or what a budget leaves of it, is too small. Exit code 4.
+    Memory,
     /// Ctrl-C; what is written is valid. Exit code 130.
     Interrupted,
 }
@@ -51,9 +53,14 @@ impl Error {
         Self::new(ErrorKind::NoDevice, message)
     }
 
-    /// The device failed, or memory is too small.
+    /// The device failed.
     pub fn device(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Device, message)
+    }
+
+    /// Memory, or what a budget leaves of it, is too small.
+    pub fn memory(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Memory, message)
     }
 
     /// Stopped by the user.
@@ -89,7 +96,7 @@ impl Error {
             ErrorKind::Gate => 1,
             ErrorKind::Request => 2,
             ErrorKind::NoDevice => 3,
-            ErrorKind::Device => 4,
+            ErrorKind::Device | ErrorKind::Memory => 4,
             ErrorKind::Interrupted => 130,
         }
     }

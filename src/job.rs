@@ -2,12 +2,16 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::DeviceRequest;
-use crate::gpu::commands::{FrameTime, Submits};
+use crate::gpu::commands::Submits;
+use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
 use crate::interrupt;
 use crate::memory::Strategy;
+use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
+use crate::plan::Requirements;
 use crate::report::image_file::{Aov, AovChannels, ExrPrecision, WriteOptions, write};
+use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
@@ -130,18 +134,20 @@ impl Job {
         Ok(())
     }
 
-    /// The scene that the request names.
+    /// The scene that the request names, its textures limited as it says.
     ///
     /// Errors: no such scene, or a broken file (exit code 2).
     pub fn load_scene(&self) -> Result<Scene> {
-        scene::load(&self.scene, self.values.integer("seed"))
+        let mut scene = scene::load(&self.scene, self.values.integer("seed"))?;
+        scene.texture_limit_px = self.values.integer("texture-limit") as u32;
+        Ok(scene)
     }
 
     /// The device that the request names.
     pub fn device_request(&self) -> DeviceRequest {
-        let strategy =
-            if self.values.text("allocation") == "dedicated" { Strategy::Dedicated } else { Strategy::Linear };
-        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, hook: None }
+        let strategy = Strategy::from_setting(self.values.text("allocation")).expect("the table holds its words");
+        let budget_bytes = self.values.bytes("memory-budget");
+        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, budget_bytes, hook: None }
     }
 
     fn frames(&self, renderer: &Renderer) -> Result<Vec<FrameTime>> {
@@ -174,7 +180,11 @@ impl Job {
         report.image(picture, path)?;
         report.aovs(aovs, picture.extent);
         report.times(renderer, times, self.profile);
-        report.memory(&session.stats.plan(), &renderer.plan, memory);
+        let requirements = Requirements::Device(&session.gpu);
+        let kinds = Kinds::new(&session.gpu.caps);
+        let plans = (&session.stats.plan(), &renderer.plan);
+        let sharing = renderer.sharing.clone();
+        report.memory(&MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(memory))?);
         report.counters(&renderer.counters);
         Ok(report)
     }

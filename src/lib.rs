@@ -57,6 +57,7 @@ pub mod scene;
 pub mod session;
 pub mod settings;
 pub mod shading;
+pub mod study;
 pub mod techniques;
 pub mod units;
 

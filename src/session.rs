@@ -1,17 +1,18 @@
 //! Session: the device with the scene in its memory. It makes any number of renderers; A B A B timing holds two.
 
 use crate::bvh::LazyBvh;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
-use crate::gpu::commands::{FrameTime, Recorded, RecordedPass, Submits};
+use crate::gpu::commands::{RecordedPass, Submits};
 use crate::gpu::readback;
+use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
 use crate::lights::LightSet;
-use crate::plan::{Plan, Resources};
+use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::report::image_file::Aov;
 use crate::report::picture::Picture;
-use crate::resident::{SceneGpu, SceneStats};
+use crate::resident::{self, SceneGpu, SceneStats};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
 use crate::techniques::{Frame, Inputs, Technique};
@@ -42,6 +43,8 @@ pub struct Renderer {
     pub resolved: BTreeMap<&'static str, String>,
     /// Of the frame; the scene's own plan is `SceneStats::plan`.
     pub plan: Plan,
+    /// Which of its resources lie in the same bytes.
+    pub sharing: Sharing,
     aovs: Vec<String>,
 }
 
@@ -55,7 +58,8 @@ impl Session {
         }
         let gpu = Gpu::open(request)?;
         let stats = SceneStats::of(&scene);
-        let scene_gpu = Arc::new(SceneGpu::new(&gpu, &scene)?);
+        let uploaded = SceneGpu::new(&gpu, &scene).map_err(|error| resident::advise(error, &gpu, &scene));
+        let scene_gpu = Arc::new(uploaded?);
         Ok(Self { gpu, scene, stats, scene_gpu, bvh: LazyBvh::default() })
     }
 
@@ -69,6 +73,16 @@ impl Session {
         aovs: &[String],
         submits: Submits,
     ) -> Result<Renderer> {
+        self.make(technique, values, aovs, submits).map_err(|error| {
+            if error.kind() != ErrorKind::Memory {
+                return error;
+            }
+            let plan = format!("`memory --technique {}` prints the plan", technique.name());
+            resident::advise(error, &self.gpu, &self.scene).note(format!("a smaller --size would need less; {plan}"))
+        })
+    }
+
+    fn make(&self, technique: &dyn Technique, values: &Values, aovs: &[String], submits: Submits) -> Result<Renderer> {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
         let inputs = Inputs {
@@ -82,7 +96,10 @@ impl Session {
         };
         let plan = frame_plan(technique, &inputs, aovs)?;
         let prepared = technique.prepare(&inputs)?;
-        let mut resources = Resources::make(&self.gpu, &plan)?;
+        let caps = &self.gpu.caps;
+        let requirements = Requirements::Device(&self.gpu);
+        let sharing = Sharing::of(&plan, requirements, caps, values);
+        let mut resources = Resources::make(&self.gpu, technique.name(), &plan, &sharing)?;
         let [light_count, vpl_count] = prepared.light_counts();
         let background = values.color("background");
         let numbers = view.block(&self.scene.bounds(), background, lights.ambient, light_count, vpl_count);
@@ -94,6 +111,7 @@ impl Session {
         counters.insert("blended_draws", blended.count() as f64);
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
+        cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
         if cfg!(debug_assertions) {
             let names: Vec<&str> = cmd.passes().iter().map(|pass| pass.name.as_str()).collect();
@@ -111,6 +129,7 @@ impl Session {
             counters,
             resolved,
             plan,
+            sharing,
             aovs: aovs.to_vec(),
         })
     }
@@ -140,6 +159,14 @@ impl Renderer {
     /// Errors: the device fails (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
         self.recorded.run()
+    }
+
+    /// Makes the first `pass_count` passes of a frame that was recorded with a submit a pass. It makes no picture: that
+    /// is read after a whole frame.
+    ///
+    /// Errors: the device fails (exit code 4).
+    pub fn frame_first(&self, pass_count: usize) -> Result<FrameTime> {
+        self.recorded.run_first(pass_count)
     }
 
     /// The passes of a frame, in order.

@@ -4,7 +4,7 @@
 //! when it is set, so that what `Values` holds is possible.
 
 use crate::error::{Error, Result};
-use crate::units::Extent;
+use crate::units::{Bytes, Extent};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -32,6 +32,8 @@ pub enum Kind {
     },
     /// Metres, or a part of the scene's diagonal as `2%`.
     Length,
+    /// `512MiB`, `2GiB`, plain bytes, or `none`.
+    Bytes,
     /// Three numbers `R,G,B` of at least 0, or one for all three.
     Color,
     /// Free text, checked where it is used; the word shown in help.
@@ -166,11 +168,40 @@ pub const COMMON: &[Setting] = &[
     Setting {
         key: "allocation",
         symbol: "",
-        kind: Kind::Choice(&["linear", "dedicated"]),
+        kind: Kind::Choice(&["linear", "dedicated", "tlsf"]),
         default: "linear",
         unit: "",
         paper: "",
-        help: "how resources come by their memory: ranges in shared memory blocks, or a memory block each",
+        help: "how resources come by their memory: ranges one after the other in shared memory blocks, a memory block \
+               each, or ranges in shared memory blocks wherever there is room",
+    },
+    Setting {
+        key: "alias",
+        symbol: "",
+        kind: Kind::Choice(&["greedy", "optimal", "off"]),
+        default: "greedy",
+        unit: "",
+        paper: "",
+        help: "resources of a frame that never live in the same pass share bytes: placed by the best of a few orders, by a \
+               search for the least sum, or never",
+    },
+    Setting {
+        key: "memory-budget",
+        symbol: "",
+        kind: Kind::Bytes,
+        default: "none",
+        unit: "",
+        paper: "",
+        help: "what memory blocks in one heap may sum up to; what would pass it is refused; none: the heap's size",
+    },
+    Setting {
+        key: "texture-limit",
+        symbol: "",
+        kind: Kind::Integer { min: 0, max: 16384 },
+        default: "0",
+        unit: "px",
+        paper: "",
+        help: "greatest side of a texture: larger ones begin at a coarser level; 0: no limit",
     },
 ];
 
@@ -234,6 +265,9 @@ impl Setting {
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
             Kind::Sides { min, max } => format!("N or NxM, each {min} to {max}"),
             Kind::Length => "metres, or P% of the scene's diagonal".to_owned(),
+            Kind::Bytes => {
+                "512MiB, 2GiB and the like (B, KiB, MiB, GiB, TiB; without a unit: bytes), or none".to_owned()
+            }
             Kind::Color => "R,G,B or one number, each at least 0".to_owned(),
             Kind::Text(word) => word.to_owned(),
         }
@@ -256,6 +290,7 @@ impl Setting {
                 parse_sides(text).is_some_and(|sides| sides.iter().all(|side| (min..=max).contains(side)))
             }
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
+            Kind::Bytes => parse_bytes(text).is_some(),
             Kind::Color => parse_color(text).is_some(),
             Kind::Text(_) => true,
         };
@@ -286,6 +321,14 @@ fn parse_length(text: &str, diagonal: f64) -> Option<f64> {
         None => text.parse().ok()?,
     };
     value.is_finite().then_some(value)
+}
+
+/// Some(None) is `none`; a budget of no bytes is none that anything fits into.
+fn parse_bytes(text: &str) -> Option<Option<u64>> {
+    match text {
+        "none" => Some(None),
+        text => Bytes::parse(text).filter(|bytes| bytes.0 > 0).map(|bytes| Some(bytes.0)),
+    }
 }
 
 /// Three numbers, or one for all three, each finite and at least 0.
@@ -362,6 +405,11 @@ impl Values {
         self.parsed(key, |text| parse_length(text, f64::from(diagonal))) as f32
     }
 
+    /// None: `none`.
+    pub fn bytes(&self, key: &str) -> Option<u64> {
+        self.parsed(key, parse_bytes)
+    }
+
     pub fn color(&self, key: &str) -> Vec3 {
         self.parsed(key, parse_color)
     }
@@ -410,6 +458,7 @@ mod tests {
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
             (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),
+            (Kind::Bytes, &["", "0", "-1", "1.5", "64MB", "MiB", "64 M", "inf", "nanMiB", "99999999TiB", "None"]),
             (Kind::Color, &["", "1,2", "1,2,3,4", "-1", "nan"]),
         ] {
             for text in wrong {
@@ -425,6 +474,17 @@ mod tests {
         assert!((values.length("vpl-clamp", 50.0) - 1.0).abs() < 1e-6);
         values.set(&clamp, "0.25").unwrap();
         assert!((values.length("vpl-clamp", 50.0) - 0.25).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bytes_take_a_binary_unit_or_none() {
+        let budget = Setting { key: "memory-budget", default: "none", ..setting(Kind::Bytes) };
+        let mut values = Values::defaults(&[budget]);
+        assert_eq!(values.bytes("memory-budget"), None);
+        values.set(&budget, "1.5GiB").unwrap();
+        assert_eq!(values.bytes("memory-budget"), Some(3 << 29));
+        let text = values.set(&budget, "64MB").unwrap_err().to_string();
+        assert!(text.contains("--memory-budget 64MB: it must be 512MiB") && text.contains("KiB, MiB, GiB"), "{text}");
     }
 
     #[test]

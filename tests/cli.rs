@@ -2,86 +2,9 @@
 
 mod support;
 
-use assert_cmd::Command;
 use serde_json::Value;
 use std::path::Path;
-
-/// The program in an empty folder.
-struct Program {
-    folder: tempfile::TempDir,
-}
-
-/// What a run left.
-struct Ran {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-impl Program {
-    fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.folder.path().join(name).to_str().unwrap().to_owned()
-    }
-
-    fn run(&self, arguments: &[&str]) -> Ran {
-        self.run_with(arguments, &[])
-    }
-
-    fn run_with(&self, arguments: &[&str], variables: &[(&str, &str)]) -> Ran {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
-        command.current_dir(self.folder.path()).args(arguments).envs(variables.iter().copied());
-        Ran::of(command)
-    }
-
-    /// Names in the folder, sorted.
-    fn files(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.folder.path()).unwrap();
-        let mut names: Vec<String> =
-            entries.map(|entry| entry.unwrap().file_name().to_str().unwrap().to_owned()).collect();
-        names.sort();
-        names
-    }
-
-    /// A run that must fail with `code` and say all of `words`, print nothing else and leave no new file.
-    fn fails(&self, arguments: &[&str], code: i32, words: &[&str]) {
-        let before = self.files();
-        let ran = self.run(arguments);
-        assert_eq!(ran.code, code, "{arguments:?}: {}", ran.err);
-        assert!(ran.err.starts_with("error: "), "{arguments:?}: {}", ran.err);
-        for word in words {
-            assert!(ran.err.contains(word), "{arguments:?} does not say {word}: {}", ran.err);
-        }
-        assert_eq!(ran.out, "", "{arguments:?}");
-        assert_eq!(self.files(), before, "{arguments:?} left something");
-    }
-}
-
-impl Ran {
-    fn of(mut command: Command) -> Self {
-        let output = command.output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Self {
-            code: output.status.code().expect("it ended by itself"),
-            out: text(output.stdout),
-            err: text(output.stderr),
-        }
-    }
-
-    /// It succeeded and had nothing to complain about.
-    fn fine(self) -> Self {
-        assert_eq!(self.code, 0, "{}", self.err);
-        assert_eq!(self.err, "");
-        self
-    }
-
-    fn json(&self) -> Value {
-        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {}", self.out))
-    }
-}
+use support::program::Program;
 
 /// A picture that costs next to nothing.
 const SMALL: [&str; 6] = ["render", "cornell", "--size", "32x18", "--vpls", "16"];
@@ -159,6 +82,57 @@ fn a_report_says_what_storage_and_block_came_to() {
         fragment["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap()).collect();
     for pass in ["split.blocks", "split.translate", "shade", "gather.translate", "gather.blocks"] {
         assert!(names.contains(&format!("interleaved_deferred.{pass}").as_str()), "{names:?} has no {pass}");
+    }
+}
+
+#[test]
+fn a_budget_that_is_spent_says_what_would_help() {
+    let program = Program::new();
+    let budget = |text: &'static str| small(&["--memory-budget", text]);
+    program.fails(&budget("64MB"), 2, &["--memory-budget 64MB", "512MiB, 2GiB", "or none"]);
+    program.fails(&budget("0"), 2, &["--memory-budget 0", "the default is --memory-budget none"]);
+    program.fails(&small(&["--texture-limit", "16385"]), 2, &["--texture-limit 16385", "0 to 16384"]);
+    program.fails(&budget("4KiB"), 4, &["allocating scene.", "the budget of 4.00 KiB is "]);
+    let frame = ["render", "cornell", "--size", "640x360", "--vpls", "16", "--memory-budget", "8MiB"];
+    let help = "a smaller --size would need less; `memory --technique interleaved_deferred` prints the plan";
+    program.fails(&frame, 4, &["allocating interleaved_deferred.", "the budget of 8.00 MiB is spent", help]);
+    let textured = ["render", "hall:triangles=8000", "--size", "64x36", "--memory-budget", "30MiB"];
+    program.fails(
+        &textured,
+        4,
+        &["allocating scene.textures.", "most of it by scene.textures (", "--texture-limit 256"],
+    );
+    let limited = textured.iter().copied().chain(["--technique", "deferred", "--texture-limit", "256", "--json"]);
+    let report = program.run(&limited.collect::<Vec<_>>()).fine().json();
+    assert_eq!(
+        (&report["settings"]["texture-limit"], &report["settings"]["memory-budget"]),
+        (&256.into(), &"30MiB".into())
+    );
+    assert!(report["memory"]["memory_block_bytes"].as_u64().unwrap() <= 30 << 20);
+    assert_eq!(report["memory"]["planned_bytes"], sum_of(&report, "bytes"));
+    assert_eq!(report["memory"]["allocated_bytes"], sum_of(&report, "bound_bytes"));
+}
+
+/// Over the resources of a report.
+fn sum_of(report: &Value, key: &str) -> u64 {
+    report["memory"]["resources"].as_array().unwrap().iter().map(|one| one[key].as_u64().unwrap()).sum()
+}
+
+#[test]
+fn every_allocation_gives_the_same_picture_and_says_how_its_memory_blocks_are_filled() {
+    let program = Program::new();
+    let reports = ["linear", "dedicated", "tlsf"]
+        .map(|strategy| program.run(&small(&["--allocation", strategy, "--json", "-o", "a.png"])).fine().json());
+    for report in &reports {
+        assert_eq!(report["image"]["hash"], reports[0]["image"]["hash"]);
+        let blocks = report["memory"]["memory_blocks"].as_array().unwrap();
+        let sum = |key: &str| -> u64 { blocks.iter().map(|block| block[key].as_u64().unwrap()).sum() };
+        assert_eq!(report["memory"]["memory_block_bytes"], sum("bytes"));
+        let [allocated, aliased] =
+            ["allocated_bytes", "aliased_bytes"].map(|key| report["memory"][key].as_u64().unwrap());
+        assert!(aliased > 0);
+        assert_eq!(allocated - aliased, sum("used_bytes"));
+        assert!(blocks.iter().all(|block| block["fragmentation"].is_number()), "{blocks:?}");
     }
 }
 
@@ -351,4 +325,33 @@ fn help_names_every_setting() {
     let ran = program.run(&[]);
     assert_eq!((ran.code, ran.out.as_str()), (2, ""));
     assert!(program.run(&["--version"]).fine().out.starts_with("quincunx "));
+}
+
+#[test]
+fn memory_is_planned_without_any_driver() {
+    let program = Program::new();
+    let plan = ["memory", "cornell", "--size", "64x32", "--vpls", "32", "--plan"];
+    let nowhere = [("VK_DRIVER_FILES", "/nowhere.json"), ("VK_ICD_FILENAMES", "/nowhere.json")];
+    let ran = program.run_with(&[&plan[..], &["--json"]].concat(), &nowhere).fine();
+    let study = &ran.json()["techniques"][0];
+    assert_eq!(
+        (study["technique"].as_str(), study["device"].as_str()),
+        (Some("interleaved_deferred"), Some("lavapipe-22.3.6"))
+    );
+    let rows = study["memory"]["resources"].as_array().unwrap();
+    let normal = rows.iter().find(|row| row["name"] == "interleaved_deferred.split.normal").unwrap();
+    assert_eq!((normal["bytes"].as_u64(), normal["bound_bytes"].as_u64()), (Some(64 * 32 * 8), Some(64 * 32 * 8)));
+    assert_eq!(
+        (&normal["first_pass"], &normal["last_pass"]),
+        (&"interleaved_deferred.split".into(), &"interleaved_deferred.shade".into())
+    );
+    let both = ["--technique", "deferred", "--technique", "interleaved_deferred", "-o", "out"];
+    let ran = program.run_with(&[&plan[..], &both].concat(), &nowhere).fine();
+    assert!(ran.out.contains("deferred: cornell on lavapipe-22.3.6") && ran.out.contains(" planned, "), "{}", ran.out);
+    for file in ["memory-deferred.txt", "memory-deferred.json", "memory-interleaved_deferred.txt"] {
+        assert!(Path::new(&program.path(&format!("out/{file}"))).exists(), "{file}");
+    }
+    program.fails(&[&plan[..], &["--caps", "voodoo"]].concat(), 2, &["voodoo", "lavapipe-22.3.6"]);
+    program.fails(&[&plan[..], &["--technique", "deferred"]].concat(), 2, &["--vpls"]);
+    program.fails(&[&plan[..], &["--pattern", "8x8"]].concat(), 2, &["32 lights for the 64 subsets"]);
 }

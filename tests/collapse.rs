@@ -218,6 +218,19 @@ fn where_resources_lie_changes_no_pixel() {
 }
 
 #[test]
+fn shared_bytes_change_no_pixel() {
+    let watched = Watched::open("lamps:objects=10,lights=24");
+    let modes: [Changes<'_>; 3] = [&[("alias", "off")], &[("alias", "greedy")], &[("alias", "optimal")]];
+    require_one_hash(&watched, "deferred", &[("size", "161x91"), ("cull", "tiled")], &modes);
+    for road in ROADS {
+        for filter in ["none", "gauss", "gauss-fast"] {
+            let common = [("size", "161x91"), ("vpls", "64"), ("pattern", "3x2"), ("filter", filter)];
+            require_one_hash(&watched, INTERLEAVED, &both(&common, road), &modes);
+        }
+    }
+}
+
+#[test]
 fn the_shape_of_workgroups_changes_no_pixel() {
     let watched = Watched::open("cornell");
     let shapes = ["64x1", "8x8", "1x1", "16x4", "1x64", "7x3", "128x1"].map(|shape| [("workgroup", shape)]);

@@ -3,130 +3,36 @@
 mod support;
 
 use ash::vk;
-use ash::vk::Handle;
-use quincunx::gpu::DeviceRequest;
+use quincunx::error::Result;
 use quincunx::gpu::commands::Submits;
-use quincunx::memory::Strategy;
+use quincunx::memory::kinds::Use;
 use quincunx::memory::ledger::Snapshot;
+use quincunx::memory::{Allocation, Memory, Request, Strategy, Tiling};
 use quincunx::scene;
 use quincunx::session::Session;
 use std::collections::BTreeMap;
-use std::ffi::{CStr, c_void};
-use std::mem::transmute;
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use support::watched::{Changes, Watched, both, watched_device};
-
-/// What went past the hook. A hook is a plain function, so there is one counter in the process, and one test at a time.
-struct Counter {
-    allocate: Option<vk::PFN_vkAllocateMemory>,
-    free: Option<vk::PFN_vkFreeMemory>,
-    /// Bytes of each live allocation, by its handle.
-    live: BTreeMap<u64, u64>,
-    bytes_ever: u64,
-    /// Allocations still to come before one is refused; None: none is.
-    until_refusal: Option<u32>,
-}
-
-impl Counter {
-    const NEW: Self = Self { allocate: None, free: None, live: BTreeMap::new(), bytes_ever: 0, until_refusal: None };
-
-    /// Whether this allocation is the one to refuse.
-    fn refuses(&mut self) -> bool {
-        let refused = self.until_refusal == Some(0);
-        self.until_refusal = self.until_refusal.and_then(|count| count.checked_sub(1));
-        refused
-    }
-}
-
-static COUNTER: Mutex<Counter> = Mutex::new(Counter::NEW);
-static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-
-fn counter() -> MutexGuard<'static, Counter> {
-    COUNTER.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn live_bytes() -> u64 {
-    counter().live.values().sum()
-}
-
-unsafe extern "system" fn counted_allocate(
-    device: vk::Device,
-    info: *const vk::MemoryAllocateInfo<'_>,
-    callbacks: *const vk::AllocationCallbacks<'_>,
-    memory: *mut vk::DeviceMemory,
-) -> vk::Result {
-    if counter().refuses() {
-        return vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
-    }
-    let allocate = counter().allocate.expect("the hook stored it");
-    // SAFETY: the driver's own function with the caller's arguments.
-    let result = unsafe { allocate(device, info, callbacks, memory) };
-    if result == vk::Result::SUCCESS {
-        // SAFETY: both pointers are valid in a call that succeeded.
-        let (bytes, handle) = unsafe { ((*info).allocation_size, (*memory).as_raw()) };
-        let mut counter = counter();
-        counter.bytes_ever += bytes;
-        assert!(counter.live.insert(handle, bytes).is_none(), "a live handle was given out again");
-    }
-    result
-}
-
-unsafe extern "system" fn counted_free(
-    device: vk::Device,
-    memory: vk::DeviceMemory,
-    callbacks: *const vk::AllocationCallbacks<'_>,
-) {
-    let free = counter().free.expect("the hook stored it");
-    if memory != vk::DeviceMemory::null() {
-        assert!(counter().live.remove(&memory.as_raw()).is_some(), "freed what was not allocated");
-    }
-    // SAFETY: the driver's own function with the caller's arguments.
-    unsafe { free(device, memory, callbacks) };
-}
-
-fn hook(name: &CStr, own: *const c_void) -> *const c_void {
-    if own.is_null() {
-        return own;
-    }
-    let mut counter = counter();
-    match name.to_bytes() {
-        b"vkAllocateMemory" => {
-            // SAFETY: the pointer is the function of that name.
-            counter.allocate = Some(unsafe { transmute::<*const c_void, vk::PFN_vkAllocateMemory>(own) });
-            counted_allocate as vk::PFN_vkAllocateMemory as *const c_void
-        }
-        b"vkFreeMemory" => {
-            // SAFETY: as above.
-            counter.free = Some(unsafe { transmute::<*const c_void, vk::PFN_vkFreeMemory>(own) });
-            counted_free as vk::PFN_vkFreeMemory as *const c_void
-        }
-        _ => own,
-    }
-}
-
-/// Runs `test` on a counted device and requires that everything is given back at its end.
-fn counted(strategy: Strategy, spec: &str, test: impl FnOnce(&Watched)) {
-    let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    *counter() = Counter::NEW;
-    let request = DeviceRequest { strategy, hook: Some(hook), ..watched_device() };
-    let watched = Watched::with_request(&request, scene::load(spec, 1).unwrap());
-    test(&watched);
-    drop(watched);
-    assert_eq!(live_bytes(), 0, "bytes that nobody gave back");
-    assert!(counter().bytes_ever > 0, "the hook saw nothing");
-}
+use std::sync::Arc;
+use support::counted::{STRATEGIES, begin, counted, counted_device, counter, live_bytes};
+use support::watched::{Changes, Watched, both};
 
 fn require_ledger_as_counted(snapshot: &Snapshot, what: &str) {
     assert_eq!(snapshot.memory_block_bytes, live_bytes(), "{what}: in memory blocks");
     assert_eq!(snapshot.requested_bytes_ever, counter().bytes_ever, "{what}: ever asked for");
     assert!(snapshot.asked_bytes() <= snapshot.bound_bytes(), "{what}: bound is asked for, and padding");
-    assert!(snapshot.bound_bytes() <= snapshot.memory_block_bytes, "{what}: resources lie in memory blocks");
-    assert!(snapshot.bound_bytes() <= snapshot.peak_bytes, "{what}: now is not above the peak");
+    assert!(snapshot.held_bytes() <= snapshot.memory_block_bytes, "{what}: resources lie in memory blocks");
+    assert!(snapshot.held_bytes() <= snapshot.peak_bytes, "{what}: now is not above the peak");
+    let in_blocks: u64 = snapshot.blocks.iter().map(|block| block.bytes).sum();
+    assert_eq!(in_blocks, snapshot.memory_block_bytes, "{what}: block by block");
+    for block in &snapshot.blocks {
+        assert_eq!(block.used_bytes + block.free_bytes, block.bytes, "{what}: {block:?}");
+        assert!(block.used_bytes > 0 && block.largest_free_bytes <= block.free_bytes, "{what}: {block:?}");
+        assert!((0.0..=1.0).contains(&block.fragmentation), "{what}: {block:?}");
+    }
 }
 
 #[test]
 fn the_ledger_counts_what_the_driver_was_asked_for() {
-    for strategy in [Strategy::Linear, Strategy::Dedicated] {
+    for strategy in STRATEGIES {
         counted(strategy, "cornell", |watched| {
             let memory = &watched.session.gpu.memory;
             require_ledger_as_counted(&memory.snapshot(), "the scene");
@@ -151,7 +57,8 @@ fn the_ledger_counts_what_the_driver_was_asked_for() {
 #[test]
 fn a_memory_block_for_each_resource_holds_what_the_driver_requires() {
     counted(Strategy::Dedicated, "cornell", |watched| {
-        let _renderer = watched.render("interleaved_deferred", &[("size", "161x91"), ("vpls", "64")]);
+        let changes = [("size", "161x91"), ("vpls", "64"), ("alias", "off")];
+        let _renderer = watched.render("interleaved_deferred", &changes);
         let snapshot = watched.session.gpu.memory.snapshot();
         assert_eq!(snapshot.memory_block_bytes, snapshot.bound_bytes());
         assert_eq!(counter().live.len(), snapshot.resources.len());
@@ -161,17 +68,86 @@ fn a_memory_block_for_each_resource_holds_what_the_driver_requires() {
 
 #[test]
 fn resources_in_shared_memory_blocks_do_not_overlap() {
-    counted(Strategy::Linear, "hall:triangles=8000", |watched| {
-        let _first = watched.render("interleaved_deferred", &[("size", "321x181"), ("vpls", "64")]);
-        let _second = watched.render("deferred", &[("size", "161x91"), ("cull", "tiled")]);
-        let mut entries = watched.session.gpu.memory.snapshot().resources;
-        entries.sort_by_key(|entry| (entry.memory_block, entry.offset));
-        for pair in entries.windows(2) {
-            let apart = pair[0].memory_block != pair[1].memory_block;
-            let behind = pair[0].offset + pair[0].bound_bytes <= pair[1].offset;
-            assert!(apart || behind, "{} and {} share bytes", pair[0].name, pair[1].name);
+    for strategy in [Strategy::Linear, Strategy::Tlsf] {
+        counted(strategy, "hall:triangles=8000", |watched| {
+            let alone = ("alias", "off");
+            let first = watched.render("interleaved_deferred", &[("size", "321x181"), ("vpls", "64"), alone]);
+            let _second = watched.render("deferred", &[("size", "161x91"), ("cull", "tiled"), alone]);
+            drop(first);
+            let _third = watched.render("interleaved_deferred", &[("size", "161x91"), ("vpls", "64"), alone]);
+            let mut entries = watched.session.gpu.memory.snapshot().resources;
+            entries.sort_by_key(|entry| (entry.memory_block, entry.offset));
+            for pair in entries.windows(2) {
+                let apart = pair[0].memory_block != pair[1].memory_block;
+                let behind = pair[0].offset + pair[0].bound_bytes <= pair[1].offset;
+                assert!(apart || behind, "{} and {} share bytes", pair[0].name, pair[1].name);
+            }
+        });
+    }
+}
+
+/// Two resources of one renderer lie in the same bytes only where no pass sees both, and what sharing saves is a third.
+#[test]
+fn resources_that_share_bytes_never_live_in_the_same_pass() {
+    let settings: [(&str, Changes<'_>); 4] = [
+        ("deferred", &[("cull", "tiled")]),
+        ("interleaved_deferred", &[]),
+        ("interleaved_deferred", &[("filter", "gauss-fast"), ("pattern", "5x7"), ("direct-shadow", "ray")]),
+        ("interleaved_deferred", &[("split", "subsample"), ("position", "depth")]),
+    ];
+    for (technique, changes) in settings {
+        for alias in ["greedy", "optimal"] {
+            counted(Strategy::Linear, "cornell", |watched| {
+                let size = [("size", "321x181"), ("vpls", "64"), ("alias", alias)];
+                let keys = if technique == "deferred" { &[size[0], size[2]][..] } else { &size };
+                let renderer = watched.render(technique, &both(changes, keys));
+                let plan = &renderer.plan;
+                let lifetime = |name: &str| {
+                    let index = plan.resources.iter().position(|planned| planned.name == name).unwrap();
+                    plan.lifetime(index).unwrap()
+                };
+                let snapshot = watched.session.gpu.memory.snapshot();
+                let parts: Vec<_> = snapshot.resources.iter().filter(|entry| entry.arena.is_some()).collect();
+                let mut sharing_count = 0;
+                for (index, one) in parts.iter().enumerate() {
+                    for other in &parts[..index] {
+                        let bytes = one.memory_block == other.memory_block
+                            && one.offset < other.offset + other.bound_bytes
+                            && other.offset < one.offset + one.bound_bytes;
+                        let (a, b) = (lifetime(&one.name), lifetime(&other.name));
+                        assert!(!bytes || a.last < b.first || b.last < a.first, "{} and {}", one.name, other.name);
+                        sharing_count += usize::from(bytes);
+                    }
+                }
+                assert!(sharing_count > 0, "{technique} {changes:?}: nothing is shared");
+                assert_eq!(snapshot.aliased_bytes(), renderer.sharing.aliased_bytes());
+                let transient: u64 = parts.iter().map(|part| part.bound_bytes).sum();
+                let saved = snapshot.aliased_bytes() as f64 / transient as f64;
+                let least = if changes.is_empty() { 1.0 / 3.0 } else { 0.0 };
+                assert!(saved > least, "{technique} {changes:?}: {saved} of the transient bytes are saved");
+            });
         }
+    }
+}
+
+/// Renderers that overlap in time leave holes: TLSF takes them again, so that the same frames need fewer bytes.
+#[test]
+fn what_returns_to_a_tlsf_block_is_taken_again() {
+    let [linear, tlsf] = [Strategy::Linear, Strategy::Tlsf].map(|strategy| {
+        let mut most = 0;
+        counted(strategy, "cornell", |watched| {
+            let changes = [("size", "320x180"), ("alias", "off")];
+            let mut held = watched.render("deferred", &changes);
+            for _ in 0..8 {
+                let next = watched.render("deferred", &changes);
+                most = most.max(live_bytes());
+                held = next;
+            }
+            drop(held);
+        });
+        most
     });
+    assert!(tlsf < linear, "{tlsf} bytes, linear ranges {linear}");
 }
 
 /// The plan is arithmetic, the ledger is what was made: the same bytes, name by name.
@@ -240,15 +216,53 @@ fn a_refused_request_leaves_nothing_behind() {
     });
 }
 
-/// The driver refuses each allocation once: an error that names the resource, and nothing stays behind.
+/// The driver refuses each allocation once: an error that names the resource, and nothing stays behind. An arena with
+/// its parts stands beside the renderer.
 #[test]
 fn memory_that_is_refused_leaves_nothing_behind() {
+    let changes = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
+    for (strategy, alias) in
+        STRATEGIES.into_iter().flat_map(|strategy| ["off", "greedy"].map(|alias| (strategy, alias)))
+    {
+        let changes = both(&changes, &[("alias", alias)]);
+        counted(strategy, "cornell", |watched| {
+            let memory = &watched.session.gpu.memory;
+            let before = memory.snapshot();
+            for refused_at in 0.. {
+                counter().until_refusal = Some(refused_at);
+                let made = arena_of_two(memory).and_then(|arena| {
+                    Ok((arena, watched.try_renderer("interleaved_deferred", &changes, &[], Submits::One)?))
+                });
+                let refused = counter().until_refusal.is_none();
+                counter().until_refusal = None;
+                let Err(error) = made else {
+                    assert!(!refused, "allocation {refused_at} was refused, and nobody noticed");
+                    let least = match (strategy, alias) {
+                        (Strategy::Dedicated, "off") => 21,
+                        (Strategy::Dedicated, _) => 9,
+                        _ => 2,
+                    };
+                    assert!(refused_at >= least, "{strategy:?}: only {refused_at} allocations");
+                    break;
+                };
+                assert!(refused, "{strategy:?}: nothing was refused, and it failed: {error}");
+                assert_eq!(error.exit_code(), 4, "{error}");
+                assert!(error.message().contains("allocating "), "{error}");
+                let after = memory.snapshot();
+                assert_eq!(after.held_bytes(), before.held_bytes(), "refused at {refused_at}: {error}");
+                require_ledger_as_counted(&after, "after a refusal");
+            }
+        });
+    }
+}
+
+/// The same of roads with images, look-up textures and resources between two passes.
+#[test]
+fn memory_that_is_refused_on_any_road_leaves_nothing_behind() {
     counted(Strategy::Dedicated, "cornell", |watched| {
-        let memory = &watched.session.gpu.memory;
-        let before = memory.snapshot();
-        let common = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
-        for split in ["one-pass", "two-pass", "fragment", "stencil"] {
-            let changes = both(&common, &[("split", split)]);
+        let before = watched.session.gpu.memory.snapshot();
+        for split in ["two-pass", "layered", "fragment", "stencil"] {
+            let changes = [("size", "33x17"), ("vpls", "16"), ("split", split), ("alias", "off")];
             for refused_at in 0.. {
                 counter().until_refusal = Some(refused_at);
                 let made = watched.try_renderer("interleaved_deferred", &changes, &[], Submits::One);
@@ -256,13 +270,12 @@ fn memory_that_is_refused_leaves_nothing_behind() {
                 counter().until_refusal = None;
                 let Err(error) = made else {
                     assert!(!refused, "{split}: allocation {refused_at} was refused, and nobody noticed");
-                    assert!(refused_at > 20, "{split}: only {refused_at} allocations");
+                    assert!(refused_at > 15, "{split}: only {refused_at} allocations");
                     break;
                 };
-                assert_eq!(error.exit_code(), 4, "{error}");
-                assert!(error.message().contains("allocating "), "{error}");
-                let after = memory.snapshot();
-                assert_eq!(after.bound_bytes(), before.bound_bytes(), "{split}, refused at {refused_at}: {error}");
+                assert_eq!((error.exit_code(), refused), (4, true), "{split}: {error}");
+                let after = watched.session.gpu.memory.snapshot();
+                assert_eq!(after.held_bytes(), before.held_bytes(), "{split}, refused at {refused_at}: {error}");
                 require_ledger_as_counted(&after, "after a refusal");
             }
         }
@@ -271,13 +284,104 @@ fn memory_that_is_refused_leaves_nothing_behind() {
 
 #[test]
 fn a_scene_that_does_not_fit_is_refused() {
-    let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let scene = scene::load("hall:triangles=8000", 1).unwrap();
-    for refused_at in [0, 1, 2, 5, 9] {
-        *counter() = Counter { until_refusal: Some(refused_at), ..Counter::NEW };
-        let request = DeviceRequest { strategy: Strategy::Dedicated, hook: Some(hook), ..watched_device() };
-        let error = Session::open(&request, scene.clone()).err().expect("the driver refused");
-        assert_eq!(error.exit_code(), 4, "{error}");
-        assert_eq!(live_bytes(), 0, "refused at {refused_at}: {error}");
+    for strategy in STRATEGIES {
+        for refused_at in [0, 1, 2, 5, 9] {
+            let _one = begin();
+            counter().until_refusal = Some(refused_at);
+            let opened = Session::open(&counted_device(strategy), scene.clone()).map(drop);
+            let refused = counter().until_refusal.is_none();
+            match opened {
+                Ok(()) => assert!(!refused, "allocation {refused_at} was refused, and nobody noticed"),
+                Err(error) => assert_eq!((error.exit_code(), refused), (4, true), "{error}"),
+            }
+            assert_eq!(live_bytes(), 0, "refused at {refused_at}");
+        }
+    }
+}
+
+/// 64 KiB in which two parts of 48 KiB lie, 16 KiB of them shared twice.
+fn arena_of_two(memory: &Arc<Memory>) -> Result<[Allocation; 2]> {
+    let arena = memory.arena("test.arena", "test", 64 << 10, 4096, !0, Use::Device)?;
+    let part = |name, offset| {
+        let requirements = vk::MemoryRequirements { size: 48 << 10, alignment: 4096, memory_type_bits: !0 };
+        let (usage, tiling) = (Use::Device, Tiling::Optimal);
+        arena.part(&Request { name, group: "test", bytes: 48_000, requirements, usage, tiling }, offset)
+    };
+    Ok([part("test.first", 0)?, part("test.second", 16 << 10)?])
+}
+
+#[test]
+fn an_arena_counts_once_and_returns_with_its_last_part() {
+    for strategy in STRATEGIES {
+        counted(strategy, "cornell", |watched| {
+            let memory = &watched.session.gpu.memory;
+            let before = memory.snapshot();
+            let live_before = live_bytes();
+            let [first, second] = arena_of_two(memory).unwrap();
+            let with = memory.snapshot();
+            require_ledger_as_counted(&with, "with an arena");
+            assert_eq!(live_bytes() - live_before, 64 << 10, "a memory block of its own");
+            assert_eq!(with.held_bytes() - before.held_bytes(), 64 << 10);
+            assert_eq!(with.bound_bytes() - before.bound_bytes(), 96 << 10);
+            assert_eq!((before.aliased_bytes(), with.aliased_bytes()), (0, 32 << 10));
+            let parts = &with.resources[before.resources.len()..];
+            assert_eq!(parts[0].memory_block, parts[1].memory_block);
+            assert!(
+                with.resources[..before.resources.len()].iter().all(|one| one.memory_block != parts[0].memory_block)
+            );
+            assert_eq!((parts[0].offset, parts[1].offset, first.offset, second.offset), (0, 16 << 10, 0, 16 << 10));
+            assert_eq!((first.handle, parts[0].bytes, parts[0].bound_bytes), (second.handle, 48_000, 48 << 10));
+            drop(first);
+            assert_eq!(live_bytes() - live_before, 64 << 10, "the second part keeps it");
+            assert_eq!(memory.snapshot().aliased_bytes(), 0);
+            drop(second);
+            assert_eq!(live_bytes(), live_before);
+            require_ledger_as_counted(&memory.snapshot(), "without the arena");
+        });
+    }
+}
+
+/// The host sees a part where it lies, and two parts in the same bytes are the same bytes.
+#[test]
+fn parts_of_a_mapped_arena_share_what_the_host_wrote() {
+    counted(Strategy::Linear, "cornell", |watched| {
+        let memory = &watched.session.gpu.memory;
+        let arena = memory.arena("test.arena", "test", 8192, 256, !0, Use::Upload).unwrap();
+        let requirements = vk::MemoryRequirements { size: 4096, alignment: 256, memory_type_bits: !0 };
+        let (usage, tiling) = (Use::Upload, Tiling::Linear);
+        let request = Request { name: "test.part", group: "test", bytes: 4096, requirements, usage, tiling };
+        let [first, second] = [0, 1024].map(|offset| arena.part(&request, offset).unwrap());
+        drop(arena);
+        let [first, second] = [&first, &second].map(|part| part.mapped.expect("it is for upload"));
+        // SAFETY: both parts are alive, mapped and 4096 bytes long; nobody else writes them.
+        unsafe {
+            first.add(1024 + 7).write(42);
+            assert_eq!(second.add(7).read(), 42);
+        }
+    });
+}
+
+#[test]
+fn a_part_in_a_memory_type_that_the_driver_forbids_is_refused() {
+    counted(Strategy::Linear, "cornell", |watched| {
+        let arena = watched.session.gpu.memory.arena("test.arena", "test", 8192, 256, !0, Use::Device).unwrap();
+        let requirements = vk::MemoryRequirements { size: 4096, alignment: 256, memory_type_bits: 0 };
+        let (usage, tiling) = (Use::Device, Tiling::Linear);
+        let request = Request { name: "test.part", group: "test", bytes: 4096, requirements, usage, tiling };
+        let error = arena.part(&request, 0).err().expect("no type is allowed");
+        assert!(error.exit_code() == 4 && error.message().contains("test.part"), "{error}");
+    });
+}
+
+/// Where resources lie changes no picture.
+#[test]
+fn every_strategy_gives_the_same_picture() {
+    for (technique, changes) in
+        [("interleaved_deferred", &[("size", "97x53"), ("vpls", "64")][..]), ("deferred", &[("size", "97x53")])]
+    {
+        let hashes =
+            STRATEGIES.map(|strategy| Watched::with_strategy(strategy, "hall:triangles=8000").hash(technique, changes));
+        assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{technique}: {hashes:?}");
     }
 }

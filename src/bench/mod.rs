@@ -1,5 +1,22 @@
 //! Benchmarks: a grid of settings, measured in turn, each row with its error, its bytes and the command that repeats it.
+//!
+//! A sweep is worked in groups. A group holds the baseline and a few variants at once and measures them in rounds,
+//! A B A B, so that drift of the machine falls on all of them; ratios are of the same round, and to the baseline of the
+//! same group. Rows are written when their group is done.
 
+pub mod blocks;
+pub mod candidate;
+pub mod copy;
+pub mod group;
+pub mod pareto;
+pub mod reference;
+pub mod rounds;
+pub mod row;
+pub mod rows_file;
 pub mod run;
 pub mod stats;
+pub mod summary;
 pub mod sweep;
+pub mod table;
+pub mod variant;
+pub mod what;

@@ -1,207 +1,230 @@
-//! `bench frame`: whole frames of each variant, in turn, after a warm-up of each; then each variant's passes.
-//!
-//! Times are compared inside one run only. A round makes one frame of every variant, so that drift of the machine falls
-//! on all of them; ratios are of the same round.
+//! A sweep from grid to rows: which points are possible, in which groups they are measured, what is already known.
 
-use super::stats::{Ratio, paired_ratio};
-use super::sweep::{Point, label};
-use crate::error::Result;
-use crate::gpu::commands::Submits;
+use super::candidate::Candidate;
+use super::group::{Ground, Group, is_of_memory};
+use super::reference::References;
+use super::row::Head;
+use super::rows_file::RowsFile;
+use super::sweep::{self, Axis};
+use super::variant::Variant;
+use super::what::What;
+use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
 use crate::job::{Job, judge};
-use crate::metrics;
-use crate::report::picture::Picture;
-use crate::report::run::{median, spread};
-use crate::session::{Renderer, Session};
-use crate::settings::Values;
-use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use crate::session::Session;
+use serde_json::Value;
+use std::collections::VecDeque;
+use std::rc::Rc;
 
-/// What a benchmark found.
+/// What is asked for.
+pub struct Request<'a> {
+    /// Scene, device, and the settings that are not swept.
+    pub job: &'a Job,
+    pub what: What,
+    pub axes: &'a [Axis],
+    /// `KEY=VALUE KEY=VALUE`, a point of the grid; None: the first that is possible.
+    pub baseline: Option<&'a str>,
+    /// Rounds, at least one.
+    pub repeat: usize,
+}
+
+/// What came out.
+#[derive(Debug)]
 pub struct Rows {
-    /// One JSON document each.
+    /// In the order of the grid: those of this run and those that were kept.
     pub rows: Vec<Value>,
-    /// Stopped by the user after a whole round; the rows hold the rounds before.
+    /// The user stopped it: these are the rows of the groups that ended before.
     pub interrupted: bool,
 }
 
-/// Frames of a variant's passes, after one that warms up.
-const PASS_FRAMES: usize = 3;
+/// Who is told how it goes.
+pub trait Observer {
+    /// A row is known, and written where rows are written.
+    ///
+    /// Errors: it cannot be shown (exit code 2).
+    fn row(&mut self, row: &Value) -> Result<()>;
 
-/// A point of the grid, ready to make frames.
-struct Variant {
-    label: String,
-    values: Values,
-    renderer: Renderer,
-    picture: Picture,
-    frame_ms: Vec<f64>,
+    /// `done` of `all` steps of equal work, about.
+    fn step(&mut self, done: usize, all: usize);
+
+    /// A group has ended: rows that are known now, of how many.
+    fn group(&mut self, known: usize, all: usize);
 }
 
-/// Runs every point of `grid` on `job`'s scene, `repeat` rounds. `progress` is told each finished frame out of how many.
+/// Measures the grid of `request`; rows that `file` holds already are taken from it, new ones are appended to it.
 ///
-/// Errors: an impossible setting (exit code 2), no device (3), the device fails (4), interrupted before the first round
-/// ended (130).
-pub fn frames(job: &mut Job, grid: &[Point], repeat: usize, progress: &dyn Fn(usize, usize)) -> Result<Rows> {
-    let defaults = job.values.clone();
-    let mut settings = Vec::new();
-    for point in grid {
-        job.values = defaults.clone();
-        for (key, value) in point {
-            job.set(key, value).map_err(|error| error.within("--sweep"))?;
-        }
-        settings.push((label(point), job.values.clone()));
-    }
-    job.values = defaults;
+/// Errors: no point is possible, or the baseline is not (exit code 2); no device (3); the device fails (4); a picture
+/// holds NaN or infinity, or the validation layer has spoken (1).
+pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dyn Observer) -> Result<Rows> {
+    let job = request.job;
+    let grid = sweep::grid(request.axes);
+    let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
     let session = Session::open(&job.device_request(), job.load_scene()?)?;
-    let mut variants = Vec::new();
-    for (label, values) in settings {
-        let renderer = session.renderer(job.technique, &values, &[], Submits::One)?;
-        // The first frame compiles shaders; it is not timed, and its picture is the variant's.
-        renderer.frame()?;
-        let picture = renderer.picture()?;
-        variants.push(Variant { label, values, renderer, picture, frame_ms: Vec::new() });
-    }
-    let interrupted = rounds(&mut variants, repeat, progress)?;
-    let reference = Reference::of(job, &session, &variants)?;
-    let mut rows = Vec::new();
-    let baseline_ms = variants[0].frame_ms.clone();
-    let baseline = variants[0].label.clone();
-    for variant in &variants {
-        let mut row = row(job, &session, variant)?;
-        let Ratio { mean, interval, pairs } = paired_ratio(&baseline_ms, &variant.frame_ms);
-        row["speed_up"] = json!({ "baseline": baseline, "mean": mean, "interval_95": interval, "pairs": pairs });
-        if let Some(reference) = &reference {
-            reference.judge(variant, &mut row)?;
-        }
-        rows.push(row);
-    }
+    let candidates: Vec<Candidate> = grid.iter().map(|point| Candidate::new(job, point, &session.scene.hash)).collect();
+    let mut sweep = Sweep::start(request, &session, candidates, named, file, observer)?;
+    let interrupted = match sweep.measure() {
+        Err(stop) if stop.kind() == ErrorKind::Interrupted => true,
+        done => done.map(|()| false)?,
+    };
+    let rows = sweep.rows.drain(..).flatten().collect();
     let log = session.gpu.validation_log();
-    drop((variants, session));
+    // Closing says what was leaked: only then is the log whole.
+    drop(sweep);
+    drop(session);
     judge(log.as_deref())?;
     Ok(Rows { rows, interrupted })
 }
 
-/// True when the user stopped it after a whole round.
-fn rounds(variants: &mut [Variant], repeat: usize, progress: &dyn Fn(usize, usize)) -> Result<bool> {
-    let all = repeat * variants.len();
-    for round in 0..repeat {
-        for index in 0..variants.len() {
-            if let Err(stop) = interrupt::check() {
-                if round == 0 {
-                    return Err(stop);
-                }
-                // The round is not whole: its frames have no pairs.
-                variants.iter_mut().for_each(|variant| variant.frame_ms.truncate(round));
-                return Ok(true);
+/// Whether a point that fails like this, before a frame ran, is passed over with its reason.
+fn is_impossible(error: &Error) -> bool {
+    matches!(error.kind(), ErrorKind::Request | ErrorKind::NoDevice | ErrorKind::Device)
+}
+
+struct Sweep<'a> {
+    head: Head<'a>,
+    candidates: Vec<Candidate>,
+    /// Place in the grid.
+    baseline: usize,
+    baseline_variant: Rc<Variant>,
+    /// Impossible points found while the baseline was looked for.
+    refused: Vec<(usize, Error)>,
+    /// By place in the grid.
+    rows: Vec<Option<Value>>,
+    references: References,
+    file: Option<&'a mut RowsFile>,
+    observer: &'a mut dyn Observer,
+}
+
+impl<'a> Sweep<'a> {
+    /// Finds the baseline, and the rows that are kept.
+    fn start(
+        request: &Request<'a>,
+        session: &'a Session,
+        candidates: Vec<Candidate>,
+        named: Option<usize>,
+        file: Option<&'a mut RowsFile>,
+        observer: &'a mut dyn Observer,
+    ) -> Result<Self> {
+        let scene_bytes = session.gpu.memory.snapshot().bound_bytes();
+        let Request { job, what, repeat, .. } = *request;
+        let ground = Ground { job, session, what };
+        let mut refused = Vec::new();
+        let tried = named.map_or(0..candidates.len(), |index| index..index + 1);
+        let found = tried.into_iter().find_map(|index| match possible(&ground, &candidates[index]) {
+            Err(error) if is_impossible(&error) => {
+                refused.push((index, error));
+                None
             }
-            let time = variants[index].renderer.frame()?;
-            variants[index].frame_ms.push(time.wall_ns as f64 / 1e6);
-            progress(round * variants.len() + index + 1, all);
-        }
-    }
-    Ok(false)
-}
-
-/// Median milliseconds of each device pass of these settings.
-fn pass_ms(job: &Job, session: &Session, values: &Values) -> Result<Vec<(String, f64)>> {
-    let renderer = session.renderer(job.technique, values, &[], Submits::PerPass)?;
-    renderer.frame()?;
-    let frames = (0..PASS_FRAMES).map(|_| renderer.frame()).collect::<Result<Vec<_>>>()?;
-    let times = renderer.passes().iter().enumerate().map(|(index, pass)| {
-        let mut samples: Vec<f64> =
-            frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(|ns| ns as f64 / 1e6).collect();
-        samples.sort_by(f64::total_cmp);
-        (pass.name.clone(), median(&samples))
-    });
-    Ok(times.collect())
-}
-
-fn row(job: &Job, session: &Session, variant: &Variant) -> Result<Value> {
-    let settings: BTreeMap<&str, &str> = variant.values.iter().collect();
-    let passes: serde_json::Map<String, Value> =
-        pass_ms(job, session, &variant.values)?.into_iter().map(|(name, ms)| (name, json!(ms))).collect();
-    let traffic = variant.renderer.passes().iter().map(|pass| pass.traffic);
-    Ok(json!({
-        "schema": 1,
-        "bench": "frame",
-        "variant": variant.label,
-        "device": session.gpu.caps.identity,
-        "commit": env!("QUINCUNX_COMMIT"),
-        "scene": { "name": session.scene.name, "hash": session.scene.hash },
-        "technique": job.technique.name(),
-        "settings": settings,
-        "command": repeating_command(job, variant),
-        "image_hash": variant.picture.hash()?,
-        "frame_ms": spread(&variant.frame_ms),
-        "pass_ms": passes,
-        "bytes_read": traffic.clone().map(|one| one.read_bytes).sum::<u64>(),
-        "bytes_written": traffic.map(|one| one.written_bytes).sum::<u64>(),
-        "planned_bytes": variant.renderer.plan.bytes(),
-        "counters": variant.renderer.counters,
-    }))
-}
-
-/// The `render` command of a variant: every setting that is not at its default.
-fn repeating_command(job: &Job, variant: &Variant) -> Vec<String> {
-    let defaults = Job::new(&job.scene, job.technique).values;
-    let mut command =
-        ["quincunx", "render", &job.scene, "--technique", job.technique.name()].map(str::to_owned).to_vec();
-    for (key, value) in variant.values.iter() {
-        if defaults.text(key) != value {
-            command.extend([format!("--{key}"), value.to_owned()]);
-        }
-    }
-    command
-}
-
-/// Plain deferred shading of the same lights: what errors and overheads are measured against.
-struct Reference {
-    picture: Picture,
-    /// Passes that it has too are no overhead.
-    pass_names: Vec<String>,
-    /// Nanoseconds for each light at each pixel.
-    evaluation_ns: f64,
-}
-
-impl Reference {
-    /// None where the technique has no `--split none`.
-    fn of(job: &Job, session: &Session, variants: &[Variant]) -> Result<Option<Self>> {
-        let mut plain = Job::new(&job.scene, job.technique);
-        plain.values = variants[0].values.clone();
-        if plain.set("split", "none").is_err() {
-            return Ok(None);
-        }
-        let renderer = session.renderer(job.technique, &plain.values, &[], Submits::One)?;
-        renderer.frame()?;
-        let picture = renderer.picture()?;
-        let passes = pass_ms(job, session, &plain.values)?;
-        let lights = renderer.counters.get("subset_lights_per_pixel").copied().unwrap_or(0.0);
-        let shade = format!("{}.shade", job.technique.name());
-        let shade_ms = passes.iter().find(|(name, _)| *name == shade).map_or(0.0, |(_, ms)| *ms);
-        let evaluations = picture.extent.pixel_count() as f64 * lights;
-        Ok(Some(Self {
-            picture,
-            pass_names: passes.into_iter().map(|(name, _)| name).collect(),
-            evaluation_ns: 1e6 * shade_ms / evaluations.max(1.0),
-        }))
+            made => Some(made.map(|variant| (index, Rc::new(variant)))),
+        });
+        let Some(found) = found else {
+            let (index, error) = refused.swap_remove(0);
+            let label = &candidates[index].label;
+            return Err(match named {
+                Some(_) => error.within(format!("--baseline {label:?}")),
+                None if candidates.len() == 1 => error,
+                None => Error::request(format!("none of the {} combinations is possible", candidates.len()))
+                    .note(format!("{label}: {}", error.message())),
+            });
+        };
+        let (baseline, baseline_variant) = found?;
+        let head = Head { ground, repeat, baseline: candidates[baseline].label.clone(), scene_bytes };
+        let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
+        let rows = candidates.iter().map(kept).collect();
+        let references = References::default();
+        Ok(Self { head, candidates, baseline, baseline_variant, refused, rows, references, file, observer })
     }
 
-    /// Error and overhead of a variant with the first variant's size and camera.
-    fn judge(&self, variant: &Variant, row: &mut Value) -> Result<()> {
-        if variant.picture.extent == self.picture.extent {
-            let comparison = metrics::compare(&variant.picture, &self.picture)?;
-            row["error_against_none"] = json!(comparison.metrics);
+    fn measure(&mut self) -> Result<()> {
+        for (index, error) in std::mem::take(&mut self.refused) {
+            self.skip(index, &error)?;
         }
-        let own = row["pass_ms"]
-            .as_object()
-            .into_iter()
-            .flatten()
-            .filter(|(name, _)| !self.pass_names.contains(name))
-            .fold(0.0, |sum, (_, ms)| sum + ms.as_f64().unwrap_or_default());
-        let pixels = variant.picture.extent.pixel_count() as f64;
-        row["evaluation_ns"] = json!(self.evaluation_ns);
-        row["overhead_ms"] = json!(own);
-        row["overhead_evaluations_per_pixel"] = json!(1e6 * own / (pixels * self.evaluation_ns).max(1e-9));
+        let mut waiting: VecDeque<usize> =
+            (0..self.rows.len()).filter(|index| *index != self.baseline && self.rows[*index].is_none()).collect();
+        while !waiting.is_empty() || self.rows[self.baseline].is_none() {
+            let group = self.gather(&mut waiting)?;
+            if group.members.is_empty() {
+                continue;
+            }
+            self.measure_group(&group)?;
+            let known = self.known();
+            self.observer.group(known, self.rows.len());
+        }
         Ok(())
     }
+
+    fn known(&self) -> usize {
+        self.rows.iter().flatten().count()
+    }
+
+    /// The next group: as many of those that wait as have room.
+    fn gather(&mut self, waiting: &mut VecDeque<usize>) -> Result<Group> {
+        let mut group = Group::new(&self.baseline_variant);
+        if self.rows[self.baseline].is_none() {
+            let values = self.candidates[self.baseline].values.clone()?;
+            group.add_baseline(&self.head.ground, self.baseline, &self.baseline_variant, &values);
+        }
+        while group.has_room(self.head.ground.what)
+            && let Some(index) = waiting.front().copied()
+        {
+            interrupt::check()?;
+            let added = match &self.candidates[index].values {
+                Ok(values) => group.add(&self.head.ground, index, values),
+                Err(error) => Err(error.clone()),
+            };
+            match added {
+                Ok(()) => {}
+                // It may fit where fewer are.
+                Err(error) if is_of_memory(&error) && !group.members.is_empty() => break,
+                Err(error) if is_impossible(&error) => self.skip(index, &error)?,
+                Err(error) => return Err(error),
+            }
+            waiting.pop_front();
+        }
+        Ok(group)
+    }
+
+    fn measure_group(&mut self, group: &Group) -> Result<()> {
+        let pictures = group.pictures()?;
+        let repeat = self.head.repeat;
+        let (known, all, members) = (self.known(), self.rows.len(), group.members.len());
+        let observer = &mut *self.observer;
+        let samples = group.measure(repeat, &mut |done, of| {
+            // A step is a round of one variant; what stands beside variants has no steps of its own.
+            observer.step(known * repeat + members * repeat * done / of, all * repeat);
+        })?;
+        for (member, picture) in group.members.iter().zip(&pictures) {
+            interrupt::check()?;
+            let candidate = &self.candidates[member.candidate];
+            let Ground { job, session, what } = &self.head.ground;
+            let values = candidate.values.as_ref().map_err(Error::clone)?;
+            let reference = self.references.of(job, session, *what, values)?;
+            let row = self.head.measured(candidate, member, picture, &samples, &reference)?;
+            self.emit(member.candidate, row)?;
+        }
+        Ok(())
+    }
+
+    fn skip(&mut self, index: usize, error: &Error) -> Result<()> {
+        if self.rows[index].is_none() {
+            let row = self.head.skipped(&self.candidates[index], error);
+            self.emit(index, row)?;
+        }
+        Ok(())
+    }
+
+    /// A row is written before it is shown.
+    fn emit(&mut self, index: usize, row: Value) -> Result<()> {
+        if let Some(file) = &mut self.file {
+            file.append(&row)?;
+        }
+        self.observer.row(&row)?;
+        self.rows[index] = Some(row);
+        Ok(())
+    }
+}
+
+fn possible(ground: &Ground<'_>, candidate: &Candidate) -> Result<Variant> {
+    let values = candidate.values.as_ref().map_err(Error::clone)?;
+    Variant::new(ground.session, ground.job.technique, ground.what, values)
 }

@@ -1,9 +1,9 @@
-//! Paired ratios and their 95 % interval.
+//! Medians, paired ratios and their 95 % interval.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
-/// How many times as fast as the baseline a variant is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// How many times as long one thing takes as another.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
     /// Geometric mean of the paired ratios.
     pub mean: f64,
@@ -12,12 +12,19 @@ pub struct Ratio {
     pub pairs: usize,
 }
 
-/// `baseline[i]` and `variant[i]` were measured in the same round; at least one pair, all positive.
+impl Ratio {
+    /// As rows write it.
+    pub fn json(&self) -> Value {
+        json!({ "mean": self.mean, "interval_95": self.interval, "pairs": self.pairs })
+    }
+}
+
+/// Of `long` over `short`: `long[i]` and `short[i]` were measured in the same round; at least one pair, all positive.
 ///
 /// The interval is Student's, on logarithms: a ratio and its inverse are then the same finding.
-pub fn paired_ratio(baseline: &[f64], variant: &[f64]) -> Ratio {
-    assert!(!variant.is_empty() && baseline.len() == variant.len(), "rounds come in pairs");
-    let logs: Vec<f64> = baseline.iter().zip(variant).map(|(b, v)| (b / v).ln()).collect();
+pub fn paired_ratio(long: &[f64], short: &[f64]) -> Ratio {
+    assert!(!short.is_empty() && long.len() == short.len(), "rounds come in pairs");
+    let logs: Vec<f64> = long.iter().zip(short).map(|(l, s)| (l / s).ln()).collect();
     let count = logs.len() as f64;
     let mean = logs.iter().sum::<f64>() / count;
     let interval = (logs.len() > 1).then(|| {
@@ -26,6 +33,13 @@ pub fn paired_ratio(baseline: &[f64], variant: &[f64]) -> Ratio {
         [(mean - reach).exp(), (mean + reach).exp()]
     });
     Ratio { mean: mean.exp(), interval, pairs: logs.len() }
+}
+
+/// Of at least one sample, in any order.
+pub fn median(samples: &[f64]) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    crate::report::run::median(&sorted)
 }
 
 /// 97.5 % quantile of Student's t; beyond 30 degrees of freedom within 2 % of the normal one.

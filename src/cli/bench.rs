@@ -1,26 +1,48 @@
-//! `quincunx bench frame`: variants of one frame, in turn, as a table and as JSON lines.
+//! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
 use super::job_args;
-use crate::bench::{run, sweep};
+use crate::bench::rows_file::{Existing, RowsFile};
+use crate::bench::run::{self, Observer, Request};
+use crate::bench::summary::Summary;
+use crate::bench::sweep;
+use crate::bench::what::What;
 use crate::error::{Error, Result};
-use crate::report::whole_file::write_whole;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
-use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::IsTerminal;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// The verb with its arguments.
 pub fn command() -> Command {
-    let frame = Command::new("frame")
-        .about("Whole frames of each combination of a sweep, measured in turn")
+    Command::new("bench")
+        .about("Measure settings against each other: a frame, or one stage of it")
+        .after_help(
+            "Each prints a row for each combination and a table at the end. Ratios are of the same round of one run: \
+             milliseconds drift.",
+        )
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands(What::ALL.map(|what| job_args::with_job_args(sub_command(what))))
+}
+
+fn sub_command(what: What) -> Command {
+    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).requires("output");
+    Command::new(what.name())
+        .about(what.summary())
         .arg(
             Arg::new("sweep")
                 .long("sweep")
                 .value_name("KEY=V,V,...")
                 .action(ArgAction::Append)
-                .help("An axis of the grid; may be repeated. The first combination is the baseline"),
+                .help("An axis of the grid; may be repeated"),
+        )
+        .arg(
+            Arg::new("baseline")
+                .long("baseline")
+                .value_name("KEY=V ...")
+                .help("The combination that ratios are to; default: the first that is possible"),
         )
         .arg(
             Arg::new("repeat")
@@ -28,7 +50,7 @@ pub fn command() -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u32).range(1..=10_000))
                 .default_value("5")
-                .help("Rounds: one frame of every combination each"),
+                .help("Rounds: each measures every combination of a group once"),
         )
         .arg(
             Arg::new("output")
@@ -36,90 +58,106 @@ pub fn command() -> Command {
                 .long("output")
                 .value_name("DIR")
                 .value_parser(value_parser!(PathBuf))
-                .help("Write rows.jsonl there"),
-        );
-    Command::new("bench").about("Measure").subcommand_required(true).subcommand(job_args::with_job_args(frame))
+                .help("Write rows.jsonl, summary.json and summary.md there"),
+        )
+        .arg(flag("resume").help("Measure only what DIR/rows.jsonl lacks"))
+        .arg(flag("force").conflicts_with("resume").help("Replace DIR/rows.jsonl"))
 }
 
 /// Measures and prints.
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
-    let (_, matches) = matches.subcommand().expect("clap requires a sub-verb");
-    let mut job = job_args::job(matches, argv)?;
+    let (name, matches) = matches.subcommand().expect("clap requires a sub-verb");
+    let what = What::ALL.into_iter().find(|what| what.name() == name).expect("clap knows these only");
+    let job = job_args::job(matches, argv)?;
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
-    let grid = sweep::grid(&sweep::axes(&sweeps)?);
-    let repeat = *matches.get_one::<u32>("repeat").expect("it has a default") as usize;
+    let axes = sweep::axes(&sweeps)?;
     let folder = matches.get_one::<PathBuf>("output");
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+    let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
+    let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
+    let request = Request {
+        job: &job,
+        what,
+        axes: &axes,
+        baseline: matches.get_one::<String>("baseline").map(String::as_str),
+        repeat: *matches.get_one::<u32>("repeat").expect("it has a default") as usize,
+    };
+    let mut progress = Progress::new(quiet, json);
+    let found = run::run(&request, file.as_mut(), &mut progress)?;
+    progress.bar.finish_and_clear();
+    if !found.rows.is_empty() {
+        let summary = Summary::new(what, &axes, found.rows, argv);
+        if let Some(folder) = folder {
+            summary.write(folder)?;
+        }
+        if !json && !quiet {
+            super::print(&summary.text())?;
+        }
     }
-    let quiet = matches.get_flag("quiet");
-    let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new((repeat * grid.len()) as u64) };
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left") {
-        bar.set_style(style);
-    }
-    let rows = run::frames(&mut job, &grid, repeat, &|done, _| bar.set_position(done as u64))?;
-    bar.finish_and_clear();
-    if let Some(folder) = folder {
-        write_whole(&folder.join("rows.jsonl"), |out| rows.rows.iter().try_for_each(|row| writeln!(out, "{row}")))?;
-    }
-    if matches.get_flag("json") {
-        super::print(&rows.rows.iter().map(|row| format!("{row}\n")).collect::<String>())?;
-    } else if !quiet {
-        super::print(&table(&rows.rows))?;
-    }
-    if rows.interrupted {
-        return Err(Error::interrupted("interrupted; the rows hold the rounds that ended before"));
+    if found.interrupted {
+        let way_out = if folder.is_some() { "--resume goes on" } else { "with -o DIR, --resume could go on" };
+        return Err(Error::interrupted("interrupted; finished rows are valid").note(way_out));
     }
     Ok(())
 }
 
-fn table(rows: &[Value]) -> String {
-    let mut text = String::new();
-    write_table(&mut text, rows).expect("writing to a string");
-    text
+fn rows_file(folder: &PathBuf, matches: &ArgMatches) -> Result<RowsFile> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+    let existing = match (matches.get_flag("resume"), matches.get_flag("force")) {
+        (true, _) => Existing::Resume,
+        (_, true) => Existing::Overwrite,
+        _ => Existing::Refuse,
+    };
+    RowsFile::open(folder, existing)
 }
 
-fn write_table(text: &mut String, rows: &[Value]) -> std::fmt::Result {
-    let Some(first) = rows.first() else { return Ok(()) };
-    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-    let software = if first["device"]["type"] == "cpu" { ", software driver" } else { "" };
-    let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    writeln!(
-        text,
-        "{} on {} ({}{software})",
-        word(&first["scene"]["name"]),
-        word(&first["device"]["name"]),
-        word(&first["device"]["driver_info"])
-    )?;
-    writeln!(text, "speed-up over {}; error and overhead against --split none", word(&first["speed_up"]["baseline"]))?;
-    writeln!(text)?;
-    writeln!(
-        text,
-        "{:<40} {:>11} {:>9} {:>17} {:>9} {:>8} {:>22}",
-        "variant", "median ms", "speed-up", "95 % interval", "rmse", "flip", "overhead, evals/pixel"
-    )?;
-    for row in rows {
-        let ratio = &row["speed_up"];
-        let interval = match ratio["interval_95"].as_array() {
-            Some(sides) => format!("{:.2} to {:.2}", number(&sides[0]), number(&sides[1])),
-            None => "-".to_owned(),
-        };
-        let error = &row["error_against_none"];
-        let cell = |value: &Value, digits: usize| match value.as_f64() {
-            Some(value) => format!("{value:.digits$}"),
-            None => "-".to_owned(),
-        };
-        writeln!(
-            text,
-            "{:<40} {:>11.2} {:>9.2} {:>17} {:>9} {:>8} {:>22}",
-            word(&row["variant"]),
-            number(&row["frame_ms"]["median"]),
-            number(&ratio["mean"]),
-            interval,
-            cell(&error["rmse"], 5),
-            cell(&error["flip"], 4),
-            cell(&row["overhead_evaluations_per_pixel"], 2)
-        )?;
+/// A bar on a terminal, a line a group elsewhere; rows where --json asks for them.
+struct Progress {
+    bar: ProgressBar,
+    lines: bool,
+    json: bool,
+    started: Instant,
+    /// Steps done, of how many.
+    steps: (usize, usize),
+    /// Steps that were done when the first was told: kept rows took no time.
+    kept_steps: Option<usize>,
+}
+
+impl Progress {
+    fn new(quiet: bool, json: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = if quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new(0) };
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} rounds of a variant, {eta} left") {
+            bar.set_style(style);
+        }
+        Self { bar, lines: !quiet && !terminal, json, started: Instant::now(), steps: (0, 0), kept_steps: None }
     }
-    Ok(())
+
+    /// None before anything was measured, and when nothing is left.
+    fn left(&self, known: usize, all: usize) -> Option<Duration> {
+        let (steps, all_steps) = self.steps;
+        let done = steps.checked_sub(self.kept_steps?)?;
+        let left = all_steps * (all - known) / all;
+        (done > 0 && left > 0).then(|| self.started.elapsed().mul_f64(left as f64 / done as f64))
+    }
+}
+
+impl Observer for Progress {
+    fn row(&mut self, row: &Value) -> Result<()> {
+        if self.json { super::print(&format!("{row}\n")) } else { Ok(()) }
+    }
+
+    fn step(&mut self, done: usize, all: usize) {
+        self.steps = (done, all);
+        self.kept_steps.get_or_insert(done);
+        self.bar.set_length(all as u64);
+        self.bar.set_position(done as u64);
+    }
+
+    fn group(&mut self, known: usize, all: usize) {
+        if self.lines {
+            let left = self.left(known, all);
+            let estimate = left.map_or_else(String::new, |left| format!(", about {} s left", left.as_secs() + 1));
+            eprintln!("{known} of {all} rows{estimate}");
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
 use crate::error::Result;
-use crate::job::Job;
+use crate::job::{Job, settings_of};
 use crate::settings::{COMMON, Setting};
 use crate::techniques::{self, Technique};
 use clap::builder::PossibleValuesParser;
@@ -88,6 +88,7 @@ fn value_name(setting: &Setting) -> &'static str {
         Kind::Pair { .. } => "NxM",
         Kind::Sides { .. } => "N|NxM",
         Kind::Length => "LENGTH",
+        Kind::Bytes => "BYTES",
         Kind::Color => "COLOR",
         Kind::Text(word) => word,
     }
@@ -102,12 +103,37 @@ pub fn technique(matches: &ArgMatches) -> Result<&'static dyn Technique> {
 ///
 /// Errors: a setting that the technique does not read, or an impossible value (exit code 2).
 pub fn job(matches: &ArgMatches, argv: &[String]) -> Result<Job> {
-    let technique = technique(matches)?;
+    job_of(technique(matches)?, matches, argv, &[])
+}
+
+/// A job for each technique that the flags name.
+///
+/// Errors: a setting that none of them reads, or an impossible value (exit code 2).
+pub fn jobs(matches: &ArgMatches, argv: &[String]) -> Result<Vec<Job>> {
+    let names: Vec<&str> = match matches.get_many::<String>("technique") {
+        None => vec![DEFAULT_TECHNIQUE],
+        Some(names) => names.map(String::as_str).collect(),
+    };
+    let all = names.iter().map(|name| techniques::find(name)).collect::<Result<Vec<_>>>()?;
+    all.iter().map(|technique| job_of(*technique, matches, argv, &all)).collect()
+}
+
+/// A setting that `technique` does not read is passed over where one of `others` does.
+fn job_of(
+    technique: &'static dyn Technique,
+    matches: &ArgMatches,
+    argv: &[String],
+    others: &[&'static dyn Technique],
+) -> Result<Job> {
     let scene = matches.get_one::<String>("scene").map_or(technique.scene(), String::as_str);
     let mut job = Job::new(scene, technique);
+    let reads = |technique: &dyn Technique, key: &str| settings_of(technique).iter().any(|setting| setting.key == key);
     for (_, setting) in all_settings() {
-        if let Some(value) = matches.get_one::<String>(setting.key) {
-            job.set(setting.key, value)?;
+        let key = setting.key;
+        if let Some(value) = matches.get_one::<String>(key)
+            && (reads(technique, key) || !others.iter().any(|other| reads(*other, key)))
+        {
+            job.set(key, value)?;
         }
     }
     job.device = matches.get_one::<String>("device").cloned();

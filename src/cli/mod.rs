@@ -4,6 +4,7 @@ pub mod bench;
 pub mod compare;
 pub mod devices;
 mod job_args;
+pub mod memory;
 pub mod render;
 pub mod scene;
 
@@ -23,7 +24,7 @@ pub fn command() -> Command {
         )
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([render::command(), compare::command(), bench::command(), scene::command(), devices::command()])
+        .subcommands([render::command(), compare::command(), bench::command(), memory::command(), scene::command(), devices::command()])
 }
 
 /// Runs the verb of `argv`.
@@ -37,6 +38,7 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("render", matches)) => render::run(matches, argv),
         Some(("compare", matches)) => compare::run(matches),
         Some(("bench", matches)) => bench::run(matches, argv),
+        Some(("memory", matches)) => memory::run(matches, argv),
         Some(("scene", matches)) => scene::run(matches),
         Some(("devices", matches)) => devices::run(matches),
         _ => unreachable!("clap requires one of the verbs"),

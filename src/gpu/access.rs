@@ -125,6 +125,11 @@ impl AccessSet {
         if joins { self.with(access) } else { access.into() }
     }
 
+    /// Both sets' accesses.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
     pub fn with(self, access: Access) -> Self {
         Self(self.0 | access.bit())
     }
@@ -217,9 +222,9 @@ impl Buffer {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed.
+    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
-        Barrier { target: self.target(), from: AccessSet::UNTOUCHED, to: access, discard: true }
+        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
     }
 }
 
@@ -233,9 +238,9 @@ impl Image {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed.
+    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
-        Barrier { target: self.target(), from: AccessSet::UNTOUCHED, to: access, discard: true }
+        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
     }
 }
 
@@ -243,7 +248,7 @@ impl Barrier {
     /// Readers that follow readers in the same layout need no barrier.
     pub(super) fn is_needed(&self) -> bool {
         if self.discard {
-            return matches!(self.target, Target::Image(..));
+            return matches!(self.target, Target::Image(..)) || self.takes_over();
         }
         let same_layout = match self.target {
             Target::Buffer(_) => true,
@@ -251,6 +256,21 @@ impl Barrier {
         };
         let known = self.from.contains(self.to.into());
         self.to.writes() || self.from.iter().any(Access::writes) || !same_layout || !known
+    }
+
+    /// Whether its bytes were another resource's in this frame.
+    pub(super) fn takes_over(&self) -> bool {
+        self.discard && self.from != AccessSet::UNTOUCHED
+    }
+
+    /// What makes the accesses of those who had the bytes before available: a barrier of one resource speaks of its own
+    /// accesses only.
+    pub(super) fn memory_barrier(&self) -> vk::MemoryBarrier2<'static> {
+        vk::MemoryBarrier2::default()
+            .src_stage_mask(self.from.stages())
+            .src_access_mask(self.from.writes())
+            .dst_stage_mask(self.to.stage())
+            .dst_access_mask(self.to.access())
     }
 
     pub(super) fn buffer_barrier(&self, buffer: vk::Buffer) -> vk::BufferMemoryBarrier2<'static> {

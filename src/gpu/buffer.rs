@@ -1,6 +1,7 @@
 //! A buffer: handle, description, allocation.
 
-use super::Gpu;
+use super::access::AccessSet;
+use super::{Berth, Gpu};
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use crate::memory::{Allocation, Request, Tiling};
@@ -15,6 +16,8 @@ pub struct Buffer {
     pub name: String,
     /// Bytes asked for.
     pub bytes: u64,
+    /// Last accesses of whoever had its bytes before it in the frame.
+    pub(super) takes_over: AccessSet,
     allocation: ManuallyDrop<Allocation>,
 }
 
@@ -30,6 +33,21 @@ impl Buffer {
         flags: vk::BufferUsageFlags,
         usage: Use,
     ) -> Result<Self> {
+        Self::at(gpu, name, group, bytes, flags, usage, Berth::Own)
+    }
+
+    /// The same, with its bytes from `berth`.
+    ///
+    /// Errors: as `new`.
+    pub fn at(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        group: &str,
+        bytes: u64,
+        flags: vk::BufferUsageFlags,
+        usage: Use,
+        berth: Berth<'_>,
+    ) -> Result<Self> {
         assert!(bytes > 0, "{name}: a buffer of no bytes does not exist in Vulkan");
         let info = vk::BufferCreateInfo::default().size(bytes).usage(flags);
         // SAFETY: a live device; the info has no pointers.
@@ -38,7 +56,7 @@ impl Buffer {
         // SAFETY: the buffer was made from this device.
         let requirements = unsafe { gpu.device.get_buffer_memory_requirements(handle) };
         let request = Request { name, group, bytes, requirements, usage, tiling: Tiling::Linear };
-        let bound = gpu.memory.allocate(&request).and_then(|allocation| {
+        let bound = berth.allocate(&gpu.memory, &request).and_then(|allocation| {
             // SAFETY: fresh memory of an allowed type, in bounds, bound once.
             unsafe { gpu.device.bind_buffer_memory(handle, allocation.handle, allocation.offset) }
                 .map_err(|result| Error::device(format!("binding buffer {name}: {result}")))?;
@@ -47,8 +65,8 @@ impl Buffer {
         match bound {
             Ok(allocation) => {
                 gpu.name(handle, name);
-                let allocation = ManuallyDrop::new(allocation);
-                Ok(Self { gpu: gpu.clone(), handle, name: name.to_owned(), bytes, allocation })
+                let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
+                Ok(Self { gpu: gpu.clone(), handle, name, bytes, takes_over: berth.takes_over(), allocation })
             }
             Err(error) => {
                 // SAFETY: never used.
@@ -56,6 +74,16 @@ impl Buffer {
                 Err(error)
             }
         }
+    }
+
+    /// What the driver requires of memory for such a buffer, without making one.
+    pub fn requirements(gpu: &Gpu, bytes: u64, flags: vk::BufferUsageFlags) -> vk::MemoryRequirements {
+        let info = vk::BufferCreateInfo::default().size(bytes).usage(flags);
+        let query = vk::DeviceBufferMemoryRequirements::default().create_info(&info);
+        let mut found = vk::MemoryRequirements2::default();
+        // SAFETY: a live device with maintenance4; the info outlives the call.
+        unsafe { gpu.device.get_device_buffer_memory_requirements(&query, &mut found) };
+        found.memory_requirements
     }
 
     /// The host's view of the buffer. Panics where the buffer was not made for `Upload` or `Readback`.

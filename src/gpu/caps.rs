@@ -10,6 +10,23 @@ pub struct Caps {
     pub features: Features,
     pub heaps: Vec<Heap>,
     pub memory_types: Vec<MemoryType>,
+    /// Of known drivers only; a live device is asked instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<LayoutRules>,
+}
+
+/// How a driver rounds sizes up, measured on it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct LayoutRules {
+    pub buffer_size_multiple_bytes: u64,
+    pub buffer_alignment_bytes: u64,
+    /// Texels of a row are rounded up to a multiple of this, then its bytes, then the rows.
+    pub image_width_multiple_px: u64,
+    pub image_row_multiple_bytes: u64,
+    pub image_height_multiple_px: u64,
+    pub image_alignment_bytes: u64,
+    /// A bit for each memory type that any resource may lie in.
+    pub memory_type_bits: u32,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -7,14 +7,14 @@ use super::access::{AccessSet, Barrier, Target};
 use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
 use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
-use super::timing::{PassTime, Timestamps};
+use super::recorded::Recorded;
+use super::timing::Timestamps;
 use super::{Access, Buffer, Gpu};
 use crate::error::{Error, Result};
 use crate::units::Extent;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// How a frame is submitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,31 +52,21 @@ pub struct Touched {
 
 /// A frame being recorded.
 pub struct Commands {
-    gpu: Arc<Gpu>,
-    name: String,
-    submits: Submits,
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) name: String,
+    pub(super) submits: Submits,
     pool: vk::CommandPool,
-    buffers: Vec<vk::CommandBuffer>,
+    pub(super) buffers: Vec<vk::CommandBuffer>,
     descriptors: Descriptors,
-    passes: Vec<RecordedPass>,
-    timestamps: Option<Timestamps>,
+    pub(super) passes: Vec<RecordedPass>,
+    pub(super) timestamps: Option<Timestamps>,
     truth: HashMap<Target, AccessSet>,
     touched: Vec<Touched>,
+    heirs: Heirs,
 }
 
-/// A frame that can be run again and again.
-pub struct Recorded {
-    commands: Commands,
-    fence: vk::Fence,
-}
-
-/// What one run of a frame took.
-pub struct FrameTime {
-    /// First submit to last fence.
-    pub wall_ns: u64,
-    /// In the order of `Recorded::passes`.
-    pub passes: Vec<PassTime>,
-}
+/// For each resource that takes bytes over, those who had them before it in the frame.
+pub type Heirs = HashMap<Target, Vec<Target>>;
 
 /// Passes of one frame that can have timestamps.
 const MAX_PASS_COUNT: u32 = 256;
@@ -99,6 +89,7 @@ impl Commands {
             timestamps: None,
             truth: HashMap::new(),
             touched: Vec::new(),
+            heirs: Heirs::new(),
         };
         gpu.name(pool, name);
         if submits == Submits::PerPass {
@@ -162,10 +153,14 @@ impl Commands {
 
     /// One pipeline barrier for all of `barriers`; those that wait for nothing are left out.
     pub fn barriers(&mut self, barriers: impl IntoIterator<Item = Barrier>) {
+        let mut memory = Vec::new();
         let mut buffers = Vec::new();
         let mut images = Vec::new();
         for barrier in barriers {
             self.check_left_side(&barrier);
+            if barrier.takes_over() {
+                memory.push(barrier.memory_barrier());
+            }
             if barrier.is_needed() {
                 match barrier.target {
                     Target::Buffer(buffer) => buffers.push(barrier.buffer_barrier(buffer)),
@@ -181,7 +176,10 @@ impl Commands {
         if buffers.is_empty() && images.is_empty() {
             return;
         }
-        let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
+        let info = vk::DependencyInfo::default()
+            .memory_barriers(&memory)
+            .buffer_memory_barriers(&buffers)
+            .image_memory_barriers(&images);
         // SAFETY: the buffer is being recorded, outside rendering; the resources are alive.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
     }
@@ -202,9 +200,25 @@ impl Commands {
         self.barriers([barrier]);
     }
 
-    /// A programmer's mistake: `record` says that somebody else wrote.
+    /// Tells whose bytes each resource takes over, for the check of left sides.
+    pub fn set_heirs(&mut self, heirs: Heirs) {
+        self.heirs = heirs;
+    }
+
+    /// A programmer's mistake: `record` says that somebody else wrote, or the plan that nobody did.
     fn check_left_side(&self, barrier: &Barrier) {
-        if cfg!(debug_assertions) {
+        if cfg!(debug_assertions) && barrier.discard {
+            let touched = |target: &Target| self.truth.get(target).copied().unwrap_or_default();
+            assert_eq!(touched(&barrier.target), AccessSet::UNTOUCHED, "a first touch that is the second");
+            for before in self.heirs.get(&barrier.target).into_iter().flatten() {
+                let left = touched(before);
+                assert!(
+                    barrier.from.contains(left),
+                    "bytes are taken over from {:?}, and it was {left:?}",
+                    barrier.from
+                );
+            }
+        } else if cfg!(debug_assertions) {
             let truth = self.truth.get(&barrier.target).copied().unwrap_or_default();
             // Scene resources enter a frame readable: their first left side is what the upload left. A writer before the
             // first touch never was.
@@ -380,71 +394,15 @@ impl Commands {
         let fence = unsafe { self.gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }
             .map_err(|result| Error::device(format!("creating a fence: {result}")))?;
         self.gpu.name(fence, &self.name);
-        Ok(Recorded { commands: self, fence })
+        Ok(Recorded::new(self, fence))
     }
 }
 
 impl Drop for Commands {
     fn drop(&mut self) {
-        // SAFETY: nothing recorded here is running: `Recorded::run` waits for its fences.
+        // SAFETY: nothing recorded here is running: `Recorded` waits for its fences.
         unsafe {
             self.gpu.device.destroy_command_pool(self.pool, None);
         }
-    }
-}
-
-impl Recorded {
-    pub fn passes(&self) -> &[RecordedPass] {
-        &self.commands.passes
-    }
-
-    /// Submits the frame and waits for it.
-    ///
-    /// Errors: the device is lost or out of memory (exit code 4).
-    pub fn run(&self) -> Result<FrameTime> {
-        let commands = &self.commands;
-        let started = Instant::now();
-        let mut walls = Vec::with_capacity(commands.buffers.len());
-        for buffer in &commands.buffers {
-            let submitted = Instant::now();
-            self.submit(*buffer)?;
-            walls.push(submitted.elapsed().as_nanos() as u64);
-        }
-        let wall_ns = started.elapsed().as_nanos() as u64;
-        let timestamps = match &commands.timestamps {
-            Some(timestamps) => timestamps.read_first(commands.passes.len())?,
-            None => Vec::new(),
-        };
-        let passes = (0..commands.passes.len())
-            .map(|pass| PassTime {
-                wall_ns: (commands.submits == Submits::PerPass).then(|| walls[pass]),
-                timestamp_ns: timestamps.get(pass).copied(),
-            })
-            .collect();
-        Ok(FrameTime { wall_ns, passes })
-    }
-
-    fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {
-        let gpu = &self.commands.gpu;
-        let fail = |result| match self.commands.passes.as_slice() {
-            [] => Error::device(format!("running commands: {result}")),
-            [first, ..] => Error::device(format!("running the frame of {}: {result}", first.name)),
-        };
-        let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(buffer)];
-        let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
-        let _one_at_a_time = gpu.submit_lock.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // SAFETY: the buffer is recorded and not running; the queue is locked; the fence is unsignalled.
-        unsafe {
-            gpu.device.queue_submit2(gpu.queue, &[submit], self.fence).map_err(fail)?;
-            gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(fail)?;
-            gpu.device.reset_fences(&[self.fence]).map_err(fail)
-        }
-    }
-}
-
-impl Drop for Recorded {
-    fn drop(&mut self) {
-        // SAFETY: `submit` waited for it.
-        unsafe { self.commands.gpu.device.destroy_fence(self.fence, None) };
     }
 }

@@ -14,7 +14,7 @@ pub const API: u32 = vk::API_VERSION_1_3;
 /// Replaces a device function by name, or leaves it: how a test stands between this program and the driver.
 pub type DeviceHook = fn(&CStr, *const c_void) -> *const c_void;
 
-/// Which device, and how it is watched.
+/// Which device, how its memory is kept, and how it is watched.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceRequest {
     /// An index of the list that `devices` prints, or a part of a name; None: the first that fits, GPUs first.
@@ -22,6 +22,8 @@ pub struct DeviceRequest {
     /// Load the validation layer with synchronization checks and collect its messages.
     pub validate: bool,
     pub strategy: Strategy,
+    /// What memory blocks in one heap may sum up to; None: the heap's size.
+    pub budget_bytes: Option<u64>,
     /// None: the driver's own functions.
     pub hook: Option<DeviceHook>,
 }
@@ -297,7 +299,8 @@ impl Gpu {
         // SAFETY: the family and index were asked for above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
-        let memory = Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy));
+        let memory =
+            Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
         Ok(Self {
             caps,
             device,

@@ -1,6 +1,7 @@
 //! An image: handle, view, description, allocation.
 
-use super::Gpu;
+use super::access::AccessSet;
+use super::{Berth, Gpu};
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use crate::memory::{Allocation, Request, Tiling};
@@ -37,6 +38,31 @@ impl ImageDescription {
             .sum();
         layer_bytes * u64::from(self.layers())
     }
+
+    fn create_info(&self) -> vk::ImageCreateInfo<'static> {
+        let Self { extent, format, level_count, usage, .. } = *self;
+        let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
+        vk::ImageCreateInfo::default()
+            .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
+            .mip_levels(level_count)
+            .array_layers(self.layers())
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(usage)
+    }
+
+    /// What the driver requires of memory for such an image, without making one.
+    pub fn requirements(&self, gpu: &Gpu) -> vk::MemoryRequirements {
+        let info = self.create_info();
+        let query = vk::DeviceImageMemoryRequirements::default().create_info(&info);
+        let mut found = vk::MemoryRequirements2::default();
+        // SAFETY: a live device with maintenance4; the info outlives the call.
+        unsafe { gpu.device.get_device_image_memory_requirements(&query, &mut found) };
+        found.memory_requirements
+    }
 }
 
 /// Bytes of a texel of the formats that this program uses.
@@ -68,15 +94,23 @@ pub struct Image {
     pub storage_view: vk::ImageView,
     pub name: String,
     pub description: ImageDescription,
+    /// Last accesses of whoever had its bytes before it in the frame.
+    pub(super) takes_over: AccessSet,
     allocation: ManuallyDrop<Allocation>,
 }
 
 impl Image {
-    /// Makes an image in device memory.
+    /// Makes an image in device memory, in bytes from `berth`.
     ///
     /// Errors: a side or the layers are beyond the device's limit (exit code 2); the driver or the memory refuses (4).
-    pub fn new(gpu: &Arc<Gpu>, name: &str, group: &str, description: ImageDescription) -> Result<Self> {
-        let ImageDescription { extent, format, level_count, usage, .. } = description;
+    pub fn at(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        group: &str,
+        description: ImageDescription,
+        berth: Berth<'_>,
+    ) -> Result<Self> {
+        let ImageDescription { extent, format, .. } = description;
         let limit = gpu.caps.limits.max_image_side_px;
         if extent.width > limit || extent.height > limit {
             return Err(Error::request(format!("{name}: {extent} pixels: this device allows {limit} a side")));
@@ -85,17 +119,7 @@ impl Image {
         if layers > limit {
             return Err(Error::request(format!("{name}: {layers} layers: this device allows {limit} in an image")));
         }
-        let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
-        let info = vk::ImageCreateInfo::default()
-            .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(format)
-            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
-            .mip_levels(level_count)
-            .array_layers(layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(usage);
+        let info = description.create_info();
         let (bytes, most) = (description.bytes(), gpu.greatest_image_bytes(&info));
         if bytes > most {
             return Err(Error::device(format!(
@@ -108,12 +132,13 @@ impl Image {
         // SAFETY: a live device; the info has no pointers.
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
-        match Self::bind(gpu, name, group, description, handle) {
+        match Self::bind(gpu, name, group, description, handle, berth) {
             Ok((allocation, view, storage_view)) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
-                Ok(Self { gpu: gpu.clone(), handle, view, storage_view, name, description, allocation })
+                let (gpu, takes_over) = (gpu.clone(), berth.takes_over());
+                Ok(Self { gpu, handle, view, storage_view, name, description, takes_over, allocation })
             }
             Err(error) => {
                 // SAFETY: never used.
@@ -129,12 +154,13 @@ impl Image {
         group: &str,
         description: ImageDescription,
         handle: vk::Image,
+        berth: Berth<'_>,
     ) -> Result<(Allocation, vk::ImageView, vk::ImageView)> {
         // SAFETY: the image was made from this device.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
         let bytes = description.bytes();
         let request = Request { name, group, bytes, requirements, usage: Use::Device, tiling: Tiling::Optimal };
-        let allocation = gpu.memory.allocate(&request)?;
+        let allocation = berth.allocate(&gpu.memory, &request)?;
         // SAFETY: fresh memory of an allowed type, in bounds, bound once.
         unsafe { gpu.device.bind_image_memory(handle, allocation.handle, allocation.offset) }
             .map_err(|result| Error::device(format!("binding image {name}: {result}")))?;

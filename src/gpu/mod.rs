@@ -1,22 +1,27 @@
 //! A thin floor over ash: device, commands, barriers, buffers, images, pipelines. It knows no technique and no scene.
 
 pub mod access;
+pub mod berth;
 pub mod buffer;
 pub mod caps;
 pub mod commands;
 pub mod descriptors;
 pub mod device;
 pub mod image;
+pub mod known;
 pub mod pipeline;
 pub mod probe;
 pub mod readback;
+pub mod recorded;
 pub mod sampler;
 pub mod shader;
 pub mod timing;
+pub mod transfer;
 pub mod upload;
 pub mod validation;
 
 pub use access::{Access, AccessSet, Barrier, Edge, Target};
+pub use berth::Berth;
 pub use buffer::Buffer;
 pub use caps::Caps;
 pub use commands::{Commands, Traffic};

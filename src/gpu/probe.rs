@@ -128,5 +128,6 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
                 lazily_allocated: kind.property_flags.contains(vk::MemoryPropertyFlags::LAZILY_ALLOCATED),
             })
             .collect(),
+        layout: None,
     }
 }

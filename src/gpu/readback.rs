@@ -16,6 +16,7 @@ pub const GROUP: &str = "readback";
 
 fn landing(gpu: &Arc<Gpu>, name: &str, bytes: u64) -> Result<Buffer> {
     Buffer::new(gpu, &format!("readback.{name}"), GROUP, bytes, vk::BufferUsageFlags::TRANSFER_DST, Use::Readback)
+        .map_err(|error| error.note("a smaller --size would need less"))
 }
 
 /// The bytes of level 0, row-major without gaps, layer after layer. `last`: how the frame touched it last. The image is left as it was.

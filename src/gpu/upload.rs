@@ -11,10 +11,16 @@ use std::sync::Arc;
 /// Ledger group of staging memory, which is gone before the first frame.
 pub const GROUP: &str = "upload";
 
-fn staging(gpu: &Arc<Gpu>, name: &str, bytes: &[u8]) -> Result<Buffer> {
-    let name = format!("upload.{name}");
-    let mut staging =
-        Buffer::new(gpu, &name, GROUP, bytes.len() as u64, vk::BufferUsageFlags::TRANSFER_SRC, Use::Upload)?;
+/// The staging buffer's flags.
+pub const STAGING: vk::BufferUsageFlags = vk::BufferUsageFlags::TRANSFER_SRC;
+
+/// The staging buffer's name.
+pub fn staging_name(target: &str) -> String {
+    format!("upload.{target}")
+}
+
+fn staging(gpu: &Arc<Gpu>, target: &str, bytes: &[u8]) -> Result<Buffer> {
+    let mut staging = Buffer::new(gpu, &staging_name(target), GROUP, bytes.len() as u64, STAGING, Use::Upload)?;
     staging.mapped_mut()[..bytes.len()].copy_from_slice(bytes);
     Ok(staging)
 }
@@ -28,9 +34,7 @@ pub fn buffer(gpu: &Arc<Gpu>, target: &Buffer, bytes: &[u8], readers: impl Into<
     let staging = staging(gpu, &target.name, bytes)?;
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
-    let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size: bytes.len() as u64 };
-    // SAFETY: both buffers are alive until the fence; the region lies in both.
-    unsafe { gpu.device.cmd_copy_buffer(cmd.buffer(), staging.handle, target.handle, &[region]) };
+    cmd.copy_buffer(&staging, target);
     let mut last = AccessSet::from(Access::TransferWrite);
     for reader in readers.into().iter() {
         cmd.barriers([target.from(last).to(reader)]);

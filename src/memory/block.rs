@@ -7,8 +7,6 @@ use std::ptr::NonNull;
 /// A memory block. Freed by hand, because freeing needs the device.
 pub struct Block {
     pub handle: vk::DeviceMemory,
-    pub bytes: u64,
-    pub type_index: u32,
     mapped: Option<NonNull<u8>>,
 }
 
@@ -20,7 +18,7 @@ impl Block {
         let info = vk::MemoryAllocateInfo::default().allocation_size(bytes).memory_type_index(type_index);
         // SAFETY: a live device and one of its memory types.
         let handle = unsafe { device.allocate_memory(&info, None) }?;
-        let mut block = Self { handle, bytes, type_index, mapped: None };
+        let mut block = Self { handle, mapped: None };
         if mapped {
             // SAFETY: the memory is host-visible (the caller chose its type) and not mapped yet.
             match unsafe { device.map_memory(handle, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty()) } {
@@ -32,11 +30,6 @@ impl Block {
             }
         }
         Ok(block)
-    }
-
-    /// Whether the host sees it.
-    pub fn is_mapped(&self) -> bool {
-        self.mapped.is_some()
     }
 
     /// Where the host sees byte `offset`.

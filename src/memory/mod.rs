@@ -1,23 +1,31 @@
 //! The only room that calls vkAllocateMemory: which type, which memory block, which range, and whose it is.
 //!
 //! A resource asks with its name, its group and its requirements; it gets an `Allocation`, a range in a memory block,
-//! which returns itself when dropped. The ledger keeps every byte's owner while it lives.
+//! which returns itself when dropped. Resources that share bytes get theirs from an `Arena`. `pool` decides in numbers,
+//! this file makes it real, and the ledger keeps every byte's owner while it lives.
 
+pub mod alias;
+pub mod arena;
 pub mod block;
 pub mod kinds;
 pub mod ledger;
+pub mod pool;
+pub mod refusal;
 pub mod suballocate;
 
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
 use crate::units::Bytes;
+use arena::Arena;
 use ash::vk;
 use block::Block;
-use kinds::{Kinds, Use};
+use kinds::{Choice, Kinds, Use};
 use ledger::{Entry, Ledger};
+use pool::{Ask, Misfit, Place, Pool, Rules};
+use refusal::Refusal;
+use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard};
-use suballocate::Linear;
 
 /// How resources come by their memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,13 +35,24 @@ pub enum Strategy {
     /// Ranges one after the other in shared memory blocks; a block returns whole, when its last range does.
     #[default]
     Linear,
+    /// Ranges in shared memory blocks wherever there is room; what returns is taken again.
+    Tlsf,
 }
 
-/// Size of a shared memory block. Resources of at least half of it get a memory block of their own.
-pub const LINEAR_BLOCK_BYTES: u64 = 16 << 20;
+impl Strategy {
+    /// `dedicated`, `linear` or `tlsf`; None for any other word.
+    pub fn from_setting(word: &str) -> Option<Self> {
+        match word {
+            "dedicated" => Some(Self::Dedicated),
+            "linear" => Some(Self::Linear),
+            "tlsf" => Some(Self::Tlsf),
+            _ => None,
+        }
+    }
+}
 
-/// Buffers and linear images on one side, optimally tiled images on the other: the two sides never share a memory
-/// block, so bufferImageGranularity can never be violated.
+/// Buffers and linear images on one side, optimally tiled images on the other: the two sides share a memory block only
+/// in an arena, where whoever places the parts keeps them bufferImageGranularity apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tiling {
     Linear,
@@ -56,13 +75,20 @@ pub struct Request<'a> {
 /// A range in a memory block; returns itself when dropped.
 pub struct Allocation {
     memory: Arc<Memory>,
-    block: u32,
-    range_bytes: u64,
     entry: u64,
+    source: Source,
     pub handle: vk::DeviceMemory,
     pub offset: u64,
     /// Where the host sees the range; None where it cannot.
     pub mapped: Option<std::ptr::NonNull<u8>>,
+}
+
+/// Whose range it is.
+enum Source {
+    /// Its own.
+    Range { block: u32, bytes: u64 },
+    /// The arena's, which stays as long as any of its parts.
+    Part { _arena: Arc<Arena> },
 }
 
 // SAFETY: the pointer leads into memory that lives as long as the block, which the allocation keeps alive; who writes
@@ -76,41 +102,44 @@ pub struct Memory {
     device: ash::Device,
     names: Option<ash::ext::debug_utils::Device>,
     kinds: Kinds,
-    strategy: Strategy,
-    max_allocation_bytes: u64,
     state: Mutex<State>,
 }
 
-#[derive(Default)]
 struct State {
-    blocks: Vec<Option<Shared>>,
+    pool: Pool,
+    /// What the pool's memory blocks are on the device.
+    blocks: BTreeMap<u32, Block>,
     ledger: Ledger,
+    /// What each owner of bytes asked for, by its key in the ledger.
+    asks: BTreeMap<u64, Ask>,
+    refusal: Option<Refusal>,
 }
 
-/// A memory block and who may still join it.
-struct Shared {
-    block: Block,
-    tiling: Tiling,
-    ranges: Linear,
-    dedicated: bool,
+/// A place that is there on the device too.
+struct Made {
+    place: Place,
+    handle: vk::DeviceMemory,
+    mapped: Option<std::ptr::NonNull<u8>>,
 }
 
 impl Memory {
-    /// `names`: where memory blocks get the names that tools show.
+    /// `names`: where memory blocks get the names that tools show. `budget_bytes`: what memory blocks in one heap may sum
+    /// up to; None: the heap's size.
     pub fn new(
         device: ash::Device,
         names: Option<ash::ext::debug_utils::Device>,
         caps: &Caps,
         strategy: Strategy,
+        budget_bytes: Option<u64>,
     ) -> Self {
-        Self {
-            device,
-            names,
-            kinds: Kinds::new(caps),
-            strategy,
-            max_allocation_bytes: caps.limits.max_allocation_bytes,
-            state: Mutex::new(State::default()),
-        }
+        let state = State {
+            pool: Pool::new(Rules::new(caps, strategy, budget_bytes)),
+            blocks: BTreeMap::new(),
+            ledger: Ledger::default(),
+            asks: BTreeMap::new(),
+            refusal: None,
+        };
+        Self { device, names, kinds: Kinds::new(caps), state: Mutex::new(state) }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -118,101 +147,133 @@ impl Memory {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Finds or makes room for one resource.
+    /// What these requirements come to in numbers, with the memory type that the use gets.
     ///
-    /// Errors: no memory type fits, the driver refuses, or one allocation may not be that large (exit code 4).
-    pub fn allocate(self: &Arc<Self>, request: &Request<'_>) -> Result<Allocation> {
-        let choice = self.kinds.choose(request.usage, request.requirements.memory_type_bits);
-        let choice = choice.map_err(|error| error.within(format!("allocating {}", request.name)))?;
-        let size = request.requirements.size;
-        let mut state = self.state();
-        if size > self.max_allocation_bytes {
-            return Err(self
-                .refused(&state, request, choice.type_index, "one allocation may not be that large here")
-                .note(format!("the device allows {} an allocation", Bytes(self.max_allocation_bytes))));
-        }
-        let shared = self.strategy == Strategy::Linear && size < LINEAR_BLOCK_BYTES / 2;
-        let found = shared.then(|| {
-            state.blocks.iter_mut().enumerate().find_map(|(index, slot)| {
-                let slot = slot.as_mut()?;
-                let block = &slot.block;
-                let fits = block.type_index == choice.type_index && block.is_mapped() == choice.mapped;
-                if slot.dedicated || slot.tiling != request.tiling || !fits {
-                    return None;
-                }
-                Some((index, slot.ranges.take(size, request.requirements.alignment)?))
-            })
-        });
-        let (index, offset) = match found.flatten() {
-            Some(found) => found,
-            None => {
-                let block_bytes = if shared { LINEAR_BLOCK_BYTES } else { size };
-                let block = Block::allocate(&self.device, choice.type_index, block_bytes, choice.mapped)
-                    .map_err(|result| self.refused(&state, request, choice.type_index, &result.to_string()))?;
-                let mut ranges = Linear::new(block_bytes);
-                let offset =
-                    ranges.take(size, request.requirements.alignment).expect("a new block holds its first range");
-                let block = Shared { block, tiling: request.tiling, ranges, dedicated: !shared };
-                let free = state.blocks.iter().position(Option::is_none);
-                let index = free.unwrap_or_else(|| {
-                    state.blocks.push(None);
-                    state.blocks.len() - 1
-                });
-                state.ledger.block_made(block_bytes);
-                self.name(&block.block, index);
-                state.blocks[index] = Some(block);
-                (index, offset)
-            }
-        };
-        let block = &state.blocks[index].as_ref().expect("found or made above").block;
-        let (handle, mapped) = (block.handle, block.mapped_at(offset));
-        let entry = state.ledger.enter(Entry {
-            name: request.name.to_owned(),
-            group: request.group.to_owned(),
-            bytes: request.bytes,
-            bound_bytes: size,
-            memory_block: index as u32,
-            offset,
-            memory_type: choice.type_index,
-            reason: choice.reason,
-        });
-        Ok(Allocation { memory: self.clone(), block: index as u32, range_bytes: size, entry, handle, offset, mapped })
+    /// Errors: no memory type fits (exit code 4).
+    pub fn ask(&self, requirements: &vk::MemoryRequirements, usage: Use, tiling: Tiling) -> Result<Ask> {
+        Ok(asked(requirements, &self.kinds.choose(usage, requirements.memory_type_bits)?, tiling))
     }
 
-    fn name(&self, block: &Block, index: usize) {
+    /// Finds or makes room for one resource.
+    ///
+    /// Errors: no memory type fits, the budget or the heap is spent, one memory block may not be that large, or the driver
+    /// refuses (exit code 4).
+    pub fn allocate(self: &Arc<Self>, request: &Request<'_>) -> Result<Allocation> {
+        let Request { name, group, bytes, ref requirements, usage, tiling } = *request;
+        let choice = self.kinds.choose(usage, requirements.memory_type_bits);
+        let choice = choice.map_err(|error| error.within(format!("allocating {name}")))?;
+        let ask = asked(requirements, &choice, tiling);
+        let mut state = self.state();
+        let Made { place, handle, mapped } = self.make(&mut state, &ask, name, usage)?;
+        let entry = state.ledger.enter(Entry {
+            name: name.to_owned(),
+            group: group.to_owned(),
+            bytes,
+            bound_bytes: ask.bytes,
+            memory_block: place.block,
+            offset: place.offset,
+            memory_type: ask.type_index,
+            reason: choice.reason,
+            arena: None,
+        });
+        state.asks.insert(entry, ask);
+        let source = Source::Range { block: place.block, bytes: ask.bytes };
+        Ok(Allocation { memory: self.clone(), entry, source, handle, offset: place.offset, mapped })
+    }
+
+    /// Decides and makes. Nothing is left behind where either fails.
+    fn make(&self, state: &mut State, ask: &Ask, name: &str, usage: Use) -> Result<Made> {
+        state.refusal = None;
+        let place = state.pool.place(ask).map_err(|misfit| refuse(state, ask, name, usage, misfit))?;
+        if let Some(block_bytes) = place.new_block_bytes {
+            match Block::allocate(&self.device, ask.type_index, block_bytes, ask.mapped) {
+                Ok(block) => {
+                    state.ledger.block_made(block_bytes);
+                    self.name(&block, place.block);
+                    state.blocks.insert(place.block, block);
+                }
+                Err(result) => {
+                    state.pool.give_back(place.block, place.offset, ask.bytes);
+                    return Err(Error::memory(format!("{}: {result}", allocating(ask, name, usage)))
+                        .note(held(state, ask.type_index)));
+                }
+            }
+        }
+        let block = &state.blocks[&place.block];
+        Ok(Made { place, handle: block.handle, mapped: block.mapped_at(place.offset) })
+    }
+
+    fn give_back(&self, state: &mut State, block: u32, offset: u64, bytes: u64) {
+        if let Some(block_bytes) = state.pool.give_back(block, offset, bytes) {
+            let mut block = state.blocks.remove(&block).expect("the pool's blocks are the device's");
+            block.free(&self.device);
+            state.ledger.block_freed(block_bytes);
+        }
+    }
+
+    fn name(&self, block: &Block, index: u32) {
         let (Some(names), Ok(text)) = (&self.names, CString::new(format!("memory_block.{index}"))) else { return };
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(block.handle).object_name(&text);
         // SAFETY: the memory was just made from this device. A refused name costs nothing but the name.
         let _ = unsafe { names.set_debug_utils_object_name(&info) };
     }
 
-    fn refused(&self, state: &State, request: &Request<'_>, type_index: u32, why: &str) -> Error {
-        let mut error = Error::device(format!(
-            "allocating {} ({}, {}, type {type_index}): {why}",
-            request.name,
-            Bytes(request.requirements.size),
-            request.usage
-        ));
-        let owners = state.ledger.greatest(3);
-        if !owners.is_empty() {
-            let held = state.ledger.bound_bytes();
-            error = error.note(format!("{} are held, most of them by {}", Bytes(held), owners.join(", ")));
-        }
-        error
-    }
-
     /// What is held now and was held at the peak.
     pub fn snapshot(&self) -> ledger::Snapshot {
-        self.state().ledger.snapshot()
+        let state = self.state();
+        state.ledger.snapshot(state.pool.states())
+    }
+
+    /// What the budget or a heap has just refused, once; None where the last request was not refused by them.
+    pub fn take_refusal(&self) -> Option<Refusal> {
+        self.state().refusal.take()
     }
 
     /// Called once, when the device closes: the ledger must be empty by then.
     pub(crate) fn close(&self) {
-        let state = self.state();
-        let leaked = state.ledger.greatest(usize::MAX);
+        let leaked = self.state().ledger.all_owners();
         // A panic on its way out drops things in an order of its own; a second panic would hide the first.
         if !std::thread::panicking() {
             assert!(leaked.is_empty(), "the device closes and the ledger is not empty: {}", leaked.join(", "));
+        }
+    }
+}
+
+fn asked(requirements: &vk::MemoryRequirements, choice: &Choice, tiling: Tiling) -> Ask {
+    let Choice { type_index, mapped, .. } = *choice;
+    Ask { bytes: requirements.size, alignment: requirements.alignment, type_index, mapped, tiling, alone: false }
+}
+
+fn allocating(ask: &Ask, name: &str, usage: Use) -> String {
+    format!("allocating {name} ({}, {usage}, type {})", Bytes(ask.bytes), ask.type_index)
+}
+
+/// What the heap of this memory type holds, and for whom.
+fn held(state: &State, type_index: u32) -> String {
+    let groups = state.ledger.greatest_groups(3, |other| state.pool.share_a_heap(other, type_index));
+    if groups.is_empty() {
+        return "nothing else is held".to_owned();
+    }
+    let bytes = Bytes(state.pool.held_bytes(type_index));
+    format!("{bytes} are held in memory blocks, most of it by {}", groups.join(", "))
+}
+
+fn refuse(state: &mut State, ask: &Ask, name: &str, usage: Use, misfit: Misfit) -> Error {
+    let what = allocating(ask, name, usage);
+    match misfit {
+        Misfit::TooLarge { most_bytes } => {
+            Error::memory(format!("{what}: the device makes memory blocks of at most {}", Bytes(most_bytes)))
+        }
+        Misfit::Spent { limit_bytes, held_bytes, is_budget } => {
+            let owners: BTreeMap<u64, &str> = state.ledger.names().collect();
+            let named = |(key, ask): (&u64, &Ask)| (owners[key].to_owned(), *ask);
+            let held_now = state.asks.iter().map(named).collect();
+            let rules = state.pool.rules().clone();
+            state.refusal = Some(Refusal { rules, held: held_now, name: name.to_owned(), ask: *ask });
+            let limit = if is_budget { "the budget" } else { "the heap" };
+            let spent = if held_bytes > 0 { "spent" } else { "too small for it" };
+            Error::memory(format!("{what}: {limit} of {} is {spent}", Bytes(limit_bytes)))
+                .note(held(state, ask.type_index))
         }
     }
 }
@@ -221,13 +282,10 @@ impl Drop for Allocation {
     fn drop(&mut self) {
         let mut state = self.memory.state();
         state.ledger.leave(self.entry);
-        let slot = &mut state.blocks[self.block as usize];
-        let shared = slot.as_mut().expect("an allocation keeps its block");
-        if shared.ranges.give_back(self.range_bytes) {
-            let bytes = shared.block.bytes;
-            shared.block.free(&self.memory.device);
-            *slot = None;
-            state.ledger.block_freed(bytes);
+        // A part holds no bytes of its own; its arena goes after this lock, when the fields do.
+        if let Source::Range { block, bytes } = self.source {
+            state.asks.remove(&self.entry);
+            self.memory.give_back(&mut state, block, self.offset, bytes);
         }
     }
 }

@@ -4,10 +4,14 @@
 //! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept.
 
 mod lifetimes;
+mod requirements;
 mod resources;
+mod sharing;
 
 pub use lifetimes::{Lifetime, Peak};
+pub use requirements::{Requirement, Requirements};
 pub use resources::Resources;
+pub use sharing::{Part, PlannedArena, Sharing};
 
 use crate::error::{Error, Result};
 use crate::gpu::{Access, ImageDescription};
@@ -25,6 +29,16 @@ pub enum Shape {
     Image(ImageDescription),
 }
 
+impl Shape {
+    /// Who writes and reads it.
+    pub fn usage(&self) -> Use {
+        match self {
+            Self::Buffer { usage, .. } => *usage,
+            Self::Image(_) => Use::Device,
+        }
+    }
+}
+
 /// One resource of the plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Planned {
@@ -33,6 +47,8 @@ pub struct Planned {
     /// Row of the memory table.
     pub group: &'static str,
     pub shape: Shape,
+    /// Bytes of it that a frame touches: all, or none of a list without entries.
+    pub touched_bytes: u64,
     /// Needed after the frame: the picture, and stages that the user asked for.
     pub read_back: bool,
 }
@@ -74,11 +90,11 @@ impl Plan {
     /// A buffer that the device alone touches, `bytes` long; an empty list gets one element of 16 bytes, because a
     /// shader that never reads it still binds it.
     pub fn buffer(&mut self, group: &'static str, name: impl Into<String>, bytes: u64) {
-        let bytes = bytes.max(16);
         let flags = vk::BufferUsageFlags::STORAGE_BUFFER
             | vk::BufferUsageFlags::TRANSFER_DST
             | vk::BufferUsageFlags::TRANSFER_SRC;
-        self.push(group, name, Shape::Buffer { bytes, flags, usage: Use::Device });
+        self.push(group, name, Shape::Buffer { bytes: bytes.max(16), flags, usage: Use::Device });
+        self.resources.last_mut().expect("just pushed").touched_bytes = bytes;
     }
 
     /// A buffer that the host writes.
@@ -90,7 +106,9 @@ impl Plan {
     pub fn push(&mut self, group: &'static str, name: impl Into<String>, shape: Shape) {
         let name = name.into();
         assert!(self.resources.iter().all(|planned| planned.name != name), "{name} is planned twice");
-        self.resources.push(Planned { name, group, shape, read_back: false });
+        let mut planned = Planned { name, group, shape, touched_bytes: 0, read_back: false };
+        planned.touched_bytes = planned.bytes();
+        self.resources.push(planned);
     }
 
     /// The next pass, with every transient resource that it touches, by full name; a resource that it touches in two

@@ -1,9 +1,11 @@
 //! Resources: a plan made real.
 
-use super::{Plan, Shape};
+use super::{Part, Plan, Planned, Shape, Sharing};
 use crate::error::Result;
-use crate::gpu::commands::Touched;
-use crate::gpu::{Buffer, Gpu, Image, Target};
+use crate::gpu::commands::{Heirs, Touched};
+use crate::gpu::{Berth, Buffer, Gpu, Image, Target};
+use crate::memory::arena::Arena;
+use crate::memory::kinds::Use;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -12,35 +14,56 @@ use std::sync::Arc;
 pub struct Resources {
     buffers: BTreeMap<String, Buffer>,
     images: BTreeMap<String, Image>,
-    /// Which resource of the plan a handle is.
-    indices: HashMap<Target, usize>,
+    /// By index into the plan.
+    targets: Vec<Target>,
 }
 
 impl Resources {
-    /// Makes every resource of the plan.
+    /// Makes every resource of the plan; those that share bytes in one arena a memory type, called `NAME.shared`.
     ///
     /// Errors: memory is too small or a limit is passed (exit code 4).
-    pub fn make(gpu: &Arc<Gpu>, plan: &Plan) -> Result<Self> {
+    pub fn make(gpu: &Arc<Gpu>, name: &str, plan: &Plan, sharing: &Sharing) -> Result<Self> {
         plan.check(gpu.caps.limits.max_storage_buffer_range_bytes)?;
+        let arenas = sharing
+            .arenas
+            .iter()
+            .enumerate()
+            .map(|(index, arena)| {
+                let (bytes, alignment, bits) = (arena.bytes, arena.alignment_bytes, arena.memory_type_bits);
+                let name = if index == 0 { format!("{name}.shared") } else { format!("{name}.shared.{index}") };
+                gpu.memory.arena(&name, "shared", bytes, alignment, bits, Use::Device)
+            })
+            .collect::<Result<Vec<_>>>()?;
         let mut resources = Self::default();
         for (index, planned) in plan.resources.iter().enumerate() {
-            let target = match planned.shape {
-                Shape::Buffer { bytes, flags, usage } => {
-                    let buffer = Buffer::new(gpu, &planned.name, planned.group, bytes, flags, usage)?;
-                    let target = buffer.target();
-                    resources.buffers.insert(planned.name.clone(), buffer);
-                    target
-                }
-                Shape::Image(description) => {
-                    let image = Image::new(gpu, &planned.name, planned.group, description)?;
-                    let target = image.target();
-                    resources.images.insert(planned.name.clone(), image);
-                    target
-                }
-            };
-            resources.indices.insert(target, index);
+            resources.add(gpu, planned, sharing.part(index).map(|(arena, part)| (&arenas[arena], part)))?;
         }
         Ok(resources)
+    }
+
+    fn add(&mut self, gpu: &Arc<Gpu>, planned: &Planned, part: Option<(&Arc<Arena>, &Part)>) -> Result<()> {
+        let Planned { name, group, .. } = planned;
+        let berth = part.map_or(Berth::Own, |(arena, part)| Berth::Part {
+            arena,
+            offset: part.offset,
+            takes_over: part.takes_over,
+        });
+        let target = match planned.shape {
+            Shape::Buffer { bytes, flags, usage } => {
+                let buffer = Buffer::at(gpu, name, group, bytes, flags, usage, berth)?;
+                let target = buffer.target();
+                self.buffers.insert(name.clone(), buffer);
+                target
+            }
+            Shape::Image(description) => {
+                let image = Image::at(gpu, name, group, description, berth)?;
+                let target = image.target();
+                self.images.insert(name.clone(), image);
+                target
+            }
+        };
+        self.targets.push(target);
+        Ok(())
     }
 
     /// Takes a buffer out. The plan has it: another name is a programmer's mistake.
@@ -53,11 +76,24 @@ impl Resources {
         self.images.remove(name).unwrap_or_else(|| panic!("the plan has no image {name}, or it was taken"))
     }
 
+    /// Whose bytes each resource takes over.
+    pub fn heirs(&self, sharing: &Sharing) -> Heirs {
+        let parts = sharing.arenas.iter().flat_map(|arena| &arena.parts);
+        parts
+            .map(|part| {
+                let before = part.predecessors.iter().map(|resource| self.targets[*resource]).collect();
+                (self.targets[part.resource], before)
+            })
+            .collect()
+    }
+
     /// Panics where the recorded passes touch transient resources otherwise than the plan says: lifetimes, and with
     /// them shared bytes, rest on it.
     pub fn assert_recorded(&self, plan: &Plan, pass_names: &[&str], touched: &[Touched]) {
         let planned: Vec<&str> = plan.passes.iter().map(|pass| pass.name.as_str()).collect();
         assert_eq!(planned, pass_names, "the plan's passes and the recorded ones");
+        let indices: HashMap<Target, usize> =
+            self.targets.iter().enumerate().map(|(index, target)| (*target, index)).collect();
         for (index, pass) in plan.passes.iter().enumerate() {
             let name_of = |resource: usize| plan.resources[resource].name.as_str();
             let mut says: Vec<String> =
@@ -66,7 +102,7 @@ impl Resources {
                 .iter()
                 .filter(|touch| touch.pass == index)
                 .filter_map(|touch| {
-                    let resource = *self.indices.get(&touch.target)?;
+                    let resource = *indices.get(&touch.target)?;
                     plan.is_transient(resource).then(|| format!("{} {:?}", name_of(resource), touch.access))
                 })
                 .collect();

@@ -1,6 +1,7 @@
 //! What a command leaves behind: pictures, numbers, tables.
 
 pub mod image_file;
+pub mod memory;
 pub mod picture;
 pub mod run;
 pub mod tonemap;

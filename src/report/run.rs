@@ -3,11 +3,9 @@
 
 use crate::error::Result;
 use crate::gpu::caps::Identity;
-use crate::gpu::commands::FrameTime;
-use crate::gpu::image::ImageDescription;
-use crate::memory::ledger::Snapshot;
-use crate::plan::{Plan, Shape};
+use crate::gpu::recorded::FrameTime;
 use crate::report::image_file::{Aov, AovChannels};
+use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
@@ -175,36 +173,8 @@ impl Report {
         }
     }
 
-    pub fn memory(&mut self, scene: &Plan, frame: &Plan, snapshot: &Snapshot) {
-        let shapes: BTreeMap<&str, Shape> = scene
-            .resources
-            .iter()
-            .chain(&frame.resources)
-            .map(|planned| (planned.name.as_str(), planned.shape))
-            .collect();
-        let resources: Vec<Value> = snapshot
-            .resources
-            .iter()
-            .map(|entry| {
-                let mut row = json!(entry);
-                if let Some(Shape::Image(ImageDescription { extent, format, .. })) = shapes.get(entry.name.as_str()) {
-                    row["format"] = json!(format!("{format:?}"));
-                    row["extent"] = json!(extent.to_string());
-                }
-                row
-            })
-            .collect();
-        self.document.insert(
-            "memory".into(),
-            json!({
-                "planned_bytes": scene.bytes() + frame.bytes(),
-                "allocated_bytes": snapshot.bound_bytes(),
-                "memory_block_bytes": snapshot.memory_block_bytes,
-                "peak_bytes": snapshot.peak_bytes,
-                "groups": snapshot.groups(),
-                "resources": resources,
-            }),
-        );
+    pub fn memory(&mut self, table: &MemoryTable) {
+        self.document.insert("memory".into(), table.json());
     }
 
     pub fn counters(&mut self, counters: &BTreeMap<&'static str, f64>) {

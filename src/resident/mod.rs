@@ -3,13 +3,16 @@
 //!
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
+mod relief;
 mod textures;
+
+pub use relief::advise;
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
 use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
-use crate::plan::{Plan, Resources, Shape};
+use crate::plan::{Plan, Resources, Shape, Sharing};
 use crate::scene::{AlphaMode, ColorSpace, Scene, mipmaps};
 use crate::units::Extent;
 use ash::vk;
@@ -58,7 +61,7 @@ pub struct SceneStats {
     pub index_count: u64,
     pub draw_count: u64,
     pub material_count: u64,
-    /// Extent and format of each distinct image in its colour space.
+    /// Extent, within the scene's limit, and format of each distinct image in its colour space.
     pub textures: Vec<(Extent, vk::Format)>,
     pub has_emissive: bool,
     pub has_blend: bool,
@@ -82,8 +85,22 @@ fn distinct_images(scene: &Scene) -> Vec<(usize, ColorSpace)> {
     distinct
 }
 
+/// The first level of an image whose sides are at most `limit_px`; 0: no limit.
+fn limited(image: &crate::scene::Image, limit_px: u32) -> Extent {
+    let (mut width, mut height) = (image.width, image.height);
+    while limit_px > 0 && width.max(height) > limit_px {
+        (width, height) = ((width / 2).max(1), (height / 2).max(1));
+    }
+    Extent::new(width, height)
+}
+
 impl SceneStats {
     pub fn of(scene: &Scene) -> Self {
+        Self::with_texture_limit(scene, scene.texture_limit_px)
+    }
+
+    /// As if the scene's limit were `limit_px`; 0: none.
+    pub fn with_texture_limit(scene: &Scene, limit_px: u32) -> Self {
         let drawn = || scene.draws.iter().map(|draw| &scene.materials[scene.meshes[draw.mesh].material]);
         Self {
             vertex_count: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
@@ -92,10 +109,7 @@ impl SceneStats {
             material_count: scene.materials.len() as u64,
             textures: distinct_images(scene)
                 .into_iter()
-                .map(|(image, color_space)| {
-                    let image = &scene.images[image];
-                    (Extent::new(image.width, image.height), format_of(color_space))
-                })
+                .map(|(image, color_space)| (limited(&scene.images[image], limit_px), format_of(color_space)))
                 .collect(),
             has_emissive: drawn().any(|material| material.is_emissive()),
             has_blend: drawn().any(|material| material.alpha == AlphaMode::Blend),
@@ -162,7 +176,7 @@ impl SceneGpu {
     /// Errors: memory is too small or a limit is passed (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, scene: &Scene) -> Result<Self> {
         let stats = SceneStats::of(scene);
-        let mut resources = Resources::make(gpu, &stats.plan())?;
+        let mut resources = Resources::make(gpu, "scene", &stats.plan(), &Sharing::default())?;
         let geometry = Geometry::of(scene);
         let send = |buffer: &Buffer, bytes: &[u8], access| upload::buffer(gpu, buffer, bytes, access);
         let positions = resources.buffer("scene.positions");
@@ -314,5 +328,31 @@ fn material_block(material: &crate::scene::Material) -> MaterialBlock {
             | bit(material.normal_texture.is_some(), NORMAL_TEXTURE)
             | bit(material.emissive_texture.is_some(), EMISSIVE_TEXTURE)
             | bit(material.double_sided, DOUBLE_SIDED),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The levels that a limit leaves are the last ones of all, so an upload may send the end of the whole list.
+    #[test]
+    fn a_limited_texture_is_the_end_of_the_whole_one() {
+        for (width, height) in [(1024, 1024), (1000, 3), (7, 513), (1, 1), (641, 359)] {
+            let rgba8 = (0..4 * width * height).map(|at| (at * 7 % 251) as u8).collect();
+            let image = crate::scene::Image { name: String::new(), width, height, rgba8 };
+            let whole = mipmaps::levels(&image, ColorSpace::Srgb);
+            for limit_px in [0, 1, 2, 5, 100, 512, 1024, 4096] {
+                let extent = limited(&image, limit_px);
+                assert!(limit_px == 0 || extent.width.max(extent.height) <= limit_px);
+                let Shape::Image(kept) = texture_shape(extent, vk::Format::R8G8B8A8_SRGB) else { unreachable!() };
+                let left_out = mipmaps::level_count(width, height) - kept.level_count;
+                assert!(left_out == 0 || (width.max(height) >> (left_out - 1)) > limit_px, "no finer level is allowed");
+                let finer: u64 = (0..left_out)
+                    .map(|level| 4 * u64::from((width >> level).max(1)) * u64::from((height >> level).max(1)))
+                    .sum();
+                assert_eq!(finer + kept.bytes(), whole.len() as u64, "{width}x{height} within {limit_px}");
+            }
+        }
     }
 }

@@ -30,7 +30,9 @@ impl Textures {
         for (index, (image, color_space)) in distinct.iter().enumerate() {
             let target = resources.image(&format!("scene.textures.{index}"));
             let levels = mipmaps::levels(&scene.images[*image], *color_space);
-            upload::image(gpu, &target, &levels, Access::FragmentSample)?;
+            // A limit leaves the finest levels out: the others are the end of the list.
+            let first = levels.len() - target.description.bytes() as usize;
+            upload::image(gpu, &target, &levels[first..], Access::FragmentSample)?;
             images.push(target);
         }
         let white = resources.image("scene.textures.white");

@@ -38,6 +38,9 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Decoded pictures; textures point here.
     pub images: Vec<Image>,
+    /// Greatest side that a texture has in device memory: larger ones begin at a coarser level. 0: no limit. What the
+    /// host looks up (`shading::material`) stays as fine as the file.
+    pub texture_limit_px: u32,
     /// Punctual lights. Emissive materials are not listed here.
     pub lights: Vec<Light>,
     /// Cameras in file order. May be empty: the job then frames the bounds.

@@ -3,7 +3,9 @@
 // Each test file is a program of its own and uses a part of this.
 #![allow(dead_code)]
 
+pub mod counted;
 pub mod gltf_file;
+pub mod program;
 pub mod watched;
 
 use std::path::PathBuf;

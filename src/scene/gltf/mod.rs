@@ -80,6 +80,7 @@ fn read(path: &Path) -> Result<Scene> {
         lights,
         cameras,
         warnings,
+        texture_limit_px: 0,
     };
     let bounds = scene.bounds();
     if !bounds.is_empty() && !bounds.diagonal().is_finite() {

@@ -1,0 +1,66 @@
+//! A point of the grid as settings, whether they are possible or not.
+
+use super::sweep::{Point, label};
+use crate::error::{Error, Result};
+use crate::job::Job;
+use crate::scene;
+use crate::settings::Values;
+use std::collections::BTreeMap;
+
+/// A point with all its settings.
+pub struct Candidate {
+    /// Its name in tables, and for `--baseline`.
+    pub label: String,
+    /// Texts of every setting, those of the point as they were asked for.
+    pub settings: BTreeMap<String, String>,
+    /// Checked; an error where the point cannot be.
+    pub values: Result<Values>,
+}
+
+impl Candidate {
+    /// `scene_hash`: of the scene that `job` loads; a point that would load another one is impossible.
+    pub fn new(job: &Job, point: &Point, scene_hash: &str) -> Self {
+        let mut settings: BTreeMap<String, String> =
+            job.values.iter().map(|(key, text)| (key.to_owned(), text.to_owned())).collect();
+        settings.extend(point.iter().cloned());
+        let values = changed(job, &job.values, point.iter().map(|(key, text)| (key.as_str(), text.as_str())))
+            .and_then(|values| one_session(job, &values, scene_hash).map(|()| values));
+        Self { label: label(point), settings, values }
+    }
+}
+
+/// `values` with some of them changed.
+///
+/// Errors: the technique does not read one, or it is impossible (exit code 2).
+pub fn changed<'a, 'b>(
+    job: &Job,
+    values: &Values,
+    changes: impl IntoIterator<Item = (&'a str, &'b str)>,
+) -> Result<Values> {
+    let mut changed = Job::new(&job.scene, job.technique);
+    changed.values = values.clone();
+    for (key, text) in changes {
+        changed.set(key, text)?;
+    }
+    Ok(changed.values)
+}
+
+/// All variants share a device and a scene: what is settled with those cannot differ.
+fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
+    for key in ["allocation", "memory-budget", "texture-limit"] {
+        let text = values.text(key);
+        if text != job.values.text(key) {
+            return Err(Error::request(format!(
+                "--{key} {text}: it is settled when the device opens, for all variants; each needs a bench of its own"
+            )));
+        }
+    }
+    let seed = values.integer("seed");
+    if seed != job.values.integer("seed") && scene::load(&job.scene, seed)?.hash != scene_hash {
+        return Err(Error::request(format!(
+            "--seed {seed}: the scene {} is another one then, and times compare on one scene",
+            job.scene
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,160 @@
+//! A group: the baseline and a few variants that are on the device together, with what their copies are held against.
+
+use super::candidate::changed;
+use super::copy::BufferCopy;
+use super::rounds::{self, Probe, Samples};
+use super::variant::Variant;
+use super::what::What;
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::Job;
+use crate::report::picture::Picture;
+use crate::session::Session;
+use crate::settings::Values;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Renderers on the device at once: pairs need company, and a long sweep must not need the memory of all its variants.
+const MAX_RENDERERS: usize = 8;
+
+/// Place of the baseline among the probes.
+pub const BASELINE: usize = 0;
+
+/// The place among the probes of what stands beside a variant, or why it cannot.
+pub type Companion = Result<usize>;
+
+/// A variant in its group.
+pub struct Member {
+    /// Place in the grid.
+    pub candidate: usize,
+    pub variant: Rc<Variant>,
+    /// Place among the probes.
+    pub probe: usize,
+    /// The same kernel at pattern 1x1; of a copying stage only.
+    pub identity: Option<Companion>,
+    /// vkCmdCopyBuffer of as many bytes; of a copying stage only.
+    pub copy: Option<Companion>,
+}
+
+/// Who is measured in turn.
+pub struct Group {
+    probes: Vec<Rc<dyn Probe>>,
+    pub members: Vec<Member>,
+    renderer_count: usize,
+    identities: HashMap<String, Companion>,
+    copies: HashMap<u64, Companion>,
+}
+
+/// What rounds of a group need to know.
+pub struct Ground<'a> {
+    pub job: &'a Job,
+    pub session: &'a Session,
+    pub what: What,
+}
+
+impl Group {
+    /// With the baseline, which is measured in every group and a member of one.
+    pub fn new(baseline: &Rc<Variant>) -> Self {
+        let probes: Vec<Rc<dyn Probe>> = vec![baseline.clone()];
+        Self { probes, members: Vec::new(), renderer_count: 1, identities: HashMap::new(), copies: HashMap::new() }
+    }
+
+    /// Whether a variant, and its identity, still have a place.
+    pub fn has_room(&self, what: What) -> bool {
+        let next = 1 + usize::from(what.copies());
+        self.members.is_empty() || self.renderer_count + next <= MAX_RENDERERS
+    }
+
+    /// Adds the baseline as a member.
+    pub fn add_baseline(&mut self, ground: &Ground<'_>, candidate: usize, variant: &Rc<Variant>, values: &Values) {
+        let [identity, copy] = self.companions(ground, variant, values);
+        self.members.push(Member { candidate, variant: variant.clone(), probe: BASELINE, identity, copy });
+    }
+
+    /// Makes a variant and adds it.
+    ///
+    /// Errors: as `Variant::new` has them; and where others are in the group, memory for what stands beside it (exit
+    /// code 4): with fewer of them there may be enough.
+    pub fn add(&mut self, ground: &Ground<'_>, candidate: usize, values: &Values) -> Result<()> {
+        let variant = Rc::new(Variant::new(ground.session, ground.job.technique, ground.what, values)?);
+        let [identity, copy] = self.companions(ground, &variant, values);
+        if !self.members.is_empty() {
+            let refused = [&identity, &copy].into_iter().flatten().filter_map(|companion| companion.as_ref().err());
+            if let Some(error) = refused.into_iter().find(|error| is_of_memory(error)) {
+                return Err(error.clone());
+            }
+        }
+        self.renderer_count += 1;
+        let probe = self.push(variant.clone());
+        self.members.push(Member { candidate, variant, probe, identity, copy });
+        Ok(())
+    }
+
+    /// Identity and copy, of a copying stage.
+    fn companions(&mut self, ground: &Ground<'_>, variant: &Variant, values: &Values) -> [Option<Companion>; 2] {
+        if !ground.what.copies() {
+            return [None, None];
+        }
+        [Some(self.identity(ground, values)), Some(self.copy(ground, variant.result_bytes()))]
+    }
+
+    fn push(&mut self, probe: Rc<dyn Probe>) -> usize {
+        self.probes.push(probe);
+        self.probes.len() - 1
+    }
+
+    /// Variants that differ in their pattern only share it.
+    fn identity(&mut self, ground: &Ground<'_>, values: &Values) -> Companion {
+        let identity = identity_values(ground.job, values)?;
+        let key = format!("{identity:?}");
+        if let Some(known) = self.identities.get(&key) {
+            return known.clone();
+        }
+        let made = Variant::new(ground.session, ground.job.technique, ground.what, &identity);
+        let made = made.map(|variant| {
+            self.renderer_count += 1;
+            self.push(Rc::new(variant))
+        });
+        self.identities.insert(key, made.clone());
+        made
+    }
+
+    fn copy(&mut self, ground: &Ground<'_>, bytes: u64) -> Companion {
+        if let Some(known) = self.copies.get(&bytes) {
+            return known.clone();
+        }
+        let made = BufferCopy::new(&ground.session.gpu, bytes).map(|copy| self.push(Rc::new(copy)));
+        self.copies.insert(bytes, made.clone());
+        made
+    }
+
+    /// A whole frame of each member, which compiles its shaders: the members' pictures, in their order.
+    ///
+    /// Errors: the device fails (exit code 4); interrupted (130).
+    pub fn pictures(&self) -> Result<Vec<Picture>> {
+        let picture = |member: &Member| {
+            crate::interrupt::check()?;
+            member.variant.renderer.frame()?;
+            member.variant.renderer.picture()
+        };
+        self.members.iter().map(picture).collect()
+    }
+
+    /// Samples of each probe; errors as `rounds::run` has them.
+    pub fn measure(&self, repeat: usize, progress: &mut dyn FnMut(usize, usize)) -> Result<Vec<Samples>> {
+        let probes: Vec<&dyn Probe> = self.probes.iter().map(Rc::as_ref).collect();
+        rounds::run(&probes, repeat, progress)
+    }
+}
+
+/// Whether fewer renderers on the device might help.
+pub fn is_of_memory(error: &Error) -> bool {
+    error.kind() == ErrorKind::Device
+}
+
+/// The settings of the identity: the same kernel and storage at pattern 1x1. A copy's time does not depend on what is
+/// copied, so one virtual point light is enough for it; at 1x1 every pixel would meet all of them.
+fn identity_values(job: &Job, values: &Values) -> Result<Values> {
+    let identity = changed(job, values, [("pattern", "1x1")])
+        .map_err(|error| Error::request(format!("there is no identity: {}", error.message())))?;
+    Ok(changed(job, &identity, [("vpls", "1")]).unwrap_or(identity))
+}

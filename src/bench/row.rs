@@ -1,0 +1,196 @@
+//! A row: one variant's settings, times, bytes and error, as a JSON document of one line.
+
+use super::candidate::Candidate;
+use super::group::{BASELINE, Companion, Ground, Member};
+use super::reference::{Found, Reference, pass_ms};
+use super::rounds::Samples;
+use super::stats::{median, paired_ratio};
+use super::what::What;
+use crate::error::{Error, Result};
+use crate::job::Job;
+use crate::metrics;
+use crate::report::picture::Picture;
+use crate::report::run::spread;
+use serde_json::{Map, Value, json};
+
+/// What every row of a run shares.
+pub struct Head<'a> {
+    pub ground: Ground<'a>,
+    pub repeat: usize,
+    /// The baseline's label.
+    pub baseline: String,
+    /// What the scene holds in device memory.
+    pub scene_bytes: u64,
+}
+
+impl Head<'_> {
+    /// The keys that say what a row is of; `key` reads these.
+    pub fn row(&self, candidate: &Candidate) -> Value {
+        let Ground { job, session, what } = &self.ground;
+        json!({
+            "schema": 1,
+            "bench": what.name(),
+            "variant": candidate.label,
+            "device": session.gpu.caps.identity,
+            "commit": env!("QUINCUNX_COMMIT"),
+            "scene": { "name": session.scene.name, "hash": session.scene.hash },
+            "technique": job.technique.name(),
+            "settings": candidate.settings,
+            "repeat": self.repeat,
+            "baseline": self.baseline,
+        })
+    }
+
+    /// The row of a variant that cannot be, and why.
+    pub fn skipped(&self, candidate: &Candidate, error: &Error) -> Value {
+        let mut row = self.row(candidate);
+        row["skipped"] = json!(error.message());
+        row
+    }
+
+    /// The row of a variant that was measured. `samples`: of every probe of its group.
+    ///
+    /// Errors: the picture holds NaN or infinity (exit code 1); the device fails (4).
+    pub fn measured(
+        &self,
+        candidate: &Candidate,
+        member: &Member,
+        picture: &Picture,
+        samples: &[Samples],
+        reference: &Found,
+    ) -> Result<Value> {
+        let Ground { job, session, what } = &self.ground;
+        let renderer = &member.variant.renderer;
+        let times = samples[member.probe].totals_ms();
+        let baseline = samples[BASELINE].totals_ms();
+        let [read, written] = member.variant.traffic_bytes();
+        let mut row = self.row(candidate);
+        row["command"] = json!(repeating_command(job, *what, candidate));
+        row["image_hash"] = json!(picture.hash()?);
+        row[what.time_key()] = spread(&times);
+        row["pass_ms"] = self.pass_ms(candidate, member, samples)?;
+        row["speed_up"] = paired_ratio(&baseline, &times).json();
+        row["speed_up"]["baseline"] = json!(self.baseline);
+        row["ratio"] = paired_ratio(&times, &baseline).json();
+        row["bytes_read"] = json!(read);
+        row["bytes_written"] = json!(written);
+        row["planned_bytes"] = json!(renderer.plan.bytes());
+        row["memory"] = json!({
+            "planned_bytes": session.stats.plan().bytes() + renderer.plan.bytes(),
+            "peak_bytes": self.scene_bytes + member.variant.bound_bytes,
+        });
+        row["counters"] = json!(renderer.counters);
+        match what {
+            What::Split | What::Gather => copies(&mut row, member, samples),
+            What::Shade => evaluations(&mut row, member, &times),
+            What::Filter => taps(&mut row, candidate, member, &times),
+            What::Frame => {}
+        }
+        match reference {
+            Ok(reference) => {
+                let comparison = metrics::compare(picture, &reference.picture)?;
+                row["error_against_none"] = json!(comparison.metrics);
+                overhead(&mut row, picture, reference);
+            }
+            Err(error) => row["reference_skipped"] = json!(error.message()),
+        }
+        Ok(row)
+    }
+
+    /// Median milliseconds of each timed pass. A frame is one submit: its passes are timed in frames of their own.
+    fn pass_ms(&self, candidate: &Candidate, member: &Member, samples: &[Samples]) -> Result<Value> {
+        let Ground { job, session, what } = &self.ground;
+        let passes: Vec<(String, f64)> = if *what == What::Frame {
+            let values = candidate.values.as_ref().map_err(Error::clone)?;
+            match pass_ms(job, session, values)? {
+                Some(passes) => passes,
+                None => return Ok(Value::Null),
+            }
+        } else {
+            let names = member.variant.stage.iter().map(|index| member.variant.renderer.passes()[*index].name.clone());
+            names.zip(samples[member.probe].part_medians_ms()).collect()
+        };
+        Ok(Value::Object(passes.into_iter().map(|(name, ms)| (name, json!(ms))).collect::<Map<_, _>>()))
+    }
+}
+
+/// What says that two rows are of the same measurement.
+pub fn key(row: &Value) -> String {
+    let parts = ["bench", "technique", "device", "commit", "settings", "repeat", "baseline", "variant"];
+    let mut key: Vec<&Value> = parts.iter().map(|part| &row[*part]).collect();
+    key.push(&row["scene"]["hash"]);
+    json!(key).to_string()
+}
+
+/// The `render` command of a variant: every setting that is not at its default; pass times where a stage is timed.
+fn repeating_command(job: &Job, what: What, candidate: &Candidate) -> Vec<String> {
+    let defaults = Job::new(&job.scene, job.technique).values;
+    let mut command =
+        ["quincunx", "render", &job.scene, "--technique", job.technique.name()].map(str::to_owned).to_vec();
+    for (key, default) in defaults.iter() {
+        if candidate.settings[key] != default {
+            command.extend([format!("--{key}"), candidate.settings[key].clone()]);
+        }
+    }
+    if what != What::Frame {
+        command.push("--profile".to_owned());
+    }
+    command
+}
+
+/// A copy beside the identity shader and beside vkCmdCopyBuffer.
+fn copies(row: &mut Value, member: &Member, samples: &[Samples]) {
+    let times = samples[member.probe].totals_ms();
+    let against = |companion: &Companion| match companion {
+        Ok(probe) => {
+            let theirs = samples[*probe].totals_ms();
+            let mut entry = paired_ratio(&times, &theirs).json();
+            entry["ms"] = spread(&theirs);
+            entry
+        }
+        Err(error) => json!({ "skipped": error.message() }),
+    };
+    if let Some(identity) = &member.identity {
+        row["identity"] = against(identity);
+    }
+    if let Some(copy) = &member.copy {
+        row["copy"] = against(copy);
+        let bytes = member.variant.result_bytes();
+        row["copied_bytes"] = json!(bytes);
+        // Bytes over milliseconds are kilobytes a second.
+        row["copied_gb_per_s"] = json!(bytes as f64 / median(&times) / 1e6);
+    }
+}
+
+/// Nanoseconds for each light of a pixel's subset at each pixel that is shaded.
+fn evaluations(row: &mut Value, member: &Member, times: &[f64]) {
+    let renderer = &member.variant.renderer;
+    let Some(lights) = renderer.counters.get("subset_lights_per_pixel") else { return };
+    let pixels = member.variant.extent().pixel_count();
+    let invocations = member.variant.stage.iter().filter_map(|index| renderer.passes()[*index].traffic.invocations);
+    // `--split subsample` shades one pixel of each pattern; sub-buffers are padded.
+    let shaded = invocations.max().unwrap_or(pixels).min(pixels);
+    row["ns_per_evaluation"] = json!(1e6 * median(times) / (shaded as f64 * lights).max(1.0));
+}
+
+/// Nanoseconds a pixel, discontinuities included, and of those for each tap of both directions.
+fn taps(row: &mut Value, candidate: &Candidate, member: &Member, times: &[f64]) {
+    let pixel_ns = 1e6 * median(times) / member.variant.extent().pixel_count() as f64;
+    row["ns_per_pixel"] = json!(pixel_ns);
+    if let Some(kernel) = candidate.settings.get("kernel").and_then(|kernel| kernel.parse::<f64>().ok()) {
+        row["ns_per_tap"] = json!(pixel_ns / (2.0 * kernel));
+    }
+}
+
+/// What a frame has beside plain deferred shading, in evaluations of one light at each pixel.
+fn overhead(row: &mut Value, picture: &Picture, reference: &Reference) {
+    let (Some(cost), Some(passes)) = (&reference.cost, row["pass_ms"].as_object()) else { return };
+    let own = passes
+        .iter()
+        .filter(|(name, _)| !cost.pass_names.contains(name))
+        .fold(0.0, |sum, (_, ms)| sum + ms.as_f64().unwrap_or_default());
+    let pixels = picture.extent.pixel_count() as f64;
+    row["evaluation_ns"] = json!(cost.evaluation_ns);
+    row["overhead_ms"] = json!(own);
+    row["overhead_evaluations_per_pixel"] = json!(1e6 * own / (pixels * cost.evaluation_ns).max(1e-9));
+}

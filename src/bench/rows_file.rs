@@ -1,0 +1,137 @@
+//! `rows.jsonl`: rows appended as they are found, one line and one write each, so that what is there is always valid.
+
+use super::row::key;
+use crate::error::{Error, Result};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Its name in the folder of `-o`.
+pub const NAME: &str = "rows.jsonl";
+
+/// What happens to rows that are there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    Refuse,
+    /// They are kept, and not measured again.
+    Resume,
+    Overwrite,
+}
+
+/// The file, open from its first new row on: a run that fails before leaves it as it was.
+pub struct RowsFile {
+    path: PathBuf,
+    file: Option<File>,
+    /// Whole lines that stay; what follows them was torn off by the end of a process.
+    kept_bytes: u64,
+    kept: HashMap<String, Value>,
+}
+
+impl RowsFile {
+    /// Reads what is there. `folder` exists.
+    ///
+    /// Errors: rows are there and `existing` refuses them, a line is no row, or the file cannot be read (exit code 2).
+    pub fn open(folder: &Path, existing: Existing) -> Result<Self> {
+        let path = folder.join(NAME);
+        let mut rows = Self { path, file: None, kept_bytes: 0, kept: HashMap::new() };
+        if !rows.path.exists() {
+            return Ok(rows);
+        }
+        match existing {
+            Existing::Overwrite => {}
+            Existing::Refuse => {
+                return Err(rows
+                    .error("it holds rows of an earlier run")
+                    .note("--resume measures only what is missing in it; --force replaces it"));
+            }
+            Existing::Resume => rows.read()?,
+        }
+        Ok(rows)
+    }
+
+    fn read(&mut self) -> Result<()> {
+        let bytes = std::fs::read(&self.path).map_err(|error| self.error(&error.to_string()))?;
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        self.kept_bytes = whole as u64;
+        let lines = bytes[..whole].split(|byte| *byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty());
+        for (index, line) in lines {
+            let row: Value = serde_json::from_slice(line).ok().filter(Value::is_object).ok_or_else(|| {
+                self.error(&format!("line {} is no row", index + 1)).note("take the line out, or --force")
+            })?;
+            self.kept.insert(key(&row), row);
+        }
+        Ok(())
+    }
+
+    fn error(&self, why: &str) -> Error {
+        Error::request(format!("{}: {why}", self.path.display()))
+    }
+
+    /// The row of the same measurement as `head`, which has the keys that say what a row is of.
+    pub fn kept(&self, head: &Value) -> Option<&Value> {
+        self.kept.get(&key(head))
+    }
+
+    /// Appends a row.
+    ///
+    /// Errors: it cannot be written (exit code 2).
+    pub fn append(&mut self, row: &Value) -> Result<()> {
+        self.write(format!("{row}\n").as_bytes()).map_err(|error| self.error(&error.to_string()))
+    }
+
+    fn write(&mut self, line: &[u8]) -> std::io::Result<()> {
+        if self.file.is_none() {
+            let file = OpenOptions::new().append(true).create(true).open(&self.path)?;
+            file.set_len(self.kept_bytes)?;
+            self.file = Some(file);
+        }
+        self.file.as_mut().expect("opened above").write_all(line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn row(variant: &str) -> Value {
+        json!({ "bench": "frame", "variant": variant, "scene": { "hash": "h" }, "repeat": 3 })
+    }
+
+    #[test]
+    fn a_torn_line_is_dropped_and_whole_ones_stay_as_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        let mut rows = RowsFile::open(folder.path(), Existing::Refuse).unwrap();
+        assert!(!path.exists());
+        rows.append(&row("a")).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        std::fs::write(&path, [&whole[..], &whole[..whole.len() / 2]].concat()).unwrap();
+
+        let mut rows = RowsFile::open(folder.path(), Existing::Resume).unwrap();
+        assert_eq!(rows.kept(&row("a")), Some(&row("a")));
+        assert_eq!(rows.kept(&row("b")), None);
+        assert_eq!(rows.kept(&json!({ "bench": "split", "variant": "a" })), None);
+        rows.append(&row("b")).unwrap();
+        let text = std::fs::read(&path).unwrap();
+        assert_eq!(text, [&whole[..], format!("{}\n", row("b")).as_bytes()].concat());
+    }
+
+    #[test]
+    fn rows_are_replaced_only_on_request() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        std::fs::write(&path, "{}\nnothing\n").unwrap();
+        let refused = |existing| RowsFile::open(folder.path(), existing).err().unwrap();
+        let error = refused(Existing::Refuse);
+        assert!(error.exit_code() == 2 && error.to_string().contains("--resume"), "{error}");
+        let error = refused(Existing::Resume);
+        assert!(error.exit_code() == 2 && error.message().contains("line 2 is no row"), "{error}");
+        let mut rows = RowsFile::open(folder.path(), Existing::Overwrite).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "{}\nnothing\n");
+        rows.append(&row("a")).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), format!("{}\n", row("a")));
+    }
+}

@@ -1,0 +1,149 @@
+//! What a sweep comes to: all its rows with the Pareto set marked, the best blocks, what was skipped and why.
+
+use super::sweep::Axis;
+use super::table::{MARK, Table};
+use super::what::What;
+use super::{blocks, pareto};
+use crate::error::Result;
+use crate::report::whole_file::write_whole;
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::Path;
+
+/// A finished sweep, or the part of it that was.
+pub struct Summary {
+    what: What,
+    rows: Vec<Value>,
+    best_blocks: Vec<Value>,
+    command: Vec<String>,
+}
+
+impl Summary {
+    /// `rows`: at least one, in the order of the grid; `command`: the argv that repeats it.
+    pub fn new(what: What, axes: &[Axis], mut rows: Vec<Value>, command: &[String]) -> Self {
+        let places: Vec<_> = rows.iter().map(pareto::place).collect();
+        for (row, in_set) in rows.iter_mut().zip(pareto::set(&places)) {
+            if in_set {
+                row["pareto"] = json!(true);
+            }
+        }
+        // Where a stage is no copy, its blocks are another's choice.
+        let best_blocks = if what.copies() { blocks::best(axes, &rows) } else { Vec::new() };
+        Self { what, rows, best_blocks, command: command.to_vec() }
+    }
+
+    pub fn json(&self) -> Value {
+        let first = &self.rows[0];
+        json!({
+            "schema": 1,
+            "bench": self.what.name(),
+            "command": self.command,
+            "device": first["device"],
+            "commit": first["commit"],
+            "scene": first["scene"],
+            "technique": first["technique"],
+            "baseline": first["baseline"],
+            "repeat": first["repeat"],
+            "pareto_of": ["ratio.mean", "error_against_none.rmse"],
+            "rows": self.rows,
+            "best_blocks": self.best_blocks,
+        })
+    }
+
+    /// What a terminal shows.
+    pub fn text(&self) -> String {
+        let mut text = format!("{}\n{}\n\n{}", self.place(), self.legend(), Table::new(self.what, &self.rows).text());
+        for line in self.notes() {
+            text.push_str(&line);
+            text.push('\n');
+        }
+        text
+    }
+
+    pub fn markdown(&self) -> String {
+        let title = format!("bench {}: {}", self.what.name(), self.place());
+        let table = Table::new(self.what, &self.rows).markdown();
+        let mut text = format!("# {title}\n\n{}\n\n    {}\n\n{table}", self.legend(), self.command.join(" "));
+        let notes = self.notes();
+        if !notes.is_empty() {
+            text.push('\n');
+        }
+        for line in notes {
+            text.push_str(&format!("- {line}\n"));
+        }
+        text
+    }
+
+    /// Writes `summary.json` and `summary.md`.
+    ///
+    /// Errors: they cannot be written (exit code 2).
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        write_whole(&folder.join("summary.json"), |out| writeln!(out, "{:#}", self.json()))?;
+        write_whole(&folder.join("summary.md"), |out| out.write_all(self.markdown().as_bytes()))
+    }
+
+    fn place(&self) -> String {
+        let first = &self.rows[0];
+        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let device = &first["device"];
+        let software = if device["type"] == "cpu" { ", software driver" } else { "" };
+        format!(
+            "{} on {} ({}{software})",
+            word(&first["scene"]["name"]),
+            word(&device["name"]),
+            word(&device["driver_info"])
+        )
+    }
+
+    fn legend(&self) -> String {
+        let baseline = self.rows[0]["baseline"].as_str().unwrap_or_default();
+        format!(
+            "time ratios to {baseline}, of {} rounds; errors against --split none; {MARK}: nothing beats it in time or rmse \
+             without losing in the other",
+            self.rows[0]["repeat"]
+        )
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let skipped = self.rows.iter().filter_map(|row| {
+            let reason = row["skipped"].as_str()?;
+            Some(format!("skipped {}: {reason}", row["variant"].as_str().unwrap_or_default()))
+        });
+        self.best_blocks.iter().map(blocks::sentence).chain(skipped).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(variant: &str, ratio: f64, rmse: f64) -> Value {
+        json!({
+            "variant": variant,
+            "baseline": "a",
+            "repeat": 2,
+            "scene": { "name": "box" },
+            "device": { "name": "d", "type": "cpu", "driver_info": "i" },
+            "ratio": { "mean": ratio, "interval_95": null },
+            "error_against_none": { "rmse": rmse },
+        })
+    }
+
+    #[test]
+    fn a_summary_marks_the_pareto_set_and_says_what_was_skipped() {
+        let mut skipped = row("c", 0.0, 0.0);
+        skipped["skipped"] = json!("it cannot be");
+        skipped["ratio"] = Value::Null;
+        let rows = vec![row("a", 1.0, 0.0), row("b", 2.0, 0.0), skipped];
+        let summary = Summary::new(What::Frame, &[], rows, &["quincunx".to_owned()]);
+        let marks: Vec<&Value> = summary.rows.iter().map(|row| &row["pareto"]).collect();
+        assert_eq!(marks, [&json!(true), &Value::Null, &Value::Null]);
+        let text = summary.text();
+        assert!(text.starts_with("box on d (i, software driver)\n"), "{text}");
+        assert!(text.contains("skipped c: it cannot be"), "{text}");
+        let lines: Vec<&str> = text.lines().filter(|line| line.ends_with(MARK)).collect();
+        assert!(lines.len() == 1 && lines[0].starts_with("a "), "{text}");
+        assert!(summary.markdown().contains("| variant | median ms |"), "{}", summary.markdown());
+        assert_eq!(summary.json()["rows"].as_array().unwrap().len(), 3);
+    }
+}

@@ -1,0 +1,122 @@
+//! Rows as a table: which columns a benchmark has, in plain text or Markdown.
+
+use super::what::What;
+use crate::units::Bytes;
+use serde_json::Value;
+
+/// Mark of the Pareto set.
+pub const MARK: &str = "*";
+
+/// One column: a title, and what it says of a row.
+struct Column {
+    title: &'static str,
+    cell: fn(&Value) -> Option<String>,
+}
+
+/// Title and cells, all rows of one length; the first column is the variant's name.
+pub struct Table {
+    lines: Vec<Vec<String>>,
+}
+
+fn fixed(value: &Value, digits: usize) -> Option<String> {
+    value.as_f64().map(|value| format!("{value:.digits$}"))
+}
+
+fn ratio(entry: &Value) -> Option<String> {
+    let mean = fixed(&entry["mean"], 3)?;
+    let side = |index: usize| fixed(&entry["interval_95"][index], 3);
+    Some(match (side(0), side(1)) {
+        (Some(low), Some(high)) => format!("{mean} ({low} to {high})"),
+        _ => mean,
+    })
+}
+
+fn bytes(value: &Value) -> Option<String> {
+    value.as_u64().map(|bytes| Bytes(bytes).to_string())
+}
+
+/// Read and written.
+fn moved(row: &Value) -> Option<String> {
+    let sum = row["bytes_read"].as_u64()? + row["bytes_written"].as_u64()?;
+    Some(Bytes(sum).to_string())
+}
+
+fn columns(what: What) -> Vec<Column> {
+    let median: fn(&Value) -> Option<String> = match what {
+        What::Frame => |row| fixed(&row["frame_ms"]["median"], 3),
+        _ => |row| fixed(&row["stage_ms"]["median"], 3),
+    };
+    let mut columns = vec![
+        Column { title: "median ms", cell: median },
+        Column { title: "time ratio (95 %)", cell: |row| ratio(&row["ratio"]) },
+    ];
+    columns.extend(match what {
+        What::Split | What::Gather => vec![
+            Column { title: "to identity (95 %)", cell: |row| ratio(&row["identity"]) },
+            Column { title: "to copy buffer (95 %)", cell: |row| ratio(&row["copy"]) },
+            Column { title: "GB/s", cell: |row| fixed(&row["copied_gb_per_s"], 2) },
+            Column { title: "copied", cell: |row| bytes(&row["copied_bytes"]) },
+        ],
+        What::Shade => vec![Column { title: "ns/evaluation", cell: |row| fixed(&row["ns_per_evaluation"], 3) }],
+        What::Filter => vec![
+            Column { title: "ns/pixel", cell: |row| fixed(&row["ns_per_pixel"], 2) },
+            Column { title: "ns/tap", cell: |row| fixed(&row["ns_per_tap"], 3) },
+        ],
+        What::Frame => vec![Column {
+            title: "overhead, evals/pixel",
+            cell: |row| fixed(&row["overhead_evaluations_per_pixel"], 2),
+        }],
+    });
+    columns.extend([
+        Column { title: "moved", cell: moved },
+        Column { title: "memory peak", cell: |row| bytes(&row["memory"]["peak_bytes"]) },
+        Column { title: "rmse", cell: |row| fixed(&row["error_against_none"]["rmse"], 5) },
+        Column { title: "flip", cell: |row| fixed(&row["error_against_none"]["flip"], 4) },
+        Column { title: "Pareto", cell: |row| (row["pareto"] == true).then(|| MARK.to_owned()) },
+    ]);
+    columns
+}
+
+impl Table {
+    /// Of the rows that were measured.
+    pub fn new(what: What, rows: &[Value]) -> Self {
+        let columns = columns(what);
+        let titles = std::iter::once("variant").chain(columns.iter().map(|column| column.title));
+        let mut lines = vec![titles.map(str::to_owned).collect::<Vec<_>>()];
+        for row in rows.iter().filter(|row| row["skipped"].is_null()) {
+            let name = row["variant"].as_str().unwrap_or_default().to_owned();
+            let cells = columns.iter().map(|column| (column.cell)(row).unwrap_or_else(|| "-".to_owned()));
+            lines.push(std::iter::once(name).chain(cells).collect());
+        }
+        Self { lines }
+    }
+
+    /// In columns of spaces.
+    pub fn text(&self) -> String {
+        let width = |column: usize| self.lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.lines[0].len()).map(width).collect();
+        let mut text = String::new();
+        for line in &self.lines {
+            let mut out = format!("{:<1$}", line[0], widths[0]);
+            for (cell, width) in line.iter().zip(&widths).skip(1) {
+                out.push_str(&format!("  {cell:>width$}"));
+            }
+            text.push_str(out.trim_end());
+            text.push('\n');
+        }
+        text
+    }
+
+    pub fn markdown(&self) -> String {
+        let mut text = String::new();
+        for (index, line) in self.lines.iter().enumerate() {
+            // A bar in a name would end the cell.
+            let cells: Vec<String> = line.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            text.push_str(&format!("| {} |\n", cells.join(" | ")));
+            if index == 0 {
+                text.push_str(&format!("| --- |{}\n", " ---: |".repeat(line.len() - 1)));
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,90 @@
+//! `quincunx memory`: every byte of a technique, with its owner and its lifetime, as a table or as JSON.
+
+use super::job_args;
+use crate::error::{Error, Result};
+use crate::gpu::known;
+use crate::report::whole_file::write_whole;
+use crate::study::{self, Study};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// The verb with its arguments.
+pub fn command() -> Command {
+    let command = Command::new("memory")
+        .about("Print what a technique needs: each resource, its bytes, its memory type, its lifetime, the peak")
+        .arg(
+            Arg::new("plan")
+                .long("plan")
+                .action(ArgAction::SetTrue)
+                .help("Without a device: arithmetic over the scene and a known driver's rules"),
+        )
+        .arg(
+            Arg::new("caps")
+                .long("caps")
+                .value_name("NAME")
+                .requires("plan")
+                .help(format!("The known driver of --plan [default: {}]", known::DEFAULT)),
+        )
+        .arg(
+            Arg::new("aov")
+                .long("aov")
+                .value_name("NAME,...")
+                .value_delimiter(',')
+                .action(ArgAction::Append)
+                .help("Stages that are read back: they live until the frame's end"),
+        )
+        .arg(
+            Arg::new("output")
+                .short('o')
+                .long("output")
+                .value_name("DIR")
+                .value_parser(value_parser!(PathBuf))
+                .help("Write memory-TECHNIQUE.txt and memory-TECHNIQUE.json there"),
+        );
+    job_args::with_job_args(command).mut_arg("technique", |technique| {
+        technique
+            .action(ArgAction::Append)
+            .help("What is planned; may be repeated; a setting must be read by one of them")
+    })
+}
+
+/// Prints the table of each technique.
+pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
+    let folder = matches.get_one::<PathBuf>("output");
+    if let Some(folder) = folder {
+        std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+    }
+    let mut documents = Vec::new();
+    for mut job in job_args::jobs(matches, argv)? {
+        job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
+        let study = if matches.get_flag("plan") {
+            let name = matches.get_one::<String>("caps").map_or(known::DEFAULT, String::as_str);
+            study::planned(&job, name, &known::caps(name)?)?
+        } else {
+            study::made(&job)?
+        };
+        let technique = job.technique.name();
+        let document = document(technique, &study);
+        let text = format!("{technique}: {} on {}\n\n{}", study.scene, study.device, study.table.text());
+        if let Some(folder) = folder {
+            let file = |extension: &str| folder.join(format!("memory-{technique}.{extension}"));
+            write_whole(&file("txt"), |out| write!(out, "{text}"))?;
+            write_whole(&file("json"), |out| writeln!(out, "{document:#}"))?;
+        }
+        if !matches.get_flag("json") && !matches.get_flag("quiet") {
+            let gap = if documents.is_empty() { "" } else { "\n" };
+            super::print(&format!("{gap}{text}"))?;
+        }
+        documents.push(document);
+    }
+    if matches.get_flag("json") {
+        super::print(&format!("{:#}\n", json!({ "schema": 1, "techniques": documents })))?;
+    }
+    Ok(())
+}
+
+fn document(technique: &str, study: &Study) -> Value {
+    json!({ "technique": technique, "scene": study.scene, "device": study.device, "memory": study.table.json() })
+}

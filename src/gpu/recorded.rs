@@ -1,0 +1,102 @@
+//! A recorded frame, run again and again: whole, or from its start through a pass.
+//!
+//! A pass alone is not run again. Its barriers begin where the pass before it left off (image layouts, and bytes that
+//! aliased resources share), which is only true inside a frame. A frame's start assumes nothing, so any beginning of a
+//! frame can be repeated.
+
+use super::commands::{Commands, RecordedPass, Submits};
+use super::timing::PassTime;
+use crate::error::{Error, Result};
+use ash::vk;
+use std::time::Instant;
+
+/// A frame that can be run again and again.
+pub struct Recorded {
+    commands: Commands,
+    fence: vk::Fence,
+}
+
+/// What one run of a frame took.
+pub struct FrameTime {
+    /// First submit to last fence.
+    pub wall_ns: u64,
+    /// Of the passes that ran, in the order of `Recorded::passes`.
+    pub passes: Vec<PassTime>,
+}
+
+impl Recorded {
+    /// `commands` are ended; the fence is unsignalled and theirs alone.
+    pub(super) fn new(commands: Commands, fence: vk::Fence) -> Self {
+        Self { commands, fence }
+    }
+
+    pub fn passes(&self) -> &[RecordedPass] {
+        &self.commands.passes
+    }
+
+    /// Submits the frame and waits for it.
+    ///
+    /// Errors: the device is lost or out of memory (exit code 4).
+    pub fn run(&self) -> Result<FrameTime> {
+        let commands = &self.commands;
+        self.run_buffers(&commands.buffers, commands.passes.len())
+    }
+
+    /// Runs the first `pass_count` passes, at least one, of a frame that was recorded with a submit a pass; what later
+    /// passes write is then of an older frame, or of none.
+    ///
+    /// Errors: the device is lost or out of memory (exit code 4).
+    pub fn run_first(&self, pass_count: usize) -> Result<FrameTime> {
+        let commands = &self.commands;
+        assert!(commands.submits == Submits::PerPass, "only a frame with a submit a pass can stop between passes");
+        assert!((1..=commands.passes.len()).contains(&pass_count), "{pass_count} of {} passes", commands.passes.len());
+        self.run_buffers(&commands.buffers[..pass_count], pass_count)
+    }
+
+    fn run_buffers(&self, buffers: &[vk::CommandBuffer], pass_count: usize) -> Result<FrameTime> {
+        let commands = &self.commands;
+        let started = Instant::now();
+        let mut walls = Vec::with_capacity(buffers.len());
+        for buffer in buffers {
+            let submitted = Instant::now();
+            self.submit(*buffer)?;
+            walls.push(submitted.elapsed().as_nanos() as u64);
+        }
+        let wall_ns = started.elapsed().as_nanos() as u64;
+        let timestamps = match &commands.timestamps {
+            Some(timestamps) => timestamps.read_first(pass_count)?,
+            None => Vec::new(),
+        };
+        let passes = (0..pass_count)
+            .map(|pass| PassTime {
+                wall_ns: (commands.submits == Submits::PerPass).then(|| walls[pass]),
+                timestamp_ns: timestamps.get(pass).copied(),
+            })
+            .collect();
+        Ok(FrameTime { wall_ns, passes })
+    }
+
+    fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {
+        let gpu = &self.commands.gpu;
+        let fail = |result| match self.commands.passes.as_slice() {
+            [] => Error::device(format!("running commands: {result}")),
+            [first, ..] => Error::device(format!("running the frame of {}: {result}", first.name)),
+        };
+        let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(buffer)];
+        let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
+        let _one_at_a_time = gpu.submit_lock.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // SAFETY: the buffer is recorded and not running; the queue is locked; the fence is unsignalled.
+        unsafe {
+            gpu.device.queue_submit2(gpu.queue, &[submit], self.fence).map_err(fail)?;
+            gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(fail)?;
+            gpu.device.reset_fences(&[self.fence]).map_err(fail)
+        }
+    }
+}
+
+impl Drop for Recorded {
+    fn drop(&mut self) {
+        // SAFETY: `submit` waited for it.
+        unsafe { self.commands.gpu.device.destroy_fence(self.fence, None) };
+    }
+}

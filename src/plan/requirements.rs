@@ -1,0 +1,69 @@
+//! What a driver asks for a resource: bytes, alignment, memory types. A device is asked; without one, the rules of a known
+//! driver are applied, which stand in its caps (`assets/caps/`).
+
+use super::Shape;
+use crate::gpu::caps::LayoutRules;
+use crate::gpu::image::texel_bytes;
+use crate::gpu::{Buffer, Gpu, ImageDescription};
+
+/// A driver's answer for one resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Requirement {
+    /// At least the bytes asked for.
+    pub bound_bytes: u64,
+    /// A power of two.
+    pub alignment_bytes: u64,
+    /// A bit for each memory type that it may lie in.
+    pub memory_type_bits: u32,
+}
+
+/// Who answers.
+#[derive(Clone, Copy)]
+pub enum Requirements<'a> {
+    Device(&'a Gpu),
+    Rules(&'a LayoutRules),
+}
+
+impl Requirements<'_> {
+    /// What `shape` takes.
+    pub fn of(&self, shape: &Shape) -> Requirement {
+        match (self, shape) {
+            (Self::Device(gpu), Shape::Buffer { bytes, flags, .. }) => Buffer::requirements(gpu, *bytes, *flags).into(),
+            (Self::Device(gpu), Shape::Image(description)) => description.requirements(gpu).into(),
+            (Self::Rules(rules), Shape::Buffer { bytes, .. }) => Requirement {
+                bound_bytes: bytes.next_multiple_of(rules.buffer_size_multiple_bytes),
+                alignment_bytes: rules.buffer_alignment_bytes,
+                memory_type_bits: rules.memory_type_bits,
+            },
+            (Self::Rules(rules), Shape::Image(description)) => Requirement {
+                bound_bytes: image_bytes(rules, description),
+                alignment_bytes: rules.image_alignment_bytes,
+                memory_type_bits: rules.memory_type_bits,
+            },
+        }
+    }
+}
+
+/// Each level with its rows and its height rounded up, as often as there are layers.
+fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
+    let texel = u64::from(texel_bytes(description.format));
+    let layer_bytes: u64 = (0..description.level_count)
+        .map(|level| {
+            let side = |px: u32| u64::from((px >> level).max(1));
+            let row = (side(description.extent.width).next_multiple_of(rules.image_width_multiple_px) * texel)
+                .next_multiple_of(rules.image_row_multiple_bytes);
+            row * side(description.extent.height).next_multiple_of(rules.image_height_multiple_px)
+        })
+        .sum();
+    layer_bytes * u64::from(description.layers())
+}
+
+impl From<ash::vk::MemoryRequirements> for Requirement {
+    fn from(answer: ash::vk::MemoryRequirements) -> Self {
+        Self {
+            bound_bytes: answer.size,
+            alignment_bytes: answer.alignment.max(1),
+            memory_type_bits: answer.memory_type_bits,
+        }
+    }
+}

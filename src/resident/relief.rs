@@ -1,0 +1,60 @@
+//! What `--texture-limit` would free: advice for whoever has no memory left, by the driver's own numbers.
+
+use super::SceneStats;
+use crate::error::{Error, ErrorKind};
+use crate::gpu::{Buffer, Gpu, upload};
+use crate::memory::Tiling;
+use crate::memory::kinds::Use;
+use crate::memory::refusal::Wanted;
+use crate::plan::{Planned, Shape};
+use crate::scene::Scene;
+use crate::units::Bytes;
+
+/// Adds to an error of memory which texture limit would have left room for what was refused, and how much it frees: the
+/// greatest power of two that would. Other errors, and scenes without a texture, pass unchanged.
+pub fn advise(error: Error, gpu: &Gpu, scene: &Scene) -> Error {
+    if error.kind() != ErrorKind::Memory {
+        return error;
+    }
+    let Some(refusal) = gpu.memory.take_refusal() else { return error };
+    let stats = SceneStats::of(scene);
+    let side_px = stats.textures.iter().map(|(extent, _)| extent.width.max(extent.height)).max().unwrap_or(1);
+    let Some(largest_power) = (side_px - 1).checked_ilog2() else { return error };
+    let Some(now) = needs(gpu, &stats) else { return error };
+    let enough = (0..=largest_power).rev().map(|power| 1 << power).find_map(|limit_px| {
+        let then = needs(gpu, &SceneStats::with_texture_limit(scene, limit_px))?;
+        refusal.fits_with(&then).then(|| (limit_px, texture_bytes(&now) - texture_bytes(&then)))
+    });
+    error.note(match enough {
+        Some((limit_px, bytes)) => format!("--texture-limit {limit_px} would free {}", Bytes(bytes)),
+        None => {
+            let bytes = Bytes(texture_bytes(&now));
+            format!("no --texture-limit would suffice: all of the scene's textures take {bytes}")
+        }
+    })
+}
+
+/// What each of the scene's resources needs, and the staging buffer that fills it; None where a memory type is missing.
+fn needs(gpu: &Gpu, stats: &SceneStats) -> Option<Vec<Wanted>> {
+    let resident = |planned: &Planned| {
+        let (requirements, usage, tiling) = match planned.shape {
+            Shape::Buffer { bytes, flags, usage } => (Buffer::requirements(gpu, bytes, flags), usage, Tiling::Linear),
+            Shape::Image(description) => (description.requirements(gpu), Use::Device, Tiling::Optimal),
+        };
+        let ask = gpu.memory.ask(&requirements, usage, tiling).ok()?;
+        Some(Wanted { name: planned.name.clone(), ask, is_transient: false })
+    };
+    let staging = |planned: &Planned| {
+        let requirements = Buffer::requirements(gpu, planned.bytes(), upload::STAGING);
+        let ask = gpu.memory.ask(&requirements, Use::Upload, Tiling::Linear).ok()?;
+        Some(Wanted { name: upload::staging_name(&planned.name), ask, is_transient: true })
+    };
+    let plan = stats.plan();
+    plan.resources.iter().map(resident).chain(plan.resources.iter().map(staging)).collect()
+}
+
+/// Sum of what the driver requires for the textures themselves.
+fn texture_bytes(needs: &[Wanted]) -> u64 {
+    let is_texture = |one: &&Wanted| !one.is_transient && one.ask.tiling == Tiling::Optimal;
+    needs.iter().filter(is_texture).map(|one| one.ask.bytes).sum()
+}

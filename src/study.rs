@@ -1,0 +1,63 @@
+//! The memory of a job without making its picture: planned, from a known driver's rules and no device at all; or made,
+//! from the ledger of a device that holds every resource of a frame.
+
+use crate::bvh::LazyBvh;
+use crate::error::Result;
+use crate::frame::View;
+use crate::gpu::Caps;
+use crate::gpu::commands::Submits;
+use crate::job::{Job, judge};
+use crate::lights::LightSet;
+use crate::memory::kinds::Kinds;
+use crate::plan::{Requirements, Sharing};
+use crate::report::memory::MemoryTable;
+use crate::resident::SceneStats;
+use crate::session::{Session, frame_plan};
+use crate::techniques::Inputs;
+
+/// A table, and what it is of.
+pub struct Study {
+    /// Name of the device, or of the driver whose rules were applied.
+    pub device: String,
+    pub scene: String,
+    pub table: MemoryTable,
+}
+
+/// The plan of `job` under `caps`, by arithmetic.
+///
+/// Errors: impossible settings or a broken scene (exit code 2); caps that do not say how the driver rounds sizes (2).
+pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
+    let scene = job.load_scene()?;
+    let view = View::new(&scene, job.values.text("camera"), job.values.extent("size"))?;
+    let lights = LightSet::new(&scene, &view, &job.values)?;
+    let stats = SceneStats::of(&scene);
+    let bvh = LazyBvh::default();
+    let inputs =
+        Inputs { caps, scene: &scene, stats: &stats, bvh: &bvh, view: &view, lights: &lights, values: &job.values };
+    let frame = frame_plan(job.technique, &inputs, &job.aovs)?;
+    let rules = caps.layout.as_ref().expect("known drivers say how they round");
+    let requirements = Requirements::Rules(rules);
+    let sharing = Sharing::of(&frame, requirements, caps, &job.values);
+    let table = MemoryTable::new(&stats.plan(), &frame, sharing, requirements, &Kinds::new(caps), None)?;
+    Ok(Study { device: caps_name.to_owned(), scene: scene.name, table })
+}
+
+/// Every resource of `job` made on its device; no frame is rendered.
+///
+/// Errors: impossible settings or a broken scene (exit code 2), no device (3), memory (4).
+pub fn made(job: &Job) -> Result<Study> {
+    let session = Session::open(&job.device_request(), job.load_scene()?)?;
+    let renderer = session.renderer(job.technique, &job.values, &job.aovs, Submits::One)?;
+    let snapshot = session.gpu.memory.snapshot();
+    let caps = &session.gpu.caps;
+    let requirements = Requirements::Device(&session.gpu);
+    let kinds = Kinds::new(caps);
+    let plans = (&session.stats.plan(), &renderer.plan);
+    let sharing = renderer.sharing.clone();
+    let table = MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(&snapshot))?;
+    let study = Study { device: caps.identity.name.clone(), scene: session.scene.name.clone(), table };
+    let log = session.gpu.validation_log();
+    drop((renderer, session));
+    judge(log.as_deref())?;
+    Ok(study)
+}

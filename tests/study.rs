@@ -1,0 +1,97 @@
+//! `memory`: what is planned without a device, by a known driver's rules, is what that driver asks for and what is made.
+
+mod support;
+
+use quincunx::gpu::{DeviceRequest, Gpu, known};
+use quincunx::job::Job;
+use quincunx::{study, techniques};
+use serde_json::Value;
+
+/// The driver whose rules are data.
+const KNOWN: &str = "lavapipe-22.3.6";
+
+/// False, and said, where another driver runs.
+fn is_known_driver() -> bool {
+    let gpu = Gpu::open(&DeviceRequest::default()).unwrap();
+    let driver = gpu.caps.identity.driver_info.clone();
+    let is_known = driver.contains("Mesa 22.3.6");
+    if !is_known {
+        support::skip(&format!("{driver}: its rules are not those of {KNOWN}"));
+    }
+    is_known
+}
+
+#[test]
+fn the_known_caps_are_those_of_the_driver() {
+    if !is_known_driver() {
+        return;
+    }
+    let mut known = known::caps(KNOWN).unwrap();
+    known.layout = None;
+    let live = Gpu::open(&DeviceRequest::default()).unwrap().caps.clone();
+    let json = |caps| serde_json::to_value(caps).unwrap();
+    let (mut known, mut live) = (json(&known), json(&live));
+    // Lanes depend on the processor, the heap on the machine.
+    for caps in [&mut known, &mut live] {
+        caps["identity"]["name"] = Value::Null;
+        caps["limits"]["subgroup_size"] = Value::Null;
+        caps["heaps"] = Value::Null;
+    }
+    assert_eq!(known, live);
+}
+
+#[test]
+fn what_is_planned_without_a_device_is_what_is_made_on_it() {
+    if !is_known_driver() {
+        return;
+    }
+    let mut specs = vec!["cornell".to_owned(), "lamps:objects=10,lights=24".to_owned()];
+    if let Some(folder) = support::shared_scenes() {
+        specs.push(folder.join("samples/CesiumMilkTruck/CesiumMilkTruck.gltf").to_str().unwrap().to_owned());
+    }
+    let settings: &[(&str, &[(&str, &str)])] = &[
+        ("deferred", &[("size", "97x53")]),
+        ("deferred", &[("size", "161x91"), ("cull", "tiled"), ("position", "depth"), ("direct-shadow", "ray")]),
+        ("interleaved_deferred", &[("size", "161x91")]),
+        ("interleaved_deferred", &[("size", "161x91"), ("filter", "gauss-fast"), ("pattern", "5x7")]),
+        ("interleaved_deferred", &[("size", "97x53"), ("split", "subsample"), ("position", "float")]),
+        ("interleaved_deferred", &[("size", "97x53"), ("split", "branch"), ("direct", "interleaved"), ("vpls", "64")]),
+    ];
+    for spec in &specs {
+        for (technique, changes) in settings {
+            let mut job = Job::new(spec, techniques::find(technique).unwrap());
+            changes.iter().for_each(|(key, value)| job.set(key, value).unwrap());
+            let what = format!("{technique} of {spec} with {changes:?}");
+            let planned = study::planned(&job, KNOWN, &known::caps(KNOWN).unwrap()).unwrap().table.json();
+            let made = study::made(&job).unwrap().table.json();
+            for key in ["planned_bytes", "allocated_bytes", "peak_bytes", "peak_pass", "groups"] {
+                assert_eq!(planned[key], made[key], "{what}: {key}");
+            }
+            let without_place = |table: &Value| -> Vec<Value> {
+                let mut rows = table["resources"].as_array().unwrap().clone();
+                for row in &mut rows {
+                    let row = row.as_object_mut().unwrap();
+                    row.remove("memory_block");
+                    row.remove("offset");
+                }
+                rows
+            };
+            assert_eq!(without_place(&planned), without_place(&made), "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_stage_that_is_read_back_lives_until_the_end() {
+    let caps = known::caps(KNOWN).unwrap();
+    let mut job = Job::new("cornell", techniques::find("interleaved_deferred").unwrap());
+    let last_pass = |job: &Job| {
+        let table = study::planned(job, KNOWN, &caps).unwrap().table.json();
+        let rows = table["resources"].as_array().unwrap().clone();
+        let row = rows.iter().find(|row| row["name"] == "interleaved_deferred.split.normal").unwrap();
+        row["last_pass"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(last_pass(&job), "interleaved_deferred.shade");
+    job.aovs = vec!["split.normal".to_owned()];
+    assert_eq!(last_pass(&job), "readback");
+}

@@ -1,0 +1,81 @@
+//! The program from outside, in a folder of its own.
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+/// The program in an empty folder.
+pub struct Program {
+    pub folder: tempfile::TempDir,
+}
+
+/// What a run left.
+pub struct Ran {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+}
+
+impl Program {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Ran {
+        self.run_with(arguments, &[])
+    }
+
+    pub fn run_with(&self, arguments: &[&str], variables: &[(&str, &str)]) -> Ran {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
+        command.current_dir(self.folder.path()).args(arguments).envs(variables.iter().copied());
+        Ran::of(command)
+    }
+
+    /// Names in the folder, sorted.
+    pub fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().to_str().unwrap().to_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// A run that must fail with `code` and say all of `words`, print nothing else and leave no new file.
+    pub fn fails(&self, arguments: &[&str], code: i32, words: &[&str]) {
+        let before = self.files();
+        let ran = self.run(arguments);
+        assert_eq!(ran.code, code, "{arguments:?}: {}", ran.err);
+        assert!(ran.err.starts_with("error: "), "{arguments:?}: {}", ran.err);
+        for word in words {
+            assert!(ran.err.contains(word), "{arguments:?} does not say {word}: {}", ran.err);
+        }
+        assert_eq!(ran.out, "", "{arguments:?}");
+        assert_eq!(self.files(), before, "{arguments:?} left something");
+    }
+}
+
+impl Ran {
+    fn of(mut command: Command) -> Self {
+        let output = command.output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Self {
+            code: output.status.code().expect("it ended by itself"),
+            out: text(output.stdout),
+            err: text(output.stderr),
+        }
+    }
+
+    /// It succeeded and had nothing to complain about.
+    pub fn fine(self) -> Self {
+        assert_eq!(self.code, 0, "{}", self.err);
+        assert_eq!(self.err, "");
+        self
+    }
+
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {}", self.out))
+    }
+}
