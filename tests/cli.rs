@@ -37,6 +37,15 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
     program.fails(&small(&["--pattern", "65x1"]), 2, &["1 to 64"]);
     program.fails(&small(&["--kernel", "6"]), 2, &["--kernel 6", "odd", "5 to 17"]);
     program.fails(&small(&["--kernel", "19"]), 2, &["--kernel 19", "5 to 17"]);
+    program.fails(&small(&["--block", "0"]), 2, &["--block 0", "N or NxM", "1 to 1024"]);
+    program.fails(&small(&["--block", "16x1025"]), 2, &["--block 16x1025", "1 to 1024"]);
+    program.fails(&small(&["--fragment-passes", "3"]), 2, &["--fragment-passes 3", "1 to 2"]);
+    program.fails(
+        &small(&["--split", "fragment", "--storage", "buffer"]),
+        2,
+        &["--storage buffer", "draw into images"],
+    );
+    program.fails(&small(&["--split", "tile", "--copy", "push"]), 2, &["--split tile with --copy push", "--copy pull"]);
     program.fails(&small(&["--split", "twice"]), 2, &["--split twice", "one-pass"]);
     program.fails(&["render", "cornell", "--size", "0x18"], 2, &["--size 0x18", "1 to 16384"]);
     program.fails(&small(&["--camera", "door"]), 2, &["--camera door", "cornell"]);
@@ -54,6 +63,26 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
     program.fails(&small(&["--split", "none", "--aov", "split.normal"]), 2, &["--aov split.normal", "one-pass"]);
     program.fails(&small(&["--filter", "none", "--aov", "filter.irradiance"]), 2, &["--aov filter.irradiance"]);
     program.fails(&small(&["--rig", "none", "--lights", "many"]), 2, &["--lights many"]);
+}
+
+#[test]
+fn a_report_says_what_storage_and_block_came_to() {
+    let program = Program::new();
+    let report = |more: &[&str]| program.run(&small(&[&["--json", "-o", "a.png"], more].concat())).fine().json();
+    let default = report(&[]);
+    let storage = if default["device"]["type"] == "cpu" { "buffer" } else { "image" };
+    assert_eq!(default["settings"]["storage"], storage);
+    let blocks = report(&["--split", "two-pass", "--pattern", "3x5", "--storage", "image"]);
+    assert_eq!((&blocks["settings"]["block"], &blocks["settings"]["storage"]), (&"18x20".into(), &"image".into()));
+    let flat = report(&["--split", "tile", "--pattern", "2x2", "--block", "32x5"]);
+    assert_eq!(flat["settings"]["block"], "32x6");
+    let fragment = report(&["--split", "fragment"]);
+    assert_eq!(fragment["settings"]["storage"], "image");
+    let names: Vec<&str> =
+        fragment["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap()).collect();
+    for pass in ["split.blocks", "split.translate", "shade", "gather.translate", "gather.blocks"] {
+        assert!(names.contains(&format!("interleaved_deferred.{pass}").as_str()), "{names:?} has no {pass}");
+    }
 }
 
 #[test]

@@ -274,7 +274,7 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
         let renderer = watched.render_stages("interleaved_deferred", &changes, &stages);
         let walk = vpl::Walk { count, bounces: 1, emissive: false, seed: 5 };
         let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;
-        let mapping = mapping(renderer.view.extent, pattern);
+        let mapping = mapping(renderer.view.extent, pattern, pattern);
         let subsets = subsets(mapping.subset_count(), count, 0);
         let diagonal = session.scene.bounds().diagonal();
         let found = watched.rgb(&renderer, "shade.irradiance");

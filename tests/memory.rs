@@ -166,6 +166,15 @@ fn what_is_planned_is_what_is_made() {
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "indirect"), ("pattern", "5x7")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "remap"), ("position", "half")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("filter", "none"), ("direct", "none")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "stencil"), ("position", "depth")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "depth"), ("filter", "gauss-fast")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("storage", "image"), ("position", "float")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("block", "24x10")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("storage", "image")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "tile"), ("pattern", "5x7")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "layered"), ("position", "depth")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "fragment"), ("position", "half")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "fragment"), ("fragment-passes", "1")]),
         (
             "hall:triangles=8000",
             "interleaved_deferred",
@@ -245,6 +254,32 @@ fn memory_that_is_refused_leaves_nothing_behind() {
             }
         });
     }
+}
+
+/// The same of roads with images, look-up textures and resources between two passes.
+#[test]
+fn memory_that_is_refused_on_any_road_leaves_nothing_behind() {
+    counted(Strategy::Dedicated, "cornell", |watched| {
+        let before = watched.session.gpu.memory.snapshot();
+        for split in ["two-pass", "layered", "fragment", "stencil"] {
+            let changes = [("size", "33x17"), ("vpls", "16"), ("split", split), ("alias", "off")];
+            for refused_at in 0.. {
+                counter().until_refusal = Some(refused_at);
+                let made = watched.try_renderer("interleaved_deferred", &changes, &[], Submits::One);
+                let refused = counter().until_refusal.is_none();
+                counter().until_refusal = None;
+                let Err(error) = made else {
+                    assert!(!refused, "{split}: allocation {refused_at} was refused, and nobody noticed");
+                    assert!(refused_at > 15, "{split}: only {refused_at} allocations");
+                    break;
+                };
+                assert_eq!((error.exit_code(), refused), (4, true), "{split}: {error}");
+                let after = watched.session.gpu.memory.snapshot();
+                assert_eq!(after.held_bytes(), before.held_bytes(), "{split}, refused at {refused_at}: {error}");
+                require_ledger_as_counted(&after, "after a refusal");
+            }
+        }
+    });
 }
 
 #[test]

@@ -5,21 +5,50 @@ mod support;
 use quincunx::gpu::commands::Submits;
 use quincunx::techniques::interleaved_deferred::mapping::mapping;
 use quincunx::units::Extent;
-use support::watched::Watched;
+use support::watched::{Changes, Watched, both};
 
 const TECHNIQUE: &str = "interleaved_deferred";
 /// What these tests read back.
 const STAGES: &[&str] = &["gbuffer.normal", "split.normal", "shade.irradiance", "gather.irradiance"];
 
-/// A picture of sub-buffers side by side, back in frame order: what stands at place i shows pixel `shown[i]`.
+/// A picture of sub-buffers side by side, back in frame order: each place says which pixel it shows.
 fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32; 2]) -> Vec<[f32; 3]> {
-    let mapping = mapping(extent, pattern);
-    let mut place_of = vec![usize::MAX; mapping.texel_count() as usize];
-    for (place, texel) in mapping.side_by_side().into_iter().enumerate() {
-        place_of[texel as usize] = place;
+    let mut pixels = vec![[f32::NAN; 3]; extent.pixel_count() as usize];
+    for (shown, [x, y]) in side_by_side.iter().zip(mapping(extent, pattern, pattern).side_by_side()) {
+        pixels[(y * extent.width + x) as usize] = *shown;
     }
-    let pixels = (0..extent.height).flat_map(|y| (0..extent.width).map(move |x| [x, y]));
-    pixels.map(|pixel| side_by_side[place_of[mapping.texel_of(pixel) as usize]]).collect()
+    pixels
+}
+
+/// Every way to copy into sub-buffers and back: road, storage, form.
+const COPIES: [Changes<'_>; 14] = [
+    &[("split", "one-pass"), ("storage", "buffer"), ("copy", "pull")],
+    &[("split", "one-pass"), ("storage", "buffer"), ("copy", "push")],
+    &[("split", "one-pass"), ("storage", "image"), ("copy", "pull")],
+    &[("split", "one-pass"), ("storage", "image"), ("copy", "push")],
+    &[("split", "two-pass"), ("storage", "buffer"), ("copy", "pull")],
+    &[("split", "two-pass"), ("storage", "buffer"), ("copy", "push")],
+    &[("split", "two-pass"), ("storage", "image"), ("copy", "pull")],
+    &[("split", "two-pass"), ("storage", "image"), ("copy", "push")],
+    &[("split", "tile"), ("storage", "buffer")],
+    &[("split", "tile"), ("storage", "image")],
+    &[("split", "layered"), ("copy", "pull")],
+    &[("split", "layered"), ("copy", "push")],
+    &[("split", "fragment"), ("fragment-passes", "1")],
+    &[("split", "fragment"), ("fragment-passes", "2")],
+];
+
+/// Splits, gathers and compares; `changes` beside size and pattern.
+fn require_identity(watched: &Watched, extent: Extent, pattern: [u32; 2], changes: Changes<'_>) {
+    let (size, text) = (extent.to_string(), format!("{}x{}", pattern[0], pattern[1]));
+    let common = [("size", size.as_str()), ("pattern", text.as_str()), ("vpls", "256")];
+    let renderer = watched.render_stages(TECHNIQUE, &both(&common, changes), STAGES);
+    let stage = |name: &str| watched.rgb(&renderer, name);
+    let what = format!("{extent} in {text} with {changes:?}");
+    assert_eq!(back_in_frame_order(&stage("split.normal"), extent, pattern), stage("gbuffer.normal"), "{what}");
+    let gathered = stage("gather.irradiance");
+    assert_eq!(back_in_frame_order(&stage("shade.irradiance"), extent, pattern), gathered, "{what}");
+    assert!(gathered.iter().any(|irradiance| irradiance[0] > 0.0), "{what}: it is dark");
 }
 
 #[test]
@@ -37,15 +66,41 @@ fn every_sub_buffer_comes_back_where_it_was() {
         (Extent::new(9, 7), [16, 16]),
         (Extent::new(1, 1), [2, 2]),
     ] {
-        let (size, text) = (extent.to_string(), format!("{}x{}", pattern[0], pattern[1]));
-        let changes = [("size", size.as_str()), ("pattern", text.as_str()), ("vpls", "256")];
-        let renderer = watched.render_stages(TECHNIQUE, &changes, STAGES);
-        let stage = |name: &str| watched.rgb(&renderer, name);
-        let what = format!("{extent} in {text}");
-        assert_eq!(back_in_frame_order(&stage("split.normal"), extent, pattern), stage("gbuffer.normal"), "{what}");
-        let gathered = stage("gather.irradiance");
-        assert_eq!(back_in_frame_order(&stage("shade.irradiance"), extent, pattern), gathered, "{what}");
-        assert!(gathered.iter().any(|irradiance| irradiance[0] > 0.0), "{what}: it is dark");
+        require_identity(&watched, extent, pattern, &[]);
+    }
+}
+
+#[test]
+fn every_copy_brings_every_sub_buffer_back() {
+    let watched = Watched::open("cornell");
+    for (extent, pattern) in [
+        (Extent::new(160, 90), [1, 1]),
+        (Extent::new(161, 91), [5, 7]),
+        (Extent::new(97, 53), [8, 6]),
+        (Extent::new(63, 41), [1, 3]),
+        (Extent::new(9, 7), [16, 16]),
+        (Extent::new(1, 1), [2, 2]),
+    ] {
+        for copies in COPIES {
+            require_identity(&watched, extent, pattern, copies);
+        }
+    }
+}
+
+#[test]
+fn every_block_brings_every_sub_buffer_back() {
+    let watched = Watched::open("cornell");
+    for (extent, pattern) in [(Extent::new(97, 53), [3, 2]), (Extent::new(65, 40), [4, 4])] {
+        // Smaller than the pattern, odd sub-blocks, flat, tall, larger than the frame where that is possible.
+        for block in ["1", "9x3", "48x2", "5x33", "300"] {
+            for copies in COPIES.iter().filter(|copies| ["two-pass", "fragment"].contains(&copies[0].1)) {
+                require_identity(&watched, extent, pattern, &both(copies, &[("block", block)]));
+            }
+            for storage in ["buffer", "image"].into_iter().filter(|_| block != "300") {
+                let tile = [("split", "tile"), ("storage", storage), ("block", block)];
+                require_identity(&watched, extent, pattern, &tile);
+            }
+        }
     }
 }
 
@@ -54,7 +109,7 @@ fn both_roads_shade_the_same_irradiance() {
     let watched = Watched::open("cornell");
     let common = [("size", "97x53"), ("pattern", "5x7"), ("vpls", "128")];
     let gathered = watched.rgb(&watched.render_stages(TECHNIQUE, &common, STAGES), "gather.irradiance");
-    let branch = watched.render_stages(TECHNIQUE, &support::watched::both(&common, &[("split", "branch")]), STAGES);
+    let branch = watched.render_stages(TECHNIQUE, &both(&common, &[("split", "branch")]), STAGES);
     assert_eq!(watched.rgb(&branch, "shade.irradiance"), gathered);
 }
 
@@ -71,11 +126,17 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
         (("split", "branch"), split.to_vec()),
         (("split", "indirect"), split.to_vec()),
         (("split", "remap"), split.to_vec()),
+        (("split", "stencil"), split.to_vec()),
+        (("split", "depth"), split.to_vec()),
+        (("split", "two-pass"), vec![]),
+        (("split", "tile"), vec![]),
+        (("split", "layered"), vec![]),
+        (("split", "fragment"), vec![]),
         (("filter", "none"), filtered.to_vec()),
         (("pattern", "1x1"), filtered.to_vec()),
         (("pattern", "2x2"), vec![]),
     ] {
-        let changes = support::watched::both(&common, &[change]);
+        let changes = both(&common, &[change]);
         let renderer = watched.render_stages(TECHNIQUE, &changes, stages);
         for name in stages {
             match renderer.aov(name) {
@@ -98,4 +159,74 @@ fn fewer_lights_than_subsets_are_refused() {
     assert!(refused.message().contains("15 lights for the 16 subsets"), "{refused}");
     let renderer = watched.render(TECHNIQUE, &[("vpls", "16"), ("size", "8x8")]);
     assert!(renderer.picture().unwrap().mean()[0] > 0.0);
+}
+
+/// The message of a request that is refused as a bad one.
+fn refused(watched: &Watched, changes: Changes<'_>) -> String {
+    let error = watched.try_renderer(TECHNIQUE, changes, &[], Submits::One).err();
+    let error = error.unwrap_or_else(|| panic!("{changes:?} was taken"));
+    assert_eq!(error.exit_code(), 2, "{changes:?}: {error}");
+    error.to_string()
+}
+
+#[test]
+fn contradictions_are_refused_with_what_would_work() {
+    let watched = Watched::open("cornell");
+    let size = ("size", "33x17");
+    for (changes, words) in [
+        (
+            &[size, ("split", "fragment"), ("storage", "buffer")][..],
+            &["--split fragment with --storage buffer", "draw into images", "--storage image or auto"][..],
+        ),
+        (&[size, ("split", "layered"), ("storage", "buffer")], &["--split layered with --storage buffer", "layers"]),
+        (&[size, ("split", "tile"), ("copy", "push")], &["--split tile with --copy push", "--copy pull"]),
+        (&[size, ("split", "fragment"), ("copy", "push")], &["--split fragment with --copy push", "--copy pull"]),
+        (
+            &[size, ("split", "stencil"), ("pattern", "32x16"), ("vpls", "512")],
+            &["512 subsets of --pattern 32x16", "256", "--split depth"],
+        ),
+    ] {
+        let text = refused(&watched, changes);
+        for word in words {
+            assert!(text.contains(word), "{changes:?} does not say {word}: {text}");
+        }
+    }
+    // What is not read does not contradict.
+    watched.render(TECHNIQUE, &[size, ("split", "branch"), ("storage", "buffer"), ("copy", "push"), ("block", "1024")]);
+    // As many subsets as the stencil tells apart, and more by depth.
+    let stencil = [size, ("pattern", "16x16"), ("vpls", "256")];
+    let [stencil, branch] =
+        ["stencil", "branch"].map(|road| watched.hash(TECHNIQUE, &both(&stencil, &[("split", road)])));
+    assert_eq!(stencil, branch);
+    let depth = [("size", "65x64"), ("pattern", "64x64"), ("vpls", "4096")];
+    let [depth, branch] = ["depth", "branch"].map(|road| watched.hash(TECHNIQUE, &both(&depth, &[("split", road)])));
+    assert_eq!(depth, branch);
+}
+
+#[test]
+fn what_the_device_cannot_hold_is_refused_with_the_numbers() {
+    let watched = Watched::open("cornell");
+    let limits = &watched.session.gpu.caps.limits;
+    let shared = limits.max_shared_memory_bytes;
+    // Position and normal take 16 B a texel.
+    let side = ((shared / 16) as f64).sqrt() as u32 / 4 * 4;
+    let fits = format!("{side}");
+    watched.render(TECHNIQUE, &[("size", "33x17"), ("split", "tile"), ("block", &fits)]);
+    if side < 1020 {
+        let block = format!("{}", side + 4);
+        let text = refused(&watched, &[("size", "33x17"), ("split", "tile"), ("block", &block)]);
+        for word in [format!("blocks of {block}x{block}"), "workgroup memory".to_owned(), "--block".to_owned()] {
+            assert!(text.contains(&word), "{text}");
+        }
+    }
+    if limits.max_image_layers < 4096 {
+        let text =
+            refused(&watched, &[("size", "33x17"), ("split", "layered"), ("pattern", "64x64"), ("vpls", "4096")]);
+        assert!(text.contains(&format!("allows {} layers", limits.max_image_layers)), "{text}");
+    }
+    if limits.max_image_side_px <= 16384 {
+        let wide = [("size", "16384x2"), ("vpls", "961"), ("pattern", "31x31"), ("storage", "image")];
+        let text = refused(&watched, &wide);
+        assert!(text.contains(&format!("allows {} a side", limits.max_image_side_px)), "{text}");
+    }
 }

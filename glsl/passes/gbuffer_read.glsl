@@ -1,4 +1,4 @@
-// The un-split G-buffer as compute shaders read it: four images behind samplers that never filter.
+// The un-split G-buffer as compute and fragment shaders read it: four images behind samplers that never filter.
 // The including shader has the axis POSITION. The bindings are those of src/passes/gbuffer.rs, `GBuffer::bound`.
 #ifndef PASSES_GBUFFER_READ_GLSL
 #define PASSES_GBUFFER_READ_GLSL

@@ -52,11 +52,17 @@ impl Identity {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Limits {
     pub max_image_side_px: u32,
+    /// Data from before it was looked up gets the least that Vulkan promises.
+    #[serde(default = "least_image_layers")]
+    pub max_image_layers: u32,
     pub max_storage_buffer_range_bytes: u64,
     pub max_push_constant_bytes: u32,
     pub max_workgroup_invocations: u32,
     pub max_workgroup_size: [u32; 3],
     pub max_workgroup_count: [u32; 3],
+    /// Memory that the invocations of a workgroup share; as for `max_image_layers`.
+    #[serde(default = "least_shared_memory_bytes")]
+    pub max_shared_memory_bytes: u32,
     pub max_sampled_images_per_stage: u32,
     pub max_bound_descriptor_sets: u32,
     pub max_color_attachments: u32,
@@ -70,6 +76,14 @@ pub struct Limits {
     /// Nanoseconds a tick; 0 where the queue writes no timestamps.
     pub timestamp_period_ns: f32,
     pub framebuffer_sample_counts: Vec<u32>,
+}
+
+fn least_image_layers() -> u32 {
+    256
+}
+
+fn least_shared_memory_bytes() -> u32 {
+    16 << 10
 }
 
 /// Optional features, each of which some technique or setting asks for.

@@ -9,7 +9,7 @@ use super::image::Image;
 use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
 use super::recorded::Recorded;
 use super::timing::Timestamps;
-use super::{Access, Gpu};
+use super::{Access, Buffer, Gpu};
 use crate::error::{Error, Result};
 use crate::units::Extent;
 use ash::vk;
@@ -301,7 +301,33 @@ impl Commands {
         Ok(())
     }
 
-    /// Opens rendering into whole images of `extent`. A clear value of None loads what is there.
+    /// What a stencil test compares with, and which bits a stencil write changes, for the draws that follow.
+    pub fn set_stencil(&mut self, reference: u32, write_mask: u32) {
+        let faces = vk::StencilFaceFlags::FRONT_AND_BACK;
+        // SAFETY: the buffer is being recorded.
+        unsafe {
+            self.gpu.device.cmd_set_stencil_reference(self.buffer(), faces, reference);
+            self.gpu.device.cmd_set_stencil_write_mask(self.buffer(), faces, write_mask);
+        }
+    }
+
+    /// Copies level 0 of an image into a buffer whose rows are `row_pitch` texels apart; what lies between rows stays.
+    pub fn copy_to_rows(&mut self, source: &Image, target: &Buffer, row_pitch: u32) {
+        let extent = source.description.extent;
+        let region = vk::BufferImageCopy::default()
+            .buffer_row_length(row_pitch)
+            .image_subresource(source.whole_level(0))
+            .image_extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 });
+        let layout = Access::TransferRead.layout();
+        // SAFETY: the buffer is being recorded outside rendering; the caller stated the barriers and made the target as
+        // long as the rows.
+        unsafe {
+            self.gpu.device.cmd_copy_image_to_buffer(self.buffer(), source.handle, layout, target.handle, &[region]);
+        }
+    }
+
+    /// Opens rendering into whole images of `extent`. A clear value of None loads what is there; a depth image that has
+    /// a stencil too is attached as both, and both are cleared.
     pub fn begin_rendering(
         &mut self,
         extent: Extent,
@@ -334,8 +360,11 @@ impl Commands {
             extent: vk::Extent2D { width: extent.width, height: extent.height },
         };
         let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
-        if let Some(depth_info) = &depth_info {
+        if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
             info = info.depth_attachment(depth_info);
+            if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {
+                info = info.stencil_attachment(depth_info);
+            }
         }
         let viewport = vk::Viewport {
             x: 0.0,

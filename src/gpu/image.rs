@@ -10,29 +10,37 @@ use ash::vk;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
-/// A two-dimensional image with one layer and one sample.
+/// A two-dimensional image, or an array of them, with one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageDescription {
     pub extent: Extent,
     pub format: vk::Format,
     pub level_count: u32,
+    /// None: a plain image. Some: an array of so many layers, whose views are arrays, of one layer too.
+    pub layer_count: Option<u32>,
     pub usage: vk::ImageUsageFlags,
 }
 
 impl ImageDescription {
-    /// Bytes by arithmetic, all levels; what the driver requires may be more.
+    /// Layers, of a plain image one.
+    pub fn layers(&self) -> u32 {
+        self.layer_count.unwrap_or(1)
+    }
+
+    /// Bytes by arithmetic, all levels and layers; what the driver requires may be more.
     pub fn bytes(&self) -> u64 {
-        (0..self.level_count)
+        let layer_bytes: u64 = (0..self.level_count)
             .map(|level| {
                 let width = u64::from((self.extent.width >> level).max(1));
                 let height = u64::from((self.extent.height >> level).max(1));
                 width * height * u64::from(texel_bytes(self.format))
             })
-            .sum()
+            .sum();
+        layer_bytes * u64::from(self.layers())
     }
 
     fn create_info(&self) -> vk::ImageCreateInfo<'static> {
-        let Self { extent, format, level_count, usage } = *self;
+        let Self { extent, format, level_count, usage, .. } = *self;
         let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
         vk::ImageCreateInfo::default()
             .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
@@ -40,7 +48,7 @@ impl ImageDescription {
             .format(format)
             .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
             .mip_levels(level_count)
-            .array_layers(1)
+            .array_layers(self.layers())
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage)
@@ -60,8 +68,10 @@ impl ImageDescription {
 /// Bytes of a texel of the formats that this program uses.
 pub fn texel_bytes(format: vk::Format) -> u32 {
     match format {
-        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB | vk::Format::R32_UINT | vk::Format::D32_SFLOAT => 4,
-        vk::Format::R32G32_UINT | vk::Format::R16G16B16A16_SFLOAT => 8,
+        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB | vk::Format::R16G16_UINT => 4,
+        vk::Format::R32_UINT | vk::Format::D32_SFLOAT => 4,
+        // Depth and stencil take 5; drivers hold them in 8.
+        vk::Format::R32G32_UINT | vk::Format::R16G16B16A16_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT => 8,
         vk::Format::R32G32B32A32_SFLOAT | vk::Format::R32G32B32A32_UINT => 16,
         other => panic!("format {other:?} is not in the program's vocabulary"),
     }
@@ -92,7 +102,7 @@ pub struct Image {
 impl Image {
     /// Makes an image in device memory, in bytes from `berth`.
     ///
-    /// Errors: a side is beyond the device's limit (exit code 2); the driver or the memory refuses (4).
+    /// Errors: a side or the layers are beyond the device's limit (exit code 2); the driver or the memory refuses (4).
     pub fn at(
         gpu: &Arc<Gpu>,
         name: &str,
@@ -104,6 +114,10 @@ impl Image {
         let limit = gpu.caps.limits.max_image_side_px;
         if extent.width > limit || extent.height > limit {
             return Err(Error::request(format!("{name}: {extent} pixels: this device allows {limit} a side")));
+        }
+        let (layers, limit) = (description.layers(), gpu.caps.limits.max_image_layers);
+        if layers > limit {
+            return Err(Error::request(format!("{name}: {layers} layers: this device allows {limit} in an image")));
         }
         let info = description.create_info();
         let (bytes, most) = (description.bytes(), gpu.greatest_image_bytes(&info));
@@ -153,12 +167,17 @@ impl Image {
         let range = vk::ImageSubresourceRange::default()
             .aspect_mask(aspect_of(description.format))
             .level_count(description.level_count)
-            .layer_count(1);
+            .layer_count(description.layers());
+        let view_type = if description.layer_count.is_some() {
+            vk::ImageViewType::TYPE_2D_ARRAY
+        } else {
+            vk::ImageViewType::TYPE_2D
+        };
         let view_as = |format, usage| {
             let mut usage = vk::ImageViewUsageCreateInfo::default().usage(usage);
             let info = vk::ImageViewCreateInfo::default()
                 .image(handle)
-                .view_type(vk::ImageViewType::TYPE_2D)
+                .view_type(view_type)
                 .format(format)
                 .subresource_range(range)
                 .push_next(&mut usage);
@@ -186,15 +205,17 @@ impl Image {
         aspect_of(self.description.format)
     }
 
-    /// All of level 0, for copies.
+    /// All of a level, every layer, for copies.
     pub(super) fn whole_level(&self, level: u32) -> vk::ImageSubresourceLayers {
-        vk::ImageSubresourceLayers::default().aspect_mask(self.aspect()).mip_level(level).layer_count(1)
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(self.aspect());
+        layers.mip_level(level).layer_count(self.description.layers())
     }
 }
 
 fn aspect_of(format: vk::Format) -> vk::ImageAspectFlags {
     match format {
         vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
+        vk::Format::D32_SFLOAT_S8_UINT => vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL,
         _ => vk::ImageAspectFlags::COLOR,
     }
 }

@@ -238,8 +238,29 @@ pub struct GraphicsDescription<'a> {
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,
     pub depth_compare: vk::CompareOp,
+    /// None: no stencil test. Reference and write mask are set by commands.
+    pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
     pub foreign_sets: &'a [vk::DescriptorSetLayout],
+}
+
+/// What draws do with the stencil, all eight bits of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StencilUse {
+    /// Write the reference where the draw covers.
+    Replace,
+    /// Draw only where the stencil holds the reference.
+    RequireEqual,
+}
+
+impl StencilUse {
+    fn state(self) -> vk::StencilOpState {
+        let (compare_op, pass_op) = match self {
+            Self::Replace => (vk::CompareOp::ALWAYS, vk::StencilOp::REPLACE),
+            Self::RequireEqual => (vk::CompareOp::EQUAL, vk::StencilOp::KEEP),
+        };
+        vk::StencilOpState { compare_op, pass_op, compare_mask: 0xff, ..vk::StencilOpState::default() }
+    }
 }
 
 /// Layout of one vertex buffer.
@@ -301,7 +322,11 @@ impl GraphicsPipeline {
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
         let multisample =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let stencil = description.stencil.map(StencilUse::state).unwrap_or_default();
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .stencil_test_enable(description.stencil.is_some())
+            .front(stencil)
+            .back(stencil)
             .depth_test_enable(description.depth_format.is_some())
             .depth_write_enable(description.depth_write)
             .depth_compare_op(description.depth_compare);
@@ -314,16 +339,23 @@ impl GraphicsPipeline {
             .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA);
         let attachments = vec![attachment; description.color_formats.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
-        let dynamic_states = [
+        let mut dynamic_states = vec![
             vk::DynamicState::VIEWPORT,
             vk::DynamicState::SCISSOR,
             vk::DynamicState::CULL_MODE,
             vk::DynamicState::FRONT_FACE,
         ];
+        if description.stencil.is_some() {
+            dynamic_states.extend([vk::DynamicState::STENCIL_REFERENCE, vk::DynamicState::STENCIL_WRITE_MASK]);
+        }
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
         let mut rendering = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(description.color_formats)
             .depth_attachment_format(description.depth_format.unwrap_or(vk::Format::UNDEFINED));
+        // A format with both is attached as both, used or not.
+        if description.depth_format == Some(vk::Format::D32_SFLOAT_S8_UINT) {
+            rendering = rendering.stencil_attachment_format(vk::Format::D32_SFLOAT_S8_UINT);
+        }
         let info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertex_input)

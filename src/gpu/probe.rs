@@ -75,11 +75,13 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
         },
         limits: Limits {
             max_image_side_px: limits.max_image_dimension2_d,
+            max_image_layers: limits.max_image_array_layers,
             max_storage_buffer_range_bytes: u64::from(limits.max_storage_buffer_range),
             max_push_constant_bytes: limits.max_push_constants_size,
             max_workgroup_invocations: limits.max_compute_work_group_invocations,
             max_workgroup_size: limits.max_compute_work_group_size,
             max_workgroup_count: limits.max_compute_work_group_count,
+            max_shared_memory_bytes: limits.max_compute_shared_memory_size,
             max_sampled_images_per_stage: limits.max_per_stage_descriptor_sampled_images,
             max_bound_descriptor_sets: limits.max_bound_descriptor_sets,
             max_color_attachments: limits.max_color_attachments,

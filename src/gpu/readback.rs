@@ -1,4 +1,4 @@
-//! Bytes from device to host, after a frame's fence: level 0 of an image, or a buffer.
+//! Bytes from device to host, after a frame's fence: level 0 of an image, all layers, or a buffer.
 //!
 //! The copy runs in a submit of its own, so that it is in no frame's time.
 
@@ -19,10 +19,11 @@ fn landing(gpu: &Arc<Gpu>, name: &str, bytes: u64) -> Result<Buffer> {
         .map_err(|error| error.note("a smaller --size would need less"))
 }
 
-/// The bytes of level 0, row-major without gaps. `last`: how the frame touched it last. The image is left as it was.
+/// The bytes of level 0, row-major without gaps, layer after layer. `last`: how the frame touched it last. The image is left as it was.
 pub fn image(gpu: &Arc<Gpu>, source: &Image, last: Access) -> Result<Vec<u8>> {
     let extent = source.description.extent;
-    let bytes = extent.pixel_count() * u64::from(texel_bytes(source.description.format));
+    let texels = extent.pixel_count() * u64::from(source.description.layers());
+    let bytes = texels * u64::from(texel_bytes(source.description.format));
     let landing = landing(gpu, &source.name, bytes)?;
     let mut cmd = Commands::begin(gpu, "readback", Submits::One)?;
     // The frame's fence was waited for; the left side is there for the layout and for visibility.

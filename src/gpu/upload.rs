@@ -44,7 +44,7 @@ pub fn buffer(gpu: &Arc<Gpu>, target: &Buffer, bytes: &[u8], readers: impl Into<
     Ok(())
 }
 
-/// Fills the levels of `target`, finest first and one after the other in `bytes`, and leaves it readable as `access`.
+/// Fills the levels of `target`, finest first and one after the other in `bytes`, each with its layers, and leaves it readable as `access`.
 pub fn image(gpu: &Arc<Gpu>, target: &Image, bytes: &[u8], access: Access) -> Result<()> {
     let description = &target.description;
     assert_eq!(bytes.len() as u64, description.bytes(), "{}: its levels' bytes", target.name);
@@ -61,7 +61,7 @@ pub fn image(gpu: &Arc<Gpu>, target: &Image, bytes: &[u8], access: Access) -> Re
                 .buffer_offset(offset)
                 .image_subresource(target.whole_level(level))
                 .image_extent(vk::Extent3D { width, height, depth: 1 });
-            offset += u64::from(width) * u64::from(height) * texel_bytes;
+            offset += u64::from(width) * u64::from(height) * u64::from(description.layers()) * texel_bytes;
             region
         })
         .collect();

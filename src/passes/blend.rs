@@ -69,6 +69,7 @@ impl Blend {
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                stencil: None,
                 foreign_sets: &[scene.material_layout],
             },
         )?;

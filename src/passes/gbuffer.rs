@@ -16,7 +16,7 @@ use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
+use crate::gpu::{Access, AccessSet, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::SceneGpu;
@@ -104,8 +104,13 @@ pub fn written(technique: &str, position: PositionStorage, has_emissive: bool) -
 
 /// What a compute pass touches that reads normal and position.
 pub fn surface(technique: &str, position: PositionStorage) -> Vec<(String, Access)> {
+    surface_as(technique, position, Access::ComputeSample)
+}
+
+/// The same of a pass that samples them as `access` says.
+pub fn surface_as(technique: &str, position: PositionStorage, access: Access) -> Vec<(String, Access)> {
     let place = if position.image_format().is_some() { "position" } else { "depth" };
-    ["normal", place].map(|what| (full(technique, what), Access::ComputeSample)).to_vec()
+    ["normal", place].map(|what| (full(technique, what), access)).to_vec()
 }
 
 /// What a compute pass touches that reads all of it.
@@ -177,12 +182,12 @@ impl GBuffer {
         self.surface_bytes() + 8 + if self.emissive.is_some() { 8 } else { 0 }
     }
 
-    /// States who touched it last. `ColorWrite` stands for the G-buffer pass, which wrote the depth too.
-    pub fn from(&self, access: Access) -> Edge<'_, Self> {
+    /// States who touched normal and position last. `ColorWrite` stands for the G-buffer pass, which wrote the depth too.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
 
-    /// What gbuffer_read.glsl binds.
+    /// What gbuffer_read.glsl binds, in compute and in fragment shaders: the layout is the same.
     pub fn bound_surface(&self) -> Vec<(&'static str, Bound<'_>)> {
         let position = self.position.as_ref().unwrap_or(&self.depth);
         vec![("gbuffer_position", self.sampled(position)), ("gbuffer_normal", self.sampled(&self.normal))]
@@ -214,13 +219,18 @@ impl GBuffer {
 impl Edge<'_, GBuffer> {
     /// Normal and position become readable by compute shaders.
     pub fn surface_to_sampled(self) -> Vec<Barrier> {
+        self.surface_to(Access::ComputeSample)
+    }
+
+    /// Normal and position become readable as `access` says.
+    pub fn surface_to(self, access: Access) -> Vec<Barrier> {
         let gbuffer = self.resource;
         let position = match &gbuffer.position {
             Some(position) => position.from(self.from),
             None if self.from == Access::ColorWrite.into() => gbuffer.depth.from(Access::DepthWrite),
             None => gbuffer.depth.from(self.from),
         };
-        vec![gbuffer.normal.from(self.from).to(Access::ComputeSample), position.to(Access::ComputeSample)]
+        vec![gbuffer.normal.from(self.from).to(access), position.to(access)]
     }
 
     /// All that a composite reads becomes readable by compute shaders. Colour and emission are read by no pass before
@@ -238,10 +248,11 @@ impl Edge<'_, GBuffer> {
 pub const AOVS: &[&str] = &["gbuffer.normal", "gbuffer.color"];
 
 impl GBuffer {
-    /// How a pass that tests depth takes it over: written by the G-buffer pass, or since sampled as positions.
-    pub fn depth_edge(&self) -> Edge<'_, Image> {
+    /// How a pass that tests depth takes it over: written by the G-buffer pass, or since sampled as positions by
+    /// `readers`.
+    pub fn depth_edge(&self, readers: impl Into<AccessSet>) -> Edge<'_, Image> {
         match self.position_storage {
-            PositionStorage::Depth => self.depth.from(Access::ComputeSample),
+            PositionStorage::Depth => self.depth.from(readers),
             PositionStorage::Half | PositionStorage::Unorm16 | PositionStorage::Float => {
                 self.depth.from(Access::DepthWrite)
             }
@@ -288,6 +299,7 @@ impl GBufferPass {
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
+                    stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },
             )

@@ -4,5 +4,6 @@ pub mod blend;
 pub mod decode;
 pub mod direct;
 pub mod filter;
+pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;

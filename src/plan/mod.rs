@@ -146,7 +146,8 @@ impl Plan {
         format: vk::Format,
         usage: vk::ImageUsageFlags,
     ) {
-        self.push(group, name, Shape::Image(ImageDescription { extent, format, level_count: 1, usage }));
+        let description = ImageDescription { extent, format, level_count: 1, layer_count: None, usage };
+        self.push(group, name, Shape::Image(description));
     }
 
     /// The finished picture, RGBA32F: shaders store it, BLEND surfaces blend over it, the host reads it.

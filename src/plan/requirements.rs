@@ -44,17 +44,18 @@ impl Requirements<'_> {
     }
 }
 
-/// Each level with its rows and its height rounded up.
+/// Each level with its rows and its height rounded up, as often as there are layers.
 fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
     let texel = u64::from(texel_bytes(description.format));
-    (0..description.level_count)
+    let layer_bytes: u64 = (0..description.level_count)
         .map(|level| {
             let side = |px: u32| u64::from((px >> level).max(1));
             let row = (side(description.extent.width).next_multiple_of(rules.image_width_multiple_px) * texel)
                 .next_multiple_of(rules.image_row_multiple_bytes);
             row * side(description.extent.height).next_multiple_of(rules.image_height_multiple_px)
         })
-        .sum()
+        .sum();
+    layer_bytes * u64::from(description.layers())
 }
 
 impl From<ash::vk::MemoryRequirements> for Requirement {

@@ -213,6 +213,9 @@ fn what(row: &Row) -> String {
         None => String::new(),
         Some(Shape::Buffer { usage: Use::Device, .. }) => "buffer".to_owned(),
         Some(Shape::Buffer { usage, .. }) => format!("buffer, {usage}"),
+        Some(Shape::Image(ImageDescription { extent, format, layer_count: Some(layers), .. })) => {
+            format!("{format:?} {extent}, {layers} layers")
+        }
         Some(Shape::Image(ImageDescription { extent, format, level_count: 1, .. })) => format!("{format:?} {extent}"),
         Some(Shape::Image(ImageDescription { extent, format, level_count, .. })) => {
             format!("{format:?} {extent}, {level_count} levels")
@@ -233,9 +236,12 @@ fn row_json(row: &Row) -> Value {
         "first_pass": row.passes.as_ref().map(|[first, _]| first),
         "last_pass": row.passes.as_ref().map(|[_, last]| last),
     });
-    if let Some(Shape::Image(ImageDescription { extent, format, .. })) = row.shape {
+    if let Some(Shape::Image(ImageDescription { extent, format, layer_count, .. })) = row.shape {
         document["format"] = json!(format!("{format:?}"));
         document["extent"] = json!(extent.to_string());
+        if let Some(layers) = layer_count {
+            document["layers"] = json!(layers);
+        }
     }
     document["touched_bytes"] = json!(row.touched_bytes);
     if let Some((arena, offset)) = row.shared {

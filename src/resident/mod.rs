@@ -145,6 +145,7 @@ fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
         extent,
         format,
         level_count: mipmaps::level_count(extent.width, extent.height),
+        layer_count: None,
         usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
     })
 }

@@ -160,7 +160,8 @@ impl Frame for DeferredFrame {
                 bvh_triangles: &self.direct.bvh_triangles,
             };
             let picture = self.color.from(Access::ComputeWrite);
-            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(), picture)?;
+            let depth = gbuffer.depth_edge(Access::ComputeSample);
+            blend.record(cmd, NAME, frame, scene, &lights, depth, picture)?;
         }
         Ok(())
     }

@@ -1,6 +1,8 @@
 //! The stages of the paper's figure 3, read back after a frame.
 
-use super::frame::{InterleavedFrame, Roads};
+use super::frame::InterleavedFrame;
+use super::roads::Roads;
+use super::sub_buffers::{Stage, Texels};
 use super::{AOVS, NAME};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
@@ -16,26 +18,27 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
     if let Some(aov) = frame.gbuffer.aov(gpu, name) {
         return aov;
     }
-    let why_no_split = "of the roads of --split only one-pass copies";
+    let why_no_split = "of the roads of --split only one-pass, two-pass, tile, layered and fragment copy";
     let why_no_filter = "--filter none, --split none, --split subsample and a pattern of 1x1 leave it out";
     let rgb = |values: Vec<[f32; 3]>| Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(values) });
     match (name, &frame.roads) {
-        ("split.normal", Roads::SubBuffers { split, .. }) => {
-            let texels = texels(gpu, &split.normal, decode::normal)?;
-            rgb(side_by_side(frame, &texels))
+        ("split.normal", Roads::SubBuffers(road)) => {
+            let last = road.copies.storage.read(Stage::Compute);
+            rgb(side_by_side(frame, gpu, &road.surface.normal, last, decode::normal)?)
         }
-        ("shade.irradiance", Roads::SubBuffers { .. }) => {
-            let texels = texels(gpu, &frame.irradiance, decode::halves)?;
-            rgb(side_by_side(frame, &texels))
+        ("shade.irradiance", Roads::SubBuffers(road)) => {
+            let last = road.copies.storage.read(road.copies.stage());
+            rgb(side_by_side(frame, gpu, &road.shaded, last, decode::halves)?)
         }
-        ("shade.irradiance", Roads::Subsample { .. }) => {
-            let texels = texels(gpu, &frame.irradiance, decode::halves)?;
+        ("shade.irradiance", Roads::Subsample { cells: shaded, .. }) => {
+            let texels = texels(gpu, shaded, decode::halves)?;
             rgb(cells(frame, &texels))
         }
-        ("shade.irradiance", Roads::Branch(_) | Roads::Strided(_)) => {
-            rgb(in_frame_order(frame, gpu, &frame.irradiance)?)
-        }
-        ("gather.irradiance", Roads::SubBuffers { gathered, .. }) => rgb(in_frame_order(frame, gpu, gathered)?),
+        (
+            "shade.irradiance",
+            Roads::Branch { irradiance, .. } | Roads::Strided { irradiance, .. } | Roads::Masked { irradiance, .. },
+        ) => rgb(in_frame_order(frame, gpu, irradiance)?),
+        ("gather.irradiance", Roads::SubBuffers(road)) => rgb(in_frame_order(frame, gpu, &road.gathered)?),
         ("discontinuity.flags", _) => match &frame.filter {
             Some(filter) => {
                 let bytes = readback::buffer(gpu, &filter.flags, filter.flags.bytes, Access::ComputeRead)?;
@@ -61,8 +64,16 @@ fn texels(gpu: &Arc<Gpu>, buffer: &Buffer, decode: fn([u32; 2]) -> [f32; 3]) -> 
     Ok(decode::words(&bytes).map(decode).collect())
 }
 
-fn side_by_side(frame: &InterleavedFrame, texels: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    frame.shade.mapping().side_by_side().iter().map(|texel| texels[*texel as usize]).collect()
+fn side_by_side(
+    frame: &InterleavedFrame,
+    gpu: &Arc<Gpu>,
+    texels: &Texels,
+    last: Access,
+    decode: fn([u32; 2]) -> [f32; 3],
+) -> Result<Vec<[f32; 3]>> {
+    let mapping = frame.shade.mapping();
+    let words: Vec<[u32; 2]> = decode::words(&texels.read(gpu, last)?).collect();
+    Ok(mapping.side_by_side().into_iter().map(|pixel| decode(words[texels.index_of(mapping, pixel)])).collect())
 }
 
 /// Each pixel shows its pattern's one texel.

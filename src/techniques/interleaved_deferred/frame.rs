@@ -1,18 +1,11 @@
 //! Interleaved deferred shading on the device: its passes and its resources. `mod.rs` records them.
 
 use super::NAME;
+use super::choices::{Choices, Filter};
 use super::composite::Composite;
 use super::discontinuity::Discontinuity;
-use super::gather::Gather;
-use super::plan::{Choices, Filter};
-use super::shade::branch::ShadeBranch;
-use super::shade::strided::{Dispatches, ShadeStrided};
-use super::shade::sub_buffers::ShadeSubBuffers;
-use super::shade::subsample::ShadeSubsample;
+use super::roads::Roads;
 use super::shade::{ShadeGpu, SubsetLights};
-use super::split::Road;
-use super::split::one_pass::{OnePass, SubBuffers};
-use super::upscale::Upscale;
 use crate::error::Result;
 use crate::gpu::shader::structs::{CompositeParams, DiscontinuityParams, LightBlock, ShadeParams};
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
@@ -26,15 +19,6 @@ use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::Inputs;
 use std::sync::Arc;
-
-/// How pixels meet their lights.
-#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
-pub enum Roads {
-    Branch(ShadeBranch),
-    Strided(ShadeStrided),
-    Subsample { shade: ShadeSubsample, upscale: Upscale, upscaled: Buffer },
-    SubBuffers { copy: OnePass, split: SubBuffers, shade: ShadeSubBuffers, gather: Gather, gathered: Buffer },
-}
 
 /// Discontinuities, the filter that stops at them, and what they write.
 pub struct FilterStage {
@@ -57,8 +41,6 @@ pub struct InterleavedFrame {
     pub direct: DirectGpu,
     pub shade: ShadeGpu,
     pub roads: Roads,
-    /// What shading writes: sub-buffers, cells or frame order, as the road has it.
-    pub irradiance: Buffer,
     pub filter: Option<FilterStage>,
     pub composite: Composite,
     pub color: Image,
@@ -75,7 +57,7 @@ impl InterleavedFrame {
         lights: &SubsetLights,
         direct_lights: &[LightBlock],
     ) -> Result<Self> {
-        let Choices { shading, road, mapping, .. } = choices;
+        let Choices { shading, mapping, .. } = choices;
         let has_emissive = inputs.stats.has_emissive;
         let tree = shading.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading, tree)?;
@@ -87,29 +69,11 @@ impl InterleavedFrame {
             subset_first: 0,
         };
         let shade = ShadeGpu::new(gpu, resources, lights, params)?;
-        let roads = match road {
-            Road::None | Road::Branch => Roads::Branch(ShadeBranch::new(gpu, shading)?),
-            Road::Indirect => Roads::Strided(ShadeStrided::new(gpu, shading, Dispatches::PerSubset)?),
-            Road::Remap => Roads::Strided(ShadeStrided::new(gpu, shading, Dispatches::One)?),
-            Road::Subsample => Roads::Subsample {
-                shade: ShadeSubsample::new(gpu, shading)?,
-                upscale: Upscale::new(gpu, shading)?,
-                upscaled: resources.buffer(&format!("{NAME}.upscale.irradiance")),
-            },
-            Road::OnePass => Roads::SubBuffers {
-                copy: OnePass::new(gpu, shading)?,
-                split: SubBuffers::new(resources),
-                shade: ShadeSubBuffers::new(gpu, shading)?,
-                gather: Gather::new(gpu, shading)?,
-                gathered: resources.buffer(&format!("{NAME}.gather.irradiance")),
-            },
-        };
         let params = CompositeParams { row_pitch: mapping.row_pitch(), direct_full: u32::from(choices.direct_full) };
         Ok(Self {
             gbuffer_pass: GBufferPass::new(gpu, scene, shading.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position)).transpose()?,
-            roads,
-            irradiance: resources.buffer(&format!("{NAME}.shade.irradiance")),
+            roads: Roads::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, shading, has_emissive, direct.masks.is_some(), params)?,
             color: resources.image(&format!("{NAME}.composite.color")),
@@ -118,33 +82,6 @@ impl InterleavedFrame {
             direct,
             shade,
         })
-    }
-
-    /// Split, shade, gather: the irradiance in frame order.
-    pub fn record_roads(&self, cmd: &mut Commands, frame: &Buffer, written: Access) -> Result<Edge<'_, Buffer>> {
-        let gbuffer = self.gbuffer.from(written);
-        match &self.roads {
-            Roads::Branch(shade) => {
-                shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
-                Ok(self.irradiance.from(Access::ComputeWrite))
-            }
-            Roads::Strided(shade) => {
-                shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
-                Ok(self.irradiance.from(Access::ComputeWrite))
-            }
-            Roads::Subsample { shade, upscale, upscaled } => {
-                shade.record(cmd, frame, &self.shade, &self.direct, gbuffer, &self.irradiance)?;
-                upscale.record(cmd, self.shade.mapping(), self.irradiance.from(Access::ComputeWrite), upscaled)?;
-                Ok(upscaled.from(Access::ComputeWrite))
-            }
-            Roads::SubBuffers { copy, split, shade, gather, gathered } => {
-                copy.record(cmd, self.shade.mapping(), gbuffer, split)?;
-                let split = split.from(Access::ComputeWrite);
-                shade.record(cmd, frame, &self.shade, &self.direct, split, &self.irradiance)?;
-                gather.record(cmd, self.shade.mapping(), self.irradiance.from(Access::ComputeWrite), gathered)?;
-                Ok(gathered.from(Access::ComputeWrite))
-            }
-        }
     }
 }
 

@@ -1,17 +1,27 @@
-//! Which texel of the frame goes where: the twin of mapping.glsl (Segovia 2006, sections 1 and 3.2).
+//! Which texel of the frame goes where: the twin of mapping.glsl (Segovia 2006, sections 1, 3.2 and 3.3), which explains
+//! the three orders: pixels of the padded frame, block texels, texels of sub-buffers as [x, y, number of the sub-buffer].
 
 use crate::gpu::shader::structs::MappingParams;
 use crate::units::Extent;
 
-/// The mapping of one frame and pattern.
+/// The mapping of one frame, pattern and block.
 ///
-/// Sub-buffers are padded to one size, their width to an even number, so that a thread can carry two texels.
-pub fn mapping(extent: Extent, pattern: [u32; 2]) -> MappingParams {
+/// Sub-buffers are padded to one size: to whole sub-blocks, and so many that their width is even and a thread can carry
+/// two texels. A block is a multiple of the pattern; roads without blocks say the pattern.
+pub fn mapping(extent: Extent, pattern: [u32; 2], block: [u32; 2]) -> MappingParams {
+    assert!(block[0].is_multiple_of(pattern[0]) && block[1].is_multiple_of(pattern[1]), "{block:?} of {pattern:?}");
+    let [sub_block_x, sub_block_y] = [block[0] / pattern[0], block[1] / pattern[1]];
+    let mut blocks_x = extent.width.div_ceil(block[0]);
+    if !(blocks_x * sub_block_x).is_multiple_of(2) {
+        blocks_x += 1;
+    }
     MappingParams {
         pattern_x: pattern[0],
         pattern_y: pattern[1],
-        sub_width_px: extent.width.div_ceil(pattern[0]).next_multiple_of(2),
-        sub_height_px: extent.height.div_ceil(pattern[1]),
+        block_x: block[0],
+        block_y: block[1],
+        sub_width_px: blocks_x * sub_block_x,
+        sub_height_px: extent.height.div_ceil(block[1]) * sub_block_y,
         width_px: extent.width,
         height_px: extent.height,
     }
@@ -28,9 +38,25 @@ impl MappingParams {
         u64::from(self.sub_width_px) * u64::from(self.sub_height_px)
     }
 
-    /// Texels of all sub-buffers.
+    /// Texels of all sub-buffers, and of the block layout.
     pub fn texel_count(&self) -> u64 {
         self.sub_texel_count() * u64::from(self.subset_count())
+    }
+
+    /// The frame with its padding: the extent of the block layout, and of sub-buffers tiled side by side.
+    pub fn padded(&self) -> Extent {
+        Extent::new(self.sub_width_px * self.pattern_x, self.sub_height_px * self.pattern_y)
+    }
+
+    /// The frame.
+    pub fn extent(&self) -> Extent {
+        Extent::new(self.width_px, self.height_px)
+    }
+
+    /// Blocks in each direction, those that are all padding included.
+    pub fn block_counts(&self) -> [u32; 2] {
+        let padded = self.padded();
+        [padded.width / self.block_x, padded.height / self.block_y]
     }
 
     /// Texels between the rows of a buffer in frame order.
@@ -43,29 +69,94 @@ impl MappingParams {
         u64::from(self.row_pitch()) * u64::from(self.height_px)
     }
 
+    /// Whether a pixel of the padded frame is one of the frame.
+    pub fn is_in_frame(&self, [x, y]: [u32; 2]) -> bool {
+        x < self.width_px && y < self.height_px
+    }
+
+    fn sub_block(&self) -> [u32; 2] {
+        [self.block_x / self.pattern_x, self.block_y / self.pattern_y]
+    }
+
+    fn place_in_pattern(&self, subset: u32) -> [u32; 2] {
+        [subset % self.pattern_x, subset / self.pattern_x]
+    }
+
     /// Which of the n * m subsets shades a pixel: 0..n*m, row-major inside the pattern.
     pub fn subset_of(&self, [x, y]: [u32; 2]) -> u32 {
         y % self.pattern_y * self.pattern_x + x % self.pattern_x
     }
 
-    /// Texel of all sub-buffers that holds a pixel.
-    pub fn texel_of(&self, [x, y]: [u32; 2]) -> u64 {
-        let row = u64::from(self.subset_of([x, y])) * u64::from(self.sub_height_px) + u64::from(y / self.pattern_y);
-        row * u64::from(self.sub_width_px) + u64::from(x / self.pattern_x)
+    /// Split in one pass: pixel (x, y) goes to (x / n, y / m) of sub-buffer (x mod n, y mod m).
+    pub fn texel_of_pixel(&self, [x, y]: [u32; 2]) -> [u32; 3] {
+        [x / self.pattern_x, y / self.pattern_y, self.subset_of([x, y])]
     }
 
-    /// The pixel that texel `inside` of sub-buffer `subset` comes from; in the padding it lies outside the frame.
-    pub fn pixel_of(&self, subset: u32, inside: [u32; 2]) -> [u32; 2] {
-        let first = [subset % self.pattern_x, subset / self.pattern_x];
-        [inside[0] * self.pattern_x + first[0], inside[1] * self.pattern_y + first[1]]
+    /// Its inverse; of padding it lies outside the frame.
+    pub fn pixel_of_texel(&self, [x, y, subset]: [u32; 3]) -> [u32; 2] {
+        let first = self.place_in_pattern(subset);
+        [x * self.pattern_x + first[0], y * self.pattern_y + first[1]]
     }
 
-    /// Where texels of sub-buffers stand in a picture that shows them side by side (figure 3b): for each pixel of that
-    /// picture, row-major, its texel. Padding is left out, so the picture has the frame's extent.
-    pub fn side_by_side(&self) -> Vec<u64> {
+    /// Block splitting: the block stays, and inside it each pixel goes to its sub-block.
+    pub fn block_texel_of_pixel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
+        let along = |at: u32, block: u32, pattern: u32| {
+            let inside = at % block;
+            at - inside + inside % pattern * (block / pattern) + inside / pattern
+        };
+        [along(x, self.block_x, self.pattern_x), along(y, self.block_y, self.pattern_y)]
+    }
+
+    /// Its inverse.
+    pub fn pixel_of_block_texel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
+        let along = |at: u32, block: u32, pattern: u32| {
+            let (inside, sub_block) = (at % block, block / pattern);
+            at - inside + inside % sub_block * pattern + inside / sub_block
+        };
+        [along(x, self.block_x, self.pattern_x), along(y, self.block_y, self.pattern_y)]
+    }
+
+    /// Block translation: a whole sub-block goes to its place in its sub-buffer.
+    pub fn texel_of_block_texel(&self, [x, y]: [u32; 2]) -> [u32; 3] {
+        let [width, height] = self.sub_block();
+        let (inside_x, inside_y) = (x % self.block_x, y % self.block_y);
+        let subset = inside_y / height * self.pattern_x + inside_x / width;
+        [x / self.block_x * width + inside_x % width, y / self.block_y * height + inside_y % height, subset]
+    }
+
+    /// Its inverse.
+    pub fn block_texel_of_texel(&self, [x, y, subset]: [u32; 3]) -> [u32; 2] {
+        let ([width, height], place) = (self.sub_block(), self.place_in_pattern(subset));
+        [
+            x / width * self.block_x + place[0] * width + x % width,
+            y / height * self.block_y + place[1] * height + y % height,
+        ]
+    }
+
+    /// Where a texel lies when sub-buffers lie one after the other, row by row: in buffers, and in an image's layers.
+    pub fn linear_of(&self, [x, y, subset]: [u32; 3]) -> u64 {
+        let row = u64::from(subset) * u64::from(self.sub_height_px) + u64::from(y);
+        row * u64::from(self.sub_width_px) + u64::from(x)
+    }
+
+    /// Where a texel lies when sub-buffers are tiled in one image (figure 3b).
+    pub fn tiled_of(&self, [x, y, subset]: [u32; 3]) -> [u32; 2] {
+        let place = self.place_in_pattern(subset);
+        [place[0] * self.sub_width_px + x, place[1] * self.sub_height_px + y]
+    }
+
+    /// Its inverse.
+    pub fn texel_of_tiled(&self, [x, y]: [u32; 2]) -> [u32; 3] {
+        let subset = y / self.sub_height_px * self.pattern_x + x / self.sub_width_px;
+        [x % self.sub_width_px, y % self.sub_height_px, subset]
+    }
+
+    /// A picture that shows sub-buffers side by side (figure 3b): for each of its places, row-major, the pixel that it
+    /// shows. Padding is left out, so the picture has the frame's extent.
+    pub fn side_by_side(&self) -> Vec<[u32; 2]> {
         let columns = spread(self.width_px, self.pattern_x);
         let rows = spread(self.height_px, self.pattern_y);
-        rows.iter().flat_map(|y| columns.iter().map(|x| self.texel_of([*x, *y]))).collect()
+        rows.iter().flat_map(|y| columns.iter().map(|x| [*x, *y])).collect()
     }
 }
 
@@ -78,37 +169,71 @@ fn spread(length: u32, pattern: u32) -> Vec<u32> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::collections::HashSet;
+
+    fn places(extent: Extent) -> impl Iterator<Item = [u32; 2]> {
+        (0..extent.height).flat_map(move |y| (0..extent.width).map(move |x| [x, y]))
+    }
+
+    prop_compose! {
+        /// Any frame, pattern and block that is a multiple of it.
+        fn any_mapping()(w in 1u32..70, h in 1u32..50, n in 1u32..12, m in 1u32..12, p in 1u32..5, q in 1u32..5)
+            -> MappingParams { mapping(Extent::new(w, h), [n, m], [n * p, m * q]) }
+    }
 
     proptest! {
         #[test]
-        fn split_then_gather_is_the_identity(w in 1u32..70, h in 1u32..50, n in 1u32..20, m in 1u32..20) {
-            let mapping = mapping(Extent::new(w, h), [n, m]);
-            let mut sources = vec![None; mapping.texel_count() as usize];
-            for subset in 0..mapping.subset_count() {
-                for y in 0..mapping.sub_height_px {
-                    for x in 0..mapping.sub_width_px {
-                        let pixel = mapping.pixel_of(subset, [x, y]);
-                        let texel = (u64::from(subset) * mapping.sub_texel_count()
-                            + u64::from(y) * u64::from(mapping.sub_width_px) + u64::from(x)) as usize;
-                        if pixel[0] < w && pixel[1] < h {
-                            prop_assert_eq!(mapping.texel_of(pixel), texel as u64);
-                            prop_assert_eq!(mapping.subset_of(pixel), subset);
-                        }
-                        sources[texel] = Some(pixel);
-                    }
-                }
+        fn split_then_gather_is_the_identity(mapping in any_mapping()) {
+            let mut texels = HashSet::new();
+            for pixel in places(mapping.padded()) {
+                let texel = mapping.texel_of_pixel(pixel);
+                prop_assert_eq!(mapping.pixel_of_texel(texel), pixel);
+                prop_assert_eq!(mapping.subset_of(pixel), texel[2]);
+                prop_assert!(texel[0] < mapping.sub_width_px && texel[1] < mapping.sub_height_px);
+                prop_assert!(texel[2] < mapping.subset_count());
+                prop_assert!(texels.insert(texel));
             }
-            for y in 0..h {
-                for x in 0..w {
-                    prop_assert_eq!(sources[mapping.texel_of([x, y]) as usize], Some([x, y]));
-                }
+            prop_assert_eq!(texels.len() as u64, mapping.texel_count());
+        }
+
+        #[test]
+        fn two_passes_are_one(mapping in any_mapping()) {
+            for pixel in places(mapping.padded()) {
+                let at = mapping.block_texel_of_pixel(pixel);
+                prop_assert!(at[0] < mapping.padded().width && at[1] < mapping.padded().height);
+                prop_assert_eq!(mapping.pixel_of_block_texel(at), pixel);
+                let texel = mapping.texel_of_block_texel(at);
+                prop_assert_eq!(texel, mapping.texel_of_pixel(pixel));
+                prop_assert_eq!(mapping.block_texel_of_texel(texel), at);
+                // A block stays where it is.
+                prop_assert_eq!([at[0] / mapping.block_x, at[1] / mapping.block_y],
+                                [pixel[0] / mapping.block_x, pixel[1] / mapping.block_y]);
             }
         }
 
         #[test]
+        fn every_texel_has_a_place_of_its_own(mapping in any_mapping()) {
+            let mut linear = HashSet::new();
+            for at in places(mapping.padded()) {
+                let texel = mapping.texel_of_tiled(at);
+                prop_assert_eq!(mapping.tiled_of(texel), at);
+                prop_assert!(mapping.linear_of(texel) < mapping.texel_count());
+                prop_assert!(linear.insert(mapping.linear_of(texel)));
+            }
+        }
+
+        #[test]
+        fn padding_is_whole_sub_blocks_of_an_even_width(mapping in any_mapping()) {
+            let padded = mapping.padded();
+            prop_assert!(mapping.sub_width_px.is_multiple_of(2));
+            prop_assert!(padded.width.is_multiple_of(mapping.block_x) && padded.height.is_multiple_of(mapping.block_y));
+            prop_assert!(padded.width >= mapping.width_px && padded.width < mapping.width_px + 2 * mapping.block_x);
+            prop_assert!(padded.height >= mapping.height_px && padded.height < mapping.height_px + mapping.block_y);
+        }
+
+        #[test]
         fn side_by_side_shows_each_pixel_once(w in 1u32..40, h in 1u32..40, n in 1u32..9, m in 1u32..9) {
-            let mapping = mapping(Extent::new(w, h), [n, m]);
-            let mut shown = mapping.side_by_side();
+            let mut shown = mapping(Extent::new(w, h), [n, m], [n, m]).side_by_side();
             prop_assert_eq!(shown.len() as u64, Extent::new(w, h).pixel_count());
             shown.sort_unstable();
             shown.dedup();

@@ -5,9 +5,16 @@
 //! filtered where no discontinuity is, and multiplied with the albedo last.
 //!
 //! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend.
+//! With `--split two-pass`, and `fragment` in two passes, split is split.blocks and split.translate, and gather is
+//! gather.translate and gather.blocks. Roads that copy nothing have neither; before the shading of `stencil` and `depth`
+//! stands mask.
 //!
 //! Differs from the paper
-//! - compute shaders copy and shade, where the paper drew quads; a sub-buffer is a stretch of a buffer, not a region
+//! - by default compute shaders copy, where the paper drew; `--split fragment` draws, with the paper's look-up textures
+//! - sub-buffers are tiled in an image, as in the paper's figure 3, with `--storage image`; in buffers, the default on
+//!   software drivers, they lie one after the other
+//! - compute shaders shade sub-buffers, where the paper drew quads
+//! - sub-buffers are padded to whole patterns or blocks, so the tiled buffer is at least as large as the frame, not equal
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
 //! - secondary lights are never shadowed (SNSM), as in the paper's section 6.2
 //!
@@ -15,22 +22,29 @@
 //! every road but `none` and `subsample` gives the same bits as `branch`.
 
 mod aov;
+mod choices;
 pub mod composite;
 pub mod discontinuity;
 mod frame;
 pub mod gather;
+pub mod lookup;
 pub mod mapping;
+pub mod mask;
 mod plan;
+pub mod rendered;
+pub mod road;
+mod roads;
 pub mod settings;
 pub mod shade;
 pub mod split;
+pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
 use super::{Frame, Inputs, Prepared, Technique};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
 use crate::lights::vpl;
 use crate::passes::blend::BlendLights;
 use crate::passes::direct;
@@ -38,8 +52,8 @@ use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::settings::{SHADING, Setting};
+use choices::Choices;
 use frame::InterleavedFrame;
-use plan::Choices;
 use shade::SubsetLights;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -114,12 +128,9 @@ impl Technique for InterleavedDeferred {
             vpls: found.vpls,
         };
         let clamp = values.length("vpl-clamp", bounds.diagonal());
-        let resolved = BTreeMap::from([
-            ("emissive", if emissive { "on" } else { "off" }.to_owned()),
-            ("vpl-clamp", format!("{clamp}")),
-            ("texels", choices.shading.texels.to_string()),
-            ("sigma", format!("{}", choices.kernel.sigma)),
-        ]);
+        let mut resolved = choices.resolved();
+        resolved.insert("emissive", if emissive { "on" } else { "off" }.to_owned());
+        resolved.insert("vpl-clamp", format!("{clamp}"));
         Ok(Box::new(PreparedInterleaved {
             choices,
             lights,
@@ -182,19 +193,24 @@ impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let gbuffer = &self.gbuffer;
         self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
-        let mut written = Access::ColorWrite;
+        let mut surface = AccessSet::from(Access::ColorWrite);
         if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
             let lights = (&self.direct.lights, self.direct.light_count);
-            cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
-            written = Access::ComputeSample;
+            cull.record(cmd, NAME, gbuffer.from(surface), frame, lights, masks)?;
+            surface = surface.after(Access::ComputeSample);
         }
-        let gathered = self.record_roads(cmd, frame, written)?;
+        let lit = self.roads.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface))?;
+        surface = lit.readers;
         let irradiance = match &self.filter {
-            Some(filter) => filter.record(cmd, frame, gbuffer.from(Access::ComputeSample), gathered)?,
-            None => gathered,
+            Some(filter) => {
+                let filtered = filter.record(cmd, frame, gbuffer.from(surface), lit.irradiance)?;
+                surface = surface.after(Access::ComputeSample);
+                filtered
+            }
+            None => lit.irradiance,
         };
-        let sampled = gbuffer.from(Access::ComputeSample);
-        self.composite.record(cmd, frame, &self.direct, sampled, irradiance, &self.color)?;
+        self.composite.record(cmd, frame, &self.direct, gbuffer.from(surface), irradiance, &self.color)?;
+        surface = surface.after(Access::ComputeSample);
         if let Some(blend) = &self.blend {
             let lights = BlendLights {
                 lights: &self.direct.lights,
@@ -203,7 +219,7 @@ impl Frame for InterleavedFrame {
                 bvh_triangles: &self.direct.bvh_triangles,
             };
             let picture = self.color.from(Access::ComputeWrite);
-            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(), picture)?;
+            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(surface), picture)?;
         }
         Ok(())
     }

@@ -16,13 +16,65 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "split",
         symbol: "",
-        kind: Kind::Choice(&["none", "subsample", "branch", "indirect", "remap", "one-pass"]),
+        kind: Kind::Choice(&[
+            "none",
+            "subsample",
+            "stencil",
+            "depth",
+            "branch",
+            "indirect",
+            "remap",
+            "one-pass",
+            "two-pass",
+            "tile",
+            "layered",
+            "fragment",
+        ]),
         default: "one-pass",
         unit: "",
-        paper: "Segovia 2006, 3.1-3.2",
+        paper: "Segovia 2006, 3.1-3.3, 4.2",
         help: "how pixels meet their subset: every light on every pixel (none), all lights at one pixel of a pattern \
-               (subsample), each pixel looping over its own (branch), a subset at a time at the pattern's stride, in a \
-               dispatch each (indirect) or in one (remap), or a copy into n x m sub-buffers (one-pass)",
+               (subsample); a draw a subset, its pixels chosen by a test (stencil, depth), each pixel looping over its \
+               own (branch), a subset at a time at the pattern's stride, in a dispatch each (indirect) or in one \
+               (remap); or a copy into n x m sub-buffers and back: in one pass, in two by blocks, through workgroup \
+               memory (tile), into the layers of an image (layered), by fragment programs and look-up textures (fragment)",
+    },
+    Setting {
+        key: "storage",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "buffer", "image"]),
+        default: "auto",
+        unit: "",
+        paper: "Segovia 2006, figure 3",
+        help: "where sub-buffers lie: in storage buffers, two texels a thread, or tiled in images; auto: buffer on software \
+               drivers, image elsewhere and where the road knows nothing else",
+    },
+    Setting {
+        key: "copy",
+        symbol: "",
+        kind: Kind::Choice(&["pull", "push"]),
+        default: "pull",
+        unit: "",
+        paper: "",
+        help: "what a thread of a copy stands for: a texel written (pull) or a texel read (push); a pair in buffers",
+    },
+    Setting {
+        key: "block",
+        symbol: "p x q",
+        kind: Kind::Sides { min: 1, max: 1024 },
+        default: "16",
+        unit: "px",
+        paper: "Segovia 2006, 3.3",
+        help: "of the splits in blocks: two-pass, tile, fragment in two passes; rounded up to whole patterns",
+    },
+    Setting {
+        key: "fragment-passes",
+        symbol: "",
+        kind: Kind::Integer { min: 1, max: 2 },
+        default: "2",
+        unit: "",
+        paper: "Segovia 2006, 3.2, 4.2",
+        help: "of --split fragment: one with one look-up texture, or block splitting and block translation",
     },
     Setting {
         key: "vpls",

@@ -6,6 +6,10 @@
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+
+layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
+
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.mapping.width_px || pixel.y >= params.mapping.height_px) {

@@ -1,5 +1,6 @@
 // Irradiance at a surface point from one subset of the lights: virtual point lights, then punctual lights that were
-// joined to the subsets (--direct interleaved). Every road of the split calls this one function.
+// joined to the subsets (--direct interleaved). Every road of the split calls this one function, from compute shaders
+// and from a fragment shader; where the irradiance goes is theirs.
 #ifndef INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
 #define INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
 
@@ -25,7 +26,6 @@ struct ShadeParams {
     uint subset_first;
 };
 
-layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
 
 layout(push_constant) uniform Push { ShadeParams params; };
@@ -35,7 +35,6 @@ layout(std430, set = 0, binding = 2) readonly buffer SubsetLights { LightBlock s
 layout(std430, set = 0, binding = 3) readonly buffer Subsets { SubsetBlock subsets[]; };
 layout(std430, set = 0, binding = 4) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 5) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
-layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
 
 #include "bvh_walk.glsl"
 

@@ -6,13 +6,17 @@
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+
+layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
+
 // x: texels of a sub-buffer, row after row; z: subsets from params.subset_first on.
 void main() {
     uvec3 id = gl_GlobalInvocationID;
     uint sub_texels = params.mapping.sub_width_px * params.mapping.sub_height_px;
     uint subset = params.subset_first + id.z;
     uvec2 inside = uvec2(id.x % params.mapping.sub_width_px, id.x / params.mapping.sub_width_px);
-    uvec2 pixel = pixel_of(params.mapping, subset, inside);
+    uvec2 pixel = pixel_of_texel(params.mapping, uvec3(inside, subset));
     if (id.x >= sub_texels || pixel.x >= params.mapping.width_px || pixel.y >= params.mapping.height_px) {
         return;
     }

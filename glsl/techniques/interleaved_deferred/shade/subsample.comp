@@ -5,6 +5,10 @@
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+
+layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
+
 void main() {
     uvec2 cell = gl_GlobalInvocationID.xy;
     if (cell.x >= params.mapping.sub_width_px || cell.y >= params.mapping.sub_height_px) {

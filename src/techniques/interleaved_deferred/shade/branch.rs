@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::branch::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
@@ -42,7 +42,8 @@ impl ShadeBranch {
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
-            let mut bound = shade.bound(frame, direct, irradiance);
+            let mut bound = shade.bound(frame, direct);
+            bound.push(("Irradiance", Bound::Buffer(irradiance)));
             bound.extend(gbuffer.resource.bound_surface());
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)

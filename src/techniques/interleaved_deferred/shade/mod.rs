@@ -2,6 +2,7 @@
 //! (irradiance.glsl): float, in the order of the list, packed to halves once.
 
 pub mod branch;
+pub mod masked;
 pub mod strided;
 pub mod sub_buffers;
 pub mod subsample;
@@ -46,7 +47,7 @@ impl ShadeGpu {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, lights: &SubsetLights, params: ShadeParams) -> Result<Self> {
         let mut filled = |what: &str, bytes: &[u8]| {
             let buffer = resources.buffer(&format!("{NAME}.{what}"));
-            // Blended surfaces read virtual lights too.
+            // Compute and fragment shaders shade; blended surfaces read virtual lights too.
             upload::buffer(gpu, &buffer, bytes, Access::ComputeRead | Access::GraphicsRead)?;
             Ok(buffer)
         };
@@ -63,12 +64,7 @@ impl ShadeGpu {
     }
 
     /// What irradiance.glsl binds.
-    fn bound<'a>(
-        &'a self,
-        frame: &'a Buffer,
-        direct: &'a DirectGpu,
-        irradiance: &'a Buffer,
-    ) -> Vec<(&'static str, Bound<'a>)> {
+    fn bound<'a>(&'a self, frame: &'a Buffer, direct: &'a DirectGpu) -> Vec<(&'static str, Bound<'a>)> {
         vec![
             ("Frame", Bound::Buffer(frame)),
             ("Vpls", Bound::Buffer(&self.vpls)),
@@ -76,7 +72,6 @@ impl ShadeGpu {
             ("Subsets", Bound::Buffer(&self.subsets)),
             ("BvhNodes", Bound::Buffer(&direct.bvh_nodes)),
             ("BvhTriangles", Bound::Buffer(&direct.bvh_triangles)),
-            ("Irradiance", Bound::Buffer(irradiance)),
         ]
     }
 }

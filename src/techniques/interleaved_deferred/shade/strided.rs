@@ -11,7 +11,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::ShadeParams;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::strided::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
@@ -53,7 +53,8 @@ impl ShadeStrided {
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
-            let mut bound = shade.bound(frame, direct, irradiance);
+            let mut bound = shade.bound(frame, direct);
+            bound.push(("Irradiance", Bound::Buffer(irradiance)));
             bound.extend(gbuffer.resource.bound_surface());
             let [x, ..] = self.pipeline.groups([mapping.sub_texel_count() as u32, 1, 1]);
             let mut dispatch = |subset_first: u32, subset_count: u32| {

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::subsample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
@@ -41,7 +41,8 @@ impl ShadeSubsample {
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
-            let mut bound = shade.bound(frame, direct, irradiance);
+            let mut bound = shade.bound(frame, direct);
+            bound.push(("Irradiance", Bound::Buffer(irradiance)));
             bound.extend(gbuffer.resource.bound_surface());
             let groups = self.pipeline.groups([mapping.sub_width_px, mapping.sub_height_px, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)

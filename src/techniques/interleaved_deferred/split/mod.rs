@@ -1,45 +1,125 @@
-//! G-buffer splitting (BS): how the pixels of one light subset come together. Segovia 2006, sections 3.1 to 3.3.
+//! G-buffer splitting (BS): position and normal of the frame's pixels into n x m sub-buffers. Segovia 2006, sections 3.2,
+//! 3.3 and 4.2.
 
+pub mod blocks;
+pub mod fragment;
 pub mod one_pass;
+pub mod tile;
+pub mod translate;
 
-/// The roads of `--split`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
-    /// Every light on every pixel: plain deferred shading, another sum.
-    None,
-    /// All lights at one pixel of each pattern, interpolated: another sum.
-    Subsample,
-    /// One pass over the un-split G-buffer, each pixel looping over its own subset.
-    Branch,
-    /// A dispatch a subset over the un-split G-buffer, at the pattern's stride.
-    Indirect,
-    /// The same in one dispatch, workgroups numbered by subset.
-    Remap,
-    /// A copy into sub-buffers in one pass.
-    OnePass,
+use super::NAME;
+use super::choices::Choices;
+use super::road::{Copier, Copies};
+use super::sub_buffers::Surface;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::{Access, Commands, Edge, Gpu, Traffic};
+use crate::passes::gbuffer::{self, GBuffer};
+use crate::plan::{Plan, Resources};
+use blocks::SplitBlocks;
+use fragment::{FragmentSplit, FragmentSplitBlocks};
+use one_pass::SplitOnePass;
+use std::sync::Arc;
+use tile::SplitTile;
+use translate::SplitTranslate;
+
+/// One of the ways to split.
+#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
+pub enum Split {
+    OnePass(SplitOnePass),
+    TwoPass { blocks: SplitBlocks, between: Surface, translate: SplitTranslate },
+    Tile(SplitTile),
+    OneFragmentPass(FragmentSplit),
+    TwoFragmentPasses(FragmentSplitBlocks),
 }
 
-impl Road {
-    /// The value of `--split`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "none" => Self::None,
-            "subsample" => Self::Subsample,
-            "branch" => Self::Branch,
-            "indirect" => Self::Indirect,
-            "remap" => Self::Remap,
-            "one-pass" => Self::OnePass,
-            other => panic!("--split {other} was checked"),
+/// Plans the sub-buffers, what lies between two passes, and the passes.
+pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies) {
+    let Choices { mapping, shading, .. } = choices;
+    let (storage, stage, position_bytes) = (copies.storage, copies.stage(), shading.position.bytes());
+    let (written, read) = (storage.written(stage), storage.read(stage));
+    Surface::plan(plan, "split", mapping, storage, position_bytes, stage);
+    fragment::plan(plan, mapping, copies.by);
+    let frame = gbuffer::surface_as(NAME, shading.position, stage.samples());
+    let split = Surface::touches("split", written);
+    if copies.is_two_pass() {
+        Surface::plan(plan, "split.blocks", mapping, storage, position_bytes, stage);
+        let between = |access| Surface::touches("split.blocks", access);
+        plan.pass(format!("{NAME}.split.blocks"), frame.into_iter().chain(between(written)));
+        plan.pass(format!("{NAME}.split.translate"), between(read).into_iter().chain(split));
+    } else {
+        plan.pass(format!("{NAME}.split"), frame.into_iter().chain(split));
+    }
+}
+
+impl Split {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, copies: Copies) -> Result<Self> {
+        let mut between = || Surface::new(gpu, resources, "split.blocks", copies.storage);
+        Ok(match copies.by {
+            Copier::OnePass => Self::OnePass(SplitOnePass::new(gpu, choices, copies)?),
+            Copier::TwoPass => Self::TwoPass {
+                blocks: SplitBlocks::new(gpu, choices, copies)?,
+                between: between()?,
+                translate: SplitTranslate::new(gpu, choices, copies)?,
+            },
+            Copier::Tile => Self::Tile(SplitTile::new(gpu, choices, copies)?),
+            Copier::OneFragmentPass => Self::OneFragmentPass(FragmentSplit::new(gpu, resources, choices)?),
+            Copier::TwoFragmentPasses => {
+                let between = between()?;
+                Self::TwoFragmentPasses(FragmentSplitBlocks::new(gpu, resources, choices, between)?)
+            }
+        })
+    }
+
+    /// Fills `split` from the G-buffer.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        split: &Surface,
+    ) -> Result<()> {
+        let texel_bytes = gbuffer.resource.surface_bytes();
+        match self {
+            Self::OnePass(copy) => copy.record(cmd, mapping, gbuffer, split),
+            Self::TwoPass { blocks, between, translate } => {
+                blocks.record(cmd, mapping, gbuffer, between)?;
+                translate.record(cmd, mapping, texel_bytes, between.from(Access::ComputeWrite), split)
+            }
+            Self::Tile(copy) => copy.record(cmd, mapping, gbuffer, split),
+            Self::OneFragmentPass(copy) => copy.record(cmd, mapping, gbuffer, split),
+            Self::TwoFragmentPasses(copy) => copy.record(cmd, mapping, gbuffer, split),
         }
     }
+}
 
-    /// Whether it copies the G-buffer into sub-buffers, and the irradiance back.
-    pub fn copies(self) -> bool {
-        self == Self::OnePass
-    }
+/// Bytes of a whole copy one way, padding included: it is read as the pixel nearest to it, and written.
+fn copied(mapping: &MappingParams, texel_bytes: u64, invocations: Option<u64>) -> Traffic {
+    let bytes = mapping.texel_count() * texel_bytes;
+    Traffic { read_bytes: bytes, written_bytes: bytes, invocations }
+}
 
-    /// Whether all lights are summed at each pixel that is shaded.
-    pub fn sums_all(self) -> bool {
-        matches!(self, Self::None | Self::Subsample)
-    }
+/// One compute shader from the G-buffer to `target`. `invocations`: those that do work.
+fn from_frame(
+    cmd: &mut Commands,
+    (pass, pipeline): (&str, &ComputePipeline),
+    mapping: &MappingParams,
+    gbuffer: Edge<'_, GBuffer>,
+    target: &Surface,
+    (groups, invocations): ([u32; 3], u64),
+) -> Result<()> {
+    let traffic = copied(mapping, gbuffer.resource.surface_bytes(), Some(invocations));
+    cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
+        cmd.barriers(gbuffer.surface_to_sampled());
+        cmd.barriers(target.discard(Access::ComputeWrite));
+        let mut bound = gbuffer.resource.bound_surface();
+        bound.extend(target.target());
+        cmd.dispatch(pipeline, bytemuck::bytes_of(mapping), &bound, groups)
+    })
+}
+
+/// How many threads there are.
+fn product(threads: [u32; 3]) -> u64 {
+    threads.iter().map(|side| u64::from(*side)).product()
 }

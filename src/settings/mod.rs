@@ -3,6 +3,10 @@
 //! A setting's key is its flag without the two leading dashes. A value is kept as the text that would repeat it, checked
 //! when it is set, so that what `Values` holds is possible.
 
+mod tables;
+
+pub use tables::{COMMON, SHADING};
+
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};
 use glam::Vec3;
@@ -22,6 +26,11 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// `NxM`, both in the range.
     Pair {
+        min: u32,
+        max: u32,
+    },
+    /// `NxM`, or `N` for both, in the range.
+    Sides {
         min: u32,
         max: u32,
     },
@@ -50,216 +59,6 @@ pub struct Setting {
     pub help: &'static str,
 }
 
-/// Settings that every technique and every picture has.
-pub const COMMON: &[Setting] = &[
-    Setting {
-        key: "size",
-        symbol: "",
-        kind: Kind::Pair { min: 1, max: 16384 },
-        default: "1280x720",
-        unit: "px",
-        paper: "",
-        help: "width and height of the picture",
-    },
-    Setting {
-        key: "camera",
-        symbol: "",
-        kind: Kind::Text("INDEX|NAME"),
-        default: "0",
-        unit: "",
-        paper: "",
-        help: "the scene's camera; a scene without one gets one that frames it",
-    },
-    Setting {
-        key: "seed",
-        symbol: "",
-        kind: Kind::Integer { min: 0, max: u32::MAX as u64 },
-        default: "1",
-        unit: "",
-        paper: "",
-        help: "seeds everything that is scattered or sampled",
-    },
-    Setting {
-        key: "lights",
-        symbol: "",
-        kind: Kind::Text("N[:SEED]"),
-        default: "0",
-        unit: "",
-        paper: "",
-        help: "scatter N point lights in the scene's bounds, beside its own",
-    },
-    Setting {
-        key: "exposure",
-        symbol: "",
-        kind: Kind::Number { min: -32.0, max: 32.0 },
-        default: "0",
-        unit: "EV",
-        paper: "",
-        help: "of PNGs: at 0, white diffuse under radiance 1 is 1.0",
-    },
-    Setting {
-        key: "tonemap",
-        symbol: "",
-        kind: Kind::Choice(&["clip", "reinhard", "aces"]),
-        default: "clip",
-        unit: "",
-        paper: "",
-        help: "of PNGs",
-    },
-    Setting {
-        key: "exr",
-        symbol: "",
-        kind: Kind::Choice(&["float", "half"]),
-        default: "float",
-        unit: "",
-        paper: "",
-        help: "precision of EXR files",
-    },
-    Setting {
-        key: "background",
-        symbol: "",
-        kind: Kind::Color,
-        default: "0",
-        unit: "",
-        paper: "",
-        help: "radiance where no surface is",
-    },
-    Setting {
-        key: "ambient",
-        symbol: "",
-        kind: Kind::Text("R,G,B|auto"),
-        default: "auto",
-        unit: "",
-        paper: "",
-        help: "radiance from everywhere; auto: 0 where the scene has lights, 0.3 with the default rig",
-    },
-    Setting {
-        key: "rig",
-        symbol: "",
-        kind: Kind::Choice(&["default", "none"]),
-        default: "default",
-        unit: "",
-        paper: "",
-        help: "light for a scene that has none: a key of 3 lux from the camera's upper left and an ambient of 0.3",
-    },
-    Setting {
-        key: "sun",
-        symbol: "",
-        kind: Kind::Choice(&["on", "off"]),
-        default: "on",
-        unit: "",
-        paper: "",
-        help: "directional lights",
-    },
-    Setting {
-        key: "light-cutoff",
-        symbol: "",
-        kind: Kind::Number { min: 0.0, max: 1e6 },
-        default: "0.002",
-        unit: "lux",
-        paper: "",
-        help: "a punctual light without range ends where it gives this irradiance; 0: never",
-    },
-    Setting {
-        key: "allocation",
-        symbol: "",
-        kind: Kind::Choice(&["linear", "dedicated", "tlsf"]),
-        default: "linear",
-        unit: "",
-        paper: "",
-        help: "how resources come by their memory: ranges one after the other in shared memory blocks, a memory block \
-               each, or ranges in shared memory blocks wherever there is room",
-    },
-    Setting {
-        key: "alias",
-        symbol: "",
-        kind: Kind::Choice(&["greedy", "optimal", "off"]),
-        default: "greedy",
-        unit: "",
-        paper: "",
-        help: "resources of a frame that never live in the same pass share bytes: placed by the best of a few orders, by a \
-               search for the least sum, or never",
-    },
-    Setting {
-        key: "memory-budget",
-        symbol: "",
-        kind: Kind::Bytes,
-        default: "none",
-        unit: "",
-        paper: "",
-        help: "what memory blocks in one heap may sum up to; what would pass it is refused; none: the heap's size",
-    },
-    Setting {
-        key: "texture-limit",
-        symbol: "",
-        kind: Kind::Integer { min: 0, max: 16384 },
-        default: "0",
-        unit: "px",
-        paper: "",
-        help: "greatest side of a texture: larger ones begin at a coarser level; 0: no limit",
-    },
-];
-
-/// Settings of shading with a G-buffer, which several techniques read.
-pub const SHADING: &[Setting] = &[
-    Setting {
-        key: "brdf",
-        symbol: "",
-        kind: Kind::Choice(&["lambert", "blinn-phong", "ggx"]),
-        default: "ggx",
-        unit: "",
-        paper: "",
-        help: "of direct light",
-    },
-    Setting {
-        key: "position",
-        symbol: "",
-        kind: Kind::Choice(&["half", "unorm16", "depth", "float"]),
-        default: "unorm16",
-        unit: "",
-        paper: "Segovia 2006, 4.1",
-        help: "how the G-buffer holds positions: half floats (the paper's), 16-bit fractions of the scene's box, the depth \
-               buffer, or 32-bit floats (the oracle)",
-    },
-    Setting {
-        key: "cull",
-        symbol: "",
-        kind: Kind::Choice(&["none", "tiled"]),
-        default: "none",
-        unit: "",
-        paper: "",
-        help: "of direct light: every light on every pixel, or a list of lights for each tile of 16x16; the same picture",
-    },
-    Setting {
-        key: "direct-shadow",
-        symbol: "",
-        kind: Kind::Choice(&["none", "sun", "ray"]),
-        default: "sun",
-        unit: "",
-        paper: "",
-        help: "shadow rays to no light, to directional lights, or to every punctual light",
-    },
-    Setting {
-        key: "texels",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "1", "2", "4", "8", "16"]),
-        default: "auto",
-        unit: "px",
-        paper: "",
-        help: "pixels that a thread shades, compares or filters one after the other, reading once what they share; 1 is the \
-               plain way to the same bits; auto: 8 on software drivers, else 1",
-    },
-    Setting {
-        key: "workgroup",
-        symbol: "",
-        kind: Kind::Pair { min: 1, max: 256 },
-        default: "64x1",
-        unit: "",
-        paper: "",
-        help: "shape of compute workgroups",
-    },
-];
-
 impl Setting {
     /// The range or the choices, for help and errors.
     pub fn range(&self) -> String {
@@ -268,6 +67,7 @@ impl Setting {
             Kind::Number { min, max } => format!("{min} to {max}"),
             Kind::Choice(choices) => choices.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
+            Kind::Sides { min, max } => format!("N or NxM, each {min} to {max}"),
             Kind::Length => "metres, or P% of the scene's diagonal".to_owned(),
             Kind::Bytes => {
                 "512MiB, 2GiB and the like (B, KiB, MiB, GiB, TiB; without a unit: bytes), or none".to_owned()
@@ -290,6 +90,9 @@ impl Setting {
             Kind::Pair { min, max } => {
                 parse_pair(text).is_some_and(|pair| pair.iter().all(|side| (min..=max).contains(side)))
             }
+            Kind::Sides { min, max } => {
+                parse_sides(text).is_some_and(|sides| sides.iter().all(|side| (min..=max).contains(side)))
+            }
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Bytes => parse_bytes(text).is_some(),
             Kind::Color => parse_color(text).is_some(),
@@ -307,6 +110,13 @@ impl Setting {
 fn parse_pair(text: &str) -> Option<[u32; 2]> {
     let (first, second) = text.split_once('x')?;
     Some([first.parse().ok()?, second.parse().ok()?])
+}
+
+fn parse_sides(text: &str) -> Option<[u32; 2]> {
+    match text.parse() {
+        Ok(side) => Some([side; 2]),
+        Err(_) => parse_pair(text),
+    }
 }
 
 fn parse_length(text: &str, diagonal: f64) -> Option<f64> {
@@ -384,6 +194,11 @@ impl Values {
         self.parsed(key, parse_pair)
     }
 
+    /// Of `Kind::Sides`.
+    pub fn sides(&self, key: &str) -> [u32; 2] {
+        self.parsed(key, parse_sides)
+    }
+
     pub fn extent(&self, key: &str) -> Extent {
         let [width, height] = self.pair(key);
         Extent::new(width, height)
@@ -442,6 +257,7 @@ mod tests {
     fn what_cannot_be_read_is_refused() {
         for (kind, wrong) in [
             (Kind::Pair { min: 1, max: 9 }, &["", "x", "3", "3x", "-1x2", "3x2x1", "99999999999x1"][..]),
+            (Kind::Sides { min: 1, max: 9 }, &["", "x", "0", "10", "3x", "3x10", "3x2x1"]),
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),

@@ -1,0 +1,24 @@
+// One of n x m draws over the whole frame, which only the pixels of its subset pass, by stencil or by depth test (Segovia
+// 2006, section 3.1). The draw's number comes as its instance. Pass: src/techniques/interleaved_deferred/shade/masked.rs.
+// variants: POSITION=half|unorm16|depth|float
+#version 460
+#include "passes/gbuffer_read.glsl"
+#include "techniques/interleaved_deferred/shade/irradiance.glsl"
+
+// A pixel that fails is not shaded: what the paper calls early fragment culling.
+layout(early_fragment_tests) in;
+
+layout(location = 0) flat in uint in_instance;
+layout(location = 0) out uvec2 out_irradiance;
+
+void main() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uvec2 normal_bits = normal_words(pixel);
+    if (!has_surface(normal_bits)) {
+        out_irradiance = uvec2(0u);
+        return;
+    }
+    vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
+    // The draw's subset, not the pixel's: a mask that lets others pass would show.
+    out_irradiance = shade_subset(subsets[in_instance], position_ws, unpack_normal(normal_bits));
+}

@@ -1,0 +1,189 @@
+//! What the settings come to, and what is refused because it cannot be made.
+
+use super::NAME;
+use super::mapping::mapping;
+use super::road::{Copier, MaskKind, Road};
+use super::sub_buffers::Storage;
+use crate::error::{Error, Result};
+use crate::gpu::Caps;
+use crate::gpu::shader::structs::MappingParams;
+use crate::passes::direct::ShadingSettings;
+use crate::passes::filter::{Kernel, StopBits};
+use crate::settings::Values;
+use crate::techniques::Inputs;
+use crate::units::Bytes;
+use std::collections::BTreeMap;
+
+/// The filter of `--filter`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    None,
+    Gauss,
+    GaussFast,
+}
+
+#[derive(Clone, Debug)]
+pub struct Choices {
+    pub shading: ShadingSettings,
+    pub road: Road,
+    /// 1x1 with `--split none`: one subset of all lights.
+    pub mapping: MappingParams,
+    pub filter: Filter,
+    pub kernel: Kernel,
+    /// The scene's own lights shaded per pixel in the composite.
+    pub direct_full: bool,
+    /// The scene's own lights joined to the subsets.
+    pub direct_interleaved: bool,
+    /// Virtual point lights.
+    pub vpl_count: u32,
+    /// The scene's own lights that this frame has.
+    pub direct_count: u32,
+}
+
+/// Subsets that eight bits of stencil tell apart.
+const STENCIL_SUBSETS: u32 = 256;
+
+impl Choices {
+    /// Errors: settings that contradict each other, or that this device cannot do (exit code 2).
+    pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
+        let Inputs { values, lights, scene, view, caps, .. } = inputs;
+        let road = Road::new(values, caps)?;
+        let pattern = if road == Road::None { [1, 1] } else { values.pair("pattern") };
+        let has_blocks = road.copies().is_some_and(|copies| copies.has_blocks());
+        let block = if has_blocks { rounded(values.sides("block"), pattern) } else { pattern };
+        let mapping = mapping(view.extent, pattern, block);
+        // Only a picture whose pixels have different lights has anything to filter.
+        let interleaved = !road.sums_all() && mapping.subset_count() > 1;
+        let filter = match values.text("filter") {
+            _ if !interleaved => Filter::None,
+            "gauss" => Filter::Gauss,
+            "gauss-fast" => Filter::GaussFast,
+            _ => Filter::None,
+        };
+        let direct = values.text("direct");
+        let choices = Self {
+            shading: ShadingSettings::new(values, lights, scene.bounds().diagonal(), caps),
+            road,
+            mapping,
+            filter,
+            kernel: kernel(values)?,
+            direct_full: direct == "full",
+            direct_interleaved: direct == "interleaved",
+            vpl_count: values.integer("vpls") as u32,
+            direct_count: if direct == "none" { 0 } else { lights.lights.len() as u32 },
+        };
+        choices.check_lights(values.text("pattern"))?;
+        choices.check_device(values.text("pattern"), caps)?;
+        Ok(choices)
+    }
+
+    /// Errors: fewer lights than subsets (exit code 2).
+    fn check_lights(&self, pattern: &str) -> Result<()> {
+        let (count, subset_count) = (self.vpl_count + self.joined_count(), self.subset_count());
+        if count >= subset_count {
+            return Ok(());
+        }
+        Err(Error::request(format!(
+            "{NAME}: {count} lights for the {subset_count} subsets of --pattern {pattern}: each subset needs one"
+        ))
+        .note(format!("--vpls {subset_count} or more, or a smaller --pattern")))
+    }
+
+    /// Errors: a limit of the stencil or of the device (exit code 2).
+    fn check_device(&self, pattern: &str, caps: &Caps) -> Result<()> {
+        let (subset_count, limits) = (self.mapping.subset_count(), &caps.limits);
+        if self.road == Road::Masked(MaskKind::Stencil) && subset_count > STENCIL_SUBSETS {
+            return Err(Error::request(format!(
+                "{NAME}: --split stencil with the {subset_count} subsets of --pattern {pattern}: \
+                 eight bits of stencil tell {STENCIL_SUBSETS} apart"
+            ))
+            .note("a smaller --pattern, or --split depth"));
+        }
+        let Some(copies) = self.road.copies() else { return Ok(()) };
+        let padded = self.mapping.padded();
+        if copies.storage == Storage::Image && padded.width.max(padded.height) > limits.max_image_side_px {
+            let limit = limits.max_image_side_px;
+            return Err(Error::request(format!(
+                "{NAME}: sub-buffers tiled in an image of {padded} pixels: this device allows {limit} a side"
+            ))
+            .note("a smaller --size, --pattern or --block; --storage buffer where the road knows it"));
+        }
+        if copies.storage == Storage::Layers && subset_count > limits.max_image_layers {
+            let limit = limits.max_image_layers;
+            return Err(Error::request(format!(
+                "{NAME}: --split layered with the {subset_count} subsets of --pattern {pattern}: \
+                 this device allows {limit} layers in an image"
+            ))
+            .note("a smaller --pattern, or --split one-pass"));
+        }
+        let (needed, limit) = (self.tile_bytes(), u64::from(limits.max_shared_memory_bytes));
+        if copies.by == Copier::Tile && needed > limit {
+            let [x, y] = self.block();
+            return Err(Error::request(format!(
+                "{NAME}: --split tile with blocks of {x}x{y} needs {} of workgroup memory: this device has {}",
+                Bytes(needed),
+                Bytes(limit)
+            ))
+            .note("a smaller --block, or --split two-pass"));
+        }
+        Ok(())
+    }
+
+    /// Workgroup memory that `--split tile` needs for a block.
+    fn tile_bytes(&self) -> u64 {
+        let [x, y] = self.block().map(u64::from);
+        x * y * (8 + self.shading.position.bytes())
+    }
+
+    /// The block after rounding; the pattern itself where the road has none.
+    fn block(&self) -> [u32; 2] {
+        [self.mapping.block_x, self.mapping.block_y]
+    }
+
+    /// What `auto` and rounding came to, of the settings that the road reads.
+    pub fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let mut resolved =
+            BTreeMap::from([("sigma", format!("{}", self.kernel.sigma)), ("texels", self.shading.texels.to_string())]);
+        if let Some(copies) = self.road.copies() {
+            let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
+            resolved.insert("storage", storage.to_owned());
+            if copies.has_blocks() {
+                let [x, y] = self.block();
+                resolved.insert("block", format!("{x}x{y}"));
+            }
+        }
+        resolved
+    }
+
+    /// Punctual lights that are joined to the subsets.
+    pub fn joined_count(&self) -> u32 {
+        if self.direct_interleaved { self.direct_count } else { 0 }
+    }
+
+    /// Light subsets: those of the pattern, or one.
+    pub fn subset_count(&self) -> u32 {
+        if self.road.sums_all() { 1 } else { self.mapping.subset_count() }
+    }
+}
+
+/// A block must be whole patterns: rounded up to the next multiple in each direction.
+fn rounded(block: [u32; 2], pattern: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|axis| block[axis].next_multiple_of(pattern[axis]))
+}
+
+fn kernel(values: &Values) -> Result<Kernel> {
+    let taps = values.integer("kernel") as u32;
+    if taps.is_multiple_of(2) {
+        return Err(Error::request(format!("{NAME}: --kernel {taps}: it must be odd, from 5 to 17"))
+            .note("Segovia 2006, table 2 measures 7, 11 and 17"));
+    }
+    let sigma = match values.number("sigma") {
+        0.0 => taps as f32 / 3.0,
+        sigma => sigma as f32,
+    };
+    let stop_bits = match values.text("discontinuity") {
+        "any" => StopBits::ANY,
+        _ => StopBits::DIRECTIONAL,
+    };
+    Ok(Kernel { taps, sigma, stop_bits })
+}

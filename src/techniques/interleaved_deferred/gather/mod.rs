@@ -1,0 +1,121 @@
+//! Buffer gathering (BG): the irradiance of n x m sub-buffers back to the frame, by the road that split it. Segovia 2006,
+//! sections 3.4 and 4.4. All end in one buffer in frame order, which the filter reads.
+
+pub mod blocks;
+pub mod fragment;
+pub mod one_pass;
+pub mod tile;
+pub mod translate;
+
+use super::NAME;
+use super::choices::Choices;
+use super::rendered::Rendered;
+use super::road::{Copier, Copies};
+use super::sub_buffers::{Stage, Texels};
+use crate::error::Result;
+use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::plan::{Plan, Resources};
+use blocks::GatherBlocks;
+use fragment::{FragmentGather, FragmentGatherBlocks};
+use one_pass::GatherOnePass;
+use std::sync::Arc;
+use tile::GatherTile;
+use translate::GatherTranslate;
+
+/// One of the ways to gather.
+#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
+pub enum Gather {
+    OnePass(GatherOnePass),
+    TwoPass { translate: GatherTranslate, between: Texels, blocks: GatherBlocks },
+    Tile(GatherTile),
+    OneFragmentPass(FragmentGather),
+    TwoFragmentPasses(FragmentGatherBlocks),
+}
+
+/// Plans the buffer in frame order, what lies between two passes, and the passes; returns the buffer's name. `shaded`:
+/// the name of the sub-buffers' irradiance.
+pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) -> String {
+    let mapping = &choices.mapping;
+    let (storage, stage) = (copies.storage, copies.stage());
+    let gathered = format!("{NAME}.gather.irradiance");
+    plan.buffer("irradiance", &gathered, mapping.frame_texel_count() * 8);
+    fragment::plan(plan, mapping, copies.by);
+    let source = (shaded, storage.read(stage));
+    let target = match stage {
+        Stage::Compute => vec![(gathered.clone(), Access::ComputeWrite)],
+        Stage::Fragment => Rendered::touches("gather").to_vec(),
+    };
+    if copies.is_two_pass() {
+        storage.plan(plan, "irradiance", "gather.blocks.irradiance", mapping, 8, stage);
+        let between = |access| (format!("{NAME}.gather.blocks.irradiance"), access);
+        plan.pass(format!("{NAME}.gather.translate"), [source, between(storage.written(stage))]);
+        plan.pass(format!("{NAME}.gather.blocks"), [between(storage.read(stage))].into_iter().chain(target));
+    } else {
+        plan.pass(format!("{NAME}.gather"), [source].into_iter().chain(target));
+    }
+    gathered
+}
+
+impl Gather {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, copies: Copies) -> Result<Self> {
+        let mut between = || Texels::new(gpu, resources, "gather.blocks.irradiance", copies.storage);
+        Ok(match copies.by {
+            Copier::OnePass => Self::OnePass(GatherOnePass::new(gpu, choices, copies)?),
+            Copier::TwoPass => Self::TwoPass {
+                translate: GatherTranslate::new(gpu, choices, copies)?,
+                between: between()?,
+                blocks: GatherBlocks::new(gpu, choices, copies)?,
+            },
+            Copier::Tile => Self::Tile(GatherTile::new(gpu, choices, copies)?),
+            Copier::OneFragmentPass => Self::OneFragmentPass(FragmentGather::new(gpu, resources, choices)?),
+            Copier::TwoFragmentPasses => {
+                let between = between()?;
+                Self::TwoFragmentPasses(FragmentGatherBlocks::new(gpu, resources, choices, between)?)
+            }
+        })
+    }
+
+    /// Fills `irradiance` from the sub-buffers; says how it left it.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        source: Edge<'_, Texels>,
+        irradiance: &Buffer,
+    ) -> Result<Access> {
+        match self {
+            Self::OnePass(copy) => copy.record(cmd, mapping, source, irradiance)?,
+            Self::TwoPass { translate, between, blocks } => {
+                translate.record(cmd, mapping, source, between)?;
+                blocks.record(cmd, mapping, between.from(Access::ComputeWrite), irradiance)?;
+            }
+            Self::Tile(copy) => copy.record(cmd, mapping, source, irradiance)?,
+            Self::OneFragmentPass(copy) => {
+                copy.record(cmd, mapping, source, irradiance)?;
+                return Ok(Access::TransferWrite);
+            }
+            Self::TwoFragmentPasses(copy) => {
+                copy.record(cmd, mapping, source, irradiance)?;
+                return Ok(Access::TransferWrite);
+            }
+        }
+        Ok(Access::ComputeWrite)
+    }
+}
+
+/// Bytes of a pass from `source_texels` to `target_texels`.
+fn moved(source_texels: u64, target_texels: u64, threads: [u32; 3]) -> Traffic {
+    let invocations = Some(threads.iter().map(|side| u64::from(*side)).product());
+    Traffic { read_bytes: source_texels * 8, written_bytes: target_texels * 8, invocations }
+}
+
+/// Bytes of a pass that ends in frame order: what is pulled comes with the padding of the rows, what is pushed reads
+/// the padding of sub-buffers and leaves it.
+fn to_frame(mapping: &MappingParams, pulls: bool, threads: [u32; 3]) -> Traffic {
+    if pulls {
+        moved(mapping.frame_texel_count(), mapping.frame_texel_count(), threads)
+    } else {
+        moved(mapping.texel_count(), mapping.extent().pixel_count(), threads)
+    }
+}

@@ -1,0 +1,185 @@
+//! The roads of `--split`: how the pixels of one light subset come together. Segovia 2006, sections 3.1 to 3.3.
+
+use super::NAME;
+use super::sub_buffers::{Stage, Storage};
+use crate::error::{Error, Result};
+use crate::gpu::Caps;
+use crate::gpu::shader::structs::MappingParams;
+use crate::settings::Values;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Road {
+    /// Every light on every pixel: plain deferred shading, another sum.
+    None,
+    /// All lights at one pixel of each pattern, interpolated: another sum.
+    Subsample,
+    /// n x m draws over the frame, each passing its subset's pixels by a test.
+    Masked(MaskKind),
+    /// One pass over the un-split G-buffer, each pixel looping over its own subset.
+    Branch,
+    /// A dispatch a subset over the un-split G-buffer, at the pattern's stride.
+    Indirect,
+    /// The same in one dispatch, workgroups numbered by subset.
+    Remap,
+    /// A copy into sub-buffers, and the irradiance back.
+    Copy(Copies),
+}
+
+/// What a masked road tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaskKind {
+    Stencil,
+    Depth,
+}
+
+/// How a road copies, there and back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Copies {
+    pub by: Copier,
+    pub storage: Storage,
+    pub form: Form,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Copier {
+    /// A compute shader that moves each texel at once (3.2).
+    OnePass,
+    /// One that splits blocks, one that moves sub-blocks (3.3).
+    TwoPass,
+    /// A block at a time through workgroup memory.
+    Tile,
+    /// A fragment program and a look-up texture (3.2).
+    OneFragmentPass,
+    /// Two of them, as the paper ran it (4.2).
+    TwoFragmentPasses,
+}
+
+/// What a thread of a copy stands for (`--copy`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A texel written, or two.
+    Pull,
+    /// A texel read, or two.
+    Push,
+}
+
+impl Road {
+    /// What `--split`, `--storage`, `--copy` and `--fragment-passes` come to on a device.
+    ///
+    /// Errors: they contradict each other (exit code 2).
+    pub fn new(values: &Values, caps: &Caps) -> Result<Self> {
+        let split = values.text("split");
+        let by = match split {
+            "none" => return Ok(Self::None),
+            "subsample" => return Ok(Self::Subsample),
+            "stencil" => return Ok(Self::Masked(MaskKind::Stencil)),
+            "depth" => return Ok(Self::Masked(MaskKind::Depth)),
+            "branch" => return Ok(Self::Branch),
+            "indirect" => return Ok(Self::Indirect),
+            "remap" => return Ok(Self::Remap),
+            "one-pass" | "layered" => Copier::OnePass,
+            "two-pass" => Copier::TwoPass,
+            "tile" => Copier::Tile,
+            "fragment" if values.integer("fragment-passes") == 1 => Copier::OneFragmentPass,
+            "fragment" => Copier::TwoFragmentPasses,
+            other => panic!("--split {other} was checked"),
+        };
+        let needs_images = split == "layered" || split == "fragment";
+        let storage = match values.text("storage") {
+            "buffer" if needs_images => return Err(needs_image(split)),
+            "buffer" => Storage::Buffer,
+            _ if split == "layered" => Storage::Layers,
+            "image" => Storage::Image,
+            _ if needs_images || !caps.identity.is_software() => Storage::Image,
+            _ => Storage::Buffer,
+        };
+        let form = match values.text("copy") {
+            "push" if split == "tile" || split == "fragment" => return Err(knows_one_form(split)),
+            "push" => Form::Push,
+            _ => Form::Pull,
+        };
+        Ok(Self::Copy(Copies { by, storage, form }))
+    }
+
+    /// How it copies; None where nothing is copied.
+    pub fn copies(self) -> Option<Copies> {
+        match self {
+            Self::Copy(copies) => Some(copies),
+            _ => None,
+        }
+    }
+
+    /// Whether all lights are summed at each pixel that is shaded.
+    pub fn sums_all(self) -> bool {
+        matches!(self, Self::None | Self::Subsample)
+    }
+}
+
+fn needs_image(split: &str) -> Error {
+    let why = match split {
+        "layered" => "its sub-buffers are the layers of an image",
+        _ => "fragment programs draw into images",
+    };
+    Error::request(format!("{NAME}: --split {split} with --storage buffer: {why}"))
+        .note("--storage image or auto; --split one-pass, two-pass and tile know buffers")
+}
+
+fn knows_one_form(split: &str) -> Error {
+    let why = match split {
+        "tile" => "a workgroup reads and writes its block in order, both ways",
+        _ => "a fragment program writes the texel that it stands for",
+    };
+    Error::request(format!("{NAME}: --split {split} with --copy push: {why}"))
+        .note("--copy pull; --split one-pass, two-pass and layered know both forms")
+}
+
+impl Copies {
+    /// What runs on each texel.
+    pub fn stage(self) -> Stage {
+        match self.by {
+            Copier::OnePass | Copier::TwoPass | Copier::Tile => Stage::Compute,
+            Copier::OneFragmentPass | Copier::TwoFragmentPasses => Stage::Fragment,
+        }
+    }
+
+    /// Whether it goes through the block layout.
+    pub fn is_two_pass(self) -> bool {
+        matches!(self.by, Copier::TwoPass | Copier::TwoFragmentPasses)
+    }
+
+    /// Whether it reads `--block`.
+    pub fn has_blocks(self) -> bool {
+        self.is_two_pass() || self.by == Copier::Tile
+    }
+
+    /// Texels that a thread moves: the RUN of sub_buffers.glsl.
+    fn run(self) -> u32 {
+        if self.storage == Storage::Buffer { 2 } else { 1 }
+    }
+
+    /// Threads for the texels of all sub-buffers.
+    pub fn sub_buffer_threads(self, mapping: &MappingParams) -> [u32; 3] {
+        [mapping.sub_width_px / self.run(), mapping.sub_height_px, mapping.subset_count()]
+    }
+
+    /// Threads for the pixels of the padded frame, or the texels of the block layout.
+    pub fn padded_threads(self, mapping: &MappingParams) -> [u32; 3] {
+        let padded = mapping.padded();
+        [padded.width / self.run(), padded.height, 1]
+    }
+
+    /// Threads for the pixels of the frame, two each: frame order is always a buffer.
+    pub fn frame_threads(mapping: &MappingParams) -> [u32; 3] {
+        [mapping.row_pitch() / 2, mapping.height_px, 1]
+    }
+}
+
+impl Form {
+    /// The value of the shaders' axis COPY.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pull => "pull",
+            Self::Push => "push",
+        }
+    }
+}

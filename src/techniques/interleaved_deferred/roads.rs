@@ -1,0 +1,170 @@
+//! The road of a frame on the device: from the G-buffer to irradiance in frame order.
+
+use super::NAME;
+use super::choices::Choices;
+use super::gather::{self, Gather};
+use super::mask::{self, Mask};
+use super::rendered::Rendered;
+use super::road::{Copies, Road};
+use super::shade::ShadeGpu;
+use super::shade::branch::ShadeBranch;
+use super::shade::masked::ShadeMasked;
+use super::shade::strided::{Dispatches, ShadeStrided};
+use super::shade::sub_buffers::ShadeSubBuffers;
+use super::shade::subsample::ShadeSubsample;
+use super::split::{self, Split};
+use super::sub_buffers::{Stage, Surface, Texels};
+use super::upscale::Upscale;
+use crate::error::Result;
+use crate::gpu::{Access, AccessSet, Buffer, Commands, Edge, Gpu};
+use crate::passes::direct::DirectGpu;
+use crate::passes::gbuffer::{self, GBuffer};
+use crate::plan::{Plan, Resources};
+use std::sync::Arc;
+
+/// How pixels meet their lights.
+#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
+pub enum Roads {
+    Branch { shade: ShadeBranch, irradiance: Buffer },
+    Strided { shade: ShadeStrided, irradiance: Buffer },
+    Subsample { shade: ShadeSubsample, cells: Buffer, upscale: Upscale, irradiance: Buffer },
+    Masked { mask: Mask, shade: ShadeMasked, irradiance: Buffer },
+    SubBuffers(SubBuffers),
+}
+
+/// Split, shade, gather.
+pub struct SubBuffers {
+    pub copies: Copies,
+    split: Split,
+    pub surface: Surface,
+    shade: ShadeSubBuffers,
+    pub shaded: Texels,
+    gather: Gather,
+    pub gathered: Buffer,
+}
+
+/// What a road leaves.
+pub struct Lit<'a> {
+    /// In frame order.
+    pub irradiance: Edge<'a, Buffer>,
+    /// Who has read the G-buffer's surface.
+    pub readers: AccessSet,
+}
+
+/// Plans resources and passes from the G-buffer on; returns the name of the irradiance in frame order.
+pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
+    let Choices { shading, road, mapping, .. } = choices;
+    let frame_bytes = mapping.frame_texel_count() * 8;
+    let (shaded, shade) = (format!("{NAME}.shade.irradiance"), format!("{NAME}.shade"));
+    let surface = |stage: Stage| gbuffer::surface_as(NAME, shading.position, stage.samples()).into_iter();
+    let (read, written) = (Access::ComputeRead, Access::ComputeWrite);
+    match road {
+        Road::None | Road::Branch | Road::Indirect | Road::Remap => {
+            plan.buffer("irradiance", &shaded, frame_bytes);
+            plan.pass(shade, surface(Stage::Compute).chain([(shaded.clone(), written)]));
+            shaded
+        }
+        Road::Subsample => {
+            let upscaled = format!("{NAME}.upscale.irradiance");
+            plan.buffer("irradiance", &shaded, mapping.sub_texel_count() * 8);
+            plan.buffer("irradiance", &upscaled, frame_bytes);
+            plan.pass(shade, surface(Stage::Compute).chain([(shaded.clone(), written)]));
+            plan.pass(format!("{NAME}.upscale"), [(shaded, read), (upscaled.clone(), written)]);
+            upscaled
+        }
+        Road::Masked(kind) => {
+            mask::plan(plan, *kind, mapping);
+            plan.buffer("irradiance", &shaded, frame_bytes);
+            Rendered::plan(plan, "shade", mapping);
+            let tested = (kind.resource(), Access::DepthTest);
+            plan.pass(shade, surface(Stage::Fragment).chain([tested]).chain(Rendered::touches("shade")));
+            shaded
+        }
+        Road::Copy(copies) => {
+            split::plan(plan, choices, *copies);
+            let storage = copies.storage;
+            storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, Stage::Compute);
+            let surface = Surface::touches("split", storage.read(Stage::Compute));
+            plan.pass(shade, surface.into_iter().chain([(shaded.clone(), storage.written(Stage::Compute))]));
+            gather::plan(plan, choices, *copies, shaded)
+        }
+    }
+}
+
+impl Roads {
+    /// Takes what `plan` put in.
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
+        let shading = &choices.shading;
+        let mut buffer = |what: &str| resources.buffer(&format!("{NAME}.{what}.irradiance"));
+        Ok(match choices.road {
+            Road::None | Road::Branch => {
+                Self::Branch { shade: ShadeBranch::new(gpu, shading)?, irradiance: buffer("shade") }
+            }
+            Road::Indirect | Road::Remap => {
+                let dispatches = if choices.road == Road::Remap { Dispatches::One } else { Dispatches::PerSubset };
+                let shade = ShadeStrided::new(gpu, shading, dispatches)?;
+                Self::Strided { shade, irradiance: buffer("shade") }
+            }
+            Road::Subsample => Self::Subsample {
+                shade: ShadeSubsample::new(gpu, shading)?,
+                cells: buffer("shade"),
+                upscale: Upscale::new(gpu, shading)?,
+                irradiance: buffer("upscale"),
+            },
+            Road::Masked(kind) => {
+                let irradiance = buffer("shade");
+                let mask = Mask::new(gpu, resources, kind)?;
+                Self::Masked { mask, shade: ShadeMasked::new(gpu, resources, shading, kind)?, irradiance }
+            }
+            Road::Copy(copies) => Self::SubBuffers(SubBuffers {
+                copies,
+                gathered: buffer("gather"),
+                split: Split::new(gpu, resources, choices, copies)?,
+                surface: Surface::new(gpu, resources, "split", copies.storage)?,
+                shade: ShadeSubBuffers::new(gpu, shading, copies.storage)?,
+                shaded: Texels::new(gpu, resources, "shade.irradiance", copies.storage)?,
+                gather: Gather::new(gpu, resources, choices, copies)?,
+            }),
+        })
+    }
+
+    /// Split, shade, gather, or what stands for them.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        lights: &ShadeGpu,
+        direct: &DirectGpu,
+        gbuffer: Edge<'_, GBuffer>,
+    ) -> Result<Lit<'_>> {
+        let mapping = lights.mapping();
+        let (irradiance, last, stage) = match self {
+            Self::Branch { shade, irradiance } => {
+                shade.record(cmd, frame, lights, direct, gbuffer, irradiance)?;
+                (irradiance, Access::ComputeWrite, Stage::Compute)
+            }
+            Self::Strided { shade, irradiance } => {
+                shade.record(cmd, frame, lights, direct, gbuffer, irradiance)?;
+                (irradiance, Access::ComputeWrite, Stage::Compute)
+            }
+            Self::Subsample { shade, cells, upscale, irradiance } => {
+                shade.record(cmd, frame, lights, direct, gbuffer, cells)?;
+                upscale.record(cmd, mapping, cells.from(Access::ComputeWrite), irradiance)?;
+                (irradiance, Access::ComputeWrite, Stage::Compute)
+            }
+            Self::Masked { mask, shade, irradiance } => {
+                mask.record(cmd, mapping)?;
+                shade.record(cmd, frame, lights, direct, gbuffer, mask, irradiance)?;
+                (irradiance, Access::TransferWrite, Stage::Fragment)
+            }
+            Self::SubBuffers(SubBuffers { copies, split, surface, shade, shaded, gather, gathered }) => {
+                split.record(cmd, mapping, gbuffer, surface)?;
+                let written = copies.storage.written(copies.stage());
+                shade.record(cmd, frame, lights, direct, surface.from(written), shaded)?;
+                let last = gather.record(cmd, mapping, shaded.from(Access::ComputeWrite), gathered)?;
+                (gathered, last, copies.stage())
+            }
+        };
+        Ok(Lit { irradiance: irradiance.from(last), readers: gbuffer.from.after(stage.samples()) })
+    }
+}

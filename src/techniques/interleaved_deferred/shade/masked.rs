@@ -1,0 +1,84 @@
+//! n x m draws over the frame, each shading the pixels of its subset, which a stencil or depth test lets pass: Segovia
+//! 2006, section 3.1. Shaders: fullscreen.vert, masked.frag.
+//! reads   the G-buffer, the lights, mask.stencil or mask.depth
+//! writes  shade.irradiance  buffer, frame order, 8 B a pixel, by way of shade.drawn
+
+use super::super::NAME;
+use super::super::mask::Mask;
+use super::super::rendered::{self, Rendered};
+use super::super::road::MaskKind;
+use super::ShadeGpu;
+use crate::error::Result;
+use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline, StencilUse};
+use crate::gpu::shader::techniques::interleaved_deferred::shade::masked::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::fullscreen;
+use crate::passes::gbuffer::GBuffer;
+use crate::plan::Resources;
+use ash::vk;
+use std::sync::Arc;
+
+pub struct ShadeMasked {
+    pipeline: GraphicsPipeline,
+    rendered: Rendered,
+}
+
+impl ShadeMasked {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, settings: &ShadingSettings, kind: MaskKind) -> Result<Self> {
+        let shader = variant(FRAG_VARIANTS, &[settings.position.name()]);
+        let formats = [rendered::FORMAT];
+        let (compare, stencil) = match kind {
+            MaskKind::Stencil => (vk::CompareOp::ALWAYS, Some(StencilUse::RequireEqual)),
+            MaskKind::Depth => (vk::CompareOp::EQUAL, None),
+        };
+        let description = GraphicsDescription {
+            constants: &settings.shadow_constants(),
+            depth_format: Some(kind.format()),
+            depth_compare: compare,
+            stencil,
+            ..fullscreen::description(shader, &formats)
+        };
+        let pipeline = GraphicsPipeline::new(gpu, &description)?;
+        Ok(Self { pipeline, rendered: Rendered::new(resources, "shade") })
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        shade: &ShadeGpu,
+        direct: &DirectGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        mask: &Mask,
+        irradiance: &Buffer,
+    ) -> Result<()> {
+        let (mapping, pixels) = (shade.mapping(), gbuffer.resource.extent().pixel_count());
+        let tested_bytes = u64::from(mapping.subset_count()) * pixels * mask.kind.tested_bytes();
+        let traffic = Traffic {
+            // Every draw tests every pixel; each pixel is shaded once.
+            read_bytes: pixels * gbuffer.resource.surface_bytes() + tested_bytes + self.rendered.bytes(),
+            written_bytes: pixels * 8 + self.rendered.bytes(),
+            invocations: None,
+        };
+        cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
+            cmd.barriers(gbuffer.surface_to(Access::FragmentSample));
+            cmd.barriers([mask.image.from(Access::DepthWrite).to(Access::DepthTest)]);
+            let mut bound = shade.bound(frame, direct);
+            bound.extend(gbuffer.resource.bound_surface());
+            let depth = Some((&mask.image, None, Access::DepthTest));
+            self.rendered.record(cmd, mapping, depth, irradiance, |cmd| {
+                cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound)?;
+                for subset in 0..mapping.subset_count() {
+                    if mask.kind == MaskKind::Stencil {
+                        cmd.set_stencil(subset, 0);
+                    }
+                    fullscreen::draw(cmd, subset);
+                }
+                Ok(())
+            })
+        })
+    }
+}

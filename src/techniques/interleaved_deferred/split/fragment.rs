@@ -1,0 +1,153 @@
+//! Split by fragment programs and look-up textures, in one pass or in two: Segovia 2006, sections 3.2, 3.3 and 4.2.
+//! Shaders: fullscreen.vert, fragment.frag.
+//! reads   gbuffer.position, gbuffer.normal, split.lookup (one pass), split.lookup_blocks and split.lookup_translate (two)
+//! writes  split.position, split.normal  images; between two passes split.blocks.position, split.blocks.normal
+
+use super::super::NAME;
+use super::super::choices::Choices;
+use super::super::lookup::{self, Lookup};
+use super::super::road::Copier;
+use super::super::sub_buffers::{Surface, words_format};
+use crate::error::Result;
+use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::shader::techniques::interleaved_deferred::split::fragment::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Barrier, Bound, Commands, Edge, Gpu, Traffic};
+use crate::passes::fullscreen;
+use crate::passes::gbuffer::{GBuffer, PositionStorage};
+use crate::plan::{Plan, Resources};
+use std::sync::Arc;
+
+/// Plans the look-up textures that `by` needs.
+pub fn plan(plan: &mut Plan, mapping: &MappingParams, by: Copier) {
+    let lookups: &[&str] = match by {
+        Copier::OneFragmentPass => &["split.lookup"],
+        Copier::TwoFragmentPasses => &["split.lookup_blocks", "split.lookup_translate"],
+        Copier::OnePass | Copier::TwoPass | Copier::Tile => &[],
+    };
+    lookups.iter().for_each(|what| Lookup::plan(plan, what, mapping.padded()));
+}
+
+/// Bytes of a draw over all texels that reads `source_texels` of its source.
+fn traffic(mapping: &MappingParams, source_texels: u64, texel_bytes: u64) -> Traffic {
+    Traffic {
+        read_bytes: source_texels * texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES,
+        written_bytes: mapping.texel_count() * texel_bytes,
+        invocations: None,
+    }
+}
+
+/// One draw: a fragment program with its look-up texture.
+struct Program {
+    pipeline: GraphicsPipeline,
+    lookup: Lookup,
+}
+
+impl Program {
+    fn new(gpu: &Arc<Gpu>, position: PositionStorage, source: &str, lookup: Lookup) -> Result<Self> {
+        let formats = [words_format(position.bytes()), words_format(8)];
+        let shader = variant(FRAG_VARIANTS, &[position.name(), source]);
+        let description: GraphicsDescription<'_> = fullscreen::description(shader, &formats);
+        Ok(Self { pipeline: GraphicsPipeline::new(gpu, &description)?, lookup })
+    }
+
+    fn record(
+        &self,
+        cmd: &mut Commands,
+        pass: &str,
+        mapping: &MappingParams,
+        traffic: Traffic,
+        (barriers, mut bound): (Vec<Barrier>, Vec<(&str, Bound<'_>)>),
+        target: &Surface,
+    ) -> Result<()> {
+        cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
+            cmd.barriers(barriers);
+            cmd.barriers(target.discard(Access::ColorWrite));
+            // Every texel is drawn: a clear spares the load.
+            let clear = Some(Default::default());
+            let colors = [(target.position.attachment(), clear), (target.normal.attachment(), clear)];
+            cmd.begin_rendering(mapping.padded(), &colors, None);
+            bound.push(self.lookup.bound());
+            cmd.bind_graphics(&self.pipeline, &[], &bound)?;
+            fullscreen::draw(cmd, 0);
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+
+    fn record_from_frame(
+        &self,
+        cmd: &mut Commands,
+        pass: &str,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        target: &Surface,
+    ) -> Result<()> {
+        let source = (gbuffer.surface_to(Access::FragmentSample), gbuffer.resource.bound_surface());
+        // Padding is written, and read nowhere.
+        let pixels = mapping.extent().pixel_count();
+        let traffic = traffic(mapping, pixels, gbuffer.resource.surface_bytes());
+        self.record(cmd, pass, mapping, traffic, source, target)
+    }
+}
+
+/// In one pass.
+pub struct FragmentSplit(Program);
+
+impl FragmentSplit {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
+        let Choices { mapping, shading, .. } = choices;
+        let pixel_at = |at| mapping.pixel_of_texel(mapping.texel_of_tiled(at));
+        let source_of = |at| Some(pixel_at(at)).filter(|pixel| mapping.is_in_frame(*pixel));
+        let lookup = Lookup::new(gpu, resources, "split.lookup", source_of)?;
+        Ok(Self(Program::new(gpu, shading.position, "frame", lookup)?))
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        split: &Surface,
+    ) -> Result<()> {
+        self.0.record_from_frame(cmd, "split", mapping, gbuffer, split)
+    }
+}
+
+/// In two passes: block splitting, block translation.
+pub struct FragmentSplitBlocks {
+    blocks: Program,
+    between: Surface,
+    translate: Program,
+}
+
+impl FragmentSplitBlocks {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, between: Surface) -> Result<Self> {
+        let Choices { mapping, shading, .. } = choices;
+        let pixel_of = |at| Some(mapping.pixel_of_block_texel(at)).filter(|pixel| mapping.is_in_frame(*pixel));
+        let blocks = Lookup::new(gpu, resources, "split.lookup_blocks", pixel_of)?;
+        let block_texel_of = |at| Some(mapping.block_texel_of_texel(mapping.texel_of_tiled(at)));
+        let translate = Lookup::new(gpu, resources, "split.lookup_translate", block_texel_of)?;
+        Ok(Self {
+            blocks: Program::new(gpu, shading.position, "frame", blocks)?,
+            between,
+            translate: Program::new(gpu, shading.position, "blocks", translate)?,
+        })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        split: &Surface,
+    ) -> Result<()> {
+        let texel_bytes = gbuffer.resource.surface_bytes();
+        self.blocks.record_from_frame(cmd, "split.blocks", mapping, gbuffer, &self.between)?;
+        let barriers = self.between.from(Access::ColorWrite).to(Access::FragmentSample);
+        let source = (barriers.to_vec(), self.between.source().to_vec());
+        let traffic = traffic(mapping, mapping.texel_count(), texel_bytes);
+        self.translate.record(cmd, "split.translate", mapping, traffic, source, split)
+    }
+}

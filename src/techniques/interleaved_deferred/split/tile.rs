@@ -1,0 +1,47 @@
+//! Split through workgroup memory, a workgroup a block (later practice). Shader: tile.comp.
+//! reads   gbuffer.position, gbuffer.normal
+//! writes  split.position, split.normal      holds  a block of both in workgroup memory
+
+use super::super::choices::Choices;
+use super::super::road::Copies;
+use super::super::sub_buffers::Surface;
+use super::from_frame;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::shader::techniques::interleaved_deferred::split::tile::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Commands, Edge, Gpu};
+use crate::passes::gbuffer::GBuffer;
+use std::sync::Arc;
+
+pub struct SplitTile {
+    pipeline: ComputePipeline,
+}
+
+/// Constants of tile.comp, there and back.
+pub fn constants(choices: &Choices) -> Vec<(&'static str, u32)> {
+    let [x, y] = choices.shading.workgroup;
+    let texels = choices.mapping.block_x * choices.mapping.block_y;
+    [&choices.shading.workgroup_constants()[..], &[("BLOCK_TEXELS", texels), ("THREADS", x * y)]].concat()
+}
+
+impl SplitTile {
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, copies: Copies) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), copies.storage.name()]);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(choices))? })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        split: &Surface,
+    ) -> Result<()> {
+        let [x, y] = mapping.block_counts();
+        let threads: u32 = self.pipeline.workgroup.iter().product();
+        let work = ([x, y, 1], u64::from(x) * u64::from(y) * u64::from(threads));
+        from_frame(cmd, ("split", &self.pipeline), mapping, gbuffer, split, work)
+    }
+}

@@ -1,0 +1,50 @@
+//! Block translation, the second pass of two: Segovia 2006, section 3.3. Shader: translate.comp.
+//! reads   split.blocks.position, split.blocks.normal      writes  split.position, split.normal
+
+use super::super::NAME;
+use super::super::choices::Choices;
+use super::super::road::{Copies, Form};
+use super::super::sub_buffers::Surface;
+use super::{copied, product};
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::shader::techniques::interleaved_deferred::split::translate::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Commands, Edge, Gpu};
+use std::sync::Arc;
+
+pub struct SplitTranslate {
+    pipeline: ComputePipeline,
+    copies: Copies,
+}
+
+impl SplitTranslate {
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, copies: Copies) -> Result<Self> {
+        let axes = [choices.shading.position.name(), copies.storage.name(), copies.form.name()];
+        let shader = variant(COMP_VARIANTS, &axes);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.shading.workgroup_constants())?, copies })
+    }
+
+    /// `texel_bytes`: of position and normal together.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        texel_bytes: u64,
+        blocks: Edge<'_, Surface>,
+        split: &Surface,
+    ) -> Result<()> {
+        let threads = match self.copies.form {
+            Form::Pull => self.copies.sub_buffer_threads(mapping),
+            Form::Push => self.copies.padded_threads(mapping),
+        };
+        let traffic = copied(mapping, texel_bytes, Some(product(threads)));
+        cmd.pass(&format!("{NAME}.split.translate"), traffic, |cmd| {
+            cmd.barriers(blocks.to(self.copies.storage.read(self.copies.stage())));
+            cmd.barriers(split.discard(Access::ComputeWrite));
+            let bound = [blocks.resource.source(), split.target()].concat();
+            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(mapping), &bound, self.pipeline.groups(threads))
+        })
+    }
+}
