@@ -44,7 +44,7 @@ pub struct ShadingSettings {
     pub cull: bool,
     pub shadow: DirectShadow,
     pub workgroup: [u32; 2],
-    /// Pixels that a thread works on, one after the other.
+    /// Pixels that a thread works on, one after the other, at most: each pass has its own limit.
     pub texels: u32,
     /// Metres that a shadow ray starts off its surface.
     pub ray_offset: f32,
@@ -53,10 +53,12 @@ pub struct ShadingSettings {
 /// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
 const RAY_OFFSET: f32 = 1e-4;
 
-/// `--texels auto` on a software driver. Lavapipe reads a buffer lane by lane: 480 lights on every pixel take 391 ms with 1
-/// texel a thread, 207 with 2, 117 with 4, 76 with 8 (512x384, Mesa 22.3.6, 2 cores); a filter of 5 taps is slower again
-/// with 16. Nothing is known of GPUs, where more threads hide more latency: 1.
-const SOFTWARE_TEXELS: u32 = 8;
+/// `--texels auto` on a software driver. Lavapipe reads a buffer lane by lane: 497 lights on every pixel of 1024x768 take
+/// 1625 ms with 1 texel a thread, 475 with 4, 299 with 8, 204 with 16, 156 with 32 (Mesa 22.3.6, 2 cores). Nothing is
+/// known of GPUs, where more threads hide more latency: 1.
+const SOFTWARE_TEXELS: u32 = 32;
+/// Texels that a thread filters or compares at most: with 16, a filter of 5 taps is slower again (16.1 ms, with 8 10.6).
+const FILTER_TEXELS: u32 = 8;
 
 impl ShadingSettings {
     pub fn new(values: &Values, lights: &LightSet, diagonal: f32, caps: &Caps) -> Self {
@@ -80,10 +82,14 @@ impl ShadingSettings {
         [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
     }
 
-    /// The same and TEXELS.
-    pub fn texel_constants(&self) -> [(&'static str, u32); 3] {
-        let [x, y] = self.workgroup_constants();
-        [x, y, ("TEXELS", self.texels)]
+    /// Texels that a thread filters or compares.
+    pub fn filter_texels(&self) -> u32 {
+        self.texels.min(FILTER_TEXELS)
+    }
+
+    /// Threads of a workgroup.
+    pub fn lane_count(&self) -> u32 {
+        self.workgroup[0] * self.workgroup[1]
     }
 
     /// DIRECT_SHADOW and RAY_OFFSET.

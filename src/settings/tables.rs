@@ -194,12 +194,12 @@ pub const SHADING: &[Setting] = &[
     Setting {
         key: "texels",
         symbol: "",
-        kind: Kind::Choice(&["auto", "1", "2", "4", "8", "16"]),
+        kind: Kind::Choice(&["auto", "1", "2", "4", "8", "16", "32"]),
         default: "auto",
         unit: "px",
         paper: "",
-        help: "pixels that a thread shades, compares or filters one after the other, reading once what they share; 1 is the \
-               plain way to the same bits; auto: 8 on software drivers, else 1",
+        help: "pixels that a thread shades, compares or filters one after the other at most, reading once what they share; 1 \
+               is the plain way to the same bits; auto: 32 on software drivers, else 1",
     },
     Setting {
         key: "workgroup",

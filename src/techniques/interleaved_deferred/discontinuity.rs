@@ -36,11 +36,9 @@ pub struct Discontinuity {
 impl Discontinuity {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, params: DiscontinuityParams) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self {
-            pipeline: ComputePipeline::new(gpu, shader, &settings.texel_constants())?,
-            params,
-            texels: settings.texels,
-        })
+        let texels = settings.filter_texels();
+        let constants = [&settings.workgroup_constants()[..], &[("TEXELS", texels)]].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }
 
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, gbuffer: Edge<'_, GBuffer>, flags: &Buffer) -> Result<()> {

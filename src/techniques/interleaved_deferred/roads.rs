@@ -97,16 +97,15 @@ impl Roads {
         let shading = &choices.shading;
         let mut buffer = |what: &str| resources.buffer(&format!("{NAME}.{what}.irradiance"));
         Ok(match choices.road {
-            Road::None | Road::Branch => {
-                Self::Branch { shade: ShadeBranch::new(gpu, shading)?, irradiance: buffer("shade") }
-            }
-            Road::Indirect | Road::Remap => {
-                let dispatches = if choices.road == Road::Remap { Dispatches::One } else { Dispatches::PerSubset };
-                let shade = ShadeStrided::new(gpu, shading, dispatches)?;
+            Road::Branch => Self::Branch { shade: ShadeBranch::new(gpu, shading)?, irradiance: buffer("shade") },
+            Road::None | Road::Indirect | Road::Remap => {
+                let per_subset = choices.road == Road::Indirect;
+                let dispatches = if per_subset { Dispatches::PerSubset } else { Dispatches::One };
+                let shade = ShadeStrided::new(gpu, shading, dispatches, &choices.mapping)?;
                 Self::Strided { shade, irradiance: buffer("shade") }
             }
             Road::Subsample => Self::Subsample {
-                shade: ShadeSubsample::new(gpu, shading)?,
+                shade: ShadeSubsample::new(gpu, shading, &choices.mapping)?,
                 cells: buffer("shade"),
                 upscale: Upscale::new(gpu, shading)?,
                 irradiance: buffer("upscale"),
@@ -121,7 +120,7 @@ impl Roads {
                 gathered: buffer("gather"),
                 split: Split::new(gpu, resources, choices, copies)?,
                 surface: Surface::new(gpu, resources, "split", copies.storage)?,
-                shade: ShadeSubBuffers::new(gpu, shading, copies.storage)?,
+                shade: ShadeSubBuffers::new(gpu, shading, copies.storage, &choices.mapping)?,
                 shaded: Texels::new(gpu, resources, "shade.irradiance", copies.storage)?,
                 gather: Gather::new(gpu, resources, choices, copies)?,
             }),

@@ -1,5 +1,5 @@
 // One pass over the un-split G-buffer, each pixel looping over its own subset (Segovia 2006, section 3.1, dynamic
-// branching). With the pattern 1x1 it is plain deferred shading of all lights (`--split none`).
+// branching).
 // Pass: src/techniques/interleaved_deferred/shade/branch.rs.
 // variants: POSITION=half|unorm16|depth|float
 #version 460
@@ -15,13 +15,8 @@ void main() {
     if (pixel.x >= params.mapping.width_px || pixel.y >= params.mapping.height_px) {
         return;
     }
-    uint texel = pixel.y * row_pitch(params.mapping) + pixel.x;
-    uvec2 normal_bits = normal_words(pixel);
-    if (!has_surface(normal_bits)) {
-        irradiance[texel] = uvec2(0u);
-        return;
-    }
-    vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
-    SubsetBlock subset = subsets[subset_of(params.mapping, pixel)];
-    irradiance[texel] = shade_subset(subset, position_ws, unpack_normal(normal_bits));
+    // One pixel a thread: its neighbours have other lights, so there is nothing to share.
+    set_point(0u, true, normal_words(pixel), position_words(pixel), pixel);
+    shade_points(subsets[subset_of(params.mapping, pixel)]);
+    irradiance[pixel.y * row_pitch(params.mapping) + pixel.x] = point_irradiance[0];
 }

@@ -26,6 +26,8 @@ struct ShadeParams {
     uint subset_first;
 };
 
+// Points that a thread shades.
+layout(constant_id = 2) const uint TEXELS = 1;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
 
 layout(push_constant) uniform Push { ShadeParams params; };
@@ -38,28 +40,65 @@ layout(std430, set = 0, binding = 5) readonly buffer BvhTriangles { BvhTriangleB
 
 #include "bvh_walk.glsl"
 
-uvec2 shade_subset(SubsetBlock subset, vec3 position_ws, vec3 normal_ws) {
-    precise vec3 sum = vec3(0.0);
-    for (uint vpl = subset.vpl_first; vpl < subset.vpl_first + subset.vpl_count; vpl++) {
-        sum += vpl_irradiance(vpls[vpl], position_ws, normal_ws, params.least_squared);
+// What a thread shades with one reading of its light list: a light is read lane by lane on drivers that cannot know that
+// all lanes read the same one, and that costs more than the arithmetic of one point.
+vec3 point_position_ws[TEXELS];
+vec3 point_normal_ws[TEXELS];
+bool point_has_surface[TEXELS];
+// Packed halves; all bits 0 without a surface.
+uvec2 point_irradiance[TEXELS];
+
+// The i-th point is the surface that these words of the G-buffer hold; none where `exists` is false.
+void set_point(uint i, bool exists, uvec2 normal_bits, POSITION_WORDS position, uvec2 pixel) {
+    point_has_surface[i] = exists && has_surface(normal_bits);
+    point_normal_ws[i] = unpack_normal(normal_bits);
+    point_position_ws[i] = unpack_position(frame, position, pixel);
+}
+
+bool has_any_surface() {
+    bool any_surface = false;
+    for (uint i = 0u; i < TEXELS; i++) {
+        any_surface = any_surface || point_has_surface[i];
     }
-    for (uint index = subset.light_first; index < subset.light_first + subset.light_count; index++) {
-        LightBlock light = subset_lights[index];
-        Incident incident = incident_from(light, position_ws);
-        precise float cosine = dot(normal_ws, incident.direction_ws);
-        if (cosine <= 0.0 || incident.irradiance == vec3(0.0)) {
-            continue;
+    return any_surface;
+}
+
+bool is_shadowed(LightBlock light, Incident incident, uint i) {
+    bool casts = DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL);
+    return casts && occluded(point_position_ws[i], point_normal_ws[i], incident.direction_ws, incident.distance);
+}
+
+// Each point's irradiance from all lights of `subset`, in the order of the lists, rounded to halves once.
+void shade_points(SubsetBlock subset) {
+    precise vec3 sum[TEXELS];
+    for (uint i = 0u; i < TEXELS; i++) {
+        sum[i] = vec3(0.0);
+    }
+    bool is_lit = has_any_surface();
+    uint vpl_end = is_lit ? subset.vpl_first + subset.vpl_count : 0u;
+    for (uint index = subset.vpl_first; index < vpl_end; index++) {
+        VplBlock vpl = vpls[index];
+        for (uint i = 0u; i < TEXELS; i++) {
+            sum[i] += vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
         }
-        if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL)) {
-            if (occluded(position_ws, normal_ws, incident.direction_ws, incident.distance)) {
-                continue;
+    }
+    uint light_end = is_lit ? subset.light_first + subset.light_count : 0u;
+    for (uint index = subset.light_first; index < light_end; index++) {
+        LightBlock light = subset_lights[index];
+        for (uint i = 0u; i < TEXELS; i++) {
+            Incident incident = incident_from(light, point_position_ws[i]);
+            precise float cosine = dot(point_normal_ws[i], incident.direction_ws);
+            bool faces = point_has_surface[i] && cosine > 0.0 && incident.irradiance != vec3(0.0);
+            if (faces && !is_shadowed(light, incident, i)) {
+                precise vec3 received = incident.irradiance * cosine;
+                sum[i] += received;
             }
         }
-        precise vec3 received = incident.irradiance * cosine;
-        sum += received;
     }
-    precise vec3 weighted = sum * params.weight;
-    return pack_halves(weighted, 0u);
+    for (uint i = 0u; i < TEXELS; i++) {
+        precise vec3 weighted = sum[i] * params.weight;
+        point_irradiance[i] = point_has_surface[i] ? pack_halves(weighted, 0u) : uvec2(0u);
+    }
 }
 
 #endif

@@ -13,12 +13,8 @@ layout(location = 0) out uvec2 out_irradiance;
 
 void main() {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
-    uvec2 normal_bits = normal_words(pixel);
-    if (!has_surface(normal_bits)) {
-        out_irradiance = uvec2(0u);
-        return;
-    }
-    vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
+    set_point(0u, true, normal_words(pixel), position_words(pixel), pixel);
     // The draw's subset, not the pixel's: a mask that lets others pass would show.
-    out_irradiance = shade_subset(subsets[in_instance], position_ws, unpack_normal(normal_bits));
+    shade_points(subsets[in_instance]);
+    out_irradiance = point_irradiance[0];
 }

@@ -7,22 +7,25 @@
 #define WRITES_IRRADIANCE
 #include "techniques/interleaved_deferred/sub_buffers.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
+#include "techniques/interleaved_deferred/shade/listed.glsl"
 
-layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+uvec3 texel_at(uint place) {
+    return uvec3(place % params.mapping.sub_width_px, place / params.mapping.sub_width_px, gl_GlobalInvocationID.z);
+}
 
-// x: texels of a sub-buffer, row after row; z: sub-buffers.
+// Texels of a sub-buffer, row after row; z: sub-buffers.
 void main() {
-    uvec3 id = gl_GlobalInvocationID;
-    uvec3 texel = uvec3(id.x % params.mapping.sub_width_px, id.x / params.mapping.sub_width_px, id.z);
-    if (!is_in_sub_buffer(params.mapping, texel)) {
-        return;
+    for (uint i = 0u; i < TEXELS; i++) {
+        uvec3 texel = texel_at(listed(i));
+        bool exists = is_in_sub_buffer(params.mapping, texel);
+        PLACE place = place_of_texel(params.mapping, exists ? texel : uvec3(0u, 0u, texel.z));
+        set_point(i, exists, load_normal(place), load_position(place), pixel_of_texel(params.mapping, texel));
     }
-    PLACE place = place_of_texel(params.mapping, texel);
-    uvec2 normal_bits = load_normal(place);
-    if (!has_surface(normal_bits)) {
-        store_irradiance(place, uvec2(0u));
-        return;
+    shade_points(subsets[gl_GlobalInvocationID.z]);
+    for (uint i = 0u; i < TEXELS; i++) {
+        uvec3 texel = texel_at(listed(i));
+        if (is_in_sub_buffer(params.mapping, texel)) {
+            store_irradiance(place_of_texel(params.mapping, texel), point_irradiance[i]);
+        }
     }
-    vec3 position_ws = unpack_position(frame, load_position(place), pixel_of_texel(params.mapping, texel));
-    store_irradiance(place, shade_subset(subsets[id.z], position_ws, unpack_normal(normal_bits)));
 }

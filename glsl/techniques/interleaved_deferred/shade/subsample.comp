@@ -4,25 +4,24 @@
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
-
-layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+#include "techniques/interleaved_deferred/shade/listed.glsl"
 
 layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
 
 void main() {
-    uvec2 cell = gl_GlobalInvocationID.xy;
-    if (cell.x >= params.mapping.sub_width_px || cell.y >= params.mapping.sub_height_px) {
-        return;
-    }
-    uvec2 pattern = uvec2(params.mapping.pattern_x, params.mapping.pattern_y);
+    uint cell_count = params.mapping.sub_width_px * params.mapping.sub_height_px;
+    uvec2 pattern = pattern_of(params.mapping);
     uvec2 last = uvec2(params.mapping.width_px, params.mapping.height_px) - 1u;
-    uvec2 pixel = min(cell * pattern + pattern / 2u, last);
-    uint texel = cell.y * params.mapping.sub_width_px + cell.x;
-    uvec2 normal_bits = normal_words(pixel);
-    if (!has_surface(normal_bits)) {
-        irradiance[texel] = uvec2(0u);
-        return;
+    for (uint i = 0u; i < TEXELS; i++) {
+        uint cell = listed(i);
+        uvec2 at = uvec2(cell % params.mapping.sub_width_px, cell / params.mapping.sub_width_px);
+        uvec2 pixel = min(at * pattern + pattern / 2u, last);
+        set_point(i, cell < cell_count, normal_words(pixel), position_words(pixel), pixel);
     }
-    vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
-    irradiance[texel] = shade_subset(subsets[0], position_ws, unpack_normal(normal_bits));
+    shade_points(subsets[0]);
+    for (uint i = 0u; i < TEXELS; i++) {
+        if (listed(i) < cell_count) {
+            irradiance[listed(i)] = point_irradiance[i];
+        }
+    }
 }

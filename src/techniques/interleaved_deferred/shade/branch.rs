@@ -1,9 +1,8 @@
-//! One pass over the un-split G-buffer, each pixel with its own subset; with a pattern of 1x1, plain deferred shading.
-//! Segovia 2006, section 3.1. Shader: branch.comp.
+//! One pass over the un-split G-buffer, each pixel with its own subset. Segovia 2006, section 3.1. Shader: branch.comp.
 //! reads  the G-buffer, the lights      writes  the irradiance  buffer, frame order, 8 B a pixel
 
 use super::super::NAME;
-use super::{ShadeGpu, constants};
+use super::ShadeGpu;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::branch::COMP_VARIANTS;
@@ -20,7 +19,8 @@ pub struct ShadeBranch {
 impl ShadeBranch {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(settings))? })
+        let constants = [&settings.workgroup_constants()[..], &settings.shadow_constants()].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 
     pub fn record(

@@ -10,6 +10,8 @@ pub mod subsample;
 use super::NAME;
 use crate::error::Result;
 use crate::gpu::Bound;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
 use crate::gpu::{Access, Buffer, Gpu, upload};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
@@ -76,7 +78,30 @@ impl ShadeGpu {
     }
 }
 
-/// The constants of every shading pipeline.
-fn constants(settings: &ShadingSettings) -> Vec<(&'static str, u32)> {
-    [&settings.workgroup_constants()[..], &settings.shadow_constants()].concat()
+/// A compute pipeline over a list of texels, some a thread (listed.glsl).
+struct Listed {
+    pipeline: ComputePipeline,
+    workgroup_count: u32,
+}
+
+/// Workgroups that a list is worth at least, where it has the texels: the last one's threads may stand behind its end.
+const LEAST_WORKGROUPS: u64 = 4;
+
+impl Listed {
+    /// Over a list of `count` texels.
+    fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, shader: &Shader, count: u64) -> Result<Self> {
+        let lanes = u64::from(settings.lane_count());
+        let room = (count / (lanes * LEAST_WORKGROUPS)).checked_ilog2().map_or(1, |power| 1 << power);
+        let texels = settings.texels.min(room);
+        let own = [("TEXELS", texels)];
+        let constants = [&settings.workgroup_constants()[..], &settings.shadow_constants(), &own].concat();
+        let workgroup_count = count.div_ceil(lanes * u64::from(texels)) as u32;
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, workgroup_count })
+    }
+
+    /// Threads of `list_count` such lists.
+    fn invocations(&self, list_count: u32) -> u64 {
+        let [x, y, _] = self.pipeline.workgroup.map(u64::from);
+        u64::from(self.workgroup_count) * x * y * u64::from(list_count)
+    }
 }

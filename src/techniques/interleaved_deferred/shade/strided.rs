@@ -2,13 +2,13 @@
 //! reads  the G-buffer, the lights      writes  the irradiance  buffer, frame order, 8 B a pixel
 //!
 //! `--split indirect` dispatches once a subset (Segovia 2006, section 3.1, bound by memory latency there); `--split
-//! remap` once for all, with workgroups numbered so that each shades one subset.
+//! remap` once for all, with workgroups numbered so that each shades one subset; at a pattern of 1x1 it is plain deferred
+//! shading of all lights (`--split none`).
 
 use super::super::NAME;
-use super::{ShadeGpu, constants};
+use super::{Listed, ShadeGpu};
 use crate::error::Result;
-use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::ShadeParams;
+use crate::gpu::shader::structs::{MappingParams, ShadeParams};
 use crate::gpu::shader::techniques::interleaved_deferred::shade::strided::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
@@ -24,14 +24,19 @@ pub enum Dispatches {
 }
 
 pub struct ShadeStrided {
-    pipeline: ComputePipeline,
+    listed: Listed,
     dispatches: Dispatches,
 }
 
 impl ShadeStrided {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, dispatches: Dispatches) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &ShadingSettings,
+        dispatches: Dispatches,
+        mapping: &MappingParams,
+    ) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(settings))?, dispatches })
+        Ok(Self { listed: Listed::new(gpu, settings, shader, mapping.sub_texel_count())?, dispatches })
     }
 
     pub fn record(
@@ -48,7 +53,7 @@ impl ShadeStrided {
         let traffic = Traffic {
             read_bytes: pixels * gbuffer.resource.surface_bytes(),
             written_bytes: pixels * 8,
-            invocations: Some(mapping.texel_count()),
+            invocations: Some(self.listed.invocations(mapping.subset_count())),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
@@ -56,11 +61,11 @@ impl ShadeStrided {
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));
             bound.extend(gbuffer.resource.bound_surface());
-            let [x, ..] = self.pipeline.groups([mapping.sub_texel_count() as u32, 1, 1]);
             let mut dispatch = |subset_first: u32, subset_count: u32| {
                 let params = ShadeParams { subset_first, ..shade.params };
                 // No barrier between subsets: they write different pixels.
-                cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&params), &bound, [x, 1, subset_count])
+                let groups = [self.listed.workgroup_count, 1, subset_count];
+                cmd.dispatch(&self.listed.pipeline, bytemuck::bytes_of(&params), &bound, groups)
             };
             match self.dispatches {
                 Dispatches::One => dispatch(0, mapping.subset_count()),

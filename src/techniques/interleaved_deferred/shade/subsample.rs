@@ -2,9 +2,9 @@
 //! reads  the G-buffer, the lights      writes  shade.irradiance  buffer, a texel a pattern, 8 B each
 
 use super::super::NAME;
-use super::{ShadeGpu, constants};
+use super::{Listed, ShadeGpu};
 use crate::error::Result;
-use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::subsample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
@@ -13,13 +13,13 @@ use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
 
 pub struct ShadeSubsample {
-    pipeline: ComputePipeline,
+    listed: Listed,
 }
 
 impl ShadeSubsample {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, mapping: &MappingParams) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(settings))? })
+        Ok(Self { listed: Listed::new(gpu, settings, shader, mapping.sub_texel_count())? })
     }
 
     pub fn record(
@@ -36,7 +36,7 @@ impl ShadeSubsample {
         let traffic = Traffic {
             read_bytes: cells * gbuffer.resource.surface_bytes(),
             written_bytes: cells * 8,
-            invocations: Some(cells),
+            invocations: Some(self.listed.invocations(1)),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
@@ -44,8 +44,8 @@ impl ShadeSubsample {
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));
             bound.extend(gbuffer.resource.bound_surface());
-            let groups = self.pipeline.groups([mapping.sub_width_px, mapping.sub_height_px, 1]);
-            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)
+            let groups = [self.listed.workgroup_count, 1, 1];
+            cmd.dispatch(&self.listed.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)
         })
     }
 }
