@@ -245,6 +245,16 @@ pub const SHADING: &[Setting] = &[
         help: "shadow rays to no light, to directional lights, or to every punctual light",
     },
     Setting {
+        key: "texels",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "1", "2", "4", "8", "16"]),
+        default: "auto",
+        unit: "px",
+        paper: "",
+        help: "pixels that a thread shades, compares or filters one after the other, reading once what they share; 1 is the \
+               plain way to the same bits; auto: 8 on software drivers, else 1",
+    },
+    Setting {
         key: "workgroup",
         symbol: "",
         kind: Kind::Pair { min: 1, max: 256 },

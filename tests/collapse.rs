@@ -240,6 +240,22 @@ fn shared_bytes_change_no_pixel() {
 }
 
 #[test]
+fn more_texels_a_thread_change_no_pixel() {
+    let watched = Watched::open("lamps:objects=10,lights=24");
+    let counts: Vec<_> = ["auto", "1", "2", "4", "8", "16"].map(|count| [("texels", count)]).into();
+    let counts: Vec<Changes<'_>> = counts.iter().map(|count| &count[..]).collect();
+    let interleaved = [("size", "161x91"), ("vpls", "64"), ("pattern", "5x7"), ("kernel", "7")];
+    for own in
+        [&[][..], &[("split", "none")], &[("split", "subsample")], &[("split", "remap"), ("direct", "interleaved")]]
+    {
+        require_one_hash(&watched, INTERLEAVED, &both(&interleaved, own), &counts);
+    }
+    for own in [&[][..], &[("cull", "tiled")], &[("direct-shadow", "ray")]] {
+        require_one_hash(&watched, "deferred", &both(&[("size", "161x91")], own), &counts);
+    }
+}
+
+#[test]
 fn the_shape_of_workgroups_changes_no_pixel() {
     let watched = Watched::open("cornell");
     let shapes = ["64x1", "8x8", "1x1", "16x4", "1x64", "7x3", "128x1"].map(|shape| [("workgroup", shape)]);

@@ -197,8 +197,16 @@ fn thresholds_switch_discontinuities_off() {
     );
 }
 
-/// The pass by itself, on irradiance and flags that no scene gives.
+/// The pass by itself, on irradiance and flags that no scene gives; however many texels a thread filters, the same bits.
 fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2]) -> Vec<[f32; 3]> {
+    let plain = run_texels(gpu, frame, kernel, workgroup, 1);
+    for texels in [3, 8] {
+        assert_eq!(run_texels(gpu, frame, kernel, workgroup, texels), plain, "{texels} texels a thread");
+    }
+    plain
+}
+
+fn run_texels(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2], texels: u32) -> Vec<[f32; 3]> {
     let Extent { width, height } = frame.extent;
     let pitch = width.next_multiple_of(2);
     let texel_count = u64::from(pitch * height);
@@ -223,7 +231,7 @@ fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2])
     upload::buffer(gpu, &source, &halves, Access::ComputeRead).unwrap();
     upload::buffer(gpu, &flag_buffer, bytemuck::cast_slice(&flags), Access::ComputeRead).unwrap();
     let workgroup = [("WORKGROUP_X", workgroup[0]), ("WORKGROUP_Y", workgroup[1])];
-    let gauss = Gauss::new(gpu, &workgroup, frame.extent, pitch, kernel).unwrap();
+    let gauss = Gauss::new(gpu, &workgroup, frame.extent, pitch, kernel, texels).unwrap();
     let mut cmd = Commands::begin(gpu, "test", Submits::One).unwrap();
     let readable = Access::ComputeRead;
     gauss.record(&mut cmd, "test", source.from(readable), flag_buffer.from(readable), &between, &target).unwrap();

@@ -14,33 +14,51 @@ struct DiscontinuityParams {
 };
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+// Pixels of a column that a thread flags, so that it reads a neighbour once.
+layout(constant_id = 2) const uint TEXELS = 1;
 
 layout(push_constant) uniform Push { DiscontinuityParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 1) writeonly buffer Flags { uint flags[]; };
 
+// What a pixel and its neighbours are compared by.
+struct Point {
+    vec3 position_ws;
+    vec3 normal_ws;
+    bool surface;
+};
+
+Point point_at(uvec2 pixel) {
+    uvec2 bits = normal_words(pixel);
+    return Point(unpack_position(frame, position_words(pixel), pixel), unpack_normal(bits), has_surface(bits));
+}
+
+bool differ(Point point, Point other) {
+    vec3 away = other.position_ws - point.position_ws;
+    bool apart = 1.0 - dot(point.normal_ws, other.normal_ws) > params.normal_threshold
+        || abs(dot(point.normal_ws, away)) > params.position_threshold;
+    return point.surface != other.surface || (point.surface && apart);
+}
+
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
+    uvec2 first = gl_GlobalInvocationID.xy * uvec2(1u, TEXELS);
+    if (first.x >= frame.width_px || first.y >= frame.height_px) {
         return;
     }
     uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
-    uvec2 normal_bits = normal_words(pixel);
-    bool surface = has_surface(normal_bits);
-    vec3 normal_ws = unpack_normal(normal_bits);
-    vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
-    uint bits = 0u;
-    for (uint step = 1u; step < 4u; step++) {
-        uvec2 other = min(pixel + uvec2(step & 1u, step >> 1), last);
-        uvec2 other_normal = normal_words(other);
-        bool other_surface = has_surface(other_normal);
-        bool differs = surface != other_surface;
-        if (surface && other_surface) {
-            vec3 away = unpack_position(frame, position_words(other), other) - position_ws;
-            differs = 1.0 - dot(normal_ws, unpack_normal(other_normal)) > params.normal_threshold
-                || abs(dot(normal_ws, away)) > params.position_threshold;
+    uint right = min(first.x + 1u, last.x);
+    Point point = point_at(first);
+    Point beside = point_at(uvec2(right, first.y));
+    for (uint i = 0u; i < TEXELS; i++) {
+        uint y = first.y + i;
+        uint below = min(y + 1u, last.y);
+        Point under = point_at(uvec2(first.x, below));
+        Point across = point_at(uvec2(right, below));
+        if (y <= last.y) {
+            flags[y * params.row_pitch + first.x] = (differ(point, beside) ? 1u : 0u) | (differ(point, under) ? 2u : 0u)
+                | (differ(point, across) ? 4u : 0u);
         }
-        bits |= differs ? 1u << (step - 1u) : 0u;
+        point = under;
+        beside = across;
     }
-    flags[pixel.y * params.row_pitch + pixel.x] = bits;
 }

@@ -15,19 +15,22 @@ pub struct Gauss {
     extent: Extent,
     row_pitch: u32,
     kernel: Kernel,
+    texels: u32,
 }
 
 impl Gauss {
-    /// `workgroup`: WORKGROUP_X and WORKGROUP_Y.
+    /// `workgroup`: WORKGROUP_X and WORKGROUP_Y. `texels`: how many a thread filters, at least 1.
     pub fn new(
         gpu: &Arc<Gpu>,
         workgroup: &[(&str, u32)],
         extent: Extent,
         row_pitch: u32,
         kernel: Kernel,
+        texels: u32,
     ) -> Result<Self> {
-        let pipeline = ComputePipeline::new(gpu, &crate::gpu::shader::passes::filter::gauss::COMP, workgroup)?;
-        Ok(Self { pipeline, extent, row_pitch, kernel })
+        let constants = [workgroup, &[("TEXELS", texels), ("RADIUS", kernel.radius())]].concat();
+        let pipeline = ComputePipeline::new(gpu, &crate::gpu::shader::passes::filter::gauss::COMP, &constants)?;
+        Ok(Self { pipeline, extent, row_pitch, kernel, texels })
     }
 
     pub fn record(
@@ -40,10 +43,14 @@ impl Gauss {
         target: &Buffer,
     ) -> Result<()> {
         let pixels = self.extent.pixel_count();
+        let Extent { width, height } = self.extent;
+        let runs = |along: u32, across: u32| u64::from(along.div_ceil(self.texels)) * u64::from(across);
+        let threads = runs(width, height) + runs(height, width);
+        let window = u64::from(self.texels + 2 * self.kernel.radius());
         let traffic = Traffic {
-            read_bytes: 2 * pixels * u64::from(self.kernel.taps) * (8 + 4),
+            read_bytes: threads * window * (8 + 4),
             written_bytes: 2 * pixels * 8,
-            invocations: Some(2 * pixels),
+            invocations: Some(threads),
         };
         cmd.pass(&format!("{technique}.filter"), traffic, |cmd| {
             cmd.barriers([
@@ -68,18 +75,26 @@ impl Gauss {
         flags: &Buffer,
         target: &Buffer,
     ) -> Result<()> {
+        let weights = |first: u32| [0, 1, 2, 3].map(|next| self.kernel.weight(first + next));
         let params = GaussParams {
+            weights_near: weights(1),
+            weights_far: weights(5),
             width_px: self.extent.width,
             height_px: self.extent.height,
             row_pitch: self.row_pitch,
             horizontal: u32::from(horizontal),
-            radius: self.kernel.radius(),
             stop_bits: if horizontal { self.kernel.stop_bits.x } else { self.kernel.stop_bits.y },
-            falloff: self.kernel.falloff(),
+            _unused: [0; 3],
         };
         let bound =
             [("Source", Bound::Buffer(source)), ("Flags", Bound::Buffer(flags)), ("Target", Bound::Buffer(target))];
-        let groups = self.pipeline.groups([self.extent.width, self.extent.height, 1]);
+        let Extent { width, height } = self.extent;
+        let threads = if horizontal {
+            [width.div_ceil(self.texels), height, 1]
+        } else {
+            [width, height.div_ceil(self.texels), 1]
+        };
+        let groups = self.pipeline.groups(threads);
         cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&params), &bound, groups)
     }
 }

@@ -34,6 +34,11 @@ impl Kernel {
         self.taps / 2
     }
 
+    /// Weight of the tap `distance_px` beside the middle, whose weight is 1.
+    pub fn weight(self, distance_px: u32) -> f32 {
+        ((distance_px * distance_px) as f32 * self.falloff()).exp()
+    }
+
     /// -1 / (2 sigma^2), in 1/px^2.
     pub fn falloff(self) -> f32 {
         -0.5 / (self.sigma * self.sigma)

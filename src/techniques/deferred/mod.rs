@@ -82,7 +82,7 @@ impl Technique for Deferred {
 }
 
 fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
-    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.bounds().diagonal())
+    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.bounds().diagonal(), inputs.caps)
 }
 
 struct PreparedDeferred {
@@ -100,7 +100,7 @@ impl Prepared for PreparedDeferred {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        BTreeMap::new()
+        BTreeMap::from([("texels", self.settings.texels.to_string())])
     }
 
     fn light_counts(&self) -> [u32; 2] {

@@ -62,7 +62,7 @@ impl Choices {
         };
         let direct = values.text("direct");
         let choices = Self {
-            shading: ShadingSettings::new(values, lights, scene.bounds().diagonal()),
+            shading: ShadingSettings::new(values, lights, scene.bounds().diagonal(), caps),
             road,
             mapping,
             filter,
@@ -142,7 +142,8 @@ impl Choices {
 
     /// What `auto` and rounding came to, of the settings that the road reads.
     pub fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let mut resolved = BTreeMap::from([("sigma", format!("{}", self.kernel.sigma))]);
+        let mut resolved =
+            BTreeMap::from([("texels", self.shading.texels.to_string()), ("sigma", format!("{}", self.kernel.sigma))]);
         if let Some(copies) = self.road.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
             resolved.insert("storage", storage.to_owned());

@@ -29,28 +29,36 @@ pub fn plan(plan: &mut Plan, mapping: &MappingParams) {
 pub struct Discontinuity {
     pipeline: ComputePipeline,
     params: DiscontinuityParams,
+    /// Pixels of a column that a thread flags.
+    texels: u32,
 }
 
 impl Discontinuity {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, params: DiscontinuityParams) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &settings.workgroup_constants())?, params })
+        Ok(Self {
+            pipeline: ComputePipeline::new(gpu, shader, &settings.texel_constants())?,
+            params,
+            texels: settings.texels,
+        })
     }
 
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, gbuffer: Edge<'_, GBuffer>, flags: &Buffer) -> Result<()> {
         let extent = gbuffer.resource.extent();
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: 4 * pixels * gbuffer.resource.surface_bytes(),
+            // Two columns, a row more than are flagged.
+            read_bytes: 2 * pixels * u64::from(self.texels + 1) / u64::from(self.texels)
+                * gbuffer.resource.surface_bytes(),
             written_bytes: pixels * 4,
-            invocations: Some(pixels),
+            invocations: Some(u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels))),
         };
         cmd.pass(&format!("{NAME}.discontinuity"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([flags.discard(Access::ComputeWrite)]);
             let mut bound = gbuffer.resource.bound_surface();
             bound.extend([("Frame", Bound::Buffer(frame)), ("Flags", Bound::Buffer(flags))]);
-            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })
     }

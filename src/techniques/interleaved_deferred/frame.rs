@@ -100,7 +100,7 @@ impl FilterStage {
                 ["packed", "horizontal"].map(|what| resources.image(&format!("{NAME}.filter.{what}"))),
             ),
             Filter::Gauss | Filter::None => AnyGauss::Walk(
-                Gauss::new(gpu, &workgroup, extent, pitch, *kernel)?,
+                Gauss::new(gpu, &workgroup, extent, pitch, *kernel, shading.texels)?,
                 resources.buffer(&format!("{NAME}.filter.horizontal")),
             ),
         };
