@@ -143,7 +143,7 @@ impl Choices {
     /// What `auto` and rounding came to, of the settings that the road reads.
     pub fn resolved(&self) -> BTreeMap<&'static str, String> {
         let mut resolved =
-            BTreeMap::from([("texels", self.shading.texels.to_string()), ("sigma", format!("{}", self.kernel.sigma))]);
+            BTreeMap::from([("sigma", format!("{}", self.kernel.sigma)), ("texels", self.shading.texels.to_string())]);
         if let Some(copies) = self.road.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
             resolved.insert("storage", storage.to_owned());
