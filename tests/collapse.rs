@@ -96,6 +96,15 @@ fn every_road_is_branch_behind_every_filter() {
 }
 
 #[test]
+fn shared_bytes_change_no_pixel_on_any_road() {
+    let watched = Watched::open("cornell");
+    for road in ROADS {
+        let common = both(&[("vpls", "64"), ("size", "97x53"), ("pattern", "3x2")], road);
+        require_one_hash(&watched, INTERLEAVED, &common, &[&[("alias", "off")], &[("alias", "greedy")]]);
+    }
+}
+
+#[test]
 fn blocks_of_any_shape_change_no_pixel() {
     let watched = Watched::open("cornell");
     for (pattern, size) in [("3x2", "161x91"), ("5x7", "97x64")] {

@@ -56,6 +56,12 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
         ("interleaved_deferred", &[("size", "161x91"), ("filter", "gauss-fast"), ("pattern", "5x7")]),
         ("interleaved_deferred", &[("size", "97x53"), ("split", "subsample"), ("position", "float")]),
         ("interleaved_deferred", &[("size", "97x53"), ("split", "branch"), ("direct", "interleaved"), ("vpls", "64")]),
+        ("interleaved_deferred", &[("size", "161x91"), ("split", "stencil"), ("vpls", "64")]),
+        ("interleaved_deferred", &[("size", "97x53"), ("split", "depth"), ("position", "depth"), ("vpls", "64")]),
+        ("interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("storage", "image"), ("vpls", "64")]),
+        ("interleaved_deferred", &[("size", "161x91"), ("split", "tile"), ("pattern", "5x7"), ("vpls", "64")]),
+        ("interleaved_deferred", &[("size", "161x91"), ("split", "layered"), ("pattern", "5x7"), ("vpls", "64")]),
+        ("interleaved_deferred", &[("size", "97x53"), ("split", "fragment"), ("position", "float"), ("vpls", "64")]),
     ];
     for spec in &specs {
         for (technique, changes) in settings {

@@ -24,7 +24,8 @@ impl MaskKind {
         }
     }
 
-    /// Every driver has them; a format of stencil alone is optional.
+    /// Vulkan promises this format with stencil or one of 24 bits; desktop drivers have this one. One of stencil alone is
+    /// optional.
     pub fn format(self) -> vk::Format {
         match self {
             Self::Stencil => vk::Format::D32_SFLOAT_S8_UINT,

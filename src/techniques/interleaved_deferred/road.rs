@@ -66,7 +66,7 @@ pub enum Form {
 impl Road {
     /// What `--split`, `--storage`, `--copy` and `--fragment-passes` come to on a device.
     ///
-    /// Errors: they contradict each other (exit code 2).
+    /// Errors: they contradict each other, or the device (exit code 2).
     pub fn new(values: &Values, caps: &Caps) -> Result<Self> {
         let split = values.text("split");
         let by = match split {
@@ -84,21 +84,12 @@ impl Road {
             "fragment" => Copier::TwoFragmentPasses,
             other => panic!("--split {other} was checked"),
         };
-        let needs_images = split == "layered" || split == "fragment";
-        let storage = match values.text("storage") {
-            "buffer" if needs_images => return Err(needs_image(split)),
-            "buffer" => Storage::Buffer,
-            _ if split == "layered" => Storage::Layers,
-            "image" => Storage::Image,
-            _ if needs_images || !caps.identity.is_software() => Storage::Image,
-            _ => Storage::Buffer,
-        };
         let form = match values.text("copy") {
             "push" if split == "tile" || split == "fragment" => return Err(knows_one_form(split)),
             "push" => Form::Push,
             _ => Form::Pull,
         };
-        Ok(Self::Copy(Copies { by, storage, form }))
+        Ok(Self::Copy(Copies { by, storage: storage(split, values.text("storage"), caps)?, form }))
     }
 
     /// How it copies; None where nothing is copied.
@@ -112,6 +103,25 @@ impl Road {
     /// Whether all lights are summed at each pixel that is shaded.
     pub fn sums_all(self) -> bool {
         matches!(self, Self::None | Self::Subsample)
+    }
+}
+
+/// What `--storage` comes to.
+///
+/// Errors: the road or the device does not know it (exit code 2).
+fn storage(split: &str, setting: &str, caps: &Caps) -> Result<Storage> {
+    let needs_images = split == "layered" || split == "fragment";
+    let stores_words = caps.features.storage_image_extended_formats;
+    match setting {
+        "buffer" if needs_images => Err(needs_image(split)),
+        "buffer" => Ok(Storage::Buffer),
+        "auto" if !needs_images && (caps.identity.is_software() || !stores_words) => Ok(Storage::Buffer),
+        _ if !stores_words => Err(Error::request(format!(
+            "{NAME}: --split {split} with sub-buffers in images: this device lacks shaderStorageImageExtendedFormats"
+        ))
+        .note("--split one-pass, two-pass and tile know --storage buffer")),
+        _ if split == "layered" => Ok(Storage::Layers),
+        _ => Ok(Storage::Image),
     }
 }
 
@@ -180,6 +190,48 @@ impl Form {
         match self {
             Self::Pull => "pull",
             Self::Push => "push",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::known;
+    use crate::techniques::interleaved_deferred::settings::SETTINGS;
+
+    fn storage_on(device_type: &str, stores_words: bool, split: &str, storage: &str) -> Result<Storage> {
+        let mut caps = known::caps("lavapipe-22.3.6").unwrap();
+        caps.identity.device_type = device_type.to_owned();
+        caps.features.storage_image_extended_formats = stores_words;
+        let mut values = Values::defaults(SETTINGS);
+        for (key, text) in [("split", split), ("storage", storage)] {
+            values.set(SETTINGS.iter().find(|setting| setting.key == key).unwrap(), text).unwrap();
+        }
+        Ok(Road::new(&values, &caps)?.copies().expect("it copies").storage)
+    }
+
+    #[test]
+    fn auto_is_what_the_device_and_the_road_do_best() {
+        for (device, stores_words, split, storage) in [
+            ("cpu", true, "one-pass", Storage::Buffer),
+            ("discrete-gpu", true, "one-pass", Storage::Image),
+            ("discrete-gpu", false, "two-pass", Storage::Buffer),
+            ("cpu", true, "layered", Storage::Layers),
+            ("cpu", true, "fragment", Storage::Image),
+        ] {
+            assert_eq!(storage_on(device, stores_words, split, "auto").unwrap(), storage, "{split} on {device}");
+        }
+        assert_eq!(storage_on("cpu", true, "tile", "image").unwrap(), Storage::Image);
+        assert_eq!(storage_on("discrete-gpu", true, "tile", "buffer").unwrap(), Storage::Buffer);
+    }
+
+    #[test]
+    fn images_are_refused_where_no_shader_can_store_into_them() {
+        for (split, storage) in [("one-pass", "image"), ("layered", "auto"), ("fragment", "auto")] {
+            let error = storage_on("discrete-gpu", false, split, storage).unwrap_err();
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.to_string().contains("shaderStorageImageExtendedFormats"), "{error}");
         }
     }
 }

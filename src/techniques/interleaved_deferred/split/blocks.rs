@@ -5,7 +5,7 @@
 use super::super::choices::Choices;
 use super::super::road::Copies;
 use super::super::sub_buffers::Surface;
-use super::{from_frame, product};
+use super::FromFrame;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
@@ -35,7 +35,6 @@ impl SplitBlocks {
         blocks: &Surface,
     ) -> Result<()> {
         let threads = self.copies.padded_threads(mapping);
-        let work = (self.pipeline.groups(threads), product(threads));
-        from_frame(cmd, ("split.blocks", &self.pipeline), mapping, gbuffer, blocks, work)
+        FromFrame::over("split.blocks", &self.pipeline, threads).record(cmd, mapping, gbuffer, blocks)
     }
 }

@@ -29,13 +29,13 @@ pub fn plan(plan: &mut Plan, mapping: &MappingParams, by: Copier) {
     lookups.iter().for_each(|what| Lookup::plan(plan, what, mapping.padded()));
 }
 
-/// Bytes of a draw over all texels that reads `source_texels` of its source.
-fn traffic(mapping: &MappingParams, source_texels: u64, texel_bytes: u64) -> Traffic {
-    Traffic {
-        read_bytes: source_texels * texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES,
-        written_bytes: mapping.texel_count() * texel_bytes,
-        invocations: None,
-    }
+/// What a draw reads.
+struct Source<'a> {
+    barriers: Vec<Barrier>,
+    bound: Vec<(&'static str, Bound<'a>)>,
+    /// Texels that are read, and the bytes of position and normal of each.
+    texels: u64,
+    texel_bytes: u64,
 }
 
 /// One draw: a fragment program with its look-up texture.
@@ -57,17 +57,22 @@ impl Program {
         cmd: &mut Commands,
         pass: &str,
         mapping: &MappingParams,
-        traffic: Traffic,
-        (barriers, mut bound): (Vec<Barrier>, Vec<(&str, Bound<'_>)>),
+        source: Source<'_>,
         target: &Surface,
     ) -> Result<()> {
+        let traffic = Traffic {
+            read_bytes: source.texels * source.texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES,
+            written_bytes: mapping.texel_count() * source.texel_bytes,
+            invocations: None,
+        };
         cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
-            cmd.barriers(barriers);
+            cmd.barriers(source.barriers);
             cmd.barriers(target.discard(Access::ColorWrite));
             // Every texel is drawn: a clear spares the load.
             let clear = Some(Default::default());
             let colors = [(target.position.attachment(), clear), (target.normal.attachment(), clear)];
             cmd.begin_rendering(mapping.padded(), &colors, None);
+            let mut bound = source.bound;
             bound.push(self.lookup.bound());
             cmd.bind_graphics(&self.pipeline, &[], &bound)?;
             fullscreen::draw(cmd, 0);
@@ -84,11 +89,14 @@ impl Program {
         gbuffer: Edge<'_, GBuffer>,
         target: &Surface,
     ) -> Result<()> {
-        let source = (gbuffer.surface_to(Access::FragmentSample), gbuffer.resource.bound_surface());
-        // Padding is written, and read nowhere.
-        let pixels = mapping.extent().pixel_count();
-        let traffic = traffic(mapping, pixels, gbuffer.resource.surface_bytes());
-        self.record(cmd, pass, mapping, traffic, source, target)
+        let source = Source {
+            barriers: gbuffer.surface_to(Access::FragmentSample),
+            bound: gbuffer.resource.bound_surface(),
+            // Padding is written, and read nowhere.
+            texels: mapping.extent().pixel_count(),
+            texel_bytes: gbuffer.resource.surface_bytes(),
+        };
+        self.record(cmd, pass, mapping, source, target)
     }
 }
 
@@ -145,9 +153,12 @@ impl FragmentSplitBlocks {
     ) -> Result<()> {
         let texel_bytes = gbuffer.resource.surface_bytes();
         self.blocks.record_from_frame(cmd, "split.blocks", mapping, gbuffer, &self.between)?;
-        let barriers = self.between.from(Access::ColorWrite).to(Access::FragmentSample);
-        let source = (barriers.to_vec(), self.between.source().to_vec());
-        let traffic = traffic(mapping, mapping.texel_count(), texel_bytes);
-        self.translate.record(cmd, "split.translate", mapping, traffic, source, split)
+        let source = Source {
+            barriers: self.between.from(Access::ColorWrite).to(Access::FragmentSample).to_vec(),
+            bound: self.between.source().to_vec(),
+            texels: mapping.texel_count(),
+            texel_bytes,
+        };
+        self.translate.record(cmd, "split.translate", mapping, source, split)
     }
 }

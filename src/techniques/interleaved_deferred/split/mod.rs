@@ -94,29 +94,44 @@ impl Split {
     }
 }
 
-/// Bytes of a whole copy one way, padding included: it is read as the pixel nearest to it, and written.
-fn copied(mapping: &MappingParams, texel_bytes: u64, invocations: Option<u64>) -> Traffic {
+/// Bytes of a copy by a compute shader, padding included: the frame's nearest pixel is read for it.
+fn copied(mapping: &MappingParams, texel_bytes: u64, invocations: u64) -> Traffic {
     let bytes = mapping.texel_count() * texel_bytes;
-    Traffic { read_bytes: bytes, written_bytes: bytes, invocations }
+    Traffic { read_bytes: bytes, written_bytes: bytes, invocations: Some(invocations) }
 }
 
-/// One compute shader from the G-buffer to `target`. `invocations`: those that do work.
-fn from_frame(
-    cmd: &mut Commands,
-    (pass, pipeline): (&str, &ComputePipeline),
-    mapping: &MappingParams,
-    gbuffer: Edge<'_, GBuffer>,
-    target: &Surface,
-    (groups, invocations): ([u32; 3], u64),
-) -> Result<()> {
-    let traffic = copied(mapping, gbuffer.resource.surface_bytes(), Some(invocations));
-    cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
-        cmd.barriers(gbuffer.surface_to_sampled());
-        cmd.barriers(target.discard(Access::ComputeWrite));
-        let mut bound = gbuffer.resource.bound_surface();
-        bound.extend(target.target());
-        cmd.dispatch(pipeline, bytemuck::bytes_of(mapping), &bound, groups)
-    })
+/// A compute shader from the G-buffer, dispatched.
+struct FromFrame<'a> {
+    /// Without the technique.
+    pass: &'a str,
+    pipeline: &'a ComputePipeline,
+    groups: [u32; 3],
+    /// Those that do work.
+    invocations: u64,
+}
+
+impl<'a> FromFrame<'a> {
+    /// One thread for each place of `threads`.
+    fn over(pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
+        Self { pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
+    }
+
+    fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        target: &Surface,
+    ) -> Result<()> {
+        let traffic = copied(mapping, gbuffer.resource.surface_bytes(), self.invocations);
+        cmd.pass(&format!("{NAME}.{}", self.pass), traffic, |cmd| {
+            cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(target.discard(Access::ComputeWrite));
+            let mut bound = gbuffer.resource.bound_surface();
+            bound.extend(target.target());
+            cmd.dispatch(self.pipeline, bytemuck::bytes_of(mapping), &bound, self.groups)
+        })
+    }
 }
 
 /// How many threads there are.

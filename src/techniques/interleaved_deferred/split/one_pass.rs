@@ -5,7 +5,7 @@
 use super::super::choices::Choices;
 use super::super::road::{Copies, Form};
 use super::super::sub_buffers::Surface;
-use super::{from_frame, product};
+use super::FromFrame;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
@@ -38,7 +38,6 @@ impl SplitOnePass {
             Form::Pull => self.copies.sub_buffer_threads(mapping),
             Form::Push => self.copies.padded_threads(mapping),
         };
-        let work = (self.pipeline.groups(threads), product(threads));
-        from_frame(cmd, ("split", &self.pipeline), mapping, gbuffer, split, work)
+        FromFrame::over("split", &self.pipeline, threads).record(cmd, mapping, gbuffer, split)
     }
 }

@@ -5,7 +5,7 @@
 use super::super::choices::Choices;
 use super::super::road::Copies;
 use super::super::sub_buffers::Surface;
-use super::from_frame;
+use super::{FromFrame, product};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
@@ -40,8 +40,8 @@ impl SplitTile {
         split: &Surface,
     ) -> Result<()> {
         let [x, y] = mapping.block_counts();
-        let threads: u32 = self.pipeline.workgroup.iter().product();
-        let work = ([x, y, 1], u64::from(x) * u64::from(y) * u64::from(threads));
-        from_frame(cmd, ("split", &self.pipeline), mapping, gbuffer, split, work)
+        let invocations = product([x, y, self.pipeline.workgroup.iter().product()]);
+        let copy = FromFrame { pass: "split", pipeline: &self.pipeline, groups: [x, y, 1], invocations };
+        copy.record(cmd, mapping, gbuffer, split)
     }
 }

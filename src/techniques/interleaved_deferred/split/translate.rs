@@ -39,7 +39,7 @@ impl SplitTranslate {
             Form::Pull => self.copies.sub_buffer_threads(mapping),
             Form::Push => self.copies.padded_threads(mapping),
         };
-        let traffic = copied(mapping, texel_bytes, Some(product(threads)));
+        let traffic = copied(mapping, texel_bytes, product(threads));
         cmd.pass(&format!("{NAME}.split.translate"), traffic, |cmd| {
             cmd.barriers(blocks.to(self.copies.storage.read(self.copies.stage())));
             cmd.barriers(split.discard(Access::ComputeWrite));
