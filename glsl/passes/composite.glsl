@@ -9,6 +9,8 @@
 #include "shading/light.glsl"
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+// Pixels that a thread shades; a divisor of TILE_PX.
+layout(constant_id = 4) const uint TEXELS = 1;
 // BRDF_ and SHADOW_ values.
 layout(constant_id = 2) const uint BRDF_KIND = 2;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
@@ -38,27 +40,72 @@ vec3 emitted_at(uvec2 pixel) {
 #endif
 }
 
-// Radiance towards the eye from all punctual lights, summed in the order of the list.
-vec3 direct_light(uvec2 pixel, Surface surface, vec3 position_ws, vec3 normal_ws) {
-    vec3 eye_ws = to_eye(frame, position_ws);
-    precise vec3 sum = vec3(0.0);
+// What a thread shades: TEXELS pixels of a column inside one tile, so that they have one light list, which is read once.
+Surface point_surface[TEXELS];
+vec3 point_position_ws[TEXELS];
+vec3 point_normal_ws[TEXELS];
+vec3 point_eye_ws[TEXELS];
+bool point_has_surface[TEXELS];
+// Radiance towards the eye from all punctual lights.
+vec3 point_direct[TEXELS];
+
+// The i-th pixel of a thread; it may lie under the frame.
+uvec2 pixel_of_point(uint i) {
+    return uvec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * TEXELS + i);
+}
+
+bool is_in_frame(uvec2 pixel) {
+    return pixel.x < frame.width_px && pixel.y < frame.height_px;
+}
+
+// Reads what the i-th pixel shows; the position only where lights need it.
+void set_point(uint i, bool needs_position) {
+    uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
+    uvec2 pixel = min(pixel_of_point(i), last);
+    uvec2 normal_bits = normal_words(pixel);
+    vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
+    vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
+    point_has_surface[i] = is_in_frame(pixel_of_point(i)) && has_surface(normal_bits);
+    point_surface[i] = Surface(base_color, roughness_metallic.y, roughness_metallic.x);
+    point_normal_ws[i] = unpack_normal(normal_bits);
+    if (needs_position) {
+        point_position_ws[i] = unpack_position(frame, position_words(pixel), pixel);
+        point_eye_ws[i] = to_eye(frame, point_position_ws[i]);
+    }
+}
+
+void add_light(LightBlock light) {
+    for (uint i = 0u; i < TEXELS; i++) {
+        if (point_has_surface[i]) {
+            precise vec3 sum = point_direct[i]
+                + shade_light(light, point_surface[i], point_position_ws[i], point_normal_ws[i], point_eye_ws[i]);
+            point_direct[i] = sum;
+        }
+    }
+}
+
+// All punctual lights, in the order of the list.
+void shade_points() {
+    for (uint i = 0u; i < TEXELS; i++) {
+        point_direct[i] = vec3(0.0);
+    }
 #ifdef CULL_TILED
     uint word_count = (frame.light_count + 31u) / 32u;
-    uint base = tile_of(pixel, frame.width_px) * word_count;
+    uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
+    uint base = tile_of(min(pixel_of_point(0u), last), frame.width_px) * word_count;
     for (uint word = 0u; word < word_count; word++) {
         uint bits = light_masks[base + word];
         while (bits != 0u) {
             uint light = word * 32u + uint(findLSB(bits));
             bits &= bits - 1u;
-            sum += shade_light(lights[light], surface, position_ws, normal_ws, eye_ws);
+            add_light(lights[light]);
         }
     }
 #else
     for (uint light = 0u; light < frame.light_count; light++) {
-        sum += shade_light(lights[light], surface, position_ws, normal_ws, eye_ws);
+        add_light(lights[light]);
     }
 #endif
-    return sum;
 }
 
 #endif

@@ -60,6 +60,12 @@ const SOFTWARE_TEXELS: u32 = 32;
 /// Texels that a thread filters or compares at most: with 16, a filter of 5 taps is slower again (16.1 ms, with 8 10.6).
 const FILTER_TEXELS: u32 = 8;
 
+/// Pixels of a column that a thread shades with punctual lights at most: those of a tile. 188 lights, kaos, 1024x768, with
+/// tiled culling: 718 ms with 1, 320 with 4, 254 with 8, 222 with 16.
+const COLUMN_TEXELS: u32 = 16;
+/// The same without lights, where only the frame's numbers are shared: 13.2 ms with 1, 11.5 with 4, 13.5 with 16.
+const UNLIT_TEXELS: u32 = 4;
+
 impl ShadingSettings {
     pub fn new(values: &Values, lights: &LightSet, diagonal: f32, caps: &Caps) -> Self {
         Self {
@@ -80,6 +86,11 @@ impl ShadingSettings {
     /// WORKGROUP_X and WORKGROUP_Y.
     pub fn workgroup_constants(&self) -> [(&'static str, u32); 2] {
         [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
+    }
+
+    /// Pixels of a column that a thread composes, with `light_count` punctual lights.
+    pub fn column_texels(&self, light_count: usize) -> u32 {
+        self.texels.min(if light_count > 0 { COLUMN_TEXELS } else { UNLIT_TEXELS })
     }
 
     /// Texels that a thread filters or compares.

@@ -4,21 +4,22 @@
 #include "passes/composite.glsl"
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
-        return;
+    for (uint i = 0u; i < TEXELS; i++) {
+        set_point(i, true);
     }
-    uvec2 normal_bits = normal_words(pixel);
-    if (!has_surface(normal_bits)) {
-        imageStore(color, ivec2(pixel), vec4(frame.background.rgb, 0.0));
-        return;
+    shade_points();
+    for (uint i = 0u; i < TEXELS; i++) {
+        uvec2 pixel = pixel_of_point(i);
+        if (!is_in_frame(pixel)) {
+            continue;
+        }
+        vec4 value = vec4(frame.background.rgb, 0.0);
+        if (point_has_surface[i]) {
+            Surface surface = point_surface[i];
+            precise vec3 radiance = emitted_at(pixel) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
+            radiance += point_direct[i];
+            value = vec4(radiance, 1.0);
+        }
+        imageStore(color, ivec2(pixel), value);
     }
-    vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
-    vec3 normal_ws = unpack_normal(normal_bits);
-    vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
-    vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
-    Surface surface = Surface(base_color, roughness_metallic.y, roughness_metallic.x);
-    precise vec3 radiance = emitted_at(pixel) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
-    radiance += direct_light(pixel, surface, position_ws, normal_ws);
-    imageStore(color, ivec2(pixel), vec4(radiance, 1.0));
 }

@@ -14,24 +14,29 @@ layout(push_constant) uniform Push { CompositeParams params; };
 layout(std430, set = 0, binding = 6) readonly buffer Irradiance { uvec2 irradiance[]; };
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
-        return;
+    bool direct_full = params.direct_full != 0u;
+    for (uint i = 0u; i < TEXELS; i++) {
+        set_point(i, direct_full);
     }
-    uvec2 normal_bits = normal_words(pixel);
-    if (!has_surface(normal_bits)) {
-        imageStore(color, ivec2(pixel), vec4(frame.background.rgb, 0.0));
-        return;
+    if (direct_full) {
+        shade_points();
     }
-    vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
-    vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
-    Surface surface = Surface(base_color, roughness_metallic.y, roughness_metallic.x);
-    vec3 received = unpack_halves(irradiance[pixel.y * params.row_pitch + pixel.x]);
-    precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
-    radiance += ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
-    if (params.direct_full != 0u) {
-        vec3 position_ws = unpack_position(frame, position_words(pixel), pixel);
-        radiance += direct_light(pixel, surface, position_ws, unpack_normal(normal_bits));
+    for (uint i = 0u; i < TEXELS; i++) {
+        uvec2 pixel = pixel_of_point(i);
+        if (!is_in_frame(pixel)) {
+            continue;
+        }
+        vec4 value = vec4(frame.background.rgb, 0.0);
+        if (point_has_surface[i]) {
+            Surface surface = point_surface[i];
+            vec3 received = unpack_halves(irradiance[pixel.y * params.row_pitch + pixel.x]);
+            precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
+            radiance += ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
+            if (direct_full) {
+                radiance += point_direct[i];
+            }
+            value = vec4(radiance, 1.0);
+        }
+        imageStore(color, ivec2(pixel), value);
     }
-    imageStore(color, ivec2(pixel), vec4(radiance, 1.0));
 }

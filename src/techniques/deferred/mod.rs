@@ -120,7 +120,7 @@ impl Prepared for PreparedDeferred {
         Ok(Box::new(DeferredFrame {
             gbuffer_pass: GBufferPass::new(gpu, scene, settings.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
-            shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some())?,
+            shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some(), self.lights.len())?,
             blend: Blend::new(gpu, scene, inputs.view, 0.0, &settings.light_constants())?,
             gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
             direct,

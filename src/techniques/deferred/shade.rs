@@ -13,14 +13,24 @@ use std::sync::Arc;
 
 pub struct Shade {
     pipeline: ComputePipeline,
+    /// Pixels of a column that a thread shades.
+    texels: u32,
 }
 
 impl Shade {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, has_emissive: bool, tiled: bool) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &ShadingSettings,
+        has_emissive: bool,
+        tiled: bool,
+        light_count: usize,
+    ) -> Result<Self> {
         let cull = if tiled { "tiled" } else { "none" };
         let shader = variant(COMP_VARIANTS, &[settings.position.name(), emissive_name(has_emissive), cull]);
-        let constants = [&settings.workgroup_constants()[..], &settings.light_constants()].concat();
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
+        let texels = settings.column_texels(light_count);
+        let constants =
+            [&settings.workgroup_constants()[..], &settings.light_constants(), &[("TEXELS", texels)]].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, texels })
     }
 
     pub fn record(
@@ -36,7 +46,7 @@ impl Shade {
         let traffic = Traffic {
             read_bytes: pixels * gbuffer.resource.shading_bytes(),
             written_bytes: pixels * 16,
-            invocations: Some(pixels),
+            invocations: Some(u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels))),
         };
         cmd.pass("deferred.shade", traffic, |cmd| {
             cmd.barriers(gbuffer.shading_to_sampled());
@@ -45,7 +55,7 @@ impl Shade {
             let mut bound = gbuffer.resource.bound_shading();
             bound.extend(direct.bound());
             bound.extend([("Frame", Bound::Buffer(frame)), ("color", Bound::Storage(color))]);
-            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
             cmd.dispatch(&self.pipeline, &[], &bound, groups)
         })
     }

@@ -16,6 +16,8 @@ use std::sync::Arc;
 pub struct Composite {
     pipeline: ComputePipeline,
     params: CompositeParams,
+    /// Pixels of a column that a thread shades.
+    texels: u32,
 }
 
 impl Composite {
@@ -25,11 +27,14 @@ impl Composite {
         has_emissive: bool,
         tiled: bool,
         params: CompositeParams,
+        light_count: usize,
     ) -> Result<Self> {
         let cull = if tiled { "tiled" } else { "none" };
         let shader = variant(COMP_VARIANTS, &[settings.position.name(), emissive_name(has_emissive), cull]);
-        let constants = [&settings.workgroup_constants()[..], &settings.light_constants()].concat();
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params })
+        let texels = settings.column_texels(light_count);
+        let constants =
+            [&settings.workgroup_constants()[..], &settings.light_constants(), &[("TEXELS", texels)]].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }
 
     pub fn record(
@@ -46,7 +51,7 @@ impl Composite {
         let traffic = Traffic {
             read_bytes: pixels * (gbuffer.resource.shading_bytes() + 8),
             written_bytes: pixels * 16,
-            invocations: Some(pixels),
+            invocations: Some(u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels))),
         };
         cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {
             cmd.barriers(gbuffer.shading_to_sampled());
@@ -59,7 +64,7 @@ impl Composite {
                 ("Irradiance", Bound::Buffer(irradiance.resource)),
                 ("color", Bound::Storage(color)),
             ]);
-            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })
     }

@@ -69,13 +69,14 @@ impl InterleavedFrame {
             subset_first: 0,
         };
         let shade = ShadeGpu::new(gpu, resources, lights, params)?;
+        let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
         let params = CompositeParams { row_pitch: mapping.row_pitch(), direct_full: u32::from(choices.direct_full) };
         Ok(Self {
             gbuffer_pass: GBufferPass::new(gpu, scene, shading.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position)).transpose()?,
             roads: Roads::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
-            composite: Composite::new(gpu, shading, has_emissive, direct.masks.is_some(), params)?,
+            composite: Composite::new(gpu, shading, has_emissive, direct.masks.is_some(), params, lit_count)?,
             color: resources.image(&format!("{NAME}.composite.color")),
             blend: Blend::new(gpu, scene, inputs.view, least * least, &shading.light_constants())?,
             gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
