@@ -185,7 +185,7 @@ impl Job {
         let plans = (&session.stats.plan(), &renderer.plan);
         let sharing = renderer.sharing.clone();
         report.memory(&MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(memory))?);
-        report.counters(&renderer.counters);
+        report.counters(&renderer.measured_counters()?);
         Ok(report)
     }
 

@@ -190,6 +190,15 @@ impl Renderer {
         Ok(Picture { extent: image.description.extent, pixels })
     }
 
+    /// What the last frame's counters are, those of the settings and those that it left.
+    ///
+    /// Errors: memory for reading them back (exit code 4).
+    pub fn measured_counters(&self) -> Result<BTreeMap<&'static str, f64>> {
+        let mut counters = self.counters.clone();
+        counters.extend(self.frame.counters(&self.gpu)?);
+        Ok(counters)
+    }
+
     /// One of the last frame's intermediate results, which `Session::renderer` was asked for: others share their bytes
     /// with what came after them.
     ///

@@ -1,8 +1,11 @@
-// BLEND surfaces over the finished picture, back to front, lit forward by every light. Pass: src/passes/blend.rs.
+// BLEND surfaces over the finished picture, back to front, lit forward by every punctual light and by the virtual ones of
+// their pixel. Pass: src/passes/blend.rs.
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
+#include "sampling/pattern.glsl"
 #include "shading/light.glsl"
+#include "shading/subset.glsl"
 #include "shading/material.glsl"
 
 // BRDF_ and SHADOW_ values.
@@ -12,6 +15,11 @@ layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
 struct BlendParams {
     // Square of --vpl-clamp, in square metres.
     float least_squared;
+    // n * m where pixels have subsets, else 1.
+    float weight;
+    // n x m; 0 x 0: every virtual point light on every pixel.
+    uint pattern_x;
+    uint pattern_y;
 };
 
 layout(push_constant) uniform Push { BlendParams params; };
@@ -19,6 +27,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; }
 layout(std430, set = 0, binding = 2) readonly buffer Materials { MaterialBlock materials[]; };
 layout(std430, set = 0, binding = 3) readonly buffer Lights { LightBlock lights[]; };
 layout(std430, set = 0, binding = 4) readonly buffer Vpls { VplBlock vpls[]; };
+layout(std430, set = 0, binding = 7) readonly buffer Subsets { SubsetBlock subsets[]; };
 layout(std430, set = 0, binding = 5) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 
@@ -39,10 +48,17 @@ void main() {
         radiance += shade_light(lights[light], surface, in_position_ws, normal_ws, eye_ws);
     }
     vec3 received = vec3(0.0);
-    for (uint vpl = 0u; vpl < frame.vpl_count; vpl++) {
+    uint first = 0u;
+    uint end = frame.vpl_count;
+    if (params.pattern_x != 0u) {
+        SubsetBlock subset = subsets[subset_of(uvec2(params.pattern_x, params.pattern_y), uvec2(gl_FragCoord.xy))];
+        first = subset.vpl_first;
+        end = first + subset.vpl_count;
+    }
+    for (uint vpl = first; vpl < end; vpl++) {
         received += vpl_irradiance(vpls[vpl], in_position_ws, normal_ws, params.least_squared);
     }
-    radiance += albedo_of(surface) * received / PI;
+    radiance += albedo_of(surface) * received * (params.weight / PI);
     // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
     out_color = vec4(radiance * base_color.a, base_color.a);
 }

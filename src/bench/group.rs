@@ -148,7 +148,7 @@ impl Group {
 
 /// Whether fewer renderers on the device might help.
 pub fn is_of_memory(error: &Error) -> bool {
-    error.kind() == ErrorKind::Device
+    error.kind() == ErrorKind::Memory
 }
 
 /// The settings of the identity: the same kernel and storage at pattern 1x1. A copy's time does not depend on what is

@@ -27,6 +27,11 @@ const UNREAD: &[&str] = &[
     "normal-threshold",
     "position-threshold",
     "workgroup",
+    "texels",
+    "storage",
+    "copy",
+    "fragment-passes",
+    "alias",
 ];
 
 /// Plain deferred shading at one size, from one camera, of one set of lights.
@@ -40,8 +45,11 @@ pub struct Reference {
 pub struct Cost {
     /// Passes that it has too are no overhead of a variant.
     pub pass_names: Vec<String>,
-    /// Nanoseconds for each light at each pixel.
+    /// Nanoseconds for each light at each pixel, where all lights are summed in one pass.
     pub evaluation_ns: f64,
+    /// Milliseconds of a pass that shades one light on every pixel, the G-buffer read and the irradiance written for it:
+    /// Segovia's unit of overhead (table 3, SNSM).
+    pub light_pass_ms: Option<f64>,
 }
 
 /// A reference, or why there is none.
@@ -94,15 +102,22 @@ impl Reference {
         let lights = renderer.counters.get("subset_lights_per_pixel").copied().unwrap_or(0.0);
         drop(renderer);
         let passes = if what == What::Frame { pass_ms(job, session, values)? } else { None };
-        let cost = passes.map(|passes| {
-            let shade = format!("{}.shade", job.technique.name());
-            let shade_ms = passes.iter().find(|(name, _)| *name == shade).map_or(0.0, |(_, ms)| *ms);
-            let evaluations = picture.extent.pixel_count() as f64 * lights;
-            Cost {
-                pass_names: passes.into_iter().map(|(name, _)| name).collect(),
-                evaluation_ns: 1e6 * shade_ms / evaluations.max(1.0),
+        let shade = format!("{}.shade", job.technique.name());
+        let shade_ms = |passes: &[(String, f64)]| passes.iter().find(|(name, _)| *name == shade).map(|(_, ms)| *ms);
+        let cost = match passes {
+            None => None,
+            Some(passes) => {
+                let one_light = changed(job, values, [("vpls", "1"), ("direct", "none")])?;
+                let light_pass_ms = pass_ms(job, session, &one_light)?.and_then(|passes| shade_ms(&passes));
+                let evaluations = picture.extent.pixel_count() as f64 * lights;
+                let evaluation_ns = 1e6 * shade_ms(&passes).unwrap_or(0.0) / evaluations.max(1.0);
+                Some(Cost {
+                    pass_names: passes.into_iter().map(|(name, _)| name).collect(),
+                    evaluation_ns,
+                    light_pass_ms,
+                })
             }
-        });
+        };
         Ok(Self { picture, cost })
     }
 }
@@ -112,7 +127,7 @@ impl Reference {
 /// Errors: the device fails (exit code 4).
 pub fn pass_ms(job: &Job, session: &Session, values: &Values) -> Result<Option<Vec<(String, f64)>>> {
     let renderer = match session.renderer(job.technique, values, &[], Submits::PerPass) {
-        Err(error) if error.kind() == ErrorKind::Device => return Ok(None),
+        Err(error) if error.kind() == ErrorKind::Memory => return Ok(None),
         renderer => renderer?,
     };
     renderer.frame()?;

@@ -79,7 +79,7 @@ impl Head<'_> {
             "planned_bytes": session.stats.plan().bytes() + renderer.plan.bytes(),
             "peak_bytes": self.scene_bytes + member.variant.bound_bytes,
         });
-        row["counters"] = json!(renderer.counters);
+        row["counters"] = json!(renderer.measured_counters()?);
         match what {
             What::Split | What::Gather => copies(&mut row, member, samples),
             What::Shade => evaluations(&mut row, member, &times),
@@ -166,11 +166,9 @@ fn copies(row: &mut Value, member: &Member, samples: &[Samples]) {
 fn evaluations(row: &mut Value, member: &Member, times: &[f64]) {
     let renderer = &member.variant.renderer;
     let Some(lights) = renderer.counters.get("subset_lights_per_pixel") else { return };
-    let pixels = member.variant.extent().pixel_count();
-    let invocations = member.variant.stage.iter().filter_map(|index| renderer.passes()[*index].traffic.invocations);
-    // `--split subsample` shades one pixel of each pattern; sub-buffers are padded.
-    let shaded = invocations.max().unwrap_or(pixels).min(pixels);
-    row["ns_per_evaluation"] = json!(1e6 * median(times) / (shaded as f64 * lights).max(1.0));
+    // `--split subsample` shades one pixel of each pattern.
+    let shaded = renderer.counters.get("shaded_pixels").copied().unwrap_or(0.0);
+    row["ns_per_evaluation"] = json!(1e6 * median(times) / (shaded * lights).max(1.0));
 }
 
 /// Nanoseconds a pixel, discontinuities included, and of those for each tap of both directions.
@@ -192,5 +190,7 @@ fn overhead(row: &mut Value, picture: &Picture, reference: &Reference) {
     let pixels = picture.extent.pixel_count() as f64;
     row["evaluation_ns"] = json!(cost.evaluation_ns);
     row["overhead_ms"] = json!(own);
+    row["light_pass_ms"] = json!(cost.light_pass_ms);
+    row["overhead_light_passes"] = json!(cost.light_pass_ms.map(|pass| own / pass.max(1e-9)));
     row["overhead_evaluations_per_pixel"] = json!(1e6 * own / (pixels * cost.evaluation_ns).max(1e-9));
 }

@@ -77,7 +77,7 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
 
 /// Whether a point that fails like this, before a frame ran, is passed over with its reason.
 fn is_impossible(error: &Error) -> bool {
-    matches!(error.kind(), ErrorKind::Request | ErrorKind::NoDevice | ErrorKind::Device)
+    matches!(error.kind(), ErrorKind::Request | ErrorKind::NoDevice | ErrorKind::Memory)
 }
 
 struct Sweep<'a> {

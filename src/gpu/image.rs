@@ -122,7 +122,7 @@ impl Image {
         let info = description.create_info();
         let (bytes, most) = (description.bytes(), gpu.greatest_image_bytes(&info));
         if bytes > most {
-            return Err(Error::device(format!(
+            return Err(Error::memory(format!(
                 "{name} ({extent}, {format:?}) needs {}, and this device makes such images up to {}",
                 Bytes(bytes),
                 Bytes(most)

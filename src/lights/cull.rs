@@ -8,7 +8,7 @@ use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::lights::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic, readback};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::Plan;
 use crate::units::Extent;
@@ -34,6 +34,24 @@ pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, light_count: u32) 
 /// The masks, as `access` touches them.
 pub fn masks(technique: &str, access: Access) -> (String, Access) {
     (format!("{technique}.cull.masks"), access)
+}
+
+/// What culling left, counted after a frame: pixels times lights that were evaluated, and that were left out.
+///
+/// A pixel counts with every light of its tile's mask, whether or not it shows a surface. Errors: memory for the copy
+/// (exit code 4).
+pub fn evaluations(gpu: &Arc<Gpu>, masks: &Buffer, extent: Extent, light_count: u32) -> Result<[u64; 2]> {
+    let bytes = readback::buffer(gpu, masks, mask_bytes(extent, light_count), Access::ComputeRead)?;
+    let tiles_x = extent.width.div_ceil(TILE_PX);
+    let side = |tile: u32, length: u32| u64::from((length - tile * TILE_PX).min(TILE_PX));
+    let of_tile = |(index, mask): (usize, &[u8])| {
+        let (x, y) = (index as u32 % tiles_x, index as u32 / tiles_x);
+        let lights: u32 = mask.iter().map(|byte| byte.count_ones()).sum();
+        side(x, extent.width) * side(y, extent.height) * u64::from(lights)
+    };
+    let words = light_count.div_ceil(32) as usize;
+    let evaluated = bytes.chunks_exact(4 * words).enumerate().map(of_tile).sum();
+    Ok([evaluated, extent.pixel_count() * u64::from(light_count) - evaluated])
 }
 
 pub struct Cull {

@@ -2,8 +2,10 @@
 //! Shaders: mesh.vert, blend.frag.
 //! reads  the scene, every light, the G-buffer's depth      writes  the picture
 //!
-//! Their indirect light is the sum over all virtual point lights, not a subset: a blended surface has no neighbours to
-//! filter with, and what it shows is what `--split none` would.
+//! Their indirect light comes from all virtual point lights, or from the subset of the pixel as that of every other
+//! surface does. A blended surface has no neighbours to filter with, so that its subsets show as a faint pattern; hall at
+//! 1024x768, 480 lights, 8x6: FLIP against every light on every pixel is 0.0431 with subsets and 0.0415 without, and the
+//! pass takes 15 ms instead of 104 on lavapipe.
 
 use super::{gbuffer, mesh};
 use crate::error::Result;
@@ -22,6 +24,8 @@ use std::sync::Arc;
 pub struct BlendLights<'a> {
     pub lights: &'a Buffer,
     pub vpls: &'a Buffer,
+    /// Stretches of `vpls`; read where the pattern is not 0x0.
+    pub subsets: &'a Buffer,
     pub bvh_nodes: &'a Buffer,
     pub bvh_triangles: &'a Buffer,
 }
@@ -29,6 +33,11 @@ pub struct BlendLights<'a> {
 /// What the pass touches: depth, and the picture of this full name.
 pub fn touches(technique: &str, picture: &str) -> [(String, Access); 2] {
     [gbuffer::depth_tested(technique), (picture.to_owned(), Access::ColorWrite)]
+}
+
+/// Every virtual point light on every pixel, none nearer than the root of `least_squared` (m^2).
+pub fn all_lights(least_squared: f32) -> BlendParams {
+    BlendParams { least_squared, weight: 1.0, pattern_x: 0, pattern_y: 0 }
 }
 
 pub struct Blend {
@@ -44,7 +53,7 @@ impl Blend {
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
         view: &View,
-        least_squared: f32,
+        params: BlendParams,
         constants: &[(&str, u32)],
     ) -> Result<Option<Self>> {
         let eye = view.eye();
@@ -73,7 +82,7 @@ impl Blend {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Some(Self { pipeline, calls, params: BlendParams { least_squared } }))
+        Ok(Some(Self { pipeline, calls, params }))
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -98,6 +107,7 @@ impl Blend {
                 ("Materials", Bound::Buffer(&scene.materials)),
                 ("Lights", Bound::Buffer(lights.lights)),
                 ("Vpls", Bound::Buffer(lights.vpls)),
+                ("Subsets", Bound::Buffer(lights.subsets)),
                 ("BvhNodes", Bound::Buffer(lights.bvh_nodes)),
                 ("BvhTriangles", Bound::Buffer(lights.bvh_triangles)),
             ]);

@@ -14,6 +14,7 @@ use crate::settings::Values;
 use crate::shading::brdf::Brdf;
 use crate::shading::light;
 use crate::units::Extent;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Which lights cast shadow rays (`--direct-shadow`); the number is the shader's.
@@ -144,6 +145,8 @@ pub fn plan(
     );
     if settings.culls(light_count) {
         cull::plan(plan, technique, extent, light_count as u32);
+        // Counted after the frame.
+        plan.read_back(&cull::masks(technique, Access::ComputeRead).0);
     }
 }
 
@@ -180,6 +183,17 @@ impl DirectGpu {
             bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
             masks: settings.culls(lights.len()).then(|| resources.buffer(&format!("{technique}.cull.masks"))),
         })
+    }
+
+    /// Counters of the last frame: pixels times punctual lights that were evaluated, and that culling left out.
+    ///
+    /// Errors: memory for the copy of the masks (exit code 4).
+    pub fn counters(&self, gpu: &Arc<Gpu>, extent: Extent) -> Result<BTreeMap<&'static str, f64>> {
+        let [evaluated, left_out] = match &self.masks {
+            Some(masks) => cull::evaluations(gpu, masks, extent, self.light_count)?,
+            None => [extent.pixel_count() * u64::from(self.light_count), 0],
+        };
+        Ok(BTreeMap::from([("light_evaluations", evaluated as f64), ("light_evaluations_culled", left_out as f64)]))
     }
 
     /// What composite.glsl binds of it.

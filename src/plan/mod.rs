@@ -172,7 +172,7 @@ impl Plan {
             if let Shape::Buffer { bytes, .. } = planned.shape
                 && bytes > max_storage_buffer_range_bytes
             {
-                return Err(Error::device(format!(
+                return Err(Error::memory(format!(
                     "{} needs {}, and this device binds at most {} at once",
                     planned.name,
                     Bytes(bytes),

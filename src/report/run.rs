@@ -245,11 +245,27 @@ impl Report {
                 "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
             ));
         }
+        if let (Some(evaluated), Some(left_out)) = (counter("light_evaluations"), counter("light_evaluations_culled"))
+            && evaluated + left_out > 0.0
+        {
+            // The composite shades virtual lights' techniques, and other work with it.
+            let shades = if counter("vpls").is_some() { "composite" } else { "shade" };
+            let named = |pass: &&Value| string(&pass["name"]).ends_with(&format!(".{shades}"));
+            let pass_ms = document["passes"].as_array().into_iter().flatten().find(named);
+            let each = pass_ms.and_then(|pass| pass["ms"]["median"].as_f64()).map(|ms| 1e6 * ms / evaluated.max(1.0));
+            line(format!(
+                "direct light: {:.1} million evaluations of a light at a pixel{}, {:.0} % left out by culling",
+                evaluated / 1e6,
+                each.map_or(String::new(), |ns| format!(", {ns:.2} ns each")),
+                100.0 * left_out / (evaluated + left_out)
+            ));
+        }
         let bytes = |key: &str| Bytes(document["memory"][key].as_u64().unwrap_or_default());
         line(format!(
-            "memory: {} planned, {} allocated, {} in memory blocks",
+            "memory: {} planned, {} allocated, {} saved by sharing, {} in memory blocks",
             bytes("planned_bytes"),
             bytes("allocated_bytes"),
+            bytes("aliased_bytes"),
             bytes("memory_block_bytes")
         ));
         line(format!("image hash {}", string(&document["image"]["hash"])));

@@ -1,3 +1,4 @@
 //! Where samples are: numbers only, the same on every machine.
 
+pub mod pattern;
 pub mod pcg;

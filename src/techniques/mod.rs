@@ -91,6 +91,11 @@ pub trait Frame {
     /// The finished picture (RGBA32F) and how the frame touched it last.
     fn picture(&self) -> (&Image, Access);
 
+    /// Numbers that a frame leaves, for the report's `counters`.
+    ///
+    /// Errors: memory for reading them back (exit code 4).
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>>;
+
     /// One intermediate result, read back after a frame.
     ///
     /// Errors: the settings leave its pass out (exit code 2).

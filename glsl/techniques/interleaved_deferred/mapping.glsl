@@ -9,6 +9,8 @@
 #ifndef INTERLEAVED_DEFERRED_MAPPING_GLSL
 #define INTERLEAVED_DEFERRED_MAPPING_GLSL
 
+#include "sampling/pattern.glsl"
+
 struct MappingParams {
     // The pattern, n x m.
     uint pattern_x;
@@ -56,7 +58,7 @@ bool is_in_padded(MappingParams mapping, uvec2 at) {
 
 // Number of the light subset, and of the sub-buffer, of a pixel: row-major inside the pattern.
 uint subset_of(MappingParams mapping, uvec2 pixel) {
-    return pixel.y % mapping.pattern_y * mapping.pattern_x + pixel.x % mapping.pattern_x;
+    return subset_of(pattern_of(mapping), pixel);
 }
 
 // Where a sub-buffer stands in the pattern, and among the sub-buffers tiled side by side.

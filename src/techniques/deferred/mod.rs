@@ -121,7 +121,7 @@ impl Prepared for PreparedDeferred {
             gbuffer_pass: GBufferPass::new(gpu, scene, settings.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
             shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some(), self.lights.len())?,
-            blend: Blend::new(gpu, scene, inputs.view, 0.0, &settings.light_constants())?,
+            blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &settings.light_constants())?,
             gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
             direct,
             vpls: resources.buffer("deferred.vpls"),
@@ -156,6 +156,7 @@ impl Frame for DeferredFrame {
             let lights = BlendLights {
                 lights: &self.direct.lights,
                 vpls: &self.vpls,
+                subsets: &self.vpls,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
             };
@@ -168,6 +169,10 @@ impl Frame for DeferredFrame {
 
     fn picture(&self) -> (&Image, Access) {
         (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
+    }
+
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        self.direct.counters(gpu, self.color.description.extent)
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

@@ -6,7 +6,8 @@ use super::road::{Copier, MaskKind, Road};
 use super::sub_buffers::Storage;
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
-use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::shader::structs::{BlendParams, MappingParams};
+use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Kernel, StopBits};
 use crate::settings::Values;
@@ -34,6 +35,8 @@ pub struct Choices {
     pub direct_full: bool,
     /// The scene's own lights joined to the subsets.
     pub direct_interleaved: bool,
+    /// Blended surfaces have the virtual point lights of their pixel's subset, not all.
+    pub blend_subsets: bool,
     /// Virtual point lights.
     pub vpl_count: u32,
     /// The scene's own lights that this frame has.
@@ -69,6 +72,7 @@ impl Choices {
             kernel: kernel(values)?,
             direct_full: direct == "full",
             direct_interleaved: direct == "interleaved",
+            blend_subsets: values.text("blend-lights") == "subset",
             vpl_count: values.integer("vpls") as u32,
             direct_count: if direct == "none" { 0 } else { lights.lights.len() as u32 },
         };
@@ -155,9 +159,27 @@ impl Choices {
         resolved
     }
 
+    /// How blended surfaces meet the virtual point lights.
+    pub fn blend_params(&self, least_squared: f32) -> BlendParams {
+        if !self.blend_subsets || self.road.sums_all() {
+            return blend::all_lights(least_squared);
+        }
+        let [pattern_x, pattern_y] = [self.mapping.pattern_x, self.mapping.pattern_y];
+        BlendParams { least_squared, weight: self.subset_count() as f32, pattern_x, pattern_y }
+    }
+
     /// Punctual lights that are joined to the subsets.
     pub fn joined_count(&self) -> u32 {
         if self.direct_interleaved { self.direct_count } else { 0 }
+    }
+
+    /// Pixels that meet virtual lights in a frame.
+    pub fn shaded_pixel_count(&self) -> u64 {
+        let mapping = &self.mapping;
+        match self.road {
+            Road::Subsample => mapping.sub_texel_count(),
+            _ => u64::from(mapping.width_px) * u64::from(mapping.height_px),
+        }
     }
 
     /// Light subsets: those of the pattern, or one.

@@ -39,6 +39,8 @@ pub struct InterleavedFrame {
     pub gbuffer: GBuffer,
     pub cull: Option<Cull>,
     pub direct: DirectGpu,
+    /// The composite shades every punctual light.
+    pub is_lit_fully: bool,
     pub shade: ShadeGpu,
     pub roads: Roads,
     pub filter: Option<FilterStage>,
@@ -78,9 +80,16 @@ impl InterleavedFrame {
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, shading, has_emissive, direct.masks.is_some(), params, lit_count)?,
             color: resources.image(&format!("{NAME}.composite.color")),
-            blend: Blend::new(gpu, scene, inputs.view, least * least, &shading.light_constants())?,
+            blend: Blend::new(
+                gpu,
+                scene,
+                inputs.view,
+                choices.blend_params(least * least),
+                &shading.light_constants(),
+            )?,
             gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
             direct,
+            is_lit_fully: choices.direct_full,
             shade,
         })
     }

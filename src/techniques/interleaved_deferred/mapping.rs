@@ -2,6 +2,7 @@
 //! the three orders: pixels of the padded frame, block texels, texels of sub-buffers as [x, y, number of the sub-buffer].
 
 use crate::gpu::shader::structs::MappingParams;
+use crate::sampling::pattern;
 use crate::units::Extent;
 
 /// The mapping of one frame, pattern and block.
@@ -83,8 +84,8 @@ impl MappingParams {
     }
 
     /// Which of the n * m subsets shades a pixel: 0..n*m, row-major inside the pattern.
-    pub fn subset_of(&self, [x, y]: [u32; 2]) -> u32 {
-        y % self.pattern_y * self.pattern_x + x % self.pattern_x
+    pub fn subset_of(&self, pixel: [u32; 2]) -> u32 {
+        pattern::subset_of([self.pattern_x, self.pattern_y], pixel)
     }
 
     /// Split in one pass: pixel (x, y) goes to (x / n, y / m) of sub-buffer (x mod n, y mod m).

@@ -165,6 +165,7 @@ impl Prepared for PreparedInterleaved {
             ("vpls", self.lights.vpls.len() as f64),
             ("vpls_found", f64::from(self.found_count)),
             ("light_walks", f64::from(self.walk_count)),
+            ("shaded_pixels", self.choices.shaded_pixel_count() as f64),
             ("subset_lights_per_pixel", joined as f64 / f64::from(self.choices.subset_count())),
         ])
     }
@@ -215,6 +216,7 @@ impl Frame for InterleavedFrame {
             let lights = BlendLights {
                 lights: &self.direct.lights,
                 vpls: &self.shade.vpls,
+                subsets: &self.shade.subsets,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
             };
@@ -226,6 +228,10 @@ impl Frame for InterleavedFrame {
 
     fn picture(&self) -> (&Image, Access) {
         (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
+    }
+
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        if self.is_lit_fully { self.direct.counters(gpu, self.color.description.extent) } else { Ok(BTreeMap::new()) }
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

@@ -122,6 +122,15 @@ pub const SETTINGS: &[Setting] = &[
         help: "the scene's own lights: shaded on every pixel by --brdf, joined to the subsets as diffuse light, or left out",
     },
     Setting {
+        key: "blend-lights",
+        symbol: "",
+        kind: Kind::Choice(&["subset", "all"]),
+        default: "subset",
+        unit: "",
+        paper: "",
+        help: "virtual point lights of BLEND surfaces, which no filter smooths: those of the pixel's subset, or all",
+    },
+    Setting {
         key: "filter",
         symbol: "",
         kind: Kind::Choice(&["gauss", "gauss-fast", "none"]),

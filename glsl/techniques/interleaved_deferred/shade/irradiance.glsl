@@ -6,15 +6,8 @@
 
 #include "bvh.glsl"
 #include "shading/light.glsl"
+#include "shading/subset.glsl"
 #include "techniques/interleaved_deferred/mapping.glsl"
-
-// A subset's stretches of the two lists.
-struct SubsetBlock {
-    uint vpl_first;
-    uint vpl_count;
-    uint light_first;
-    uint light_count;
-};
 
 struct ShadeParams {
     MappingParams mapping;

@@ -40,7 +40,7 @@ pub fn plan(plan: &mut Plan, vpl_count: u32, joined_count: u32, subset_count: u3
 pub struct ShadeGpu {
     pub vpls: Buffer,
     subset_lights: Buffer,
-    subsets: Buffer,
+    pub subsets: Buffer,
     /// What every road of shading is told.
     pub params: ShadeParams,
 }
