@@ -46,6 +46,12 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
         &["--storage buffer", "draw into images"],
     );
     program.fails(&small(&["--split", "tile", "--copy", "push"]), 2, &["--split tile with --copy push", "--copy pull"]);
+    program.fails(&small(&["--direct-pattern", "2"]), 2, &["--direct-pattern 2", "auto or NxM", "1 to 64"]);
+    program.fails(
+        &small(&["--direct", "interleaved", "--direct-pattern", "4x3"]),
+        2,
+        &["--direct-pattern 4x3 with --pattern 4x4", "I of 1, 2, 4 and J of 1, 2, 4"],
+    );
     program.fails(&small(&["--split", "twice"]), 2, &["--split twice", "one-pass"]);
     program.fails(&["render", "cornell", "--size", "0x18"], 2, &["--size 0x18", "1 to 16384"]);
     program.fails(&small(&["--camera", "door"]), 2, &["--camera door", "cornell"]);
@@ -82,6 +88,28 @@ fn a_report_says_what_storage_and_block_came_to() {
         fragment["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap()).collect();
     for pass in ["split.blocks", "split.translate", "shade", "gather.translate", "gather.blocks"] {
         assert!(names.contains(&format!("interleaved_deferred.{pass}").as_str()), "{names:?} has no {pass}");
+    }
+}
+
+#[test]
+fn a_report_says_what_the_direct_pattern_came_to() {
+    let program = Program::new();
+    let report = |more: &[&str]| {
+        let lamps = ["render", "lamps:objects=10,lights=24", "--size", "32x18", "--vpls", "96", "--pattern", "8x6"];
+        program.run(&[&lamps[..], &["--json", "-o", "a.png"], more].concat()).fine().json()
+    };
+    for (more, direct_pattern, vpls, lights) in [
+        (&["--direct", "interleaved"][..], "8x6", 2.0, 48.0),
+        (&["--direct", "interleaved", "--direct-pattern", "4x3"], "4x3", 2.0, 12.0),
+        (&["--direct", "interleaved", "--direct-pattern", "1x1"], "1x1", 2.0, 1.0),
+        (&["--direct", "interleaved", "--direct-pattern", "4x3", "--split", "none"], "1x1", 96.0, 1.0),
+        (&["--direct", "interleaved", "--direct-pattern", "4x3", "--split", "subsample"], "1x1", 96.0, 1.0),
+    ] {
+        let report = report(more);
+        assert_eq!(report["settings"]["direct-pattern"], direct_pattern, "{more:?}");
+        let counter = |name: &str| report["counters"][name].as_f64().unwrap();
+        assert_eq!(counter("vpls"), 96.0);
+        assert_eq!(counter("subset_lights_per_pixel"), vpls + counter("lights") / lights, "{more:?}");
     }
 }
 

@@ -167,6 +167,38 @@ fn lights_joined_to_the_subsets_split_the_same() {
     require_one_hash(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "interleaved")], &one);
 }
 
+/// Clusters of sub-buffers share a subset of the punctual lights, on every road.
+#[test]
+fn clusters_split_the_same() {
+    let watched = Watched::open("lamps:objects=10,lights=24");
+    let mut seen = Vec::new();
+    for (pattern, direct_patterns) in [("4x4", ["auto", "1x1", "2x2"]), ("8x6", ["8x6", "4x3", "2x3"])] {
+        for direct_pattern in direct_patterns {
+            let common = [
+                ("vpls", "64"),
+                ("size", "161x90"),
+                ("direct", "interleaved"),
+                ("pattern", pattern),
+                ("direct-pattern", direct_pattern),
+            ];
+            seen.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
+        }
+    }
+    let distinct: std::collections::BTreeSet<_> = seen.iter().collect();
+    assert_eq!(distinct.len(), seen.len(), "a direct pattern that changes nothing: {seen:?}");
+    // One pattern for all lights, said or not.
+    let common = [("vpls", "64"), ("size", "161x90"), ("direct", "interleaved"), ("pattern", "8x6")];
+    let said: [Changes<'_>; 2] = [&[], &[("direct-pattern", "8x6")]];
+    assert_eq!(require_one_hash(&watched, INTERLEAVED, &common, &said), seen[3]);
+    // What sums every light, or joins none, does not read it: a pattern that does not divide is no contradiction.
+    for own in [[("split", "none"), ("direct", "interleaved")], [("split", "subsample"), ("direct", "interleaved")]] {
+        let unread: [Changes<'_>; 2] = [&[], &[("direct-pattern", "3x2")]];
+        require_one_hash(&watched, INTERLEAVED, &both(&own, &[("vpls", "64"), ("size", "161x90")]), &unread);
+    }
+    let unread: [Changes<'_>; 3] = [&[], &[("direct-pattern", "1x1")], &[("direct-pattern", "3x2")]];
+    require_one_hash(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "full")], &unread);
+}
+
 #[test]
 fn culling_changes_no_pixel() {
     let watched = Watched::open("lamps:objects=40,lights=60");

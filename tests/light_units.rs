@@ -15,7 +15,7 @@ use quincunx::techniques::interleaved_deferred::mapping::mapping;
 use quincunx::techniques::interleaved_deferred::subsets::subsets;
 use quincunx::units::Extent;
 use std::f64::consts::PI;
-use support::watched::Watched;
+use support::watched::{Changes, Watched, both};
 
 /// Normals of 16 bits are off by up to 1.5e-5 a component, which at an incidence of 85 degrees is 2e-4 of the cosine;
 /// albedo in half floats is off by 2.4e-4, positions in float by next to nothing. Their sum, doubled.
@@ -232,6 +232,52 @@ fn joined_lights_give_the_same_irradiance() {
     }
 }
 
+/// Punctual lights under a ceiling that virtual ones shine down from: whatever the pattern of either, the mean over each
+/// whole pattern is what `--split none` has there, all of them.
+#[test]
+fn the_mean_over_a_pattern_is_every_light() {
+    let lights: Vec<Light> =
+        (0..7).map(|i| light(LightKind::Point, vec3(i as f32 - 3.0, 2.0 + 0.5 * i as f32, 1.0), Vec3::NEG_Y)).collect();
+    let mut scene = plane(&lights);
+    scene.meshes.push(Mesh { normals: vec![Vec3::NEG_Y; 4], indices: vec![0, 2, 1, 0, 3, 2], ..square(9.0, 30.0) });
+    scene.draws.push(Draw { mesh: 1, world_from_object: world_from_plane() });
+    // The whole picture shows some 15 by 8 mm, so a pattern shows some 2 mm.
+    scene.cameras[0].projection = Projection::Perspective { y_fov: 1e-3, aspect: None, z_near: 0.1, z_far: None };
+    let watched = Watched::with_scene(scene);
+    let shaded = |changes: Changes<'_>| {
+        let common =
+            [("size", "64x36"), ("position", "float"), ("light-cutoff", "0"), ("vpls", "96"), ("split", "branch")];
+        let renderer = watched.render_stages("interleaved_deferred", &both(&common, changes), &["shade.irradiance"]);
+        watched.rgb(&renderer, "shade.irradiance")
+    };
+    let means = |irradiance: &[[f32; 3]], [n, m]: [usize; 2]| -> Vec<DVec3> {
+        let corners = (0..36).step_by(m).flat_map(|y| (0..64).step_by(n).map(move |x| [x, y]));
+        let mean = |[left, top]: [usize; 2]| {
+            let pixels = (0..m).flat_map(|y| (0..n).map(move |x| (top + y) * 64 + left + x));
+            pixels.map(|pixel| Vec3::from_array(irradiance[pixel]).as_dvec3()).sum::<DVec3>() / (n * m) as f64
+        };
+        corners.map(mean).collect()
+    };
+    // Both kinds light the plane, each by far more than the bound below: the weight of neither can be wrong unseen.
+    let every_light = shaded(&[("split", "none"), ("direct", "interleaved")]);
+    let virtual_lights = shaded(&[("split", "none"), ("direct", "none")]);
+    for (all, virtual_part) in every_light.iter().zip(&virtual_lights) {
+        assert!(virtual_part[0] > 0.05 * all[0] && virtual_part[0] < 0.95 * all[0], "{virtual_part:?} of {all:?}");
+    }
+    for (pattern, size, direct_patterns) in
+        [("8x6", [8, 6], ["auto", "4x3", "2x3", "1x1"]), ("4x4", [4, 4], ["auto", "2x2", "4x1", "1x1"])]
+    {
+        for direct_pattern in direct_patterns {
+            let changes = [("direct", "interleaved"), ("pattern", pattern), ("direct-pattern", direct_pattern)];
+            for (found, expected) in means(&shaded(&changes), size).into_iter().zip(means(&every_light, size)) {
+                // Two halves, 2^-11 each; and over 2 mm a light 2 m away changes by at most 4 / 2 m of itself.
+                let bound = expected * (2f64.powi(-10) + 4e-3);
+                assert!((found - expected).abs().cmple(bound).all(), "{changes:?}: {found} for {expected}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_roof_keeps_the_sun_out_exactly() {
     let mut scene = plane(&[light(LightKind::Directional, Vec3::ZERO, vec3(0.3, -1.0, 0.2))]);
@@ -275,7 +321,7 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
         let walk = vpl::Walk { count, bounces: 1, emissive: false, seed: 5 };
         let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;
         let mapping = mapping(renderer.view.extent, pattern, pattern);
-        let subsets = subsets(mapping.subset_count(), count, 0);
+        let subsets = subsets(pattern, pattern, count, 0);
         let diagonal = session.scene.bounds().diagonal();
         let found = watched.rgb(&renderer, "shade.irradiance");
         let normals = watched.rgb(&renderer, "gbuffer.normal");

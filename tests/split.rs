@@ -161,6 +161,29 @@ fn fewer_lights_than_subsets_are_refused() {
     assert!(renderer.picture().unwrap().mean()[0] > 0.0);
 }
 
+/// A cluster without a punctual light is none where its subsets have virtual ones.
+#[test]
+fn clusters_need_no_light_of_their_own_where_their_subsets_have_virtual_ones() {
+    let watched = Watched::open("lamps:objects=10,lights=2");
+    let joined = [("size", "8x8"), ("direct", "interleaved"), ("pattern", "4x4")];
+    let with = |vpls, direct_pattern| both(&joined, &[("vpls", vpls), ("direct-pattern", direct_pattern)]);
+    let lights = watched.render(TECHNIQUE, &with("16", "2x2")).counters["lights"];
+    assert!(lights > 0.0 && lights < 4.0, "{lights} lights leave none of four clusters empty");
+    // The first of its cluster's places that has no virtual light is the ninth.
+    let text = refused(&watched, &with("8", "2x2"));
+    for words in ["for the 16 subsets of --pattern 4x4", "--vpls 16 or more", "smaller --pattern or --direct-pattern"] {
+        assert!(text.contains(words), "{text}");
+    }
+    // Every subset has all of them.
+    watched.render(TECHNIQUE, &with("1", "1x1"));
+    for (direct_pattern, axis) in [("3x2", "--direct-pattern 3x2"), ("2x3", "--direct-pattern 2x3"), ("8x4", "8x4")] {
+        let text = refused(&watched, &with("16", direct_pattern));
+        for words in [axis, "with --pattern 4x4", "I of 1, 2, 4 and J of 1, 2, 4", "auto is 4x4"] {
+            assert!(text.contains(words), "{text}");
+        }
+    }
+}
+
 /// The message of a request that is refused as a bad one.
 fn refused(watched: &Watched, changes: Changes<'_>) -> String {
     let error = watched.try_renderer(TECHNIQUE, changes, &[], Submits::One).err();

@@ -154,7 +154,7 @@ pub fn is_of_memory(error: &Error) -> bool {
 /// The settings of the identity: the same kernel and storage at pattern 1x1. A copy's time does not depend on what is
 /// copied, so one virtual point light is enough for it; at 1x1 every pixel would meet all of them.
 fn identity_values(job: &Job, values: &Values) -> Result<Values> {
-    let identity = changed(job, values, [("pattern", "1x1")])
+    let identity = changed(job, values, [("pattern", "1x1"), ("direct-pattern", "auto")])
         .map_err(|error| Error::request(format!("there is no identity: {}", error.message())))?;
     Ok(changed(job, &identity, [("vpls", "1")]).unwrap_or(identity))
 }

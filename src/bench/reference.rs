@@ -19,6 +19,7 @@ const PASS_FRAMES: usize = 3;
 /// has one reference.
 const UNREAD: &[&str] = &[
     "pattern",
+    "direct-pattern",
     "block",
     "filter",
     "kernel",
@@ -152,6 +153,7 @@ mod tests {
         let first = of("pattern", "2x2");
         assert_eq!(first.text("split"), "none");
         assert_eq!(of("kernel", "7"), first);
+        assert_eq!(of("direct-pattern", "2x2"), first);
         assert_eq!(of("split", "branch"), first);
         assert_ne!(of("vpls", "7"), first);
         assert_ne!(of("size", "7x7"), first);

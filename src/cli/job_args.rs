@@ -86,6 +86,7 @@ fn value_name(setting: &Setting) -> &'static str {
         Kind::Integer { .. } | Kind::Number { .. } => "N",
         Kind::Choice(_) => "NAME",
         Kind::Pair { .. } => "NxM",
+        Kind::PairOrAuto { .. } => "auto|NxM",
         Kind::Sides { .. } => "N|NxM",
         Kind::Length => "LENGTH",
         Kind::Bytes => "BYTES",

@@ -29,6 +29,11 @@ pub enum Kind {
         min: u32,
         max: u32,
     },
+    /// `NxM`, both in the range, or `auto`.
+    PairOrAuto {
+        min: u32,
+        max: u32,
+    },
     /// `NxM`, or `N` for both, in the range.
     Sides {
         min: u32,
@@ -67,6 +72,7 @@ impl Setting {
             Kind::Number { min, max } => format!("{min} to {max}"),
             Kind::Choice(choices) => choices.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
+            Kind::PairOrAuto { min, max } => format!("auto or NxM, both {min} to {max}"),
             Kind::Sides { min, max } => format!("N or NxM, each {min} to {max}"),
             Kind::Length => "metres, or P% of the scene's diagonal".to_owned(),
             Kind::Bytes => {
@@ -81,18 +87,18 @@ impl Setting {
     ///
     /// Errors: it is out of range or cannot be read (exit code 2).
     fn check(&self, text: &str) -> Result<()> {
+        let in_range = |pair: [u32; 2], min: u32, max: u32| pair.iter().all(|side| (min..=max).contains(side));
         let possible = match self.kind {
             Kind::Integer { min, max } => text.parse::<u64>().is_ok_and(|value| (min..=max).contains(&value)),
             Kind::Number { min, max } => {
                 text.parse::<f64>().is_ok_and(|value| value.is_finite() && (min..=max).contains(&value))
             }
             Kind::Choice(choices) => choices.contains(&text),
-            Kind::Pair { min, max } => {
-                parse_pair(text).is_some_and(|pair| pair.iter().all(|side| (min..=max).contains(side)))
+            Kind::Pair { min, max } => parse_pair(text).is_some_and(|pair| in_range(pair, min, max)),
+            Kind::PairOrAuto { min, max } => {
+                parse_pair_or_auto(text).is_some_and(|pair| pair.is_none_or(|pair| in_range(pair, min, max)))
             }
-            Kind::Sides { min, max } => {
-                parse_sides(text).is_some_and(|sides| sides.iter().all(|side| (min..=max).contains(side)))
-            }
+            Kind::Sides { min, max } => parse_sides(text).is_some_and(|sides| in_range(sides, min, max)),
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Bytes => parse_bytes(text).is_some(),
             Kind::Color => parse_color(text).is_some(),
@@ -110,6 +116,14 @@ impl Setting {
 fn parse_pair(text: &str) -> Option<[u32; 2]> {
     let (first, second) = text.split_once('x')?;
     Some([first.parse().ok()?, second.parse().ok()?])
+}
+
+/// Some(None) is `auto`.
+fn parse_pair_or_auto(text: &str) -> Option<Option<[u32; 2]>> {
+    match text {
+        "auto" => Some(None),
+        text => parse_pair(text).map(Some),
+    }
 }
 
 fn parse_sides(text: &str) -> Option<[u32; 2]> {
@@ -194,6 +208,11 @@ impl Values {
         self.parsed(key, parse_pair)
     }
 
+    /// None: `auto`.
+    pub fn pair_or_auto(&self, key: &str) -> Option<[u32; 2]> {
+        self.parsed(key, parse_pair_or_auto)
+    }
+
     /// Of `Kind::Sides`.
     pub fn sides(&self, key: &str) -> [u32; 2] {
         self.parsed(key, parse_sides)
@@ -257,6 +276,7 @@ mod tests {
     fn what_cannot_be_read_is_refused() {
         for (kind, wrong) in [
             (Kind::Pair { min: 1, max: 9 }, &["", "x", "3", "3x", "-1x2", "3x2x1", "99999999999x1"][..]),
+            (Kind::PairOrAuto { min: 1, max: 9 }, &["", "AUTO", "none", "3", "3x", "0x2", "3x10", "autoxauto"]),
             (Kind::Sides { min: 1, max: 9 }, &["", "x", "0", "10", "3x", "3x10", "3x2x1"]),
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),

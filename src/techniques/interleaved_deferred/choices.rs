@@ -4,9 +4,10 @@ use super::NAME;
 use super::mapping::mapping;
 use super::road::{Copier, MaskKind, Road};
 use super::sub_buffers::Storage;
+use super::subsets::subsets;
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
-use crate::gpu::shader::structs::{BlendParams, MappingParams};
+use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Kernel, StopBits};
@@ -37,6 +38,9 @@ pub struct Choices {
     pub direct_interleaved: bool,
     /// Blended surfaces have the virtual point lights of their pixel's subset, not all.
     pub blend_subsets: bool,
+    /// The pattern that these are dealt out over, i x j: it divides the split's. 1x1 where none are joined and where every
+    /// light is summed: no pixel lacks any of them.
+    pub direct_pattern: [u32; 2],
     /// Virtual point lights.
     pub vpl_count: u32,
     /// The scene's own lights that this frame has.
@@ -64,6 +68,8 @@ impl Choices {
             _ => Filter::None,
         };
         let direct = values.text("direct");
+        let direct_pattern =
+            if road.sums_all() || direct != "interleaved" { [1, 1] } else { direct_pattern(values, pattern)? };
         let choices = Self {
             shading: ShadingSettings::new(values, lights, scene.bounds().diagonal(), caps),
             road,
@@ -73,6 +79,7 @@ impl Choices {
             direct_full: direct == "full",
             direct_interleaved: direct == "interleaved",
             blend_subsets: values.text("blend-lights") == "subset",
+            direct_pattern,
             vpl_count: values.integer("vpls") as u32,
             direct_count: if direct == "none" { 0 } else { lights.lights.len() as u32 },
         };
@@ -81,16 +88,19 @@ impl Choices {
         Ok(choices)
     }
 
-    /// Errors: fewer lights than subsets (exit code 2).
+    /// Errors: fewer lights than subsets, so that a subset has neither a virtual nor a punctual one (exit code 2).
+    ///
+    /// A cluster without a punctual light is none: weights stay, and the mean over a pattern with them.
     fn check_lights(&self, pattern: &str) -> Result<()> {
-        let (count, subset_count) = (self.vpl_count + self.joined_count(), self.subset_count());
-        if count >= subset_count {
+        if self.subsets().iter().all(|subset| subset.vpl_count + subset.light_count > 0) {
             return Ok(());
         }
+        let (count, subset_count) = (self.vpl_count + self.joined_count(), self.subset_count());
+        let smaller = if self.joined_count() > 0 { "--pattern or --direct-pattern" } else { "--pattern" };
         Err(Error::request(format!(
             "{NAME}: {count} lights for the {subset_count} subsets of --pattern {pattern}: each subset needs one"
         ))
-        .note(format!("--vpls {subset_count} or more, or a smaller --pattern")))
+        .note(format!("--vpls {subset_count} or more, or a smaller {smaller}")))
     }
 
     /// Errors: a limit of the stencil or of the device (exit code 2).
@@ -146,8 +156,12 @@ impl Choices {
 
     /// What `auto` and rounding came to, of the settings that the road reads.
     pub fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let mut resolved =
-            BTreeMap::from([("sigma", format!("{}", self.kernel.sigma)), ("texels", self.shading.texels.to_string())]);
+        let [i, j] = self.direct_pattern;
+        let mut resolved = BTreeMap::from([
+            ("direct-pattern", format!("{i}x{j}")),
+            ("sigma", format!("{}", self.kernel.sigma)),
+            ("texels", self.shading.texels.to_string()),
+        ]);
         if let Some(copies) = self.road.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
             resolved.insert("storage", storage.to_owned());
@@ -182,10 +196,50 @@ impl Choices {
         }
     }
 
-    /// Light subsets: those of the pattern, or one.
-    pub fn subset_count(&self) -> u32 {
-        if self.road.sums_all() { 1 } else { self.mapping.subset_count() }
+    /// The pattern that virtual point lights are dealt out over; 1x1 where every light is summed.
+    fn light_pattern(&self) -> [u32; 2] {
+        if self.road.sums_all() { [1, 1] } else { [self.mapping.pattern_x, self.mapping.pattern_y] }
     }
+
+    /// Light subsets: those of the pattern, n * m, or one.
+    pub fn subset_count(&self) -> u32 {
+        self.light_pattern().iter().product()
+    }
+
+    /// Subsets of the punctual lights among them: i * j.
+    pub fn direct_subset_count(&self) -> u32 {
+        self.direct_pattern.iter().product()
+    }
+
+    /// Sub-buffers that share one subset of the punctual lights.
+    pub fn cluster_size(&self) -> u32 {
+        self.subset_count() / self.direct_subset_count()
+    }
+
+    /// Each subset's lights.
+    pub fn subsets(&self) -> Vec<SubsetBlock> {
+        subsets(self.light_pattern(), self.direct_pattern, self.vpl_count, self.joined_count())
+    }
+}
+
+/// `--direct-pattern` beside a split of `pattern`.
+///
+/// Errors: it does not divide the pattern, so that no clusters of sub-buffers make it (exit code 2).
+fn direct_pattern(values: &Values, pattern: [u32; 2]) -> Result<[u32; 2]> {
+    let direct = values.pair_or_auto("direct-pattern").unwrap_or(pattern);
+    if [0, 1].into_iter().all(|axis| pattern[axis].is_multiple_of(direct[axis])) {
+        return Ok(direct);
+    }
+    let divisors = |of: u32| {
+        let all: Vec<String> = (1..=of).filter(|by| of.is_multiple_of(*by)).map(|by| by.to_string()).collect();
+        all.join(", ")
+    };
+    let ([i, j], [n, m]) = (direct, pattern);
+    Err(Error::request(format!(
+        "{NAME}: --direct-pattern {i}x{j} with --pattern {n}x{m}: clusters of its sub-buffers make patterns that divide it \
+         (Segovia 2006, 4.6)"
+    ))
+    .note(format!("IxJ with I of {} and J of {}; auto is {n}x{m}", divisors(n), divisors(m))))
 }
 
 /// A block must be whole patterns: rounded up to the next multiple in each direction.

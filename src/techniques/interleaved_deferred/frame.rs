@@ -67,7 +67,8 @@ impl InterleavedFrame {
         let params = ShadeParams {
             mapping: *mapping,
             least_squared: least * least,
-            weight: choices.subset_count() as f32,
+            cluster_size: choices.cluster_size() as f32,
+            weight: choices.direct_subset_count() as f32,
             subset_first: 0,
         };
         let shade = ShadeGpu::new(gpu, resources, lights, params)?;

@@ -16,6 +16,8 @@
 //! - compute shaders shade sub-buffers, where the paper drew quads
 //! - sub-buffers are padded to whole patterns or blocks, so the tiled buffer is at least as large as the frame, not equal
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
+//! - the direct lights' pattern, made by clustering sub-buffers (section 4.6), may be of any divisors of the split's, where
+//!   the paper says powers of two
 //! - secondary lights are never shadowed (SNSM), as in the paper's section 6.2
 //!
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
@@ -119,12 +121,11 @@ impl Technique for InterleavedDeferred {
         let mut direct_lights = direct::light_blocks(inputs.lights, values);
         direct_lights.truncate(choices.direct_count as usize);
         let joined: &[LightBlock] = if choices.direct_interleaved { &direct_lights } else { &[] };
-        let subset_count = choices.subset_count();
         // The order depends on the pattern: dealt for the whole, then cut.
         let bounds = inputs.scene.bounds();
         let lights = SubsetLights {
-            subsets: subsets::subsets(subset_count, found.vpls.len() as u32, joined.len() as u32),
-            lights: subsets::dealt(joined, &bounds, subset_count),
+            subsets: choices.subsets(),
+            lights: subsets::dealt(joined, &bounds, choices.direct_subset_count()),
             vpls: found.vpls,
         };
         let clamp = values.length("vpl-clamp", bounds.diagonal());
@@ -159,14 +160,16 @@ impl Prepared for PreparedInterleaved {
     }
 
     fn counters(&self) -> BTreeMap<&'static str, f64> {
-        let joined = self.lights.vpls.len() + self.lights.lights.len();
+        let mean = |count: usize, subset_count: u32| count as f64 / f64::from(subset_count);
+        let vpls = mean(self.lights.vpls.len(), self.choices.subset_count());
+        let joined = mean(self.lights.lights.len(), self.choices.direct_subset_count());
         BTreeMap::from([
             ("lights", self.direct_lights.len() as f64),
             ("vpls", self.lights.vpls.len() as f64),
             ("vpls_found", f64::from(self.found_count)),
             ("light_walks", f64::from(self.walk_count)),
             ("shaded_pixels", self.choices.shaded_pixel_count() as f64),
-            ("subset_lights_per_pixel", joined as f64 / f64::from(self.choices.subset_count())),
+            ("subset_lights_per_pixel", vpls + joined),
         ])
     }
 

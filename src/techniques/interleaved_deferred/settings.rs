@@ -131,6 +131,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "virtual point lights of BLEND surfaces, which no filter smooths: those of the pixel's subset, or all",
     },
     Setting {
+        key: "direct-pattern",
+        symbol: "i x j",
+        kind: Kind::PairOrAuto { min: 1, max: 64 },
+        default: "auto",
+        unit: "px",
+        paper: "Segovia 2006, 4.6",
+        help: "of --direct interleaved: the pattern of the scene's own lights, which divides --pattern and is made of \
+               clusters of its sub-buffers; fewer pixels share them out, so each has more of them; auto: --pattern",
+    },
+    Setting {
         key: "filter",
         symbol: "",
         kind: Kind::Choice(&["gauss", "gauss-fast", "none"]),

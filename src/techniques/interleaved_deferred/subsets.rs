@@ -1,4 +1,6 @@
-//! Lights split over the n * m subsets: sizes differ by at most one, each as well spread as the whole.
+//! Lights split over subsets whose sizes differ by at most one, each as well spread as the whole: virtual point lights over
+//! the n * m of the pattern, punctual lights over the i * j of a pattern that divides it. Sub-buffers whose places are the
+//! same modulo i and j are a cluster, and share one subset of the punctual lights (Segovia 2006, section 4.6).
 //!
 //! Virtual point lights come in the order of a low-discrepancy walk, so a stretch of them is as well spread as all; a
 //! comb would not be (every 16th point of a base-2 sequence lies in one sixteenth of its range). Punctual lights have no
@@ -8,23 +10,43 @@ use crate::gpu::shader::structs::{LightBlock, SubsetBlock};
 use crate::scene::Bounds;
 use glam::{Vec3, Vec4};
 
-/// Each subset's stretches. Virtual lights give their odd ones to the first subsets, punctual lights to the last, so
-/// that the sums differ by at most one too.
-pub fn subsets(subset_count: u32, vpl_count: u32, light_count: u32) -> Vec<SubsetBlock> {
-    let (vpl_share, vpl_odd) = (vpl_count / subset_count, vpl_count % subset_count);
-    let (light_share, light_odd) = (light_count / subset_count, light_count % subset_count);
-    let (mut vpl_first, mut light_first) = (0, 0);
+/// Stretches of the two lists for each of the n * m sub-buffers, row-major inside the pattern.
+///
+/// `direct_pattern` divides `pattern`. Virtual lights give their odd ones to the first subsets, punctual lights to the last,
+/// so that with one pattern for both the sums differ by at most one too.
+pub fn subsets(pattern: [u32; 2], direct_pattern: [u32; 2], vpl_count: u32, light_count: u32) -> Vec<SubsetBlock> {
+    let ([n, m], [i, j]) = (pattern, direct_pattern);
+    assert!(n.is_multiple_of(i) && m.is_multiple_of(j), "{direct_pattern:?} does not divide {pattern:?}");
+    let vpl_odd = vpl_count % (n * m);
+    let vpls = stretches(n * m, |subset| vpl_count / (n * m) + u32::from(subset < vpl_odd));
+    let lights = light_stretches(i * j, light_count);
+    let places = (0..m).flat_map(|y| (0..n).map(move |x| [x, y]));
+    let clusters = places.map(|[x, y]| lights[(y % j * i + x % i) as usize]);
+    vpls.into_iter()
+        .zip(clusters)
+        .map(|([vpl_first, vpl_count], [light_first, light_count])| SubsetBlock {
+            vpl_first,
+            vpl_count,
+            light_first,
+            light_count,
+        })
+        .collect()
+}
+
+/// The punctual lights of each subset.
+fn light_stretches(subset_count: u32, light_count: u32) -> Vec<[u32; 2]> {
+    let odd = light_count % subset_count;
+    stretches(subset_count, |subset| light_count / subset_count + u32::from(subset >= subset_count - odd))
+}
+
+/// Stretches of these lengths, one behind the other: [first, count].
+fn stretches(subset_count: u32, length: impl Fn(u32) -> u32) -> Vec<[u32; 2]> {
+    let mut first = 0;
     (0..subset_count)
         .map(|subset| {
-            let block = SubsetBlock {
-                vpl_first,
-                vpl_count: vpl_share + u32::from(subset < vpl_odd),
-                light_first,
-                light_count: light_share + u32::from(subset >= subset_count - light_odd),
-            };
-            vpl_first += block.vpl_count;
-            light_first += block.light_count;
-            block
+            let stretch = [first, length(subset)];
+            first += stretch[1];
+            stretch
         })
         .collect()
 }
@@ -33,12 +55,12 @@ pub fn subsets(subset_count: u32, vpl_count: u32, light_count: u32) -> Vec<Subse
 pub fn dealt(lights: &[LightBlock], bounds: &Bounds, subset_count: u32) -> Vec<LightBlock> {
     let mut sorted: Vec<&LightBlock> = lights.iter().collect();
     sorted.sort_by_key(|light| morton(Vec4::from_array(light.position_ws).truncate(), bounds));
-    let blocks = subsets(subset_count, 0, lights.len() as u32);
+    let stretches = light_stretches(subset_count, lights.len() as u32);
     let mut hands: Vec<Vec<LightBlock>> = vec![Vec::new(); subset_count as usize];
     // Subsets with an odd light take part in the last round; a hand that is full is passed over.
     let mut turn = 0;
     for light in sorted {
-        while hands[turn % hands.len()].len() as u32 >= blocks[turn % hands.len()].light_count {
+        while hands[turn % hands.len()].len() as u32 >= stretches[turn % hands.len()][1] {
             turn += 1;
         }
         let hand = turn % hands.len();
@@ -62,19 +84,51 @@ mod tests {
     use bytemuck::Zeroable;
     use proptest::prelude::*;
 
+    prop_compose! {
+        /// A direct pattern and a pattern that it divides.
+        fn any_patterns()(i in 1u32..9, j in 1u32..9, wide in 1u32..5, high in 1u32..5) -> ([u32; 2], [u32; 2]) {
+            ([i * wide, j * high], [i, j])
+        }
+    }
+
+    /// Stretches that hold each of `count` lights once, in order, and whose sizes differ by at most one.
+    fn require_whole(stretches: &[[u32; 2]], count: u32) -> Result<(), TestCaseError> {
+        let mut next = 0;
+        for [first, length] in stretches {
+            prop_assert_eq!(*first, next);
+            next += length;
+        }
+        prop_assert_eq!(next, count);
+        let lengths = || stretches.iter().map(|[_, length]| length);
+        prop_assert!(lengths().max().unwrap() - lengths().min().unwrap() <= 1);
+        Ok(())
+    }
+
     proptest! {
         #[test]
-        fn subsets_hold_every_light_once_and_differ_by_at_most_one(count in 1u32..65, vpls in 0u32..500, lights in 0u32..200) {
-            let blocks = subsets(count, vpls, lights);
-            let sizes: Vec<u32> = blocks.iter().map(|block| block.vpl_count + block.light_count).collect();
-            prop_assert_eq!(sizes.iter().sum::<u32>(), vpls + lights);
-            prop_assert!(sizes.iter().max().unwrap() - sizes.iter().min().unwrap() <= 1);
-            let mut next = (0, 0);
-            for block in &blocks {
-                prop_assert_eq!((block.vpl_first, block.light_first), next);
-                next = (block.vpl_first + block.vpl_count, block.light_first + block.light_count);
+        fn every_light_is_in_one_subset((pattern, direct) in any_patterns(), vpls in 0u32..500, lights in 0u32..200) {
+            let blocks = subsets(pattern, direct, vpls, lights);
+            let of_vpls: Vec<_> = blocks.iter().map(|block| [block.vpl_first, block.vpl_count]).collect();
+            require_whole(&of_vpls, vpls)?;
+            // The first i * j places are one of each cluster.
+            let of = |x: u32, y: u32| {
+                let block = &blocks[(y * pattern[0] + x) as usize];
+                [block.light_first, block.light_count]
+            };
+            let of_lights: Vec<_> = (0..direct[1]).flat_map(|y| (0..direct[0]).map(move |x| of(x, y))).collect();
+            require_whole(&of_lights, lights)?;
+            for y in 0..pattern[1] {
+                for x in 0..pattern[0] {
+                    prop_assert_eq!(of(x, y), of(x % direct[0], y % direct[1]));
+                }
             }
-            prop_assert_eq!(next, (vpls, lights));
+        }
+
+        #[test]
+        fn with_one_pattern_the_sums_differ_by_at_most_one(n in 1u32..9, m in 1u32..9, vpls in 0u32..500, lights in 0u32..200) {
+            let blocks = subsets([n, m], [n, m], vpls, lights);
+            let sizes = || blocks.iter().map(|block| block.vpl_count + block.light_count);
+            prop_assert!(sizes().max().unwrap() - sizes().min().unwrap() <= 1);
         }
 
         #[test]

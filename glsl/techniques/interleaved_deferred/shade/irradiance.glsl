@@ -13,7 +13,10 @@ struct ShadeParams {
     MappingParams mapping;
     // Square of --vpl-clamp, in square metres.
     float least_squared;
-    // n * m: the mean over a pattern is the sum over all lights.
+    // Sub-buffers of a cluster: (n * m) / (i * j), a whole number.
+    float cluster_size;
+    // i * j of --direct-pattern, the weight of a punctual light; a virtual point light weighs cluster_size times as much,
+    // n * m. So the mean over a pattern is the sum over all lights.
     float weight;
     // First subset of this dispatch; 0 where a dispatch has them all.
     uint subset_first;
@@ -74,6 +77,11 @@ void shade_points(SubsetBlock subset) {
         for (uint i = 0u; i < TEXELS; i++) {
             sum[i] += vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
         }
+    }
+    // Before the punctual lights join: both factors are whole, and with one pattern for both kinds this one is 1 and keeps
+    // the bits of the one sum.
+    for (uint i = 0u; i < TEXELS; i++) {
+        sum[i] *= params.cluster_size;
     }
     uint light_end = is_lit ? subset.light_first + subset.light_count : 0u;
     for (uint index = subset.light_first; index < light_end; index++) {
