@@ -15,6 +15,7 @@ use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
+use crate::gpu::shader::structs::GBufferParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::plan::{Plan, Resources};
@@ -351,10 +352,11 @@ impl GBufferPass {
             mesh::bind_streams(cmd, scene);
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
                 if !calls.is_empty() {
-                    let mut bound = mesh::bound(frame, scene).to_vec();
-                    bound.push(("Materials", Bound::Buffer(&scene.materials)));
-                    cmd.bind_graphics(pipeline, &[], &bound)?;
-                    mesh::draw(cmd, pipeline, scene, calls);
+                    let params = |material: u32| GBufferParams { material: scene.material_blocks[material as usize] };
+                    let first = params(calls[0].material);
+                    cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &mesh::bound(frame, scene))?;
+                    let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&params(material)));
+                    mesh::draw_with(cmd, pipeline, scene, calls, push);
                 }
             }
             cmd.end_rendering();

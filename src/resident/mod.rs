@@ -175,6 +175,8 @@ pub struct SceneGpu {
     pub indices: Buffer,
     pub draws: Buffer,
     pub materials: Buffer,
+    /// What `materials` holds.
+    pub material_blocks: Vec<MaterialBlock>,
     /// Sorted so that state changes least; BLEND draws last.
     pub calls: Vec<DrawCall>,
     pub clusters: Vec<Cluster>,
@@ -221,6 +223,7 @@ impl SceneGpu {
             indices,
             draws,
             materials,
+            material_blocks: blocks,
             calls,
             clusters: geometry.clusters,
             host_indices: geometry.indices,
