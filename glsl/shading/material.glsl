@@ -1,7 +1,7 @@
 // A material at one fragment: factors times textures, the normal map applied. Fragment stages only.
 //
 // Set 1 belongs to the material: src/resident.rs makes one set each, with a white pixel where a texture is missing.
-// The including shader declares `materials[]`.
+// The including shader reads the material's block: from its push constants, or from `materials[]`.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 

@@ -244,7 +244,8 @@ impl Commands {
         Ok(())
     }
 
-    fn push(&self, interface: &Interface, params: &[u8]) {
+    /// Sets the push constants of what is bound, between its draws.
+    pub fn push(&self, interface: &Interface, params: &[u8]) {
         let expected = interface.push_bytes as usize;
         assert!(
             params.len() >= expected && params.len() <= expected.next_multiple_of(16),

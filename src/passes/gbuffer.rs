@@ -15,12 +15,12 @@ use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
+use crate::gpu::shader::structs::GBufferParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
-use crate::resident::SceneGpu;
-use crate::scene::AlphaMode;
+use crate::resident::{DrawList, SceneGpu};
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -277,10 +277,18 @@ impl GBuffer {
 pub struct GBufferPass {
     opaque: GraphicsPipeline,
     mask: GraphicsPipeline,
+    list: DrawList,
 }
 
 impl GBufferPass {
-    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, position: PositionStorage, has_emissive: bool) -> Result<Self> {
+    /// `list`: what it draws.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        list: DrawList,
+        position: PositionStorage,
+        has_emissive: bool,
+    ) -> Result<Self> {
         let mut formats = vec![WORDS, WORDS];
         if has_emissive {
             formats.push(WORDS);
@@ -304,7 +312,16 @@ impl GBufferPass {
                 },
             )
         };
-        Ok(Self { opaque: pipeline("opaque")?, mask: pipeline("mask")? })
+        Ok(Self { opaque: pipeline("opaque")?, mask: pipeline("mask")?, list })
+    }
+
+    /// Numbers for the report's `counters`.
+    pub fn counters(&self) -> [(&'static str, f64); 3] {
+        [
+            ("triangles_drawn", self.list.triangles_drawn() as f64),
+            ("clusters_drawn", self.list.clusters_drawn as f64),
+            ("clusters_culled", self.list.clusters_culled as f64),
+        ]
     }
 
     pub fn record(
@@ -319,9 +336,8 @@ impl GBufferPass {
         let pixel_bytes = 8 * (attachments.len() as u64 - u64::from(gbuffer.position.is_some()))
             + 4
             + gbuffer.position.as_ref().map_or(0, |_| gbuffer.position_storage.bytes());
-        let solid = || scene.calls.iter().filter(|call| call.alpha != AlphaMode::Blend);
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(solid()),
+            read_bytes: mesh::read_bytes(self.list.calls()),
             // Each pixel once: overdraw depends on the view.
             written_bytes: gbuffer.extent().pixel_count() * pixel_bytes,
             invocations: None,
@@ -334,14 +350,13 @@ impl GBufferPass {
             let colors: Vec<_> = attachments.iter().map(|image| (*image, clear)).collect();
             cmd.begin_rendering(gbuffer.extent(), &colors, Some((&gbuffer.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
-            let mask = |call: &&crate::resident::DrawCall| matches!(call.alpha, AlphaMode::Mask { .. });
-            for (pipeline, masked) in [(&self.opaque, false), (&self.mask, true)] {
-                let calls: Vec<_> = solid().filter(|call| mask(call) == masked).collect();
+            for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
                 if !calls.is_empty() {
-                    let mut bound = mesh::bound(frame, scene).to_vec();
-                    bound.push(("Materials", Bound::Buffer(&scene.materials)));
-                    cmd.bind_graphics(pipeline, &[], &bound)?;
-                    mesh::draw(cmd, pipeline, scene, calls);
+                    let params = |material: u32| GBufferParams { material: scene.material_blocks[material as usize] };
+                    let first = params(calls[0].material);
+                    cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &mesh::bound(frame, scene))?;
+                    let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&params(material)));
+                    mesh::draw_with(cmd, pipeline, scene, calls, push);
                 }
             }
             cmd.end_rendering();

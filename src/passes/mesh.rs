@@ -50,6 +50,17 @@ pub fn draw<'a>(
     scene: &SceneGpu,
     calls: impl IntoIterator<Item = &'a DrawCall>,
 ) {
+    draw_with(cmd, pipeline, scene, calls, |_| ());
+}
+
+/// The same; `changed` is told each material before the draws that follow with it.
+pub fn draw_with<'a>(
+    cmd: &Commands,
+    pipeline: &GraphicsPipeline,
+    scene: &SceneGpu,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+    changed: impl Fn(u32),
+) {
     let device = &cmd.gpu().device;
     let buffer = cmd.buffer();
     let mut state: Option<(bool, bool)> = None;
@@ -68,6 +79,7 @@ pub fn draw<'a>(
         }
         if material != Some(call.material) {
             material = Some(call.material);
+            changed(call.material);
             let set = [scene.material_sets[call.material as usize]];
             let layout = pipeline.interface.layout;
             // SAFETY: as above; the pipeline's set 1 is the scene's layout.

@@ -3,10 +3,15 @@
 //!
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
+mod clusters;
+mod geometry;
 mod relief;
 mod textures;
+mod visible;
 
+pub use clusters::Cluster;
 pub use relief::advise;
+pub use visible::{DrawList, GeometryChoice};
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
@@ -17,7 +22,9 @@ use crate::scene::{AlphaMode, ColorSpace, Scene, mipmaps};
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
+use geometry::Geometry;
 use glam::{Mat3, Vec3};
+use std::ops::Range;
 use std::sync::Arc;
 use textures::Textures;
 
@@ -45,6 +52,9 @@ pub struct DrawCall {
     pub material: u32,
     pub first_index: u32,
     pub index_count: u32,
+    /// Those of its mesh, in `SceneGpu::clusters`.
+    pub first_cluster: u32,
+    pub cluster_count: u32,
     pub vertex_offset: i32,
     pub alpha: AlphaMode,
     pub double_sided: bool,
@@ -52,6 +62,13 @@ pub struct DrawCall {
     pub mirrored: bool,
     /// Middle of its box, world space: what BLEND draws are sorted by.
     pub center_ws: Vec3,
+}
+
+impl DrawCall {
+    /// Its range of `SceneGpu::clusters`.
+    fn clusters(&self) -> Range<usize> {
+        self.first_cluster as usize..(self.first_cluster + self.cluster_count) as usize
+    }
 }
 
 /// Sizes of the scene's resources: all that a plan needs to know of it.
@@ -158,8 +175,13 @@ pub struct SceneGpu {
     pub indices: Buffer,
     pub draws: Buffer,
     pub materials: Buffer,
+    /// What `materials` holds.
+    pub material_blocks: Vec<MaterialBlock>,
     /// Sorted so that state changes least; BLEND draws last.
     pub calls: Vec<DrawCall>,
+    pub clusters: Vec<Cluster>,
+    /// What `indices` holds, for tests of single triangles on the host.
+    pub host_indices: Vec<u32>,
     /// Layout of set 1: the four textures of a material.
     pub material_layout: vk::DescriptorSetLayout,
     /// Set 1 of each material.
@@ -201,7 +223,10 @@ impl SceneGpu {
             indices,
             draws,
             materials,
+            material_blocks: blocks,
             calls,
+            clusters: geometry.clusters,
+            host_indices: geometry.indices,
             material_layout: layout,
             material_sets: sets,
             material_pool: pool,
@@ -231,63 +256,6 @@ fn sort(calls: &mut [DrawCall]) {
         };
         (alpha, call.double_sided, call.mirrored, call.material, call.draw)
     });
-}
-
-/// All meshes one after the other.
-struct Geometry {
-    positions: Vec<[f32; 3]>,
-    attributes: Vec<VertexAttributes>,
-    indices: Vec<u32>,
-    /// First vertex and first index of each mesh.
-    starts: Vec<(usize, usize)>,
-}
-
-impl Geometry {
-    fn of(scene: &Scene) -> Self {
-        let mut all = Self { positions: Vec::new(), attributes: Vec::new(), indices: Vec::new(), starts: Vec::new() };
-        for mesh in &scene.meshes {
-            all.starts.push((all.positions.len(), all.indices.len()));
-            for vertex in 0..mesh.positions.len() {
-                all.positions.push(mesh.positions[vertex].to_array());
-                all.attributes.push(VertexAttributes {
-                    normal: mesh.normals[vertex].to_array(),
-                    tangent: mesh.tangents.get(vertex).map_or([0.0; 4], |tangent| tangent.to_array()),
-                    uv: mesh.uvs.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
-                });
-            }
-            all.indices.extend_from_slice(&mesh.indices);
-        }
-        all
-    }
-
-    fn calls(&self, scene: &Scene) -> Vec<DrawCall> {
-        let boxes: Vec<_> = scene
-            .meshes
-            .iter()
-            .map(|mesh| {
-                let mut bounds = crate::scene::Bounds::EMPTY;
-                mesh.positions.iter().for_each(|position| bounds.include(*position));
-                bounds
-            })
-            .collect();
-        let call = |(index, draw): (usize, &crate::scene::Draw)| {
-            let mesh = &scene.meshes[draw.mesh];
-            let material = &scene.materials[mesh.material];
-            let (first_vertex, first_index) = self.starts[draw.mesh];
-            DrawCall {
-                draw: index as u32,
-                material: mesh.material as u32,
-                first_index: first_index as u32,
-                index_count: mesh.indices.len() as u32,
-                vertex_offset: first_vertex as i32,
-                alpha: material.alpha,
-                double_sided: material.double_sided,
-                mirrored: draw.world_from_object.determinant() < 0.0,
-                center_ws: draw.world_from_object.transform_point3(boxes[draw.mesh].center()),
-            }
-        };
-        scene.draws.iter().enumerate().map(call).collect()
-    }
 }
 
 fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {

@@ -174,6 +174,16 @@ pub const SHADING: &[Setting] = &[
                buffer, or 32-bit floats (the oracle)",
     },
     Setting {
+        key: "geometry",
+        symbol: "",
+        kind: Kind::Choice(&["culled", "all"]),
+        default: "culled",
+        unit: "",
+        paper: "",
+        help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
+               plain way to the same bits)",
+    },
+    Setting {
         key: "cull",
         symbol: "",
         kind: Kind::Choice(&["none", "tiled"]),

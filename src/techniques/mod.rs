@@ -14,7 +14,7 @@ use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::{SceneGpu, SceneStats};
+use crate::resident::{DrawList, GeometryChoice, SceneGpu, SceneStats};
 use crate::scene::Scene;
 use crate::settings::{Setting, Values};
 use std::collections::BTreeMap;
@@ -29,6 +29,13 @@ pub struct Inputs<'a> {
     pub view: &'a View,
     pub lights: &'a LightSet,
     pub values: &'a Values,
+}
+
+impl Inputs<'_> {
+    /// What the G-buffer pass draws of the scene.
+    fn draw_list(&self, scene: &SceneGpu) -> DrawList {
+        DrawList::new(self.scene, scene, self.view, GeometryChoice::from_setting(self.values.text("geometry")))
+    }
 }
 
 /// One way of making a picture.
@@ -64,7 +71,7 @@ pub trait Prepared {
     /// Host passes with their time in nanoseconds; the same names as other passes have.
     fn host_passes(&self) -> Vec<(String, u64)>;
 
-    /// Numbers for the report's `counters`.
+    /// Numbers for the report's `counters` that the host's part knows.
     fn counters(&self) -> BTreeMap<&'static str, f64>;
 
     /// Settings that stand for more than their text: what `auto` and percentages came to.
@@ -87,6 +94,9 @@ pub trait Prepared {
 pub trait Frame {
     /// Records one frame. `frame`: the block of glsl/frame.glsl.
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()>;
+
+    /// What is drawn of the scene, for the report's `counters`.
+    fn counters(&self) -> [(&'static str, f64); 3];
 
     /// The finished picture (RGBA32F) and how the frame touched it last.
     fn picture(&self) -> (&Image, Access);

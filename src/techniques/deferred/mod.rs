@@ -118,7 +118,7 @@ impl Prepared for PreparedDeferred {
         let tree = settings.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, &self.lights, settings, tree)?;
         Ok(Box::new(DeferredFrame {
-            gbuffer_pass: GBufferPass::new(gpu, scene, settings.position, has_emissive)?,
+            gbuffer_pass: GBufferPass::new(gpu, scene, inputs.draw_list(scene), settings.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
             shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some(), self.lights.len())?,
             blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &settings.light_constants())?,
@@ -165,6 +165,10 @@ impl Frame for DeferredFrame {
             blend.record(cmd, NAME, frame, scene, &lights, depth, picture)?;
         }
         Ok(())
+    }
+
+    fn counters(&self) -> [(&'static str, f64); 3] {
+        self.gbuffer_pass.counters()
     }
 
     fn picture(&self) -> (&Image, Access) {

@@ -75,7 +75,7 @@ impl InterleavedFrame {
         let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
         let params = CompositeParams { row_pitch: mapping.row_pitch(), direct_full: u32::from(choices.direct_full) };
         Ok(Self {
-            gbuffer_pass: GBufferPass::new(gpu, scene, shading.position, has_emissive)?,
+            gbuffer_pass: GBufferPass::new(gpu, scene, inputs.draw_list(scene), shading.position, has_emissive)?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position)).transpose()?,
             roads: Roads::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,

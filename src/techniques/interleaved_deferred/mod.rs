@@ -229,6 +229,10 @@ impl Frame for InterleavedFrame {
         Ok(())
     }
 
+    fn counters(&self) -> [(&'static str, f64); 3] {
+        self.gbuffer_pass.counters()
+    }
+
     fn picture(&self) -> (&Image, Access) {
         (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
     }
