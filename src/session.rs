@@ -110,7 +110,7 @@ impl Session {
         let blended = self.scene_gpu.calls.iter().filter(|call| call.alpha == AlphaMode::Blend);
         counters.insert("blended_draws", blended.count() as f64);
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
-        counters.extend(frame.counters());
+        counters.extend(frame.drawn());
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
         cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;

@@ -96,7 +96,7 @@ pub trait Frame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()>;
 
     /// What is drawn of the scene, for the report's `counters`.
-    fn counters(&self) -> [(&'static str, f64); 3];
+    fn drawn(&self) -> [(&'static str, f64); 3];
 
     /// The finished picture (RGBA32F) and how the frame touched it last.
     fn picture(&self) -> (&Image, Access);

@@ -167,7 +167,7 @@ impl Frame for DeferredFrame {
         Ok(())
     }
 
-    fn counters(&self) -> [(&'static str, f64); 3] {
+    fn drawn(&self) -> [(&'static str, f64); 3] {
         self.gbuffer_pass.counters()
     }
 

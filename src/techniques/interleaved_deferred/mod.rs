@@ -229,7 +229,7 @@ impl Frame for InterleavedFrame {
         Ok(())
     }
 
-    fn counters(&self) -> [(&'static str, f64); 3] {
+    fn drawn(&self) -> [(&'static str, f64); 3] {
         self.gbuffer_pass.counters()
     }
 
