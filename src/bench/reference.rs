@@ -28,7 +28,6 @@ const UNREAD: &[&str] = &[
     "normal-threshold",
     "position-threshold",
     "workgroup",
-    "texels",
     "storage",
     "copy",
     "fragment-passes",

@@ -4,6 +4,7 @@
 use crate::bvh::{Bvh, LazyBvh};
 use crate::error::Result;
 use crate::gpu::Bound;
+use crate::gpu::caps::Identity;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Buffer, Caps, Gpu, upload};
 use crate::lights::{LightSet, cull};
@@ -54,10 +55,20 @@ pub struct ShadingSettings {
 /// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
 const RAY_OFFSET: f32 = 1e-4;
 
-/// `--texels auto` on a software driver. Lavapipe reads a buffer lane by lane: 497 lights on every pixel of 1024x768 take
-/// 1625 ms with 1 texel a thread, 475 with 4, 299 with 8, 204 with 16, 156 with 32 (Mesa 22.3.6, 2 cores). Nothing is
-/// known of GPUs, where more threads hide more latency: 1.
-const SOFTWARE_TEXELS: u32 = 32;
+/// `--texels auto`. Nothing is known of GPUs, where more threads hide more latency: 1. Newer lavapipes than Mesa 22 keep 32
+/// points no longer in registers: 480 lights on 512x384 take 36 ms with 16 and 181 with 32 (Mesa 25.0.7).
+fn auto_texels(identity: &Identity) -> u32 {
+    match identity.is_software() {
+        true if identity.driver_info.contains("Mesa 22.") => MESA_22_TEXELS,
+        true => SOFTWARE_TEXELS,
+        false => 1,
+    }
+}
+
+const SOFTWARE_TEXELS: u32 = 16;
+/// On the reference driver. Lavapipe reads a buffer lane by lane: 497 lights on every pixel of 1024x768 take
+/// 1625 ms with 1 texel a thread, 475 with 4, 299 with 8, 204 with 16, 156 with 32 (Mesa 22.3.6, 2 cores).
+const MESA_22_TEXELS: u32 = 32;
 /// Texels that a thread filters or compares at most: with 16, a filter of 5 taps is slower again (16.1 ms, with 8 10.6).
 const FILTER_TEXELS: u32 = 8;
 
@@ -76,8 +87,7 @@ impl ShadingSettings {
             shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
             workgroup: values.pair("workgroup"),
             texels: match values.text("texels") {
-                "auto" if caps.identity.is_software() => SOFTWARE_TEXELS,
-                "auto" => 1,
+                "auto" => auto_texels(&caps.identity),
                 count => count.parse().expect("the settings table has numbers"),
             },
             ray_offset: RAY_OFFSET * diagonal.max(1e-6),

@@ -49,7 +49,8 @@ bool is_in_frame(MappingParams mapping, uvec2 pixel) {
 }
 
 bool is_in_sub_buffer(MappingParams mapping, uvec3 texel) {
-    return texel.x < mapping.sub_width_px && texel.y < mapping.sub_height_px;
+    uint subset_count = mapping.pattern_x * mapping.pattern_y;
+    return texel.x < mapping.sub_width_px && texel.y < mapping.sub_height_px && texel.z < subset_count;
 }
 
 bool is_in_padded(MappingParams mapping, uvec2 at) {

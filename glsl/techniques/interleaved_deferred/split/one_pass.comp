@@ -12,9 +12,10 @@ layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id
 layout(push_constant) uniform Push { MappingParams mapping; };
 
 #ifdef COPY_PULL
-// x: runs along a row of a sub-buffer, y: its rows, z: sub-buffers.
+// x: runs along a row of a sub-buffer, y: sub-buffers, z: rows. Workgroups that follow each other take the same rows of the
+// frame for one sub-buffer after the other, while its texels are still in the cache.
 void main() {
-    uvec3 first = gl_GlobalInvocationID * uvec3(RUN, 1u, 1u);
+    uvec3 first = gl_GlobalInvocationID.xzy * uvec3(RUN, 1u, 1u);
     if (!is_in_sub_buffer(mapping, first)) {
         return;
     }

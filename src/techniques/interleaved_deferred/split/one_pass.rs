@@ -35,7 +35,11 @@ impl SplitOnePass {
         split: &Surface,
     ) -> Result<()> {
         let threads = match self.copies.form {
-            Form::Pull => self.copies.sub_buffer_threads(mapping),
+            Form::Pull => {
+                // Sub-buffers before rows: as the shader has them.
+                let [x, y, z] = self.copies.sub_buffer_threads(mapping);
+                [x, z, y]
+            }
             Form::Push => self.copies.padded_threads(mapping),
         };
         FromFrame::over("split", &self.pipeline, threads).record(cmd, mapping, gbuffer, split)
