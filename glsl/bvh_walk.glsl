@@ -3,6 +3,8 @@
 #ifndef BVH_WALK_GLSL
 #define BVH_WALK_GLSL
 
+#include "loops.glsl"
+
 // Deep enough for any tree that src/bvh.rs accepts.
 const int BVH_STACK = 64;
 
@@ -53,12 +55,15 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
             }
             continue;
         }
-        for (uint triangle = first; triangle < first + count; triangle++) {
+        uint triangle = first;
+        for (; triangle < first + count; triangle++) {
             if (triangle_hit(bvh_triangles[triangle], origin, direction_ws, limit)) {
                 return true;
             }
         }
+        expect_done(triangle == first + count);
     }
+    expect_done(depth == 0);
     return false;
 }
 

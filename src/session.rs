@@ -177,7 +177,7 @@ impl Renderer {
 
     /// The last frame's picture.
     ///
-    /// Errors: memory for the copy (exit code 4).
+    /// Errors: memory for the copy (exit code 4); a pixel is NaN or infinite (1).
     pub fn picture(&self) -> Result<Picture> {
         let (image, last) = self.frame.picture();
         let bytes = readback::image(&self.gpu, image, last)?;
@@ -188,7 +188,24 @@ impl Renderer {
                 [channel(0), channel(4), channel(8)]
             })
             .collect();
-        Ok(Picture { extent: image.description.extent, pixels })
+        let picture = Picture { extent: image.description.extent, pixels };
+        picture.check().map_err(|error| self.explained(error, &picture))?;
+        Ok(picture)
+    }
+
+    /// Shaders write NaN where a driver has ended their loops (glsl/loops.glsl).
+    fn explained(&self, error: Error, picture: &Picture) -> Error {
+        let is_nan = picture.pixels.iter().flatten().any(|channel| channel.is_nan());
+        match self.gpu.caps.identity.loop_turns() {
+            Some(turns) if is_nan => error
+                .note(format!(
+                    "this driver ends the loops of a thread after {turns} turns: lights, times steps of shadow rays"
+                ))
+                .note(
+                    "fewer lights, --direct-shadow none or sun, --cull tiled, or a newer driver (lavapipe of Mesa 25)",
+                ),
+            _ => error,
+        }
     }
 
     /// What the last frame's counters are, those of the settings and those that it left.

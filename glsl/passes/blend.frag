@@ -3,6 +3,7 @@
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
+#include "loops.glsl"
 #include "sampling/pattern.glsl"
 #include "shading/light.glsl"
 #include "shading/subset.glsl"
@@ -44,9 +45,11 @@ void main() {
     Surface surface = Surface(base_color.rgb, metallic_roughness.x, metallic_roughness.y);
     vec3 eye_ws = to_eye(frame, in_position_ws);
     vec3 radiance = emissive_at(material) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
-    for (uint light = 0u; light < frame.light_count; light++) {
+    uint light = 0u;
+    for (; light < frame.light_count; light++) {
         radiance += shade_light(lights[light], surface, in_position_ws, normal_ws, eye_ws);
     }
+    expect_done(light == frame.light_count);
     vec3 received = vec3(0.0);
     uint first = 0u;
     uint end = frame.vpl_count;
@@ -55,10 +58,12 @@ void main() {
         first = subset.vpl_first;
         end = first + subset.vpl_count;
     }
-    for (uint vpl = first; vpl < end; vpl++) {
+    uint vpl = first;
+    for (; vpl < end; vpl++) {
         received += vpl_irradiance(vpls[vpl], in_position_ws, normal_ws, params.least_squared);
     }
+    expect_done(vpl == end);
     radiance += albedo_of(surface) * received * (params.weight / PI);
     // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
-    out_color = vec4(radiance * base_color.a, base_color.a);
+    out_color = vec4(nan_if_cut(radiance) * base_color.a, base_color.a);
 }

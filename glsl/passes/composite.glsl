@@ -75,13 +75,15 @@ void set_point(uint i, bool needs_position) {
 }
 
 void add_light(LightBlock light) {
-    for (uint i = 0u; i < TEXELS; i++) {
+    uint i = 0u;
+    for (; i < TEXELS; i++) {
         if (point_has_surface[i]) {
             precise vec3 sum = point_direct[i]
                 + shade_light(light, point_surface[i], point_position_ws[i], point_normal_ws[i], point_eye_ws[i]);
             point_direct[i] = sum;
         }
     }
+    expect_done(i == TEXELS);
 }
 
 // All punctual lights, in the order of the list.
@@ -93,19 +95,27 @@ void shade_points() {
     uint word_count = (frame.light_count + 31u) / 32u;
     uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
     uint base = tile_of(min(pixel_of_point(0u), last), frame.width_px) * word_count;
-    for (uint word = 0u; word < word_count; word++) {
-        uint bits = light_masks[base + word];
+    uint bits = 0u;
+    uint word = 0u;
+    for (; word < word_count; word++) {
+        bits = light_masks[base + word];
         while (bits != 0u) {
             uint light = word * 32u + uint(findLSB(bits));
             bits &= bits - 1u;
             add_light(lights[light]);
         }
     }
+    expect_done(bits == 0u && word == word_count);
 #else
-    for (uint light = 0u; light < frame.light_count; light++) {
+    uint light = 0u;
+    for (; light < frame.light_count; light++) {
         add_light(lights[light]);
     }
+    expect_done(light == frame.light_count);
 #endif
+    for (uint i = 0u; i < TEXELS; i++) {
+        point_direct[i] = nan_if_cut(point_direct[i]);
+    }
 }
 
 #endif

@@ -42,6 +42,14 @@ pub struct Identity {
 }
 
 impl Identity {
+    /// Turns of all loops of one invocation together after which the driver ends them without a word; None where there is
+    /// no such end. Seen on lavapipe of Mesa 22.3.6, gone in 25.0.7; what lies between is taken to have it.
+    pub fn loop_turns(&self) -> Option<u32> {
+        let (_, version) = self.driver_info.split_once("Mesa ")?;
+        let major: u32 = version.split('.').next()?.parse().ok()?;
+        (self.is_software() && major < 25).then_some(65_535)
+    }
+
     /// Whether times measured on it are those of a software driver.
     pub fn is_software(&self) -> bool {
         self.device_type == "cpu"

@@ -54,9 +54,9 @@ impl LightSet {
         Ok(Self { lights, ambient, has_rig, has_punctual })
     }
 
-    /// Whether any light is a sun.
-    pub fn has_sun(&self) -> bool {
-        self.lights.iter().any(|light| light.kind == LightKind::Directional)
+    /// Directional lights.
+    pub fn sun_count(&self) -> usize {
+        self.lights.iter().filter(|light| light.kind == LightKind::Directional).count()
     }
 }
 

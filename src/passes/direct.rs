@@ -4,11 +4,11 @@
 use crate::bvh::{Bvh, LazyBvh};
 use crate::error::Result;
 use crate::gpu::Bound;
-use crate::gpu::caps::Identity;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Buffer, Caps, Gpu, upload};
 use crate::lights::{LightSet, cull};
 use crate::passes::gbuffer::PositionStorage;
+use crate::passes::texels::{LightLoad, Texels};
 use crate::plan::{Plan, Resources};
 use crate::scene::Scene;
 use crate::settings::Values;
@@ -31,7 +31,7 @@ impl DirectShadow {
     fn from_setting(text: &str, lights: &LightSet) -> Self {
         match text {
             "ray" if !lights.lights.is_empty() => Self::Ray,
-            "sun" if lights.has_sun() => Self::Sun,
+            "sun" if lights.sun_count() > 0 => Self::Sun,
             "none" | "sun" | "ray" => Self::None,
             other => panic!("--direct-shadow {other} was checked"),
         }
@@ -45,38 +45,17 @@ pub struct ShadingSettings {
     pub position: PositionStorage,
     pub cull: bool,
     pub shadow: DirectShadow,
+    /// Directional lights of the scene.
+    sun_count: u64,
     pub workgroup: [u32; 2],
-    /// Pixels that a thread works on, one after the other, at most: each pass has its own limit.
-    pub texels: u32,
+    /// Pixels that a thread works on.
+    pub texels: Texels,
     /// Metres that a shadow ray starts off its surface.
     pub ray_offset: f32,
 }
 
 /// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
 const RAY_OFFSET: f32 = 1e-4;
-
-/// `--texels auto`. Nothing is known of GPUs, where more threads hide more latency: 1. Newer lavapipes than Mesa 22 keep 32
-/// points no longer in registers: 480 lights on 512x384 take 36 ms with 16 and 181 with 32 (Mesa 25.0.7).
-fn auto_texels(identity: &Identity) -> u32 {
-    match identity.is_software() {
-        true if identity.driver_info.contains("Mesa 22.") => MESA_22_TEXELS,
-        true => SOFTWARE_TEXELS,
-        false => 1,
-    }
-}
-
-const SOFTWARE_TEXELS: u32 = 16;
-/// On the reference driver. Lavapipe reads a buffer lane by lane: 497 lights on every pixel of 1024x768 take
-/// 1625 ms with 1 texel a thread, 475 with 4, 299 with 8, 204 with 16, 156 with 32 (Mesa 22.3.6, 2 cores).
-const MESA_22_TEXELS: u32 = 32;
-/// Texels that a thread filters or compares at most: with 16, a filter of 5 taps is slower again (16.1 ms, with 8 10.6).
-const FILTER_TEXELS: u32 = 8;
-
-/// Pixels of a column that a thread shades with punctual lights at most: those of a tile. 188 lights, kaos, 1024x768, with
-/// tiled culling: 718 ms with 1, 320 with 4, 254 with 8, 222 with 16.
-const COLUMN_TEXELS: u32 = 16;
-/// The same without lights, where only the frame's numbers are shared: 13.2 ms with 1, 11.5 with 4, 13.5 with 16.
-const UNLIT_TEXELS: u32 = 4;
 
 impl ShadingSettings {
     pub fn new(values: &Values, lights: &LightSet, diagonal: f32, caps: &Caps) -> Self {
@@ -85,11 +64,9 @@ impl ShadingSettings {
             position: PositionStorage::from_setting(values.text("position")),
             cull: values.text("cull") == "tiled",
             shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
+            sun_count: lights.sun_count() as u64,
             workgroup: values.pair("workgroup"),
-            texels: match values.text("texels") {
-                "auto" => auto_texels(&caps.identity),
-                count => count.parse().expect("the settings table has numbers"),
-            },
+            texels: Texels::new(values, caps),
             ray_offset: RAY_OFFSET * diagonal.max(1e-6),
         }
     }
@@ -99,14 +76,15 @@ impl ShadingSettings {
         [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
     }
 
-    /// Pixels of a column that a thread composes, with `light_count` punctual lights.
-    pub fn column_texels(&self, light_count: usize) -> u32 {
-        self.texels.min(if light_count > 0 { COLUMN_TEXELS } else { UNLIT_TEXELS })
-    }
-
-    /// Texels that a thread filters or compares.
-    pub fn filter_texels(&self) -> u32 {
-        self.texels.min(FILTER_TEXELS)
+    /// What `light_count` of the punctual lights ask of a pixel.
+    pub fn load(&self, light_count: usize) -> LightLoad {
+        let light_count = light_count as u64;
+        let casting_count = match self.shadow {
+            DirectShadow::None => 0,
+            DirectShadow::Sun => self.sun_count.min(light_count),
+            DirectShadow::Ray => light_count,
+        };
+        LightLoad { light_count, casting_count }
     }
 
     /// Threads of a workgroup.

@@ -7,3 +7,4 @@ pub mod filter;
 pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;
+pub mod texels;

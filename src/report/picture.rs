@@ -28,21 +28,28 @@ impl Picture {
         sum.map(|channel| channel / self.pixels.len().max(1) as f64)
     }
 
+    /// Fails with the first pixel that is NaN or infinite: such a picture has no hash (design.md, section 2; exit code 1).
+    pub fn check(&self) -> Result<()> {
+        let broken = self.pixels.iter().position(|pixel| pixel.iter().any(|channel| !channel.is_finite()));
+        let Some(index) = broken else { return Ok(()) };
+        let width = self.extent.width as usize;
+        let [r, g, b] = self.pixels[index];
+        Err(Error::gate(format!("the picture holds ({r}, {g}, {b}) at pixel ({}, {})", index % width, index / width)))
+    }
+
     /// BLAKE3 of width, height (both u32, little-endian) and the row-major RGB float32, with -0 taken as 0.
     ///
-    /// Fails with the first pixel that is NaN or infinite: such a picture has no hash (design.md, section 2).
+    /// Fails as `check` does.
     pub fn hash(&self) -> Result<String> {
+        self.check()?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(&self.extent.width.to_le_bytes());
         hasher.update(&self.extent.height.to_le_bytes());
         let mut row = Vec::with_capacity(self.extent.width as usize * 12);
-        for (y, pixels) in self.pixels.chunks(self.extent.width as usize).enumerate() {
+        for pixels in self.pixels.chunks(self.extent.width as usize) {
             row.clear();
-            for (x, pixel) in pixels.iter().enumerate() {
+            for pixel in pixels {
                 for channel in pixel {
-                    if !channel.is_finite() {
-                        return Err(Error::gate(format!("the picture holds {channel} at pixel ({x}, {y})")));
-                    }
                     // Adding +0 turns -0 into +0 and changes nothing else.
                     row.extend_from_slice(&(channel + 0.0).to_le_bytes());
                 }

@@ -209,7 +209,8 @@ pub const SHADING: &[Setting] = &[
         unit: "px",
         paper: "",
         help: "pixels that a thread shades, compares or filters one after the other at most, reading once what they share; 1 \
-               is the plain way to the same bits; auto: 32 on lavapipe of Mesa 22, 16 on other software drivers, else 1",
+               is the plain way to the same bits; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
+               22, 16 on other software drivers, else 1",
     },
     Setting {
         key: "workgroup",

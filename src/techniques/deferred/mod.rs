@@ -100,7 +100,7 @@ impl Prepared for PreparedDeferred {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        BTreeMap::from([("texels", self.settings.texels.to_string())])
+        BTreeMap::from([("texels", self.settings.texels.of_column(self.settings.load(self.lights.len())).to_string())])
     }
 
     fn light_counts(&self) -> [u32; 2] {

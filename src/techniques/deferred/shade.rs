@@ -27,7 +27,7 @@ impl Shade {
     ) -> Result<Self> {
         let cull = if tiled { "tiled" } else { "none" };
         let shader = variant(COMP_VARIANTS, &[settings.position.name(), emissive_name(has_emissive), cull]);
-        let texels = settings.column_texels(light_count);
+        let texels = settings.texels.of_column(settings.load(light_count));
         let constants =
             [&settings.workgroup_constants()[..], &settings.light_constants(), &[("TEXELS", texels)]].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, texels })

@@ -160,7 +160,7 @@ impl Choices {
         let mut resolved = BTreeMap::from([
             ("direct-pattern", format!("{i}x{j}")),
             ("sigma", format!("{}", self.kernel.sigma)),
-            ("texels", self.shading.texels.to_string()),
+            ("texels", self.list_texels().to_string()),
         ]);
         if let Some(copies) = self.road.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
@@ -209,6 +209,18 @@ impl Choices {
     /// Subsets of the punctual lights among them: i * j.
     pub fn direct_subset_count(&self) -> u32 {
         self.direct_pattern.iter().product()
+    }
+
+    /// The constants of irradiance.glsl that every road has.
+    pub fn irradiance_constants(&self) -> [(&'static str, u32); 3] {
+        let [shadow, offset] = self.shading.shadow_constants();
+        [shadow, offset, ("HAS_JOINED", u32::from(self.joined_count() > 0))]
+    }
+
+    /// Texels that a thread shades with one list of lights.
+    pub fn list_texels(&self) -> u32 {
+        let joined = self.joined_count().div_ceil(self.direct_subset_count());
+        self.shading.texels.of_list(self.shading.load(joined as usize))
     }
 
     /// Sub-buffers that share one subset of the punctual lights.

@@ -36,7 +36,7 @@ pub struct Discontinuity {
 impl Discontinuity {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, params: DiscontinuityParams) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        let texels = settings.filter_texels();
+        let texels = settings.texels.of_filter();
         let constants = [&settings.workgroup_constants()[..], &[("TEXELS", texels)]].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }

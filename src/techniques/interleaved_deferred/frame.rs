@@ -111,7 +111,7 @@ impl FilterStage {
                 ["packed", "horizontal"].map(|what| resources.image(&format!("{NAME}.filter.{what}"))),
             ),
             Filter::Gauss | Filter::None => AnyGauss::Walk(
-                Gauss::new(gpu, &workgroup, extent, pitch, *kernel, shading.filter_texels())?,
+                Gauss::new(gpu, &workgroup, extent, pitch, *kernel, shading.texels.of_filter())?,
                 resources.buffer(&format!("{NAME}.filter.horizontal")),
             ),
         };

@@ -97,15 +97,15 @@ impl Roads {
         let shading = &choices.shading;
         let mut buffer = |what: &str| resources.buffer(&format!("{NAME}.{what}.irradiance"));
         Ok(match choices.road {
-            Road::Branch => Self::Branch { shade: ShadeBranch::new(gpu, shading)?, irradiance: buffer("shade") },
+            Road::Branch => Self::Branch { shade: ShadeBranch::new(gpu, choices)?, irradiance: buffer("shade") },
             Road::None | Road::Indirect | Road::Remap => {
                 let per_subset = choices.road == Road::Indirect;
                 let dispatches = if per_subset { Dispatches::PerSubset } else { Dispatches::One };
-                let shade = ShadeStrided::new(gpu, shading, dispatches, &choices.mapping)?;
+                let shade = ShadeStrided::new(gpu, choices, dispatches)?;
                 Self::Strided { shade, irradiance: buffer("shade") }
             }
             Road::Subsample => Self::Subsample {
-                shade: ShadeSubsample::new(gpu, shading, &choices.mapping)?,
+                shade: ShadeSubsample::new(gpu, choices)?,
                 cells: buffer("shade"),
                 upscale: Upscale::new(gpu, shading)?,
                 irradiance: buffer("upscale"),
@@ -113,14 +113,14 @@ impl Roads {
             Road::Masked(kind) => {
                 let irradiance = buffer("shade");
                 let mask = Mask::new(gpu, resources, kind)?;
-                Self::Masked { mask, shade: ShadeMasked::new(gpu, resources, shading, kind)?, irradiance }
+                Self::Masked { mask, shade: ShadeMasked::new(gpu, resources, choices, kind)?, irradiance }
             }
             Road::Copy(copies) => Self::SubBuffers(SubBuffers {
                 copies,
                 gathered: buffer("gather"),
                 split: Split::new(gpu, resources, choices, copies)?,
                 surface: Surface::new(gpu, resources, "split", copies.storage)?,
-                shade: ShadeSubBuffers::new(gpu, shading, copies.storage, &choices.mapping)?,
+                shade: ShadeSubBuffers::new(gpu, choices, copies.storage)?,
                 shaded: Texels::new(gpu, resources, "shade.irradiance", copies.storage)?,
                 gather: Gather::new(gpu, resources, choices, copies)?,
             }),

@@ -5,6 +5,7 @@
 #define INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
 
 #include "bvh.glsl"
+#include "loops.glsl"
 #include "shading/light.glsl"
 #include "shading/subset.glsl"
 #include "techniques/interleaved_deferred/mapping.glsl"
@@ -25,6 +26,8 @@ struct ShadeParams {
 // Points that a thread shades.
 layout(constant_id = 2) const uint TEXELS = 1;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
+// Whether punctual lights are joined to the subsets: a loop that never turns is compiled for seconds.
+layout(constant_id = 5) const bool HAS_JOINED = true;
 
 layout(push_constant) uniform Push { ShadeParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
@@ -72,21 +75,25 @@ void shade_points(SubsetBlock subset) {
     }
     bool is_lit = has_any_surface();
     uint vpl_end = is_lit ? subset.vpl_first + subset.vpl_count : 0u;
-    for (uint index = subset.vpl_first; index < vpl_end; index++) {
-        VplBlock vpl = vpls[index];
+    uint vpl_index = min(subset.vpl_first, vpl_end);
+    for (; vpl_index < vpl_end; vpl_index++) {
+        VplBlock vpl = vpls[vpl_index];
         for (uint i = 0u; i < TEXELS; i++) {
             sum[i] += vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
         }
     }
+    expect_done(vpl_index == vpl_end);
     // Before the punctual lights join: both factors are whole, and with one pattern for both kinds this one is 1 and keeps
     // the bits of the one sum.
     for (uint i = 0u; i < TEXELS; i++) {
         sum[i] *= params.cluster_size;
     }
-    uint light_end = is_lit ? subset.light_first + subset.light_count : 0u;
-    for (uint index = subset.light_first; index < light_end; index++) {
-        LightBlock light = subset_lights[index];
-        for (uint i = 0u; i < TEXELS; i++) {
+    uint light_end = HAS_JOINED && is_lit ? subset.light_first + subset.light_count : 0u;
+    uint light_index = min(subset.light_first, light_end);
+    for (; HAS_JOINED && light_index < light_end; light_index++) {
+        LightBlock light = subset_lights[light_index];
+        uint i = 0u;
+        for (; i < TEXELS; i++) {
             Incident incident = incident_from(light, point_position_ws[i]);
             precise float cosine = dot(point_normal_ws[i], incident.direction_ws);
             bool faces = point_has_surface[i] && cosine > 0.0 && incident.irradiance != vec3(0.0);
@@ -95,9 +102,11 @@ void shade_points(SubsetBlock subset) {
                 sum[i] += received;
             }
         }
+        expect_done(i == TEXELS);
     }
+    expect_done(light_index == light_end);
     for (uint i = 0u; i < TEXELS; i++) {
-        precise vec3 weighted = sum[i] * params.weight;
+        precise vec3 weighted = nan_if_cut(sum[i] * params.weight);
         point_irradiance[i] = point_has_surface[i] ? pack_halves(weighted, 0u) : uvec2(0u);
     }
 }

@@ -2,13 +2,14 @@
 //! reads  the G-buffer, the lights      writes  the irradiance  buffer, frame order, 8 B a pixel
 
 use super::super::NAME;
+use super::super::choices::Choices;
 use super::ShadeGpu;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::branch::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
 
@@ -17,9 +18,9 @@ pub struct ShadeBranch {
 }
 
 impl ShadeBranch {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        let constants = [&settings.workgroup_constants()[..], &settings.shadow_constants()].concat();
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
+        let constants = [&choices.shading.workgroup_constants()[..], &choices.irradiance_constants()].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 

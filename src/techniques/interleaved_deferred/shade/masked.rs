@@ -4,6 +4,7 @@
 //! writes  shade.irradiance  buffer, frame order, 8 B a pixel, by way of shade.drawn
 
 use super::super::NAME;
+use super::super::choices::Choices;
 use super::super::mask::Mask;
 use super::super::rendered::{self, Rendered};
 use super::super::road::MaskKind;
@@ -13,7 +14,7 @@ use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline, StencilUse};
 use crate::gpu::shader::techniques::interleaved_deferred::shade::masked::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use crate::passes::fullscreen;
 use crate::passes::gbuffer::GBuffer;
 use crate::plan::Resources;
@@ -26,15 +27,15 @@ pub struct ShadeMasked {
 }
 
 impl ShadeMasked {
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, settings: &ShadingSettings, kind: MaskKind) -> Result<Self> {
-        let shader = variant(FRAG_VARIANTS, &[settings.position.name()]);
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, kind: MaskKind) -> Result<Self> {
+        let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name()]);
         let formats = [rendered::FORMAT];
         let (compare, stencil) = match kind {
             MaskKind::Stencil => (vk::CompareOp::ALWAYS, Some(StencilUse::RequireEqual)),
             MaskKind::Depth => (vk::CompareOp::EQUAL, None),
         };
         let description = GraphicsDescription {
-            constants: &settings.shadow_constants(),
+            constants: &choices.irradiance_constants(),
             depth_format: Some(kind.format()),
             depth_compare: compare,
             stencil,

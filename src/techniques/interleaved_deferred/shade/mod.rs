@@ -8,13 +8,14 @@ pub mod sub_buffers;
 pub mod subsample;
 
 use super::NAME;
+use super::choices::Choices;
 use crate::error::Result;
 use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
 use crate::gpu::{Access, Buffer, Gpu, upload};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use crate::plan::{Plan, Resources};
 use std::sync::Arc;
 
@@ -88,13 +89,14 @@ struct Listed {
 const LEAST_WORKGROUPS: u64 = 4;
 
 impl Listed {
-    /// Over a list of `count` texels.
-    fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, shader: &Shader, count: u64) -> Result<Self> {
+    /// Over the texels of a sub-buffer.
+    fn new(gpu: &Arc<Gpu>, choices: &Choices, shader: &Shader) -> Result<Self> {
+        let (settings, count) = (&choices.shading, choices.mapping.sub_texel_count());
         let lanes = u64::from(settings.lane_count());
         let room = (count / (lanes * LEAST_WORKGROUPS)).checked_ilog2().map_or(1, |power| 1 << power);
-        let texels = settings.texels.min(room);
+        let texels = choices.list_texels().min(room);
         let own = [("TEXELS", texels)];
-        let constants = [&settings.workgroup_constants()[..], &settings.shadow_constants(), &own].concat();
+        let constants = [&settings.workgroup_constants()[..], &choices.irradiance_constants(), &own].concat();
         let workgroup_count = count.div_ceil(lanes * u64::from(texels)) as u32;
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, workgroup_count })
     }

@@ -6,13 +6,14 @@
 //! shading of all lights (`--split none`).
 
 use super::super::NAME;
+use super::super::choices::Choices;
 use super::{Listed, ShadeGpu};
 use crate::error::Result;
-use crate::gpu::shader::structs::{MappingParams, ShadeParams};
+use crate::gpu::shader::structs::ShadeParams;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::strided::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
 
@@ -29,14 +30,9 @@ pub struct ShadeStrided {
 }
 
 impl ShadeStrided {
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        settings: &ShadingSettings,
-        dispatches: Dispatches,
-        mapping: &MappingParams,
-    ) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self { listed: Listed::new(gpu, settings, shader, mapping.sub_texel_count())?, dispatches })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, dispatches: Dispatches) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
+        Ok(Self { listed: Listed::new(gpu, choices, shader)?, dispatches })
     }
 
     pub fn record(

@@ -2,14 +2,14 @@
 //! reads  split.position, split.normal, the lights      writes  shade.irradiance  sub-buffers, 8 B a texel
 
 use super::super::NAME;
+use super::super::choices::Choices;
 use super::super::sub_buffers::{Stage, Storage, Surface, Texels};
 use super::{Listed, ShadeGpu};
 use crate::error::Result;
-use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use std::sync::Arc;
 
 pub struct ShadeSubBuffers {
@@ -19,10 +19,11 @@ pub struct ShadeSubBuffers {
 }
 
 impl ShadeSubBuffers {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, storage: Storage, mapping: &MappingParams) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[settings.position.name(), storage.name()]);
-        let listed = Listed::new(gpu, settings, shader, mapping.sub_texel_count())?;
-        Ok(Self { listed, storage, texel_bytes: 8 + settings.position.bytes() })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, storage: Storage) -> Result<Self> {
+        let position = choices.shading.position;
+        let shader = variant(COMP_VARIANTS, &[position.name(), storage.name()]);
+        let listed = Listed::new(gpu, choices, shader)?;
+        Ok(Self { listed, storage, texel_bytes: 8 + position.bytes() })
     }
 
     pub fn record(

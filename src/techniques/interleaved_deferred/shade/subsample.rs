@@ -2,13 +2,13 @@
 //! reads  the G-buffer, the lights      writes  shade.irradiance  buffer, a texel a pattern, 8 B each
 
 use super::super::NAME;
+use super::super::choices::Choices;
 use super::{Listed, ShadeGpu};
 use crate::error::Result;
-use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::subsample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
 
@@ -17,9 +17,9 @@ pub struct ShadeSubsample {
 }
 
 impl ShadeSubsample {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, mapping: &MappingParams) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        Ok(Self { listed: Listed::new(gpu, settings, shader, mapping.sub_texel_count())? })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
+        Ok(Self { listed: Listed::new(gpu, choices, shader)? })
     }
 
     pub fn record(

@@ -1,0 +1,17 @@
+// A driver may end a loop that turns too often, without a word (src/gpu/caps.rs, `Identity::loop_turns`). What was summed by
+// then must not pass for a result: it becomes NaN, which fails the picture.
+#ifndef LOOPS_GLSL
+#define LOOPS_GLSL
+
+bool loops_were_cut = false;
+
+// `is_done`: that what the loop was to do is done.
+void expect_done(bool is_done) {
+    loops_were_cut = loops_were_cut || !is_done;
+}
+
+vec3 nan_if_cut(vec3 value) {
+    return loops_were_cut ? vec3(uintBitsToFloat(0x7fc00000u)) : value;
+}
+
+#endif

@@ -1,0 +1,42 @@
+//! A driver that ends long loops without a word must not be believed: `Identity::loop_turns`, glsl/loops.glsl.
+
+mod support;
+
+use support::shared_scenes;
+use support::watched::Watched;
+
+/// One light more than the turns of the defect; a driver without it adds them all.
+#[test]
+fn a_sum_that_the_driver_ends_early_is_no_picture() {
+    let watched = Watched::open("cornell");
+    let changes = [("size", "16x16"), ("lights", "65536"), ("direct-shadow", "none"), ("cull", "none")];
+    let picture = watched.render("deferred", &changes).picture();
+    match watched.session.gpu.caps.identity.loop_turns() {
+        None => drop(picture.unwrap()),
+        Some(turns) => {
+            let error = picture.unwrap_err();
+            assert_eq!(error.exit_code(), 1, "{error}");
+            assert!(error.to_string().contains(&format!("after {turns} turns")), "{error}");
+        }
+    }
+}
+
+/// 1,663 lights, one of which casts shadow rays, on up to 32 pixels a thread; and 188 that all do.
+#[test]
+fn as_many_pixels_as_a_thread_may_have_turns_for() {
+    let Some(folder) = shared_scenes() else { return };
+    for (map, technique, changes) in [
+        ("oa_thor", "interleaved_deferred", [("split", "none"), ("direct", "interleaved")]),
+        ("kaos", "deferred", [("direct-shadow", "ray"), ("cull", "none")]),
+    ] {
+        let watched = Watched::open(folder.join(format!("maps/{map}.glb")).to_str().unwrap());
+        let hash = |texels| {
+            let own = [("size", "64x36"), ("texels", texels)];
+            watched.hash(technique, &support::watched::both(&changes, &own))
+        };
+        let plain = hash("1");
+        for texels in ["auto", "16", "32"] {
+            assert_eq!(hash(texels), plain, "{map}: --texels {texels}");
+        }
+    }
+}
