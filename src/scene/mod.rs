@@ -17,9 +17,9 @@ use std::path::Path;
 
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind};
-pub use material::{AlphaMode, Material};
+pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Bounds, Draw, Mesh};
-pub use texture::{ColorSpace, Image, Sampler, Texture, Wrap};
+pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 
 /// Everything that a technique may draw.
 #[derive(Clone, Debug, Default)]
@@ -70,6 +70,11 @@ impl Scene {
     /// How many triangles all draws together have.
     pub fn triangle_count(&self) -> u64 {
         self.draws.iter().map(|draw| self.meshes[draw.mesh].triangle_count() as u64).sum()
+    }
+
+    /// The material of each draw.
+    pub fn drawn_materials(&self) -> impl Iterator<Item = &Material> {
+        self.draws.iter().map(|draw| &self.materials[self.meshes[draw.mesh].material])
     }
 
     /// The box around everything that is drawn, in world space; empty where nothing is drawn.
