@@ -12,6 +12,7 @@ mod accessors;
 mod buffers;
 mod cameras;
 mod document;
+mod facts;
 mod images;
 mod label;
 mod lights;
@@ -22,6 +23,8 @@ mod source;
 mod tangents;
 mod topology;
 mod uri;
+
+pub use self::facts::{AnimationFacts, Facts, ImageFacts, inspect};
 
 use std::collections::BTreeSet;
 use std::path::Path;
