@@ -82,6 +82,67 @@ fn interleaved_and_sparse_values_are_found() {
     assert_eq!(scene.meshes[0].uvs, [Vec2::new(0.25, 0.5), Vec2::new(0.75, 0.5), Vec2::new(0.25, 1.0)]);
 }
 
+/// Without a buffer view an accessor is 0 before its sparse values; the other attributes bound how long it may be.
+#[test]
+fn sparse_values_may_stand_alone() {
+    let mut file = GltfFile::triangle();
+    for (component_type, places) in [(U8, vec![1, 2]), (U16, vec![1, 0, 2, 0]), (U32, vec![1, 0, 0, 0, 2, 0, 0, 0])] {
+        let places = file.view(&places);
+        let values = file.view(&[2f32, 0.0, 0.0, 0.0, 3.0, 0.0].map(f32::to_le_bytes).concat());
+        let positions = file.push(
+            "accessors",
+            json!({
+                "componentType": F32, "count": 3, "type": "VEC3",
+                "sparse": {
+                    "count": 2,
+                    "indices": {"bufferView": places, "componentType": component_type},
+                    "values": {"bufferView": values},
+                },
+            }),
+        );
+        file.primitive()["attributes"]["POSITION"] = json!(positions);
+        let scene = file.load().unwrap();
+        assert_eq!(scene.meshes[0].positions, [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 3.0], "{component_type}");
+    }
+}
+
+/// KHR_mesh_quantization allows every integer for every attribute, at strides of whole words.
+#[test]
+fn attributes_of_every_component_type_are_read_at_their_stride() {
+    const I8: u32 = 5120;
+    const I16: u32 = 5122;
+    for (component_type, normalized, bytes_each, greatest) in [
+        (I8, true, 1, 127),
+        (U8, true, 1, 255),
+        (I16, true, 2, 32767),
+        (U16, true, 2, 65535),
+        (I8, false, 1, 1),
+        (U8, false, 1, 1),
+        (I16, false, 2, 1),
+        (U16, false, 2, 1),
+    ] {
+        let mut file = GltfFile::triangle();
+        let mut bytes = Vec::new();
+        for uv in [[0, greatest], [greatest, greatest], [greatest, 0]] {
+            for value in uv {
+                bytes.extend(&u32::to_le_bytes(value)[..bytes_each]);
+            }
+            bytes.resize(bytes.len().next_multiple_of(12), 0xee);
+        }
+        let view = file.view(&bytes);
+        file.json["bufferViews"][view]["byteStride"] = json!(12);
+        let uvs = file.push(
+            "accessors",
+            json!({"bufferView": view, "componentType": component_type, "normalized": normalized, "count": 3,
+                "type": "VEC2"}),
+        );
+        file.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        file.primitive()["attributes"]["TEXCOORD_0"] = json!(uvs);
+        let scene = file.load().unwrap();
+        assert_eq!(scene.meshes[0].uvs, [Vec2::Y, Vec2::ONE, Vec2::X], "{component_type} {normalized}");
+    }
+}
+
 #[test]
 fn matrices_and_trs_place_alike_and_mirrors_stay() {
     let mut file = GltfFile::triangle();

@@ -401,3 +401,35 @@ fn a_transform_in_a_file_is_read_for_every_texture() {
         assert!(found.abs_diff_eq(Vec2::new(0.25 + 0.6, 0.5 - 0.2), 1e-6), "{slot:?}: {found}");
     }
 }
+
+/// A front is what runs counter-clockwise in object space, whatever the node does to it.
+#[test]
+fn sides_are_told_through_mirrors_and_turns() {
+    let sun = Light {
+        name: String::new(),
+        kind: LightKind::Directional,
+        intensity: Vec3::splat(std::f32::consts::PI),
+        position: Vec3::ZERO,
+        direction: Vec3::NEG_Z,
+        range: None,
+    };
+    let turned = Mat4::from_rotation_y(std::f32::consts::PI);
+    for scale in [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -2.0, 1.0), Vec3::new(-1.0, -1.0, 1.0)] {
+        for (turn, is_front) in [(Mat4::IDENTITY, true), (turned, false)] {
+            for double_sided in [false, true] {
+                for alpha in [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend] {
+                    let mut scene = square(Material { double_sided, alpha, ..matt(Vec3::splat(0.5).extend(1.0)) });
+                    scene.draws[0].world_from_object = turn * Mat4::from_scale(scale);
+                    scene.lights.push(sun.clone());
+                    // The sun shines from the eye: a side that is seen is lit, by pi / pi of its colour.
+                    let expected = if is_front || double_sided { 0.5 } else { 0.25 };
+                    let changes =
+                        [("ambient", "0"), ("background", "0.25"), ("direct-shadow", "none"), ("size", "8x8")];
+                    for found in pixels(&scene, &changes) {
+                        require_near(found, Vec3::splat(expected), 1e-3, &format!("{scale} {is_front} {double_sided}"));
+                    }
+                }
+            }
+        }
+    }
+}
