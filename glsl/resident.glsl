@@ -17,6 +17,8 @@ const uint MATERIAL_METALLIC_ROUGHNESS_TEXTURE = 2u;
 const uint MATERIAL_NORMAL_TEXTURE = 4u;
 const uint MATERIAL_EMISSIVE_TEXTURE = 8u;
 const uint MATERIAL_DOUBLE_SIDED = 16u;
+const uint MATERIAL_OCCLUSION_TEXTURE = 32u;
+const uint MATERIAL_UNLIT = 64u;
 
 struct MaterialBlock {
     vec4 base_color;
@@ -26,8 +28,25 @@ struct MaterialBlock {
     float roughness;
     // MASK: drawn where alpha is at least this.
     float alpha_cutoff;
-    // MATERIAL_ bits.
+    // MATERIAL_ bits; from bit 8 on the code of F0 (shading/extras.glsl), from bit 16 on 255ths of the occlusion's
+    // strength.
     uint flags;
+};
+
+// Which of a material's textures, as its placements and set 1 are ordered.
+const uint TEXTURE_BASE_COLOR = 0u;
+const uint TEXTURE_METALLIC_ROUGHNESS = 1u;
+const uint TEXTURE_NORMAL = 2u;
+const uint TEXTURE_EMISSIVE = 3u;
+const uint TEXTURE_OCCLUSION = 4u;
+const uint TEXTURE_COUNT = 5u;
+
+// Where a texture is read: coordinates on the picture as rows of an affine map.
+struct PlacementBlock {
+    // xy: factors of the mesh's coordinates; z: shift; w: 1 for the second UV set, else 0.
+    vec4 u;
+    // The same without w.
+    vec4 v;
 };
 
 #endif

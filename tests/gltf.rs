@@ -82,6 +82,67 @@ fn interleaved_and_sparse_values_are_found() {
     assert_eq!(scene.meshes[0].uvs, [Vec2::new(0.25, 0.5), Vec2::new(0.75, 0.5), Vec2::new(0.25, 1.0)]);
 }
 
+/// Without a buffer view an accessor is 0 before its sparse values; the other attributes bound how long it may be.
+#[test]
+fn sparse_values_may_stand_alone() {
+    let mut file = GltfFile::triangle();
+    for (component_type, places) in [(U8, vec![1, 2]), (U16, vec![1, 0, 2, 0]), (U32, vec![1, 0, 0, 0, 2, 0, 0, 0])] {
+        let places = file.view(&places);
+        let values = file.view(&[2f32, 0.0, 0.0, 0.0, 3.0, 0.0].map(f32::to_le_bytes).concat());
+        let positions = file.push(
+            "accessors",
+            json!({
+                "componentType": F32, "count": 3, "type": "VEC3",
+                "sparse": {
+                    "count": 2,
+                    "indices": {"bufferView": places, "componentType": component_type},
+                    "values": {"bufferView": values},
+                },
+            }),
+        );
+        file.primitive()["attributes"]["POSITION"] = json!(positions);
+        let scene = file.load().unwrap();
+        assert_eq!(scene.meshes[0].positions, [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 3.0], "{component_type}");
+    }
+}
+
+/// KHR_mesh_quantization allows every integer for every attribute, at strides of whole words.
+#[test]
+fn attributes_of_every_component_type_are_read_at_their_stride() {
+    const I8: u32 = 5120;
+    const I16: u32 = 5122;
+    for (component_type, normalized, bytes_each, greatest) in [
+        (I8, true, 1, 127),
+        (U8, true, 1, 255),
+        (I16, true, 2, 32767),
+        (U16, true, 2, 65535),
+        (I8, false, 1, 1),
+        (U8, false, 1, 1),
+        (I16, false, 2, 1),
+        (U16, false, 2, 1),
+    ] {
+        let mut file = GltfFile::triangle();
+        let mut bytes = Vec::new();
+        for uv in [[0, greatest], [greatest, greatest], [greatest, 0]] {
+            for value in uv {
+                bytes.extend(&u32::to_le_bytes(value)[..bytes_each]);
+            }
+            bytes.resize(bytes.len().next_multiple_of(12), 0xee);
+        }
+        let view = file.view(&bytes);
+        file.json["bufferViews"][view]["byteStride"] = json!(12);
+        let uvs = file.push(
+            "accessors",
+            json!({"bufferView": view, "componentType": component_type, "normalized": normalized, "count": 3,
+                "type": "VEC2"}),
+        );
+        file.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        file.primitive()["attributes"]["TEXCOORD_0"] = json!(uvs);
+        let scene = file.load().unwrap();
+        assert_eq!(scene.meshes[0].uvs, [Vec2::Y, Vec2::ONE, Vec2::X], "{component_type} {normalized}");
+    }
+}
+
 #[test]
 fn matrices_and_trs_place_alike_and_mirrors_stay() {
     let mut file = GltfFile::triangle();
@@ -198,7 +259,7 @@ fn materials_share_images_in_two_colour_spaces_and_normal_maps_get_tangents() {
                 "baseColorTexture": {"index": 1}, "metallicRoughnessTexture": {"index": 1, "texCoord": 1},
             },
             "normalTexture": {"index": 1, "scale": 0.5},
-            "occlusionTexture": {"index": 0},
+            "occlusionTexture": {"index": 1, "texCoord": 2, "strength": 0.25},
             "emissiveTexture": {"index": 1}, "emissiveFactor": [1.0, 0.5, 0.0],
             "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}},
         }),
@@ -216,6 +277,8 @@ fn materials_share_images_in_two_colour_spaces_and_normal_maps_get_tangents() {
     assert_eq!((felt.alpha, felt.double_sided), (AlphaMode::Mask { cutoff: 0.5 }, true));
     assert_eq!((felt.base_color_texture, felt.emissive_texture), (Some(0), Some(0)));
     assert_eq!((felt.metallic_roughness_texture, felt.normal_texture), (Some(1), Some(1)));
+    assert_eq!((felt.occlusion_texture, felt.occlusion_strength), (Some(1), 0.25));
+    assert_eq!(felt.placements.map(|placement| placement.uv_set), [0, 1, 0, 0, 0]);
     assert_eq!(
         scene.textures.iter().map(|texture| texture.color_space).collect::<Vec<_>>(),
         [ColorSpace::Srgb, ColorSpace::Linear]
@@ -228,7 +291,7 @@ fn materials_share_images_in_two_colour_spaces_and_normal_maps_get_tangents() {
     assert_eq!((scene.images[0].name.as_str(), scene.images[0].width, scene.images[0].height), ("grain", 3, 2));
     assert_eq!(scene.images[0].rgba8, [1, 2, 3, 4].repeat(6));
     assert_eq!(scene.meshes[0].tangents, [glam::Vec4::new(1.0, 0.0, 0.0, 1.0); 3]);
-    for word in ["occlusion", "UV set", "clamped", "KHR_materials_sheen"] {
+    for word in ["UV set", "clamped", "KHR_materials_sheen"] {
         assert_eq!(scene.warnings.iter().filter(|warning| warning.contains(word)).count(), 1, "{:?}", scene.warnings);
     }
 }

@@ -1,5 +1,6 @@
 // BLEND surfaces over the finished picture, back to front, lit forward by every punctual light and by the virtual ones of
 // their pixel. Pass: src/passes/blend.rs.
+// variants: VERTEX=plain|extended
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -7,7 +8,7 @@
 #include "sampling/pattern.glsl"
 #include "shading/light.glsl"
 #include "shading/subset.glsl"
-#include "shading/material.glsl"
+#include "resident.glsl"
 
 // BRDF_ and SHADOW_ values.
 layout(constant_id = 2) const uint BRDF_KIND = 2;
@@ -32,6 +33,11 @@ layout(std430, set = 0, binding = 7) readonly buffer Subsets { SubsetBlock subse
 layout(std430, set = 0, binding = 5) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 
+#ifdef VERTEX_EXTENDED
+layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
+#endif
+
+#include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/shade_lights.glsl"
 
@@ -40,11 +46,21 @@ layout(location = 0) out vec4 out_color;
 void main() {
     MaterialBlock material = materials[in_material];
     vec4 base_color = base_color_at(material);
+    if (SURFACE_EXTRAS != 0u && (material.flags & MATERIAL_UNLIT) != 0u) {
+        out_color = vec4(base_color.rgb * base_color.a, base_color.a);
+        return;
+    }
     vec2 metallic_roughness = metallic_roughness_at(material);
     vec3 normal_ws = normal_at(material);
-    Surface surface = Surface(base_color.rgb, metallic_roughness.x, metallic_roughness.y);
+    Surface surface = Surface(base_color.rgb, metallic_roughness.x, metallic_roughness.y, DEFAULT_DIELECTRIC_F0);
     vec3 eye_ws = to_eye(frame, in_position_ws);
-    vec3 radiance = emissive_at(material) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
+    float openness = 1.0;
+    if (SURFACE_EXTRAS != 0u) {
+        uint extras = extras_at(material);
+        surface.dielectric_f0 = f0_of_extras(extras);
+        openness = openness_of_extras(extras);
+    }
+    vec3 radiance = emissive_at(material) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb * openness;
     uint light = 0u;
     for (; light < frame.light_count; light++) {
         radiance += shade_light(lights[light], surface, in_position_ws, normal_ws, eye_ws);

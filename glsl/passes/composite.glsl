@@ -32,6 +32,15 @@ layout(set = 0, binding = 43) uniform usampler2D gbuffer_emissive;
 #include "shading/shade_lights.glsl"
 #include "lights/cull.glsl"
 
+// What few materials say (shading/extras.glsl).
+uint extras_at(uvec2 pixel) {
+#ifdef EMISSIVE_ON
+    return last16(texelFetch(gbuffer_emissive, ivec2(pixel), 0).rg);
+#else
+    return 0u;
+#endif
+}
+
 vec3 emitted_at(uvec2 pixel) {
 #ifdef EMISSIVE_ON
     return unpack_halves(texelFetch(gbuffer_emissive, ivec2(pixel), 0).rg);
@@ -48,6 +57,8 @@ vec3 point_eye_ws[TEXELS];
 bool point_has_surface[TEXELS];
 // Radiance towards the eye from all punctual lights.
 vec3 point_direct[TEXELS];
+// Part of the ambient light that arrives; read where SURFACE_EXTRAS is 1 only.
+float point_openness[TEXELS];
 
 // The i-th pixel of a thread; it may lie under the frame.
 uvec2 pixel_of_point(uint i) {
@@ -66,12 +77,26 @@ void set_point(uint i, bool needs_position) {
     vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
     vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
     point_has_surface[i] = is_in_frame(pixel_of_point(i)) && has_surface(normal_bits);
-    point_surface[i] = Surface(base_color, roughness_metallic.y, roughness_metallic.x);
+    point_surface[i] = Surface(base_color, roughness_metallic.y, roughness_metallic.x, DEFAULT_DIELECTRIC_F0);
+    if (SURFACE_EXTRAS != 0u) {
+        uint extras = extras_at(pixel);
+        point_surface[i].dielectric_f0 = f0_of_extras(extras);
+        point_openness[i] = openness_of_extras(extras);
+    }
     point_normal_ws[i] = unpack_normal(normal_bits);
     if (needs_position) {
         point_position_ws[i] = unpack_position(frame, position_words(pixel), pixel);
         point_eye_ws[i] = to_eye(frame, point_position_ws[i]);
     }
+}
+
+// Radiance towards the eye from light that comes from everywhere.
+vec3 ambient_of(uint i) {
+    precise vec3 reflected = ambient_reflectance(BRDF_KIND, point_surface[i]) * frame.ambient.rgb;
+    if (SURFACE_EXTRAS != 0u) {
+        reflected *= point_openness[i];
+    }
+    return reflected;
 }
 
 void add_light(LightBlock light) {

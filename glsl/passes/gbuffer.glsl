@@ -5,7 +5,8 @@
 //           | depth: no image, the depth buffer holds it
 // normal    xyz in 16-bit snorm; in the fourth 16 bits roughness and metallic, 8 bits each
 // color     base colour in half floats; in the fourth 16 bits the material's id
-// emissive  radiance in half floats; an image only where the scene has emissive materials
+// emissive  radiance in half floats; in the fourth 16 bits what few materials say (shading/extras.glsl), 0 for the common
+//           ones; an image only where the scene has emissive materials, or such
 // A pixel without surface has all normal bits 0, which no unit normal has.
 #ifndef PASSES_GBUFFER_GLSL
 #define PASSES_GBUFFER_GLSL

@@ -1,5 +1,6 @@
 // Vertex stage that every pass over the scene's triangles shares. Draws: src/passes/mesh.rs.
 // portable: yes
+// variants: VERTEX=plain|extended
 #version 460
 #include "frame.glsl"
 #include "resident.glsl"
@@ -8,6 +9,10 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;
 layout(location = 3) in vec2 uv;
+#ifdef VERTEX_EXTENDED
+layout(location = 4) in vec4 color;
+layout(location = 5) in vec2 uv_1;
+#endif
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 1) readonly buffer Draws { DrawBlock draws[]; };
@@ -17,6 +22,10 @@ layout(location = 1) out vec3 out_normal_ws;
 layout(location = 2) out vec4 out_tangent_ws;
 layout(location = 3) out vec2 out_uv;
 layout(location = 4) flat out uint out_material;
+#ifdef VERTEX_EXTENDED
+layout(location = 5) out vec4 out_color;
+layout(location = 6) out vec2 out_uv_1;
+#endif
 
 // Two passes over the same triangles must agree on depth to the bit.
 invariant gl_Position;
@@ -30,5 +39,9 @@ void main() {
     out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, tangent.w);
     out_uv = uv;
     out_material = draw.material;
+#ifdef VERTEX_EXTENDED
+    out_color = color;
+    out_uv_1 = uv_1;
+#endif
     gl_Position = frame.clip_from_world * position_ws;
 }

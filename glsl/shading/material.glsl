@@ -1,27 +1,48 @@
 // A material at one fragment: factors times textures, the normal map applied. Fragment stages only.
 //
+// With the axis VERTEX=extended vertices have colours, and textures placements: `placements[]` is the including shader's.
 // Set 1 belongs to the material: src/resident.rs makes one set each, with a white pixel where a texture is missing.
 // The including shader reads the material's block: from its push constants, or from `materials[]`.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 
 #include "resident.glsl"
+#include "shading/extras.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color_texture;
 layout(set = 1, binding = 1) uniform sampler2D metallic_roughness_texture;
 layout(set = 1, binding = 2) uniform sampler2D normal_texture;
 layout(set = 1, binding = 3) uniform sampler2D emissive_texture;
+layout(set = 1, binding = 4) uniform sampler2D occlusion_texture;
 
 layout(location = 0) in vec3 in_position_ws;
 layout(location = 1) in vec3 in_normal_ws;
 layout(location = 2) in vec4 in_tangent_ws;
 layout(location = 3) in vec2 in_uv;
 layout(location = 4) flat in uint in_material;
+#ifdef VERTEX_EXTENDED
+layout(location = 5) in vec4 in_color;
+layout(location = 6) in vec2 in_uv_1;
+#endif
+
+// Where on its picture a texture (TEXTURE_) is read.
+vec2 uv_of(uint which) {
+#ifdef VERTEX_EXTENDED
+    PlacementBlock placement = placements[in_material * TEXTURE_COUNT + which];
+    vec2 uv = placement.u.w > 0.5 ? in_uv_1 : in_uv;
+    return vec2(dot(placement.u.xy, uv) + placement.u.z, dot(placement.v.xy, uv) + placement.v.z);
+#else
+    return in_uv;
+#endif
+}
 
 vec4 base_color_at(MaterialBlock material) {
     vec4 color = material.base_color;
+#ifdef VERTEX_EXTENDED
+    color *= in_color;
+#endif
     if ((material.flags & MATERIAL_BASE_COLOR_TEXTURE) != 0u) {
-        color *= texture(base_color_texture, in_uv);
+        color *= texture(base_color_texture, uv_of(TEXTURE_BASE_COLOR));
     }
     return color;
 }
@@ -30,7 +51,7 @@ vec4 base_color_at(MaterialBlock material) {
 vec2 metallic_roughness_at(MaterialBlock material) {
     vec2 value = vec2(material.metallic, material.roughness);
     if ((material.flags & MATERIAL_METALLIC_ROUGHNESS_TEXTURE) != 0u) {
-        value *= texture(metallic_roughness_texture, in_uv).bg;
+        value *= texture(metallic_roughness_texture, uv_of(TEXTURE_METALLIC_ROUGHNESS)).bg;
     }
     return value;
 }
@@ -38,9 +59,19 @@ vec2 metallic_roughness_at(MaterialBlock material) {
 vec3 emissive_at(MaterialBlock material) {
     vec3 radiance = material.emissive.rgb;
     if ((material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
-        radiance *= texture(emissive_texture, in_uv).rgb;
+        radiance *= texture(emissive_texture, uv_of(TEXTURE_EMISSIVE)).rgb;
     }
     return radiance;
+}
+
+// What travels in the spare bits of the G-buffer.
+uint extras_at(MaterialBlock material) {
+    float openness = 1.0;
+    if ((material.flags & MATERIAL_OCCLUSION_TEXTURE) != 0u) {
+        float strength = float((material.flags >> 16) & 0xffu) / 255.0;
+        openness += strength * (texture(occlusion_texture, uv_of(TEXTURE_OCCLUSION)).r - 1.0);
+    }
+    return pack_extras((material.flags >> 8) & 0xffu, openness);
 }
 
 // Unit shading normal, on the viewer's side where the material is double-sided.
@@ -49,7 +80,7 @@ vec3 normal_at(MaterialBlock material) {
     if ((material.flags & MATERIAL_NORMAL_TEXTURE) != 0u && in_tangent_ws.xyz != vec3(0.0)) {
         vec3 tangent = normalize(in_tangent_ws.xyz);
         vec3 bitangent = cross(normal, tangent) * in_tangent_ws.w;
-        vec3 mapped = texture(normal_texture, in_uv).xyz * 2.0 - 1.0;
+        vec3 mapped = texture(normal_texture, uv_of(TEXTURE_NORMAL)).xyz * 2.0 - 1.0;
         mapped.xy *= material.emissive.a;
         vec3 bent = tangent * mapped.x + bitangent * mapped.y + normal * mapped.z;
         // A map that points nowhere leaves the surface as it is.

@@ -5,7 +5,7 @@ pub mod vpl;
 
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, LightKind, Material, Scene};
 use crate::settings::{Values, parse_color};
 use glam::Vec3;
 
@@ -39,7 +39,7 @@ impl LightSet {
         let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
-        let emissive = scene.draws.iter().any(|draw| scene.materials[scene.meshes[draw.mesh].material].is_emissive());
+        let emissive = scene.drawn_materials().any(Material::is_emissive);
         let has_rig = !has_punctual && !emissive && values.text("rig") == "default";
         if has_rig {
             lights.push(rig_key(view));

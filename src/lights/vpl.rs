@@ -12,8 +12,9 @@
 use crate::bvh::{Bvh, Hit};
 use crate::gpu::shader::structs::VplBlock;
 use crate::scene::{Light, LightKind, Scene};
+use crate::shading::material::MeshPoint;
 use crate::shading::{light, material};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// What the walk is told.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +44,7 @@ const PATIENCE: u64 = 1024;
 /// Where a walk starts.
 enum Source<'a> {
     Punctual(&'a Light),
-    Emissive { corners: [Vec3; 3], uvs: [Vec2; 3], material: usize },
+    Emissive { corners: [Vec3; 3], mesh: usize, triangle: usize },
 }
 
 /// Rays start off their surface by this part of the scene's diagonal.
@@ -107,15 +108,12 @@ fn sources<'a>(scene: &Scene, lights: &'a [Light], emissive: bool, radius: f32) 
         }
         for triangle in 0..mesh.triangle_count() {
             let corners = mesh.triangle(triangle).map(|corner| draw.world_from_object.transform_point3(corner));
-            let uvs = [0, 1, 2].map(|corner| {
-                mesh.uvs.get(mesh.indices[3 * triangle + corner] as usize).copied().unwrap_or(Vec2::ZERO)
-            });
             let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
             // By the factor, not by the texture: a choice that is off costs variance, not truth.
             let power = luminous(material.emissive) * f64::from(std::f32::consts::PI * area);
             if power > 0.0 {
                 powers.push(power);
-                sources.push(Source::Emissive { corners, uvs, material: mesh.material });
+                sources.push(Source::Emissive { corners, mesh: draw.mesh, triangle });
             }
         }
     }
@@ -162,13 +160,14 @@ impl Tracer<'_> {
     fn one(&self, source: &Source<'_>, chance: f32, bounces: u32, numbers: &mut Numbers, vpls: &mut Vec<VplBlock>) {
         let (mut origin, mut direction, mut flux) = match source {
             Source::Punctual(punctual) => start_on(punctual, self.center, self.radius, numbers),
-            Source::Emissive { corners, uvs, material } => {
-                let material = &self.scene.materials[*material];
+            Source::Emissive { corners, mesh, triangle } => {
+                let mesh = &self.scene.meshes[*mesh];
+                let material = &self.scene.materials[mesh.material];
                 let (u, v) = (numbers.next(), numbers.next());
                 let root = u.sqrt();
                 let weights = [1.0 - root, root * (1.0 - v), root * v];
                 let position = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
-                let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
+                let point = MeshPoint::on(mesh, mesh.corners(*triangle), weights);
                 let twice = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
                 let mut normal = twice.normalize_or_zero();
                 let mut area = 0.5 * twice.length();
@@ -177,7 +176,7 @@ impl Tracer<'_> {
                     area *= 2.0;
                     normal = if numbers.next() < 0.5 { normal } else { -normal };
                 }
-                let radiance = material::emissive_at(self.scene, material, uv);
+                let radiance = material::emissive_at(self.scene, material, &point);
                 vpls.push(vpl(position, normal, radiance * area / chance));
                 let out = cosine_direction(normal, numbers);
                 (position + normal * self.offset, out, radiance * area * std::f32::consts::PI)
@@ -214,9 +213,7 @@ impl Tracer<'_> {
             }
             normal = -normal;
         }
-        let uv = self.uv(&hit);
-        let base_color = material::base_color_at(self.scene, material, uv).truncate();
-        let albedo = base_color * (1.0 - material::metallic_at(self.scene, material, uv));
+        let albedo = material::albedo_at(self.scene, material, &self.point(&hit));
         Some(Landing { position: origin + direction * hit.distance, normal, albedo })
     }
 
@@ -224,20 +221,18 @@ impl Tracer<'_> {
         let source = self.bvh.sources[hit.triangle];
         let draw = &self.scene.draws[source.draw as usize];
         let mesh = &self.scene.meshes[draw.mesh];
-        let corners = [0, 1, 2].map(|corner| mesh.indices[3 * source.triangle as usize + corner] as usize);
-        (mesh, draw, corners)
+        (mesh, draw, mesh.corners(source.triangle as usize))
     }
 
-    fn uv(&self, hit: &Hit) -> Vec2 {
+    fn point(&self, hit: &Hit) -> MeshPoint {
         let (mesh, _, corners) = self.corners(hit);
         let [u, v] = hit.barycentric;
-        let at = |corner: usize| mesh.uvs.get(corners[corner]).copied().unwrap_or(Vec2::ZERO);
-        at(0) * (1.0 - u - v) + at(1) * u + at(2) * v
+        MeshPoint::on(mesh, corners, [1.0 - u - v, u, v])
     }
 
     fn is_hole(&self, hit: &Hit) -> bool {
         let (mesh, _, _) = self.corners(hit);
-        material::is_hole(self.scene, &self.scene.materials[mesh.material], self.uv(hit))
+        material::is_hole(self.scene, &self.scene.materials[mesh.material], &self.point(hit))
     }
 }
 

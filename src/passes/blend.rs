@@ -12,7 +12,9 @@ use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::BlendParams;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, SceneGpu};
@@ -48,7 +50,7 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// None where the scene has no BLEND surface. `constants`: BRDF_KIND, DIRECT_SHADOW, RAY_OFFSET.
+    /// None where the scene has no BLEND surface. `constants`: `ShadingSettings::light_constants`.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
@@ -69,10 +71,10 @@ impl Blend {
         let pipeline = GraphicsPipeline::new(
             gpu,
             &GraphicsDescription {
-                vertex: &crate::gpu::shader::passes::mesh::VERT,
-                fragment: Some(&crate::gpu::shader::passes::blend::FRAG),
+                vertex: mesh::vertex_shader(scene),
+                fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene)])),
                 constants,
-                vertex_buffers: &mesh::VERTEX_BUFFERS,
+                vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[PICTURE_FORMAT],
                 blend_over: true,
                 depth_format: Some(vk::Format::D32_SFLOAT),
@@ -96,13 +98,13 @@ impl Blend {
         depth: Edge<'_, Image>,
         picture: Edge<'_, Image>,
     ) -> Result<()> {
-        let traffic = Traffic { read_bytes: mesh::read_bytes(&self.calls), written_bytes: 0, invocations: None };
+        let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
         cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
             cmd.barriers([depth.to(Access::DepthTest), picture.to(Access::ColorWrite)]);
             let extent = picture.resource.description.extent;
             cmd.begin_rendering(extent, &[(picture.resource, None)], Some((depth.resource, None, Access::DepthTest)));
             mesh::bind_streams(cmd, scene);
-            let mut bound = mesh::bound(frame, scene).to_vec();
+            let mut bound = mesh::bound(frame, scene);
             bound.extend([
                 ("Materials", Bound::Buffer(&scene.materials)),
                 ("Lights", Bound::Buffer(lights.lights)),

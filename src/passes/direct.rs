@@ -10,7 +10,7 @@ use crate::lights::{LightSet, cull};
 use crate::passes::gbuffer::PositionStorage;
 use crate::passes::texels::{LightLoad, Texels};
 use crate::plan::{Plan, Resources};
-use crate::scene::Scene;
+use crate::scene::{Material, Scene};
 use crate::settings::Values;
 use crate::shading::brdf::Brdf;
 use crate::shading::light;
@@ -52,13 +52,15 @@ pub struct ShadingSettings {
     pub texels: Texels,
     /// Metres that a shadow ray starts off its surface.
     pub ray_offset: f32,
+    /// Whether a drawn material has `Material::has_extras`.
+    pub extras: bool,
 }
 
 /// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
 const RAY_OFFSET: f32 = 1e-4;
 
 impl ShadingSettings {
-    pub fn new(values: &Values, lights: &LightSet, diagonal: f32, caps: &Caps) -> Self {
+    pub fn new(values: &Values, lights: &LightSet, scene: &Scene, caps: &Caps) -> Self {
         Self {
             brdf: Brdf::from_setting(values.text("brdf")),
             position: PositionStorage::from_setting(values.text("position")),
@@ -67,7 +69,8 @@ impl ShadingSettings {
             sun_count: lights.sun_count() as u64,
             workgroup: values.pair("workgroup"),
             texels: Texels::new(values, caps),
-            ray_offset: RAY_OFFSET * diagonal.max(1e-6),
+            ray_offset: RAY_OFFSET * scene.bounds().diagonal().max(1e-6),
+            extras: scene.drawn_materials().any(Material::has_extras),
         }
     }
 
@@ -97,10 +100,10 @@ impl ShadingSettings {
         [("DIRECT_SHADOW", self.shadow as u32), ("RAY_OFFSET", self.ray_offset.to_bits())]
     }
 
-    /// BRDF_KIND and those of shadows.
-    pub fn light_constants(&self) -> [(&'static str, u32); 3] {
+    /// BRDF_KIND, SURFACE_EXTRAS and those of shadows.
+    pub fn light_constants(&self) -> [(&'static str, u32); 4] {
         let [shadow, offset] = self.shadow_constants();
-        [("BRDF_KIND", self.brdf as u32), shadow, offset]
+        [("BRDF_KIND", self.brdf as u32), ("SURFACE_EXTRAS", u32::from(self.extras)), shadow, offset]
     }
 
     /// Whether lists of lights for tiles are made.

@@ -2,7 +2,8 @@
 //! reads   the scene
 //! writes  gbuffer.normal, gbuffer.color   images, 8 B a pixel each
 //!         gbuffer.position                image, 8 or 16 B a pixel; none where the depth buffer holds positions
-//!         gbuffer.emissive                image, 8 B a pixel, where the scene has emissive materials
+//!         gbuffer.emissive                image, 8 B a pixel, where the scene has emissive materials, or extras that
+//!                                 travel in its spare bits
 //!         gbuffer.depth                   image, 4 B a pixel, reversed
 //!
 //! Differs from the paper: normals are 16-bit snorm, not half floats (their error is 32 times smaller near 1), positions
@@ -294,14 +295,17 @@ impl GBufferPass {
             formats.push(WORDS);
         }
         formats.extend(position.image_format());
+        // Only what writes emission knows of it.
+        let constants = [("SURFACE_EXTRAS", u32::from(scene.has_extras))];
         let pipeline = |alpha: &str| {
+            let names = [position.name(), emissive_name(has_emissive), alpha, mesh::vertex_name(scene)];
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
-                    vertex: &crate::gpu::shader::passes::mesh::VERT,
-                    fragment: Some(variant(FRAG_VARIANTS, &[position.name(), emissive_name(has_emissive), alpha])),
-                    constants: &[],
-                    vertex_buffers: &mesh::VERTEX_BUFFERS,
+                    vertex: mesh::vertex_shader(scene),
+                    fragment: Some(variant(FRAG_VARIANTS, &names)),
+                    constants: if has_emissive { &constants } else { &[] },
+                    vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     blend_over: false,
                     depth_format: Some(DEPTH_FORMAT),
@@ -337,7 +341,7 @@ impl GBufferPass {
             + 4
             + gbuffer.position.as_ref().map_or(0, |_| gbuffer.position_storage.bytes());
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(self.list.calls()),
+            read_bytes: mesh::read_bytes(scene, self.list.calls()),
             // Each pixel once: overdraw depends on the view.
             written_bytes: gbuffer.extent().pixel_count() * pixel_bytes,
             invocations: None,

@@ -1,15 +1,18 @@
 //! The vertex stage that passes over triangles share, and the loop that draws with it. Shader: mesh.vert.
-//! reads  scene.positions, scene.attributes, scene.indices, scene.draws, the frame's block
+//! reads  scene.positions, scene.attributes, scene.extended (where the scene has it), scene.indices, scene.draws, the
+//!        frame's block
 
 use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsPipeline, VertexBuffer};
+use crate::gpu::shader::passes::mesh::VERT_VARIANTS;
+use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{Buffer, Commands};
-use crate::resident::{DrawCall, SceneGpu, VertexAttributes};
+use crate::resident::{DrawCall, ExtendedAttributes, SceneGpu, VertexAttributes};
 use ash::vk;
 use std::mem::offset_of;
 
-/// Layout of the two vertex streams.
-pub const VERTEX_BUFFERS: [VertexBuffer; 2] = [
+/// Layout of the vertex streams; the last is the extended one.
+const VERTEX_BUFFERS: [VertexBuffer; 3] = [
     VertexBuffer { stride_bytes: 12, attributes: &[(0, vk::Format::R32G32B32_SFLOAT, 0)] },
     VertexBuffer {
         stride_bytes: size_of::<VertexAttributes>() as u32,
@@ -19,26 +22,52 @@ pub const VERTEX_BUFFERS: [VertexBuffer; 2] = [
             (3, vk::Format::R32G32_SFLOAT, offset_of!(VertexAttributes, uv) as u32),
         ],
     },
+    VertexBuffer {
+        stride_bytes: size_of::<ExtendedAttributes>() as u32,
+        attributes: &[
+            (4, vk::Format::R32G32B32A32_SFLOAT, offset_of!(ExtendedAttributes, color) as u32),
+            (5, vk::Format::R32G32_SFLOAT, offset_of!(ExtendedAttributes, uv_1) as u32),
+        ],
+    },
 ];
 
-/// What mesh.vert binds.
-pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> [(&'static str, Bound<'a>); 2] {
-    [("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))]
+/// The streams that `scene` has.
+pub fn vertex_buffers(scene: &SceneGpu) -> &'static [VertexBuffer] {
+    if scene.extended.is_some() { &VERTEX_BUFFERS } else { &VERTEX_BUFFERS[..2] }
+}
+
+/// The value of the shaders' axis VERTEX.
+pub fn vertex_name(scene: &SceneGpu) -> &'static str {
+    if scene.extended.is_some() { "extended" } else { "plain" }
+}
+
+/// The vertex stage for `scene`.
+pub fn vertex_shader(scene: &SceneGpu) -> &'static Shader {
+    variant(VERT_VARIANTS, &[vertex_name(scene)])
+}
+
+/// What mesh.vert binds, and material.glsl of set 0.
+pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> Vec<(&'static str, Bound<'a>)> {
+    let mut bound = vec![("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))];
+    bound.extend(scene.extended.as_ref().map(|extended| ("Placements", Bound::Buffer(&extended.placements))));
+    bound
 }
 
 /// Bytes that a pass over `calls` reads of the scene: each call's indices, and each index's vertex once.
-pub fn read_bytes<'a>(calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
-    let vertex = 12 + size_of::<VertexAttributes>() as u64;
+pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
+    let vertex: u64 = vertex_buffers(scene).iter().map(|stream| u64::from(stream.stride_bytes)).sum();
     calls.into_iter().map(|call| u64::from(call.index_count) * (4 + vertex)).sum()
 }
 
 /// Binds the scene's streams, inside rendering.
 pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
     let device = &cmd.gpu().device;
-    let streams = [scene.positions.handle, scene.attributes.handle];
+    let common = [scene.positions.handle, scene.attributes.handle];
+    let streams: Vec<_> =
+        common.into_iter().chain(scene.extended.as_ref().map(|extended| extended.attributes.handle)).collect();
     // SAFETY: the buffer is being recorded; the scene outlives the recorded frame.
     unsafe {
-        device.cmd_bind_vertex_buffers(cmd.buffer(), 0, &streams, &[0, 0]);
+        device.cmd_bind_vertex_buffers(cmd.buffer(), 0, &streams, &[0; VERTEX_BUFFERS.len()][..streams.len()]);
         device.cmd_bind_index_buffer(cmd.buffer(), scene.indices.handle, 0, vk::IndexType::UINT32);
     }
 }

@@ -2,7 +2,7 @@
 //! over them.
 
 use super::clusters::{Cluster, grouped};
-use super::{DrawCall, VertexAttributes};
+use super::{DrawCall, ExtendedAttributes, VertexAttributes};
 use crate::scene::{AlphaMode, Bounds, Mesh, Scene};
 use std::ops::Range;
 
@@ -95,6 +95,15 @@ impl Geometry {
         };
         scene.draws.iter().enumerate().map(call).collect()
     }
+}
+
+/// The third stream, vertex by vertex as `Geometry` has them.
+pub fn extended(scene: &Scene) -> Vec<ExtendedAttributes> {
+    let of = |mesh: &Mesh, vertex: usize| ExtendedAttributes {
+        color: mesh.colors.get(vertex).map_or([1.0; 4], |color| color.to_array()),
+        uv_1: mesh.uvs_1.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
+    };
+    scene.meshes.iter().flat_map(|mesh| (0..mesh.positions.len()).map(move |vertex| of(mesh, vertex))).collect()
 }
 
 #[cfg(test)]

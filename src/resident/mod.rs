@@ -1,10 +1,15 @@
-//! SceneGpu: the scene in device memory: two vertex streams, indices, draws, materials with their textures. Shaders see
-//! it through glsl/resident.glsl.
+//! SceneGpu: the scene in device memory: vertex streams, indices, draws, materials with their textures. Shaders see it
+//! through glsl/resident.glsl.
+//!
+//! What few scenes use costs the others nothing: vertex colours and second UV sets lie in a third stream, which is there
+//! (and read, by the EXTENDED variants of the shaders) where a drawn mesh has them or a texture is placed; what materials
+//! say beyond the common is read where SURFACE_EXTRAS is 1 (glsl/shading/extras.glsl).
 //!
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
 mod clusters;
 mod geometry;
+mod material_blocks;
 mod relief;
 mod textures;
 mod visible;
@@ -15,10 +20,10 @@ pub use visible::{DrawList, GeometryChoice};
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
-use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
+use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
 use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
-use crate::scene::{AlphaMode, ColorSpace, Scene, mipmaps};
+use crate::scene::{AlphaMode, ColorSpace, Material, Mesh, Scene, TextureSlot, mipmaps};
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -28,13 +33,6 @@ use std::ops::Range;
 use std::sync::Arc;
 use textures::Textures;
 
-/// glsl/resident.glsl's bits.
-const BASE_COLOR_TEXTURE: u32 = 1;
-const METALLIC_ROUGHNESS_TEXTURE: u32 = 2;
-const NORMAL_TEXTURE: u32 = 4;
-const EMISSIVE_TEXTURE: u32 = 8;
-const DOUBLE_SIDED: u32 = 16;
-
 /// What a vertex carries beside its position.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -42,6 +40,14 @@ pub struct VertexAttributes {
     pub normal: [f32; 3],
     pub tangent: [f32; 4],
     pub uv: [f32; 2],
+}
+
+/// What few vertices carry, in a stream of its own.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub struct ExtendedAttributes {
+    pub color: [f32; 4],
+    pub uv_1: [f32; 2],
 }
 
 /// One draw call.
@@ -80,7 +86,10 @@ pub struct SceneStats {
     pub material_count: u64,
     /// Extent, within the scene's limit, and format of each distinct image in its colour space.
     pub textures: Vec<(Extent, vk::Format)>,
+    /// Whether the G-buffer has an image of emission: a drawn material shines, or has something that travels with it.
     pub has_emissive: bool,
+    /// Whether vertices have the third stream, and textures their placements.
+    pub has_extended: bool,
     pub has_blend: bool,
 }
 
@@ -118,7 +127,8 @@ impl SceneStats {
 
     /// As if the scene's limit were `limit_px`; 0: none.
     pub fn with_texture_limit(scene: &Scene, limit_px: u32) -> Self {
-        let drawn = || scene.draws.iter().map(|draw| &scene.materials[scene.meshes[draw.mesh].material]);
+        let drawn = || scene.drawn_materials();
+        let is_extended = |mesh: &Mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty();
         Self {
             vertex_count: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
             index_count: scene.meshes.iter().map(|mesh| mesh.indices.len() as u64).sum(),
@@ -128,7 +138,8 @@ impl SceneStats {
                 .into_iter()
                 .map(|(image, color_space)| (limited(&scene.images[image], limit_px), format_of(color_space)))
                 .collect(),
-            has_emissive: drawn().any(|material| material.is_emissive()),
+            has_emissive: drawn().any(|material| material.is_emissive() || material.has_extras()),
+            has_extended: scene.meshes.iter().any(is_extended) || drawn().any(Material::has_placements),
             has_blend: drawn().any(|material| material.alpha == AlphaMode::Blend),
         }
     }
@@ -145,6 +156,12 @@ impl SceneStats {
         let attributes = size_of::<VertexAttributes>() as u64;
         plan.push("scene.geometry", "scene.positions", geometry(12 * self.vertex_count, Flags::VERTEX_BUFFER));
         plan.push("scene.geometry", "scene.attributes", geometry(attributes * self.vertex_count, Flags::VERTEX_BUFFER));
+        if self.has_extended {
+            let bytes = size_of::<ExtendedAttributes>() as u64 * self.vertex_count;
+            plan.push("scene.geometry", "scene.extended", geometry(bytes, Flags::VERTEX_BUFFER));
+            let bytes = (size_of::<PlacementBlock>() * TextureSlot::ALL.len()) as u64 * self.material_count;
+            plan.buffer("scene.materials", "scene.placements", bytes);
+        }
         plan.push("scene.geometry", "scene.indices", geometry(4 * self.index_count, Flags::INDEX_BUFFER));
         plan.buffer("scene.geometry", "scene.draws", self.draw_count * size_of::<DrawBlock>() as u64);
         plan.buffer("scene.materials", "scene.materials", self.material_count * size_of::<MaterialBlock>() as u64);
@@ -167,11 +184,20 @@ fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
     })
 }
 
+/// What the EXTENDED variants of shaders read.
+pub struct Extended {
+    /// The third vertex stream.
+    pub attributes: Buffer,
+    /// Of each material's textures.
+    pub placements: Buffer,
+}
+
 /// The scene in device memory.
 pub struct SceneGpu {
     gpu: Arc<Gpu>,
     pub positions: Buffer,
     pub attributes: Buffer,
+    pub extended: Option<Extended>,
     pub indices: Buffer,
     pub draws: Buffer,
     pub materials: Buffer,
@@ -183,7 +209,9 @@ pub struct SceneGpu {
     pub clusters: Vec<Cluster>,
     /// What `indices` holds, for tests of single triangles on the host.
     pub host_indices: Vec<u32>,
-    /// Layout of set 1: the four textures of a material.
+    /// Whether a drawn material has `Material::has_extras`.
+    pub has_extras: bool,
+    /// Layout of set 1: the textures of a material.
     pub material_layout: vk::DescriptorSetLayout,
     /// Set 1 of each material.
     pub material_sets: Vec<vk::DescriptorSet>,
@@ -206,12 +234,22 @@ impl SceneGpu {
         send(&positions, bytemuck::cast_slice(&geometry.positions), Access::VertexRead)?;
         let attributes = resources.buffer("scene.attributes");
         send(&attributes, bytemuck::cast_slice(&geometry.attributes), Access::VertexRead)?;
+        let extended = match stats.has_extended {
+            false => None,
+            true => {
+                let attributes = resources.buffer("scene.extended");
+                send(&attributes, bytemuck::cast_slice(&geometry::extended(scene)), Access::VertexRead)?;
+                let placements = resources.buffer("scene.placements");
+                send(&placements, bytemuck::cast_slice(&material_blocks::placements(scene)), Access::GraphicsRead)?;
+                Some(Extended { attributes, placements })
+            }
+        };
         let indices = resources.buffer("scene.indices");
         send(&indices, bytemuck::cast_slice(&geometry.indices), Access::VertexRead)?;
         let draws = resources.buffer("scene.draws");
         send(&draws, bytemuck::cast_slice(&draw_blocks(scene)), Access::GraphicsRead)?;
         let materials = resources.buffer("scene.materials");
-        let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_block).collect();
+        let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_blocks::block).collect();
         send(&materials, bytemuck::cast_slice(&blocks), Access::GraphicsRead)?;
         let textures = Textures::new(gpu, scene, &mut resources)?;
         let mut calls = geometry.calls(scene);
@@ -221,6 +259,7 @@ impl SceneGpu {
             gpu: gpu.clone(),
             positions,
             attributes,
+            extended,
             indices,
             draws,
             materials,
@@ -228,6 +267,7 @@ impl SceneGpu {
             calls,
             clusters: geometry.clusters,
             host_indices: geometry.indices,
+            has_extras: scene.drawn_materials().any(Material::has_extras),
             material_layout: layout,
             material_sets: sets,
             material_pool: pool,
@@ -279,25 +319,6 @@ fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
             }
         })
         .collect()
-}
-
-fn material_block(material: &crate::scene::Material) -> MaterialBlock {
-    let bit = |present: bool, bit: u32| if present { bit } else { 0 };
-    MaterialBlock {
-        base_color: material.base_color.to_array(),
-        emissive: material.emissive.extend(material.normal_scale).to_array(),
-        metallic: material.metallic,
-        roughness: material.roughness,
-        alpha_cutoff: match material.alpha {
-            AlphaMode::Mask { cutoff } => cutoff,
-            AlphaMode::Opaque | AlphaMode::Blend => 0.0,
-        },
-        flags: bit(material.base_color_texture.is_some(), BASE_COLOR_TEXTURE)
-            | bit(material.metallic_roughness_texture.is_some(), METALLIC_ROUGHNESS_TEXTURE)
-            | bit(material.normal_texture.is_some(), NORMAL_TEXTURE)
-            | bit(material.emissive_texture.is_some(), EMISSIVE_TEXTURE)
-            | bit(material.double_sided, DOUBLE_SIDED),
-    }
 }
 
 #[cfg(test)]

@@ -1,20 +1,20 @@
-//! The scene's textures in device memory, and set 1 of each material: four of them, a white pixel where one is missing.
+//! The scene's textures in device memory, and set 1 of each material: a white pixel where one is missing.
 
 use super::distinct_images;
 use crate::error::{Error, Result};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, Gpu, Image, upload};
 use crate::plan::Resources;
-use crate::scene::{Scene, Texture, Wrap, mipmaps};
+use crate::scene::{Scene, Texture, TextureSlot, Wrap, mipmaps};
 use ash::vk;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// Textures of a material, in the order of set 1's bindings.
-const TEXTURES_PER_MATERIAL: usize = 4;
+const TEXTURES_PER_MATERIAL: usize = TextureSlot::ALL.len();
 
-/// Images, samplers, and a set of four for each material.
+/// Images, samplers, and a set for each material.
 pub struct Textures {
     pub images: Vec<Image>,
     pub samplers: Vec<Sampler>,
@@ -64,14 +64,8 @@ impl Textures {
             .materials
             .iter()
             .map(|material| {
-                [
-                    material.base_color_texture,
-                    material.metallic_roughness_texture,
-                    material.normal_texture,
-                    material.emissive_texture,
-                ]
-                .map(|texture| {
-                    let (view, sampler) = view_of(texture);
+                TextureSlot::ALL.map(|slot| {
+                    let (view, sampler) = view_of(material.texture(slot));
                     let layout = Access::FragmentSample.layout();
                     vk::DescriptorImageInfo::default().image_view(view).sampler(sampler).image_layout(layout)
                 })

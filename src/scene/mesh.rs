@@ -17,6 +17,10 @@ pub struct Mesh {
     pub tangents: Vec<Vec4>,
     /// Texture coordinates, glTF's convention: (0, 0) is the picture's upper left corner.
     pub uvs: Vec<Vec2>,
+    /// The second set; empty where the material has no texture that reads it.
+    pub uvs_1: Vec<Vec2>,
+    /// Linear RGB and alpha, 0 to 1, that multiply the material's base colour; empty where all are white.
+    pub colors: Vec<Vec4>,
     pub indices: Vec<u32>,
     /// Index into `Scene::materials`.
     pub material: usize,
@@ -27,9 +31,14 @@ impl Mesh {
         self.indices.len() / 3
     }
 
+    /// The vertices of triangle `triangle`.
+    pub fn corners(&self, triangle: usize) -> [usize; 3] {
+        [0, 1, 2].map(|corner| self.indices[3 * triangle + corner] as usize)
+    }
+
     /// The three corners of triangle `triangle`, in object space.
     pub fn triangle(&self, triangle: usize) -> [Vec3; 3] {
-        [0, 1, 2].map(|corner| self.positions[self.indices[3 * triangle + corner] as usize])
+        self.corners(triangle).map(|vertex| self.positions[vertex])
     }
 }
 

@@ -4,6 +4,7 @@
 //! (see `shading` for what they mean in a picture).
 
 pub mod camera;
+pub mod glb;
 pub mod gltf;
 pub mod light;
 pub mod material;
@@ -17,9 +18,9 @@ use std::path::Path;
 
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind};
-pub use material::{AlphaMode, Material};
+pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Bounds, Draw, Mesh};
-pub use texture::{ColorSpace, Image, Sampler, Texture, Wrap};
+pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 
 /// Everything that a technique may draw.
 #[derive(Clone, Debug, Default)]
@@ -56,6 +57,24 @@ pub fn load(spec: &str, seed: u64) -> Result<Scene> {
     if let Some(scene) = procedural::build(spec, seed) {
         return scene;
     }
+    gltf::load(file(spec)?)
+}
+
+/// The same scene, and what its file holds beside it; None for built-in scenes.
+///
+/// Errors: those of `load`.
+pub fn inspect(spec: &str, seed: u64) -> Result<(Scene, Option<gltf::Facts>)> {
+    if let Some(scene) = procedural::build(spec, seed) {
+        return Ok((scene?, None));
+    }
+    let (scene, facts) = gltf::inspect(file(spec)?)?;
+    Ok((scene, Some(facts)))
+}
+
+/// The path of a scene file.
+///
+/// Errors: no known suffix (exit code 2).
+fn file(spec: &str) -> Result<&Path> {
     let path = Path::new(spec);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
     if !["gltf", "glb"].contains(&extension.as_str()) {
@@ -63,13 +82,18 @@ pub fn load(spec: &str, seed: u64) -> Result<Scene> {
         return Err(Error::request(format!("scene {spec}: neither a built-in scene nor a .gltf or .glb file"))
             .note(format!("built-in scenes: {}", names.join(", "))));
     }
-    gltf::load(path)
+    Ok(path)
 }
 
 impl Scene {
     /// How many triangles all draws together have.
     pub fn triangle_count(&self) -> u64 {
         self.draws.iter().map(|draw| self.meshes[draw.mesh].triangle_count() as u64).sum()
+    }
+
+    /// The material of each draw.
+    pub fn drawn_materials(&self) -> impl Iterator<Item = &Material> {
+        self.draws.iter().map(|draw| &self.materials[self.meshes[draw.mesh].material])
     }
 
     /// The box around everything that is drawn, in world space; empty where nothing is drawn.

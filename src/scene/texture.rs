@@ -1,4 +1,6 @@
-//! Decoded pictures and how they are sampled.
+//! Decoded pictures, how they are sampled, and where.
+
+use glam::{Affine2, Vec2};
 
 /// 8-bit RGBA, row-major from the upper left corner, 4 * width * height bytes.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +45,22 @@ impl Default for Sampler {
     /// glTF leaves the filter open where the file names none: trilinear, repeated.
     fn default() -> Self {
         Self { wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat, mag_linear: true, min_linear: true, mip_linear: Some(true) }
+    }
+}
+
+/// Where a material reads one of its textures: from a UV set, moved as KHR_texture_transform says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// 0: `Mesh::uvs`; 1: `Mesh::uvs_1`.
+    pub uv_set: usize,
+    /// Coordinates on the picture from those of the mesh.
+    pub picture_from_uv: Affine2,
+}
+
+impl Placement {
+    /// Where on the picture a point lies whose two sets say `uvs`.
+    pub fn at(&self, uvs: [Vec2; 2]) -> Vec2 {
+        self.picture_from_uv.transform_point2(uvs[self.uv_set])
     }
 }
 

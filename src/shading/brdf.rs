@@ -1,5 +1,6 @@
 //! Lambert, Blinn-Phong and GGX on the host: the twin of glsl/shading/brdf.glsl.
 
+use crate::scene::material::DEFAULT_DIELECTRIC_F0;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -29,6 +30,8 @@ pub struct Surface {
     pub base_color: Vec3,
     pub metallic: f32,
     pub roughness: f32,
+    /// `Material::dielectric_f0`.
+    pub dielectric_f0: f32,
 }
 
 impl Surface {
@@ -36,6 +39,21 @@ impl Surface {
     pub fn albedo(&self) -> Vec3 {
         self.base_color * (1.0 - self.metallic)
     }
+
+    fn f0(&self) -> Vec3 {
+        Vec3::splat(self.dielectric_f0).lerp(self.base_color, self.metallic)
+    }
+
+    /// Fresnel's value at grazing angles.
+    fn f90(&self) -> f32 {
+        if self.dielectric_f0 == 0.0 { self.metallic } else { 1.0 }
+    }
+}
+
+/// The 8 bits that stand for F0 of a dielectric, 0 to 1, in materials and in the G-buffer: 0 for the default, else steps
+/// of its root.
+pub fn code_of_f0(f0: f32) -> u32 {
+    if f0 == DEFAULT_DIELECTRIC_F0 { 0 } else { 1 + (f0.sqrt() * 254.0).round() as u32 }
 }
 
 /// Part of a radiance that comes from everywhere that a surface sends on, 0 to 1: its diffuse part, and beside Lambert
@@ -43,7 +61,7 @@ impl Surface {
 pub fn ambient_reflectance(kind: Brdf, surface: &Surface) -> Vec3 {
     let f0 = match kind {
         Brdf::Lambert => Vec3::ZERO,
-        Brdf::BlinnPhong | Brdf::Ggx => Vec3::splat(0.04).lerp(surface.base_color, surface.metallic),
+        Brdf::BlinnPhong | Brdf::Ggx => surface.f0(),
     };
     (Vec3::ONE - f0) * surface.albedo() + f0
 }
@@ -61,8 +79,8 @@ pub fn evaluate(kind: Brdf, surface: &Surface, normal: Vec3, to_light: Vec3, to_
     let n_dot_v = normal.dot(to_eye).max(1e-4);
     let alpha = (surface.roughness * surface.roughness).max(1e-3);
     let alpha_squared = alpha * alpha;
-    let f0 = Vec3::splat(0.04).lerp(surface.base_color, surface.metallic);
-    let fresnel = f0 + (Vec3::ONE - f0) * (1.0 - v_dot_h).powi(5);
+    let f0 = surface.f0();
+    let fresnel = f0 + (Vec3::splat(surface.f90()) - f0) * (1.0 - v_dot_h).powi(5);
     let specular = if kind == Brdf::BlinnPhong {
         let exponent = (2.0 / alpha_squared - 2.0).max(1.0);
         (exponent + 2.0) / (8.0 * PI) * n_dot_h.max(1e-6).powf(exponent)
@@ -101,7 +119,8 @@ mod tests {
     fn a_white_lambert_surface_loses_no_light_and_ggx_makes_little() {
         for roughness in [0.3, 0.6, 1.0] {
             for metallic in [0.0, 1.0] {
-                let surface = Surface { base_color: Vec3::ONE, metallic, roughness };
+                let surface =
+                    Surface { base_color: Vec3::ONE, metallic, roughness, dielectric_f0: DEFAULT_DIELECTRIC_F0 };
                 for incidence in [0.0, 0.7, 1.2] {
                     let ggx = reflected(Brdf::Ggx, &surface, incidence);
                     // glTF weighs the diffuse part by 1 - F of the half vector of each direction, the specular part by F
@@ -111,7 +130,8 @@ mod tests {
                 }
             }
         }
-        let white = Surface { base_color: Vec3::ONE, metallic: 0.0, roughness: 1.0 };
+        let white =
+            Surface { base_color: Vec3::ONE, metallic: 0.0, roughness: 1.0, dielectric_f0: DEFAULT_DIELECTRIC_F0 };
         assert!((reflected(Brdf::Lambert, &white, 0.9) - 1.0).abs() < 1e-3);
     }
 
@@ -119,17 +139,23 @@ mod tests {
     fn a_white_surface_sends_all_ambient_light_on_and_a_metal_its_color() {
         let color = Vec3::new(0.9, 0.5, 0.2);
         for metallic in [0.0, 0.5, 1.0] {
-            let white = Surface { base_color: Vec3::ONE, metallic, roughness: 0.5 };
+            let white =
+                Surface { base_color: Vec3::ONE, metallic, roughness: 0.5, dielectric_f0: DEFAULT_DIELECTRIC_F0 };
             assert!((ambient_reflectance(Brdf::Ggx, &white) - 1.0).max_element() < 1e-6);
         }
-        let metal = Surface { base_color: color, metallic: 1.0, roughness: 0.5 };
+        let metal = Surface { base_color: color, metallic: 1.0, roughness: 0.5, dielectric_f0: DEFAULT_DIELECTRIC_F0 };
         assert_eq!(ambient_reflectance(Brdf::Ggx, &metal), color);
         assert_eq!(ambient_reflectance(Brdf::Lambert, &metal), Vec3::ZERO);
     }
 
     #[test]
     fn ggx_is_reciprocal() {
-        let surface = Surface { base_color: Vec3::new(0.9, 0.5, 0.2), metallic: 0.4, roughness: 0.5 };
+        let surface = Surface {
+            base_color: Vec3::new(0.9, 0.5, 0.2),
+            metallic: 0.4,
+            roughness: 0.5,
+            dielectric_f0: DEFAULT_DIELECTRIC_F0,
+        };
         let a = Vec3::new(0.3, 0.8, 0.1).normalize();
         let b = Vec3::new(-0.5, 0.4, 0.6).normalize();
         let there = evaluate(Brdf::Ggx, &surface, Vec3::Y, a, b);

@@ -1,33 +1,65 @@
 //! A material at one point, on the host: what a light walk reads where its rays land. Finest texture level, bilinear.
 
 use crate::report::tonemap::linear_from_srgb;
-use crate::scene::{AlphaMode, ColorSpace, Image, Material, Scene, Texture, Wrap};
+use crate::scene::{AlphaMode, ColorSpace, Image, Material, Mesh, Scene, Texture, TextureSlot, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 
-/// Base colour factor times texture: linear RGB and alpha.
-pub fn base_color_at(scene: &Scene, material: &Material, uv: Vec2) -> Vec4 {
-    let texel = material.base_color_texture.map_or(Vec4::ONE, |texture| sample(scene, &scene.textures[texture], uv));
-    material.base_color * texel
+/// What a mesh says of a point on one of its triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPoint {
+    /// Of both UV sets; 0 where there is none.
+    pub uvs: [Vec2; 2],
+    /// Linear RGB and alpha; white where there is none.
+    pub color: Vec4,
 }
 
-/// 0 to 1.
-pub fn metallic_at(scene: &Scene, material: &Material, uv: Vec2) -> f32 {
-    let texel =
-        material.metallic_roughness_texture.map_or(1.0, |texture| sample(scene, &scene.textures[texture], uv).z);
-    material.metallic * texel
+impl MeshPoint {
+    /// Between the vertices `corners`, whose `weights` add up to 1.
+    pub fn on(mesh: &Mesh, corners: [usize; 3], weights: [f32; 3]) -> Self {
+        let uv = |uvs: &[Vec2]| {
+            let at = |corner: usize| uvs.get(corners[corner]).copied().unwrap_or(Vec2::ZERO) * weights[corner];
+            at(0) + at(1) + at(2)
+        };
+        let color = |corner: usize| mesh.colors[corners[corner]] * weights[corner];
+        Self {
+            uvs: [uv(&mesh.uvs), uv(&mesh.uvs_1)],
+            color: if mesh.colors.is_empty() { Vec4::ONE } else { color(0) + color(1) + color(2) },
+        }
+    }
 }
 
-/// Radiance that the surface sends of its own.
-pub fn emissive_at(scene: &Scene, material: &Material, uv: Vec2) -> Vec3 {
-    let texel = material.emissive_texture.map_or(Vec4::ONE, |texture| sample(scene, &scene.textures[texture], uv));
-    material.emissive * texel.truncate()
+/// Base colour factor times vertex colour times texture: linear RGB and alpha.
+pub fn base_color_at(scene: &Scene, material: &Material, point: &MeshPoint) -> Vec4 {
+    material.base_color * point.color * texel_of(scene, material, TextureSlot::BaseColor, point)
+}
+
+/// Linear RGB of the part that scatters diffusely; black where the material is unlit.
+pub fn albedo_at(scene: &Scene, material: &Material, point: &MeshPoint) -> Vec3 {
+    if material.unlit {
+        return Vec3::ZERO;
+    }
+    let metallic = material.metallic * texel_of(scene, material, TextureSlot::MetallicRoughness, point).z;
+    base_color_at(scene, material, point).truncate() * (1.0 - metallic)
+}
+
+/// Radiance that the surface sends of its own to others.
+pub fn emissive_at(scene: &Scene, material: &Material, point: &MeshPoint) -> Vec3 {
+    material.emissive * texel_of(scene, material, TextureSlot::Emissive, point).truncate()
 }
 
 /// Whether a MASK surface has a hole here.
-pub fn is_hole(scene: &Scene, material: &Material, uv: Vec2) -> bool {
+pub fn is_hole(scene: &Scene, material: &Material, point: &MeshPoint) -> bool {
     match material.alpha {
-        AlphaMode::Mask { cutoff } => base_color_at(scene, material, uv).w < cutoff,
+        AlphaMode::Mask { cutoff } => base_color_at(scene, material, point).w < cutoff,
         AlphaMode::Opaque | AlphaMode::Blend => false,
+    }
+}
+
+/// What the texture says where it is placed; white where there is none.
+fn texel_of(scene: &Scene, material: &Material, slot: TextureSlot, point: &MeshPoint) -> Vec4 {
+    match material.texture(slot) {
+        None => Vec4::ONE,
+        Some(texture) => sample(scene, &scene.textures[texture], material.placement(slot).at(point.uvs)),
     }
 }
 
@@ -80,7 +112,8 @@ fn texel(image: &Image, x: u32, y: u32, color_space: ColorSpace) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Sampler;
+    use crate::scene::{Placement, Sampler};
+    use glam::Affine2;
 
     #[test]
     fn wrap_modes_reach_beyond_both_edges() {
@@ -103,8 +136,33 @@ mod tests {
         let scene = Scene { images: vec![image], textures: vec![texture], ..Scene::default() };
         let alpha = AlphaMode::Mask { cutoff: 0.5 };
         let material = Material { base_color_texture: Some(0), alpha, ..Material::default() };
-        assert!(!is_hole(&scene, &material, Vec2::new(0.1, 0.5)));
-        assert!(is_hole(&scene, &material, Vec2::new(0.9, 0.5)));
-        assert!((base_color_at(&scene, &material, Vec2::new(0.5, 0.5)).w - 0.5).abs() < 1e-6);
+        let at = |x: f32| MeshPoint { uvs: [Vec2::new(x, 0.5), Vec2::ZERO], color: Vec4::ONE };
+        assert!(!is_hole(&scene, &material, &at(0.1)));
+        assert!(is_hole(&scene, &material, &at(0.9)));
+        assert!((base_color_at(&scene, &material, &at(0.5)).w - 0.5).abs() < 1e-6);
+        let faint = MeshPoint { color: Vec4::new(0.5, 0.25, 1.0, 0.4), ..at(0.1) };
+        assert!(is_hole(&scene, &material, &faint), "the vertex's alpha counts too");
+        assert_eq!(base_color_at(&scene, &material, &faint), faint.color);
+    }
+
+    #[test]
+    fn a_placement_turns_scales_and_moves_and_chooses_its_set() {
+        let image = Image { name: String::new(), width: 2, height: 1, rgba8: [[255; 4], [0, 0, 0, 255]].concat() };
+        let texture = Texture { image: 0, sampler: Sampler::default(), color_space: ColorSpace::Linear };
+        let scene = Scene { images: vec![image], textures: vec![texture], ..Scene::default() };
+        let mut material = Material { base_color_texture: Some(0), metallic: 0.0, ..Material::default() };
+        // u of the picture runs along v of the second set, from 0.25 on, at half the pace.
+        let quarter = std::f32::consts::FRAC_PI_2;
+        let picture_from_uv =
+            Affine2::from_scale_angle_translation(Vec2::new(1.0, 0.5), -quarter, Vec2::new(0.25, 0.5));
+        material.placements[TextureSlot::BaseColor as usize] = Placement { uv_set: 1, picture_from_uv };
+        for (v, white) in [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0)] {
+            let point = MeshPoint { uvs: [Vec2::splat(7.3), Vec2::new(0.0, v)], color: Vec4::ONE };
+            let albedo = albedo_at(&scene, &material, &point);
+            assert!((albedo.x - white).abs() < 1e-5, "{v}: {albedo}");
+        }
+        material.unlit = true;
+        let point = MeshPoint { uvs: [Vec2::ZERO; 2], color: Vec4::ONE };
+        assert_eq!(albedo_at(&scene, &material, &point), Vec3::ZERO);
     }
 }

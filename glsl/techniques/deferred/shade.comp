@@ -15,8 +15,7 @@ void main() {
         }
         vec4 value = vec4(frame.background.rgb, 0.0);
         if (point_has_surface[i]) {
-            Surface surface = point_surface[i];
-            precise vec3 radiance = emitted_at(pixel) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
+            precise vec3 radiance = emitted_at(pixel) + ambient_of(i);
             radiance += point_direct[i];
             value = vec4(radiance, 1.0);
         }

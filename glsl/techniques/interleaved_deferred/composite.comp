@@ -31,7 +31,7 @@ void main() {
             Surface surface = point_surface[i];
             vec3 received = unpack_halves(irradiance[pixel.y * params.row_pitch + pixel.x]);
             precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
-            radiance += ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb;
+            radiance += ambient_of(i);
             if (direct_full) {
                 radiance += point_direct[i];
             }

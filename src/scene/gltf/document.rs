@@ -12,7 +12,16 @@ use super::label;
 use crate::error::{Error, Result};
 
 /// What is honoured where a file uses it. Quantised vertices need nothing beyond what `accessors` reads anyway.
-const EXTENSIONS: [&str; 3] = ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization"];
+const EXTENSIONS: [&str; 8] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
 
 /// How many of the crate's findings a message shows.
 const SHOWN_FINDINGS: usize = 4;
@@ -105,10 +114,9 @@ pub fn ignored_features(document: &Document) -> Vec<String> {
     let root = document.as_json();
     let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let with_colors = primitives().filter(|primitive| {
-        primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(_))))
+        primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(1..))))
     });
     let with_targets = primitives().filter(|primitive| primitive.targets.as_ref().is_some_and(|list| !list.is_empty()));
-    let with_occlusion = root.materials.iter().filter(|material| material.occlusion_texture.is_some());
     let mut sentences = Vec::new();
     for (count, one, many) in [
         (root.animations.len(), "animation is ignored", "animations are ignored"),
@@ -124,13 +132,8 @@ pub fn ignored_features(document: &Document) -> Vec<String> {
         ),
         (
             with_colors.count(),
-            "primitive has vertex colours, which are ignored",
-            "primitives have vertex colours, which are ignored",
-        ),
-        (
-            with_occlusion.count(),
-            "material has an occlusion texture, which is ignored",
-            "materials have occlusion textures, which are ignored",
+            "primitive has vertex colours beyond the first, which are ignored",
+            "primitives have vertex colours beyond the first, which are ignored",
         ),
     ] {
         if count > 0 {

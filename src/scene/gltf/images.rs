@@ -8,6 +8,7 @@ use image::{ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 
 use super::buffers::Buffers;
+use super::facts::ImageFacts;
 use super::label;
 use super::source::Source;
 use crate::error::{Error, Result};
@@ -59,6 +60,29 @@ pub fn read(
     decoded.into_iter().collect()
 }
 
+/// Names, formats and extents of all images of the file, by their headers; bytes of external ones go into `hasher`.
+pub fn headers(
+    document: &Document,
+    source: &Source,
+    buffers: &Buffers<'_>,
+    hasher: &mut blake3::Hasher,
+) -> Vec<ImageFacts> {
+    let images = document.as_json().images.iter().enumerate();
+    images
+        .map(|(index, image)| {
+            let opened = open(document, image, index, source, buffers, hasher).ok();
+            let header = opened
+                .map(|(encoded, extent)| (if encoded.format == ImageFormat::Png { "PNG" } else { "JPEG" }, extent));
+            ImageFacts { name: name_of(image, index), header }
+        })
+        .collect()
+}
+
+fn name_of(image: &gltf::json::Image, index: usize) -> String {
+    let name = image.name.clone().or_else(|| file_name(image).map(str::to_owned));
+    name.unwrap_or_else(|| format!("image {index}"))
+}
+
 /// The end of an external image's URI.
 fn file_name(image: &gltf::json::Image) -> Option<&str> {
     let uri = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"))?;
@@ -90,8 +114,7 @@ fn open<'a>(
     if width.max(height) > MAX_SIDE_PX || width.min(height) == 0 {
         return Err(Error::request(format!("has {extent} pixels; 1 to {MAX_SIDE_PX} a side can be drawn")));
     }
-    let name = image.name.clone().or_else(|| file_name(image).map(str::to_owned));
-    let name = name.unwrap_or_else(|| format!("image {image_index}"));
+    let name = name_of(image, image_index);
     let label = label::element("image", image_index, Some(&name));
     Ok((Encoded { label, name, bytes, format }, extent))
 }

@@ -2,7 +2,7 @@
 //!
 //! A file comes from anywhere, so nothing in it is believed: every index, count, offset and number is checked before
 //! it is used, and what fails names its element. What the renderer does not draw yet (animations, skins, morph targets,
-//! vertex colours, further UV sets, unknown extensions) leaves one warning each.
+//! UV sets beyond the second, unknown extensions) leaves one warning each.
 //!
 //! Why this way: the `gltf` crate parses the JSON, but its own GLB reader, accessor iterators and some of its getters
 //! assert on broken files, so bytes are read by `source`, `buffers` and `accessors`, and `document` checks what those
@@ -12,6 +12,7 @@ mod accessors;
 mod buffers;
 mod cameras;
 mod document;
+mod facts;
 mod images;
 mod label;
 mod lights;
@@ -22,6 +23,8 @@ mod source;
 mod tangents;
 mod topology;
 mod uri;
+
+pub use self::facts::{AnimationFacts, Facts, ImageFacts, inspect};
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -37,7 +40,7 @@ use crate::error::{Error, Result};
 use crate::scene::{Draw, Scene};
 
 /// Stands in the hash for how a file becomes a scene; a change that alters scenes alters this line.
-const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 1: rest pose, TEXCOORD_0, flat normals, MikkTSpace";
+const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 2: rest pose, COLOR_0, two UV sets, flat normals, MikkTSpace";
 
 /// A short file can have many nodes that all draw one mesh of many primitives; this many draws take 320 MiB.
 const MAX_DRAWS: usize = 1 << 22;

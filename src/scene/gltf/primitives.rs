@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use glam::{Vec2, Vec3, Vec4};
+use gltf::accessor::Dimensions;
 use gltf::{Accessor, Document, Semantic};
 use rayon::prelude::*;
 
 use super::buffers::Buffers;
 use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
-use crate::scene::{Material, Mesh};
+use crate::scene::{Material, Mesh, TextureSlot};
 
 /// How many indices the drawn meshes may have together: 89 million triangles of a list, 13 GiB where no two share a
 /// vertex.
@@ -37,9 +38,10 @@ impl Primitives {
 #[derive(Debug)]
 enum Outcome {
     Mesh {
-        mesh: Mesh,
+        mesh: Box<Mesh>,
         left_over_indices: usize,
         repaired_normals: usize,
+        clamped_colors: usize,
     },
     /// Points or lines.
     NotTriangles,
@@ -63,8 +65,9 @@ pub fn read(
         .par_iter()
         .map(|(mesh, primitive)| {
             let material_index = primitive.material().index().unwrap_or(default_material);
-            let normal_mapped = materials.get(material_index).is_some_and(|material| material.normal_texture.is_some());
-            let mut outcome = read_primitive(buffers, primitive, normal_mapped)
+            let plain = Material::default();
+            let material = materials.get(material_index).unwrap_or(&plain);
+            let mut outcome = read_primitive(buffers, primitive, material)
                 .map_err(|error| error.within(primitive_label(mesh, primitive)))?;
             if let Outcome::Mesh { mesh: read, .. } = &mut outcome {
                 read.name = mesh_name(mesh, primitive.index());
@@ -75,17 +78,18 @@ pub fn read(
         .collect();
 
     let mut primitives = Primitives { meshes: Vec::new(), of_mesh: BTreeMap::new() };
-    let (mut not_triangles, mut left_over, mut repaired) = (0, 0, 0);
+    let (mut not_triangles, mut left_over, mut repaired, mut clamped) = (0, 0, 0, 0);
     // Taken in file order, so that of several broken primitives always the same one is reported.
     for ((mesh, _), outcome) in jobs.iter().zip(outcomes) {
         let next = primitives.meshes.len();
         let range = primitives.of_mesh.entry(mesh.index()).or_insert(next..next);
         match outcome? {
-            Outcome::Mesh { mesh, left_over_indices, repaired_normals } => {
+            Outcome::Mesh { mesh, left_over_indices, repaired_normals, clamped_colors } => {
                 range.end = next + 1;
                 left_over += usize::from(left_over_indices > 0);
                 repaired += repaired_normals;
-                primitives.meshes.push(mesh);
+                clamped += clamped_colors;
+                primitives.meshes.push(*mesh);
             }
             Outcome::NotTriangles => not_triangles += 1,
             Outcome::Empty => {}
@@ -106,6 +110,7 @@ pub fn read(
             "normal of length zero is replaced by its triangle's",
             "normals of length zero are replaced by their triangles'",
         ),
+        (clamped, "vertex colour is clamped to 0 to 1", "vertex colours are clamped to 0 to 1"),
     ] {
         if count > 0 {
             warnings.push(label::count(count, one, many));
@@ -140,7 +145,8 @@ fn mesh_name(mesh: &gltf::Mesh<'_>, primitive_index: usize) -> String {
     if mesh.primitives().len() > 1 { format!("{name}.{primitive_index}") } else { name }
 }
 
-fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, normal_mapped: bool) -> Result<Outcome> {
+fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, material: &Material) -> Result<Outcome> {
+    let normal_mapped = material.normal_texture.is_some();
     let Some(positions) = primitive.get(&Semantic::Positions) else {
         return Err(Error::request("has no POSITION"));
     };
@@ -160,6 +166,12 @@ fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, normal
 
     let normals = attribute::<3>(buffers, primitive, &Semantic::Normals, positions.len())?;
     let uvs = attribute::<2>(buffers, primitive, &Semantic::TexCoords(0), positions.len())?;
+    let uvs_1 = match material.reads_uvs_1() {
+        true => attribute::<2>(buffers, primitive, &Semantic::TexCoords(1), positions.len())?
+            .map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
+        false => Vec::new(),
+    };
+    let (colors, clamped_colors) = colors(buffers, primitive, positions.len())?;
     // glTF 2.0, section 3.7.2.1: without normals the file's tangents mean nothing.
     let tangents = match normal_mapped && normals.is_some() {
         true => attribute::<4>(buffers, primitive, &Semantic::Tangents, positions.len())?,
@@ -167,6 +179,8 @@ fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, normal
     };
     let mut mesh = Mesh {
         uvs: uvs.map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
+        uvs_1,
+        colors,
         positions: vectors(positions, Vec3::from_array),
         normals: vectors(normals.unwrap_or_default(), Vec3::from_array),
         tangents: vectors(tangents.unwrap_or_default(), Vec4::from_array),
@@ -181,11 +195,34 @@ fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, normal
         normalize_normals(&mut mesh)
     };
     match (normal_mapped, mesh.tangents.is_empty()) {
-        (true, true) => tangents::generate(&mut mesh),
+        (true, true) => tangents::generate(&mut mesh, material.placement(TextureSlot::Normal)),
         (true, false) => tangents::normalize(&mut mesh),
         (false, _) => mesh.tangents = vec![Vec4::ZERO; mesh.positions.len()],
     }
-    Ok(Outcome::Mesh { mesh, left_over_indices: triangles.left_over, repaired_normals })
+    Ok(Outcome::Mesh { mesh: Box::new(mesh), left_over_indices: triangles.left_over, repaired_normals, clamped_colors })
+}
+
+/// COLOR_0, RGB or RGBA, and how many of its colours were outside 0 to 1; empty where it is missing or white.
+fn colors(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, vertex_count: usize) -> Result<(Vec<Vec4>, usize)> {
+    let semantic = Semantic::Colors(0);
+    let has_alpha = primitive.get(&semantic).is_some_and(|accessor| accessor.dimensions() == Dimensions::Vec4);
+    let read = if has_alpha {
+        attribute::<4>(buffers, primitive, &semantic, vertex_count)?.map(|colors| vectors(colors, Vec4::from_array))
+    } else {
+        let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
+        attribute::<3>(buffers, primitive, &semantic, vertex_count)?.map(|colors| vectors(colors, opaque))
+    };
+    let mut colors = read.unwrap_or_default();
+    let mut clamped_count = 0;
+    for color in &mut colors {
+        let clamped = color.clamp(Vec4::ZERO, Vec4::ONE);
+        clamped_count += usize::from(clamped != *color);
+        *color = clamped;
+    }
+    if colors.iter().all(|color| *color == Vec4::ONE) {
+        colors.clear();
+    }
+    Ok((colors, clamped_count))
 }
 
 /// An optional attribute, which must have one element a vertex.

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use bevy_mikktspace::{Geometry, TangentSpace};
 use glam::{Vec3, Vec4};
 
-use crate::scene::Mesh;
+use crate::scene::{Mesh, Placement};
 
-/// Tangents for every vertex; a vertex whose triangles disagree is split.
-pub fn generate(mesh: &mut Mesh) {
-    let mut corners = Corners { tangents: vec![Vec4::ZERO; mesh.indices.len()], mesh };
+/// Tangents for every vertex, along the normal map where `placement` puts it; a vertex whose triangles disagree is split.
+pub fn generate(mesh: &mut Mesh, placement: &Placement) {
+    let mut corners = Corners { tangents: vec![Vec4::ZERO; mesh.indices.len()], mesh, placement };
     match bevy_mikktspace::generate_tangents(&mut corners) {
         Ok(()) => {}
         // The error type has no values: every mesh has tangents, if arbitrary ones where it has no area.
@@ -33,6 +33,7 @@ pub fn normalize(mesh: &mut Mesh) {
 /// A mesh as MikkTSpace sees it: corners, not shared vertices.
 struct Corners<'a> {
     mesh: &'a Mesh,
+    placement: &'a Placement,
     /// One a corner.
     tangents: Vec<Vec4>,
 }
@@ -61,7 +62,11 @@ impl Geometry for Corners<'_> {
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        self.mesh.uvs[self.vertex(face, corner)].to_array()
+        let vertex = self.vertex(face, corner);
+        let uvs_1 = self.mesh.uvs_1.get(vertex).copied().unwrap_or_default();
+        let uv = self.placement.at([self.mesh.uvs[vertex], uvs_1]);
+        // A finite coordinate times a finite scale may not be.
+        if uv.is_finite() { uv.to_array() } else { [0.0; 2] }
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
@@ -92,6 +97,8 @@ fn split_vertices(mesh: &mut Mesh, corner_tangents: &[Vec4]) {
                     mesh.positions.push(mesh.positions[vertex]);
                     mesh.normals.push(mesh.normals[vertex]);
                     mesh.uvs.push(mesh.uvs[vertex]);
+                    mesh.uvs_1.extend(mesh.uvs_1.get(vertex).copied());
+                    mesh.colors.extend(mesh.colors.get(vertex).copied());
                     mesh.tangents.push(*tangent);
                     mesh.positions.len() as u32 - 1
                 });
@@ -121,7 +128,7 @@ mod tests {
     #[test]
     fn an_upright_picture_has_u_along_x_and_its_bitangent_up() {
         let mut mesh = pair([Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::ZERO, Vec2::new(1.0, 0.0)]);
-        generate(&mut mesh);
+        generate(&mut mesh, &Placement::default());
         assert_eq!(mesh.tangents, [Vec4::new(1.0, 0.0, 0.0, 1.0); 4]);
     }
 
@@ -129,7 +136,7 @@ mod tests {
     fn a_mirrored_half_gets_vertices_of_its_own() {
         // The second triangle runs back over the picture of the first.
         let mut mesh = pair([Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::ZERO, Vec2::new(0.0, 1.0)]);
-        generate(&mut mesh);
+        generate(&mut mesh, &Placement::default());
         assert_eq!(mesh.positions.len(), 6);
         assert_eq!(mesh.tangents.len(), 6);
         let signs: Vec<f32> = mesh.indices.iter().map(|index| mesh.tangents[*index as usize].w).collect();
@@ -156,7 +163,7 @@ mod tests {
                 indices,
                 ..Mesh::default()
             };
-            generate(&mut mesh);
+            generate(&mut mesh, &Placement::default());
             prop_assert_eq!(mesh.tangents.len(), mesh.positions.len());
             for tangent in &mesh.tangents {
                 prop_assert!((tangent.truncate().length() - 1.0).abs() < 1e-4 && tangent.w.abs() == 1.0, "{}", tangent);
@@ -172,7 +179,7 @@ mod tests {
             let mut mesh = flat.clone();
             mesh.positions.iter_mut().for_each(|position| *position *= scale);
             mesh.uvs[1] = Vec2::splat(scale);
-            generate(&mut mesh);
+            generate(&mut mesh, &Placement::default());
             for (tangent, normal) in mesh.tangents.iter().zip(&mesh.normals) {
                 assert!((tangent.truncate().length() - 1.0).abs() < 1e-5, "{tangent}");
                 assert!(tangent.truncate().dot(*normal).abs() < 1e-5, "{tangent}");

@@ -85,6 +85,8 @@ fn gather_vertices(mesh: &mut Mesh, vertices: &[u32]) {
     gather(&mut mesh.normals, vertices);
     gather(&mut mesh.tangents, vertices);
     gather(&mut mesh.uvs, vertices);
+    gather(&mut mesh.uvs_1, vertices);
+    gather(&mut mesh.colors, vertices);
 }
 
 #[cfg(test)]

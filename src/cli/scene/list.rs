@@ -1,20 +1,17 @@
-//! `quincunx scene`: the scenes that the program makes itself.
+//! `quincunx scene list`: the scenes that the program makes itself.
 
 use crate::error::Result;
 use crate::scene::procedural;
-use clap::{ArgMatches, Command};
+use clap::Command;
 use std::fmt::Write;
 
-/// The verb with its arguments.
+/// The sub-verb.
 pub fn command() -> Command {
-    Command::new("scene")
-        .about("Built-in scenes")
-        .subcommand_required(true)
-        .subcommand(Command::new("list").about("List the built-in scenes with their parameters"))
+    Command::new("list").about("List the built-in scenes with their parameters")
 }
 
-/// Prints the list, the only sub-verb.
-pub fn run(_: &ArgMatches) -> Result<()> {
+/// Prints the list.
+pub fn run() -> Result<()> {
     let mut text = String::new();
     for scene in procedural::ALL {
         writeln!(text, "{:<8} {}", scene.name, scene.description).expect("writing to a string");
@@ -25,5 +22,5 @@ pub fn run(_: &ArgMatches) -> Result<()> {
                 .expect("writing to a string");
         }
     }
-    super::print(&text)
+    crate::cli::print(&text)
 }
