@@ -82,7 +82,7 @@ impl Technique for Deferred {
 }
 
 fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
-    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.bounds().diagonal(), inputs.caps)
+    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene.lasting_bounds().diagonal(), inputs.caps)
 }
 
 struct PreparedDeferred {

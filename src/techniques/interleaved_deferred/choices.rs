@@ -71,7 +71,7 @@ impl Choices {
         let direct_pattern =
             if road.sums_all() || direct != "interleaved" { [1, 1] } else { direct_pattern(values, pattern)? };
         let choices = Self {
-            shading: ShadingSettings::new(values, lights, scene.bounds().diagonal(), caps),
+            shading: ShadingSettings::new(values, lights, scene.lasting_bounds().diagonal(), caps),
             road,
             mapping,
             filter,
