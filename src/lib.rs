@@ -54,6 +54,7 @@ pub mod report;
 pub mod resident;
 pub mod sampling;
 pub mod scene;
+pub mod sequence;
 pub mod session;
 pub mod settings;
 pub mod shading;

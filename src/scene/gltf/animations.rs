@@ -112,6 +112,13 @@ fn read_channel(
     numbers: &mut usize,
 ) -> Result<Channel> {
     let node_index = channel.target.node.value();
+    // The crate's validation does not look at this index.
+    if node_index >= document.nodes().len() {
+        return Err(Error::request(format!(
+            "its target is node {node_index}, but there are {} nodes",
+            document.nodes().len()
+        )));
+    }
     let sampler = &animation.samplers[channel.sampler.value()];
     let motion = match channel.target.path {
         Checked::Valid(Property::Translation) => Motion::Translation,
@@ -130,6 +137,14 @@ fn read_channel(
     if motion != Motion::Weights && hierarchy.has_matrix(node_index) {
         return Err(Error::request(format!("{} has a matrix; only translation, rotation and scale can move", node())));
     }
+    let width = match motion {
+        Motion::Translation | Motion::Scale => 3,
+        Motion::Rotation => 4,
+        Motion::Weights => match morph::target_count(document, node_index)? {
+            0 => return Err(Error::request(format!("{} has no morph targets whose weights could move", node()))),
+            count => count,
+        },
+    };
     let accessor = |index: usize, what: &str| {
         let found = document.accessors().nth(index);
         found.ok_or_else(|| Error::request(format!("its {what} is accessor {index}, which does not exist")))
@@ -152,14 +167,6 @@ fn read_channel(
         Motion::Weights => accessors::floats::<1>(buffers, &output).map(|values| values.into_flattened()),
     };
     let values = values.map_err(|error| error.within("output"))?;
-    let width = match motion {
-        Motion::Translation | Motion::Scale => 3,
-        Motion::Rotation => 4,
-        Motion::Weights => match morph::target_count(document, node_index)? {
-            0 => return Err(Error::request(format!("{} has no morph targets whose weights could move", node()))),
-            count => count,
-        },
-    };
     let curve = Curve::new(interpolation, times_s, values, width)?;
     if motion == Motion::Rotation
         && let Some(key) = curve.key_values().position(|key| unit_quaternion(glam::Vec4::from_slice(key)).is_none())

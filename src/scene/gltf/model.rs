@@ -122,13 +122,7 @@ impl Model {
                 if shapes.flat.len() > 1 { " and others" } else { "" },
             ));
         }
-        let bounds = self.bounds(&shapes);
-        if !bounds.is_empty() && !bounds.diagonal().is_finite() {
-            return Err(Error::request(format!(
-                "the scene reaches from {} to {}, too far for 32-bit floats; scale it down",
-                bounds.min, bounds.max
-            )));
-        }
+        require_near(&self.bounds(&shapes))?;
         let mut hasher = self.hasher.clone();
         if !self.channels.is_empty() {
             hasher.update(&time_s.to_le_bytes());
@@ -162,8 +156,20 @@ impl Model {
                 reach.include(bounds.max);
             }
         }
+        require_near(&reach)?;
         Ok(Some(reach))
     }
+}
+
+/// Errors: the diagonal leaves the range of 32-bit floats (exit code 2).
+fn require_near(bounds: &Bounds) -> Result<()> {
+    if bounds.is_empty() || bounds.diagonal().is_finite() {
+        return Ok(());
+    }
+    Err(Error::request(format!(
+        "the scene reaches from {} to {}, too far for 32-bit floats; scale it down",
+        bounds.min, bounds.max
+    )))
 }
 
 impl Moment {
