@@ -26,7 +26,7 @@ impl View {
                 return Err(Error::request(format!("--camera {selector}: {} has no camera", scene.name))
                     .note("without --camera one is made that frames the scene"));
             }
-            return Ok(Self { extent, camera: framing(&scene.bounds(), extent), made_up: true });
+            return Ok(Self { extent, camera: framing(&scene.lasting_bounds(), extent), made_up: true });
         }
         let by_name = scene.cameras.iter().position(|camera| camera.name == selector);
         let index = by_name.or_else(|| selector.parse().ok()).filter(|index| *index < scene.cameras.len());

@@ -16,7 +16,7 @@ use crate::report::picture::Picture;
 use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
 use crate::report::whole_file::write_whole;
-use crate::scene::{self, Scene};
+use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session};
 use crate::settings::{COMMON, Setting, Values};
 use crate::techniques::Technique;
@@ -76,6 +76,11 @@ impl Job {
         }
     }
 
+    /// The same scene and technique with other settings, and no wish beyond.
+    pub fn at(&self, values: &Values) -> Self {
+        Self { values: values.clone(), ..Self::new(&self.scene, self.technique) }
+    }
+
     /// Changes a setting.
     ///
     /// Errors: the technique does not read it, or the value is impossible (exit code 2).
@@ -95,25 +100,39 @@ impl Job {
     pub fn run(&self) -> Result<Outcome> {
         self.check()?;
         let scene = self.load_scene()?;
-        let path = self.output.clone().unwrap_or_else(|| default_path(&scene, self.technique));
+        let path = self.output_path(&scene);
         let session = Session::open(&self.device_request(), scene)?;
+        let outcome = self.picture(&session, &self.values, &path)?;
+        if let Some(file) = &self.report {
+            write_whole(file, |out| writeln!(out, "{:#}", outcome.report.json()))?;
+        }
+        let log = session.gpu.validation_log();
+        // Closing says what was leaked: only then is the log whole.
+        drop(session);
+        judge(log.as_deref())?;
+        Ok(outcome)
+    }
+
+    /// Makes and writes the picture of what `session` shows, and reports on it.
+    pub(crate) fn picture(&self, session: &Session, values: &Values, path: &Path) -> Result<Outcome> {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
-        let renderer = session.renderer(self.technique, &self.values, &self.aovs, submits)?;
+        let renderer = session.renderer(self.technique, values, &self.aovs, submits)?;
         let memory = session.gpu.memory.snapshot();
         let times = self.frames(&renderer)?;
         let picture = renderer.picture()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let report = self.report(&session, &renderer, &memory, &times, &picture, &aovs, &path)?;
-        self.write(&path, &picture, &aovs, &report)?;
-        let log = session.gpu.validation_log();
-        // Closing says what was leaked: only then is the log whole.
-        drop((renderer, session));
-        judge(log.as_deref())?;
-        Ok(Outcome { report, picture, path })
+        let report = self.report(session, &renderer, values, &memory, &times, &picture, &aovs, path)?;
+        self.write(path, &picture, &aovs, &report)?;
+        Ok(Outcome { report, picture, path: path.to_owned() })
+    }
+
+    /// Where the picture of `scene` goes.
+    pub(crate) fn output_path(&self, scene: &Scene) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| default_path(scene, self.technique))
     }
 
     /// What can be refused before anything is loaded.
-    fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         if let Some(path) = &self.output {
             let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
             if !["png", "exr"].contains(&extension.to_lowercase().as_str()) {
@@ -134,13 +153,26 @@ impl Job {
         Ok(())
     }
 
-    /// The scene that the request names, its textures limited as it says.
+    /// What the request's scene is at any time.
     ///
-    /// Errors: no such scene, or a broken file (exit code 2).
+    /// Errors: no such scene or animation, or a broken file (exit code 2).
+    pub fn open_model(&self) -> Result<Model> {
+        let choice = AnimationChoice::parse(self.values.text("animation"));
+        scene::open(&self.scene, self.values.integer("seed"), &choice)
+    }
+
+    /// The scene that the request names, at its time, its textures limited as it says.
+    ///
+    /// Errors: no such scene or animation, or a broken file (exit code 2).
     pub fn load_scene(&self) -> Result<Scene> {
-        let mut scene = scene::load(&self.scene, self.values.integer("seed"))?;
+        let scene = self.open_model()?.into_pose(self.values.number("time"))?;
+        Ok(self.with_texture_limit(scene))
+    }
+
+    /// `scene` as the request wants its textures.
+    pub fn with_texture_limit(&self, mut scene: Scene) -> Scene {
         scene.texture_limit_px = self.values.integer("texture-limit") as u32;
-        Ok(scene)
+        scene
     }
 
     /// The device that the request names.
@@ -168,6 +200,7 @@ impl Job {
         &self,
         session: &Session,
         renderer: &Renderer,
+        values: &Values,
         memory: &Snapshot,
         times: &[FrameTime],
         picture: &Picture,
@@ -176,7 +209,7 @@ impl Job {
     ) -> Result<Report> {
         let mut report = Report::new(self.technique.name(), &self.command, &session.gpu.caps.identity);
         report.scene(session, renderer);
-        report.settings(&self.values, &renderer.resolved);
+        report.settings(values, &renderer.resolved);
         report.image(picture, path)?;
         report.aovs(aovs, picture.extent);
         report.times(renderer, times, self.profile);
@@ -209,9 +242,6 @@ impl Job {
                 let file = path.with_extension(format!("{}.png", aov.name));
                 write(&file, &visible(aov, picture), &WriteOptions { aovs: &[], attributes: Vec::new(), ..options })?;
             }
-        }
-        if let Some(file) = &self.report {
-            write_whole(file, |out| writeln!(out, "{:#}", report.json()))?;
         }
         Ok(())
     }

@@ -23,8 +23,9 @@
 //!
 //! # The road, and the rooms along it
 //!
-//! Arguments become a [`job`], a job loads a [`scene`], a technique makes a [`plan`] of it, a [`session`] makes the plan
-//! real, frames are recorded through [`gpu`] out of [`memory`], and what comes out is a [`report`].
+//! Arguments become a [`job`], a job loads a [`scene`] (a [`sequence`] once for all frames, posed for each), a technique
+//! makes a [`plan`] of it, a [`session`] makes the plan real, frames are recorded through [`gpu`] out of [`memory`], and
+//! what comes out is a [`report`].
 //!
 //! | room | what lives there |
 //! | --- | --- |
@@ -54,6 +55,7 @@ pub mod report;
 pub mod resident;
 pub mod sampling;
 pub mod scene;
+pub mod sequence;
 pub mod session;
 pub mod settings;
 pub mod shading;

@@ -53,10 +53,25 @@ impl Session {
     ///
     /// Errors: no fitting device (exit code 3); memory (4); a scene without a triangle (2).
     pub fn open(request: &DeviceRequest, scene: Scene) -> Result<Self> {
-        if scene.draws.is_empty() {
-            return Err(Error::request(format!("{}: there is no triangle to draw", scene.name)));
+        require_triangle(&scene)?;
+        Self::on(Gpu::open(request)?, scene)
+    }
+
+    /// The same device with another scene. One of the same hash and texture limit is there already.
+    ///
+    /// Errors: as `open`, but for the device.
+    pub fn showing(self, scene: Scene) -> Result<Self> {
+        if scene.hash == self.scene.hash && scene.texture_limit_px == self.scene.texture_limit_px {
+            return Ok(self);
         }
-        let gpu = Gpu::open(request)?;
+        require_triangle(&scene)?;
+        let gpu = self.gpu.clone();
+        // The old scene goes first: the device need not have room for both.
+        drop(self);
+        Self::on(gpu, scene)
+    }
+
+    fn on(gpu: Arc<Gpu>, scene: Scene) -> Result<Self> {
         let stats = SceneStats::of(&scene);
         let uploaded = SceneGpu::new(&gpu, &scene).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);
@@ -133,6 +148,14 @@ impl Session {
             sharing,
             aovs: aovs.to_vec(),
         })
+    }
+}
+
+/// Errors: nothing is drawn (exit code 2).
+fn require_triangle(scene: &Scene) -> Result<()> {
+    match scene.draws.is_empty() {
+        true => Err(Error::request(format!("{}: there is no triangle to draw", scene.name))),
+        false => Ok(()),
     }
 }
 

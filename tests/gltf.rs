@@ -9,7 +9,7 @@ use std::time::Instant;
 use glam::{Mat3, Vec2, Vec3};
 use quincunx::scene::{AlphaMode, ColorSpace, LightKind, Projection, Scene, Wrap, gltf};
 use serde_json::json;
-use support::gltf_file::{F32, GltfFile, U8, U16, U32, load_bytes, write};
+use support::gltf_file::{F32, GltfFile, U8, U16, U32, load_bytes, png, write};
 use support::shared_scenes;
 
 #[test]
@@ -228,14 +228,6 @@ fn cameras_are_named_and_rigid() {
     assert_eq!(scene.cameras[0].projection, perspective);
     let plan = Projection::Orthographic { x_mag: 2.0, y_mag: 1.0, z_near: 0.0, z_far: 10.0 };
     assert_eq!(scene.cameras[1].projection, plan);
-}
-
-fn png(width: u32, height: u32) -> Vec<u8> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    image::RgbaImage::from_pixel(width, height, image::Rgba([1, 2, 3, 4]))
-        .write_to(&mut bytes, image::ImageFormat::Png)
-        .unwrap();
-    bytes.into_inner()
 }
 
 #[test]

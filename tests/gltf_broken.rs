@@ -3,20 +3,9 @@
 mod support;
 
 use proptest::prelude::*;
-use quincunx::Error;
 use quincunx::scene::gltf;
 use serde_json::{Value, json};
-use support::gltf_file::{F32, GltfFile, U8, U16, U32, load_bytes, write};
-
-/// The error must be a bad request, name the file, and hold all `words`.
-#[track_caller]
-fn expect(error: &Error, file: &str, words: &[&str]) {
-    let text = error.to_string();
-    assert_eq!(error.exit_code(), 2, "{text}");
-    for word in [&[file], words].concat() {
-        assert!(text.contains(word), "{word:?} is missing in: {text}");
-    }
-}
+use support::gltf_file::{F32, GltfFile, U8, U16, U32, expect, load_bytes, write};
 
 /// The triangle after a change to its document must be refused with these words.
 #[track_caller]

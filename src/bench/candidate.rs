@@ -3,7 +3,6 @@
 use super::sweep::{Point, label};
 use crate::error::{Error, Result};
 use crate::job::Job;
-use crate::scene;
 use crate::settings::Values;
 use std::collections::BTreeMap;
 
@@ -37,8 +36,7 @@ pub fn changed<'a, 'b>(
     values: &Values,
     changes: impl IntoIterator<Item = (&'a str, &'b str)>,
 ) -> Result<Values> {
-    let mut changed = Job::new(&job.scene, job.technique);
-    changed.values = values.clone();
+    let mut changed = job.at(values);
     for (key, text) in changes {
         changed.set(key, text)?;
     }
@@ -55,10 +53,15 @@ fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
             )));
         }
     }
-    let seed = values.integer("seed");
-    if seed != job.values.integer("seed") && scene::load(&job.scene, seed)?.hash != scene_hash {
+    let moved: Vec<String> = ["seed", "time", "animation"]
+        .iter()
+        .filter(|key| values.text(key) != job.values.text(key))
+        .map(|key| format!("--{key} {}", values.text(key)))
+        .collect();
+    if !moved.is_empty() && job.at(values).load_scene()?.hash != scene_hash {
         return Err(Error::request(format!(
-            "--seed {seed}: the scene {} is another one then, and times compare on one scene",
+            "{}: the scene {} is another one then, and times compare on one scene",
+            moved.join(" "),
             job.scene
         )));
     }

@@ -1,9 +1,14 @@
-//! `quincunx render`: one picture, and what it cost.
+//! `quincunx render`: one picture, or one a frame, and what it cost.
 
 use super::job_args;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::job::Job;
+use crate::sequence::Frames;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
+
+/// Of films.
+const DEFAULT_FPS: &str = "24";
 
 /// The verb with its arguments.
 pub fn command() -> Command {
@@ -27,6 +32,18 @@ pub fn command() -> Command {
                     .action(ArgAction::Append)
                     .help("Stages of the technique: layers of an EXR, pictures FILE.NAME.png beside a PNG"),
             )
+            .arg(Arg::new("frames").long("frames").value_name("A..B").allow_hyphen_values(true).help(
+                "Frames A to B, both included, into FILE.0001.png and so on; frame n is drawn n / fps seconds after \
+                     --time",
+            ))
+            .arg(
+                Arg::new("fps")
+                    .long("fps")
+                    .value_name("N")
+                    .requires("frames")
+                    .allow_negative_numbers(true)
+                    .help(format!("Frames a second [default: {DEFAULT_FPS}]")),
+            )
             .arg(
                 Arg::new("profile")
                     .long("profile")
@@ -43,6 +60,10 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.report = matches.get_one::<PathBuf>("report").cloned();
     job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
     job.profile = matches.get_flag("profile");
+    if let Some(range) = matches.get_one::<String>("frames") {
+        let frames = Frames::parse(range, matches.get_one::<String>("fps").map_or(DEFAULT_FPS, String::as_str))?;
+        return run_sequence(&job, &frames, matches);
+    }
     let outcome = job.run()?;
     if matches.get_flag("json") {
         super::print(&format!("{:#}\n", outcome.report.json()))
@@ -50,5 +71,26 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         Ok(())
     } else {
         super::print(&outcome.report.text())
+    }
+}
+
+/// Renders each frame, with a line for it on standard error, and prints the sum.
+fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> {
+    let (json, quiet) = (matches.get_flag("json"), matches.get_flag("quiet"));
+    let mut done = 0;
+    let sequence = job.run_sequence(frames, &mut |frame, outcome| {
+        done += 1;
+        if !quiet {
+            eprintln!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display());
+        }
+    })?;
+    if json {
+        super::print(&format!("{:#}\n", sequence.json()))?;
+    } else if !quiet {
+        super::print(&format!("{} of {} frames are written\n", sequence.reports.len(), frames.count()))?;
+    }
+    match sequence.is_interrupted {
+        true => Err(Error::interrupted("interrupted; finished frames are valid")),
+        false => Ok(()),
     }
 }

@@ -86,7 +86,7 @@ fn scattered(scene: &Scene, values: &Values) -> Result<Vec<Light>> {
         Some((count, seed)) => (count, seed.parse().map_err(|_| wrong())?),
     };
     let count: u32 = count.parse().ok().filter(|count| *count <= MOST).ok_or_else(wrong)?;
-    let bounds = scene.bounds();
+    let bounds = scene.lasting_bounds();
     if count == 0 || bounds.is_empty() {
         return Ok(Vec::new());
     }

@@ -69,7 +69,7 @@ impl ShadingSettings {
             sun_count: lights.sun_count() as u64,
             workgroup: values.pair("workgroup"),
             texels: Texels::new(values, caps),
-            ray_offset: RAY_OFFSET * scene.bounds().diagonal().max(1e-6),
+            ray_offset: RAY_OFFSET * scene.lasting_bounds().diagonal().max(1e-6),
             extras: scene.drawn_materials().any(Material::has_extras),
         }
     }

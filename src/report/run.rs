@@ -133,6 +133,12 @@ impl Report {
         self.document.insert("aovs".into(), json!(entries));
     }
 
+    /// Which frame of a sequence it is, and at which time.
+    pub fn frame(&mut self, frame: u32, time_s: f64) {
+        self.document.insert("frame".into(), json!(frame));
+        self.document.insert("time_s".into(), json!(time_s));
+    }
+
     /// Pass rows where frames were submitted pass by pass, and the frame's time.
     pub fn times(&mut self, renderer: &Renderer, frames: &[FrameTime], profile: bool) {
         let mut rows: Vec<Value> = renderer

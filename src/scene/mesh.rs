@@ -51,6 +51,15 @@ pub struct Draw {
     pub world_from_object: Mat4,
 }
 
+impl Draw {
+    /// Includes the vertices of `mesh`, which is the one drawn, in `bounds`, in world space.
+    pub fn extend(&self, mesh: &Mesh, bounds: &mut Bounds) {
+        for position in &mesh.positions {
+            bounds.include(self.world_from_object.transform_point3(*position));
+        }
+    }
+}
+
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {

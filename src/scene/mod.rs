@@ -3,6 +3,7 @@
 //! World space is glTF's: right-handed, y up, metres. Light is glTF's: candela, lux, emissive radiance
 //! (see `shading` for what they mean in a picture).
 
+pub mod animation;
 pub mod camera;
 pub mod glb;
 pub mod gltf;
@@ -16,11 +17,20 @@ pub mod texture;
 use crate::error::{Error, Result};
 use std::path::Path;
 
+pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Bounds, Draw, Mesh};
 pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
+
+/// What a name or a path stands for, read once; a scene at any time.
+#[derive(Debug)]
+pub enum Model {
+    /// A built-in scene: the same at all times.
+    BuiltIn(Box<Scene>),
+    File(Box<gltf::Model>),
+}
 
 /// Everything that a technique may draw.
 #[derive(Clone, Debug, Default)]
@@ -46,18 +56,24 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras in file order. May be empty: the job then frames the bounds.
     pub cameras: Vec<Camera>,
+    /// The box around everything that is drawn while the animations play, looked at in a few moments of them; None where
+    /// nothing moves.
+    pub reach: Option<Bounds>,
     /// What was ignored or replaced on import, one sentence each, for the user to read.
     pub warnings: Vec<String>,
 }
 
-/// The scene that a name or a path stands for: a built-in one, with parameters after a colon, or a .gltf or .glb file.
+/// What a name or a path stands for: a built-in scene, with parameters after a colon, or a .gltf or .glb file.
 ///
-/// Errors: no such scene, impossible parameters, a broken file (exit code 2).
-pub fn load(spec: &str, seed: u64) -> Result<Scene> {
+/// Errors: no such scene, impossible parameters, a broken file, no such animation (exit code 2).
+pub fn open(spec: &str, seed: u64, choice: &AnimationChoice) -> Result<Model> {
     if let Some(scene) = procedural::build(spec, seed) {
-        return scene;
+        return match choice {
+            AnimationChoice::One(name) => Err(gltf::no_such_animation(name, [].into_iter())),
+            AnimationChoice::All | AnimationChoice::None => Ok(Model::BuiltIn(Box::new(scene?))),
+        };
     }
-    gltf::load(file(spec)?)
+    Ok(Model::File(Box::new(gltf::Model::open(file(spec)?, choice)?)))
 }
 
 /// The same scene, and what its file holds beside it; None for built-in scenes.
@@ -85,6 +101,35 @@ fn file(spec: &str) -> Result<&Path> {
     Ok(path)
 }
 
+/// The scene of `open` at 0 s, all its animations playing.
+///
+/// Errors: as `open`.
+pub fn load(spec: &str, seed: u64) -> Result<Scene> {
+    open(spec, seed, &AnimationChoice::All)?.into_pose(0.0)
+}
+
+impl Model {
+    /// The scene at `time_s`, seconds, at least 0.
+    ///
+    /// Errors: something leaves the range of 32-bit floats then (exit code 2).
+    pub fn pose(&self, time_s: f64) -> Result<Scene> {
+        match self {
+            Self::BuiltIn(scene) => Ok(scene.as_ref().clone()),
+            Self::File(model) => model.pose(time_s),
+        }
+    }
+
+    /// `pose` of a model that is not needed any more, without copies.
+    ///
+    /// Errors: as `pose`.
+    pub fn into_pose(self, time_s: f64) -> Result<Scene> {
+        match self {
+            Self::BuiltIn(scene) => Ok(*scene),
+            Self::File(model) => model.into_pose(time_s),
+        }
+    }
+}
+
 impl Scene {
     /// How many triangles all draws together have.
     pub fn triangle_count(&self) -> u64 {
@@ -100,10 +145,14 @@ impl Scene {
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for draw in &self.draws {
-            for position in &self.meshes[draw.mesh].positions {
-                bounds.include(draw.world_from_object.transform_point3(*position));
-            }
+            draw.extend(&self.meshes[draw.mesh], &mut bounds);
         }
         bounds
+    }
+
+    /// The box that a camera made up frames, that scattered lights fill, and whose diagonal lengths are a part of: the same
+    /// at all times, `bounds` where nothing moves.
+    pub fn lasting_bounds(&self) -> Bounds {
+        self.reach.unwrap_or_else(|| self.bounds())
     }
 }

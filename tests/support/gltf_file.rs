@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use quincunx::Result;
-use quincunx::scene::{Scene, gltf};
+use quincunx::scene::gltf::Model;
+use quincunx::scene::{AnimationChoice, Scene, gltf};
+use quincunx::{Error, Result};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -68,6 +69,7 @@ impl GltfFile {
             "SCALAR" => 1,
             "VEC2" => 2,
             "VEC3" => 3,
+            "MAT4" => 16,
             _ => 4,
         };
         let view = self.view(&values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>());
@@ -87,6 +89,26 @@ impl GltfFile {
         self.push(
             "accessors",
             json!({"bufferView": view, "componentType": component_type, "count": count, "type": "SCALAR"}),
+        )
+    }
+
+    /// Appends an animation of one channel: `path` of `node` through `values`, of a type, at `times_s`. Returns its index.
+    pub fn animate(
+        &mut self,
+        node: usize,
+        path: &str,
+        interpolation: &str,
+        times_s: &[f32],
+        values: (&str, &[f32]),
+    ) -> usize {
+        let input = self.floats("SCALAR", times_s);
+        let output = self.floats(values.0, values.1);
+        self.push(
+            "animations",
+            json!({
+                "channels": [{"sampler": 0, "target": {"node": node, "path": path}}],
+                "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+            }),
         )
     }
 
@@ -113,6 +135,12 @@ impl GltfFile {
         glb
     }
 
+    /// Opens it as a .glb.
+    pub fn model(&self, choice: &AnimationChoice) -> Result<Model> {
+        let (_folder, path) = write(&[("scene.glb", &self.glb())]);
+        Model::open(&path, choice)
+    }
+
     /// Loads it as a .glb.
     pub fn load(&self) -> Result<Scene> {
         load_bytes("scene.glb", &self.glb())
@@ -133,4 +161,23 @@ pub fn write(files: &[(&str, &[u8])]) -> (TempDir, PathBuf) {
 pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Scene> {
     let (_folder, path) = write(&[(name, bytes)]);
     gltf::load(&path)
+}
+
+/// A picture of one colour.
+pub fn png(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image::RgbaImage::from_pixel(width, height, image::Rgba([1, 2, 3, 4]))
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .unwrap();
+    bytes.into_inner()
+}
+
+/// The error must be a bad request, name the file, and hold all `words`.
+#[track_caller]
+pub fn expect(error: &Error, file: &str, words: &[&str]) {
+    let text = error.to_string();
+    assert_eq!(error.exit_code(), 2, "{text}");
+    for word in [&[file], words].concat() {
+        assert!(text.contains(word), "{word:?} is missing in: {text}");
+    }
 }

@@ -74,6 +74,35 @@ pub fn indices(buffers: &Buffers<'_>, accessor: &Accessor<'_>, vertex_count: usi
     })
 }
 
+/// Indices of joints, four a vertex.
+pub fn joints(buffers: &Buffers<'_>, accessor: &Accessor<'_>) -> Result<Vec<[u16; 4]>> {
+    within(accessor, || {
+        if accessor.dimensions() != Dimensions::Vec4 {
+            return Err(Error::request(format!("holds {:?} values; joints are Vec4", accessor.dimensions())));
+        }
+        let elements = Elements::of(buffers, accessor)?;
+        match accessor.data_type() {
+            DataType::U8 => Ok(elements.components(|bytes| u16::from(u8::from_le_bytes(bytes)))),
+            DataType::U16 => Ok(elements.components(u16::from_le_bytes)),
+            other => {
+                Err(Error::request(format!("holds {other:?} components; joints are unsigned bytes or unsigned shorts")))
+            }
+        }
+    })
+}
+
+/// Errors: the accessor has not one element for each of `vertex_count` vertices (exit code 2).
+pub fn require_count(accessor: &Accessor<'_>, vertex_count: usize) -> Result<()> {
+    if accessor.count() == vertex_count {
+        return Ok(());
+    }
+    Err(Error::request(format!(
+        "{} has {} elements, but POSITION has {vertex_count}",
+        label::element("accessor", accessor.index(), accessor.name()),
+        accessor.count()
+    )))
+}
+
 fn within<T>(accessor: &Accessor<'_>, read: impl FnOnce() -> Result<T>) -> Result<T> {
     read().map_err(|error| error.within(label::element("accessor", accessor.index(), accessor.name())))
 }

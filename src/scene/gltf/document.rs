@@ -116,20 +116,8 @@ pub fn ignored_features(document: &Document) -> Vec<String> {
     let with_colors = primitives().filter(|primitive| {
         primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(1..))))
     });
-    let with_targets = primitives().filter(|primitive| primitive.targets.as_ref().is_some_and(|list| !list.is_empty()));
     let mut sentences = Vec::new();
     for (count, one, many) in [
-        (root.animations.len(), "animation is ignored", "animations are ignored"),
-        (
-            root.skins.len(),
-            "skin is ignored: its mesh is drawn unbent",
-            "skins are ignored: their meshes are drawn unbent",
-        ),
-        (
-            with_targets.count(),
-            "primitive has morph targets, which are ignored",
-            "primitives have morph targets, which are ignored",
-        ),
         (
             with_colors.count(),
             "primitive has vertex colours beyond the first, which are ignored",

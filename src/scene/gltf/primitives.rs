@@ -1,7 +1,6 @@
 //! glTF primitives to meshes: attributes read, indices made a triangle list, missing normals and tangents made.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use glam::{Vec2, Vec3, Vec4};
 use gltf::accessor::Dimensions;
@@ -9,6 +8,7 @@ use gltf::{Accessor, Document, Semantic};
 use rayon::prelude::*;
 
 use super::buffers::Buffers;
+use super::deform::Deform;
 use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
 use crate::scene::{Material, Mesh, TextureSlot};
@@ -20,25 +20,19 @@ use crate::scene::{Material, Mesh, TextureSlot};
 /// is not.
 const MAX_INDICES: usize = 1 << 28;
 
-/// The meshes of a scene, and which of them a glTF mesh became.
+/// A primitive as a mesh.
 #[derive(Debug)]
-pub struct Primitives {
-    pub meshes: Vec<Mesh>,
-    of_mesh: BTreeMap<usize, Range<usize>>,
-}
-
-impl Primitives {
-    /// Indices into `meshes` of the primitives of a glTF mesh that was read.
-    pub fn of_mesh(&self, mesh_index: usize) -> Range<usize> {
-        self.of_mesh.get(&mesh_index).cloned().unwrap_or_default()
-    }
+pub struct Piece {
+    pub mesh: Mesh,
+    /// What bends it; None where no node shows it bent.
+    pub deform: Option<Deform>,
 }
 
 /// What became of one primitive.
 #[derive(Debug)]
 enum Outcome {
-    Mesh {
-        mesh: Box<Mesh>,
+    Piece {
+        piece: Box<Piece>,
         left_over_indices: usize,
         repaired_normals: usize,
         clamped_colors: usize,
@@ -49,15 +43,25 @@ enum Outcome {
     Empty,
 }
 
+/// How nodes show a glTF mesh.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shown {
+    /// Some node bends it: its morph targets are read.
+    pub is_bent: bool,
+    /// Some node gives it a skin: its joints and weights are read.
+    pub is_skinned: bool,
+}
+
 /// Reads the glTF meshes `drawn`, in parallel; a primitive without a material appends glTF's default to `materials`.
+/// Returns the pieces of each.
 pub fn read(
     document: &Document,
-    drawn: &BTreeSet<usize>,
+    drawn: &BTreeMap<usize, Shown>,
     buffers: &Buffers<'_>,
     materials: &mut Vec<Material>,
     warnings: &mut Vec<String>,
-) -> Result<Primitives> {
-    let jobs: Vec<gltf::Mesh<'_>> = document.meshes().filter(|mesh| drawn.contains(&mesh.index())).collect();
+) -> Result<BTreeMap<usize, Vec<Piece>>> {
+    let jobs: Vec<gltf::Mesh<'_>> = document.meshes().filter(|mesh| drawn.contains_key(&mesh.index())).collect();
     let jobs: Vec<_> = jobs.iter().flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh, primitive))).collect();
     check_total(&jobs)?;
     let default_material = materials.len();
@@ -67,35 +71,36 @@ pub fn read(
             let material_index = primitive.material().index().unwrap_or(default_material);
             let plain = Material::default();
             let material = materials.get(material_index).unwrap_or(&plain);
-            let mut outcome = read_primitive(buffers, primitive, material)
+            let shown = drawn[&mesh.index()];
+            let mut outcome = read_primitive(document, buffers, mesh.index(), primitive, material, shown)
                 .map_err(|error| error.within(primitive_label(mesh, primitive)))?;
-            if let Outcome::Mesh { mesh: read, .. } = &mut outcome {
-                read.name = mesh_name(mesh, primitive.index());
-                read.material = material_index;
+            if let Outcome::Piece { piece, .. } = &mut outcome {
+                piece.mesh.name = mesh_name(mesh, primitive.index());
+                piece.mesh.material = material_index;
             }
             Ok(outcome)
         })
         .collect();
 
-    let mut primitives = Primitives { meshes: Vec::new(), of_mesh: BTreeMap::new() };
-    let (mut not_triangles, mut left_over, mut repaired, mut clamped) = (0, 0, 0, 0);
+    let mut pieces: BTreeMap<usize, Vec<Piece>> = BTreeMap::new();
+    let (mut not_triangles, mut left_over, mut repaired, mut clamped, mut weightless) = (0, 0, 0, 0, 0);
     // Taken in file order, so that of several broken primitives always the same one is reported.
     for ((mesh, _), outcome) in jobs.iter().zip(outcomes) {
-        let next = primitives.meshes.len();
-        let range = primitives.of_mesh.entry(mesh.index()).or_insert(next..next);
+        let of_mesh = pieces.entry(mesh.index()).or_default();
         match outcome? {
-            Outcome::Mesh { mesh, left_over_indices, repaired_normals, clamped_colors } => {
-                range.end = next + 1;
+            Outcome::Piece { piece, left_over_indices, repaired_normals, clamped_colors } => {
                 left_over += usize::from(left_over_indices > 0);
                 repaired += repaired_normals;
                 clamped += clamped_colors;
-                primitives.meshes.push(*mesh);
+                let influences = piece.deform.as_ref().and_then(Deform::influences);
+                weightless += influences.map_or(0, |influences| influences.weightless);
+                of_mesh.push(*piece);
             }
             Outcome::NotTriangles => not_triangles += 1,
             Outcome::Empty => {}
         }
     }
-    if primitives.meshes.iter().any(|mesh| mesh.material == default_material) {
+    if pieces.values().flatten().any(|piece| piece.mesh.material == default_material) {
         materials.push(Material::default());
     }
     for (count, one, many) in [
@@ -111,24 +116,34 @@ pub fn read(
             "normals of length zero are replaced by their triangles'",
         ),
         (clamped, "vertex colour is clamped to 0 to 1", "vertex colours are clamped to 0 to 1"),
+        (
+            weightless,
+            "vertex without joint weights follows its skin's first joint",
+            "vertices without joint weights follow their skin's first joint",
+        ),
     ] {
         if count > 0 {
             warnings.push(label::count(count, one, many));
         }
     }
-    Ok(primitives)
+    Ok(pieces)
 }
 
 fn primitive_label(mesh: &gltf::Mesh<'_>, primitive: &gltf::Primitive<'_>) -> String {
     format!("{}, primitive {}", label::element("mesh", mesh.index(), mesh.name()), primitive.index())
 }
 
+/// How many indices a primitive has, or vertices where it has none, by what the file says.
+pub fn corners(primitive: &gltf::Primitive<'_>) -> usize {
+    let corners = primitive.indices().or_else(|| primitive.get(&Semantic::Positions));
+    corners.map_or(0, |accessor| accessor.count())
+}
+
 /// Refuses what would take more memory than any scene here is worth, before anything is read.
 fn check_total(jobs: &[(&gltf::Mesh<'_>, gltf::Primitive<'_>)]) -> Result<()> {
     let mut total = 0usize;
     for (mesh, primitive) in jobs {
-        let corners = primitive.indices().or_else(|| primitive.get(&Semantic::Positions));
-        total = total.saturating_add(corners.map_or(0, |accessor| accessor.count()));
+        total = total.saturating_add(corners(primitive));
         if total > MAX_INDICES {
             let label = primitive_label(mesh, primitive);
             return Err(Error::request(format!(
@@ -145,7 +160,14 @@ fn mesh_name(mesh: &gltf::Mesh<'_>, primitive_index: usize) -> String {
     if mesh.primitives().len() > 1 { format!("{name}.{primitive_index}") } else { name }
 }
 
-fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, material: &Material) -> Result<Outcome> {
+fn read_primitive(
+    document: &Document,
+    buffers: &Buffers<'_>,
+    mesh_index: usize,
+    primitive: &gltf::Primitive<'_>,
+    material: &Material,
+    shown: Shown,
+) -> Result<Outcome> {
     let normal_mapped = material.normal_texture.is_some();
     let Some(positions) = primitive.get(&Semantic::Positions) else {
         return Err(Error::request("has no POSITION"));
@@ -177,6 +199,7 @@ fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, materi
         true => attribute::<4>(buffers, primitive, &Semantic::Tangents, positions.len())?,
         false => None,
     };
+    let corners = if shown.is_bent { triangles.indices.clone() } else { Vec::new() };
     let mut mesh = Mesh {
         uvs: uvs.map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
         uvs_1,
@@ -199,7 +222,12 @@ fn read_primitive(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, materi
         (true, false) => tangents::normalize(&mut mesh),
         (false, _) => mesh.tangents = vec![Vec4::ZERO; mesh.positions.len()],
     }
-    Ok(Outcome::Mesh { mesh: Box::new(mesh), left_over_indices: triangles.left_over, repaired_normals, clamped_colors })
+    let deform = shown
+        .is_bent
+        .then(|| Deform::read(document, buffers, primitive, mesh_index, shown.is_skinned, (&mesh, &corners)));
+    let deform = deform.transpose()?;
+    let piece = Box::new(Piece { mesh, deform });
+    Ok(Outcome::Piece { piece, left_over_indices: triangles.left_over, repaired_normals, clamped_colors })
 }
 
 /// COLOR_0, RGB or RGBA, and how many of its colours were outside 0 to 1; empty where it is missing or white.
@@ -233,13 +261,7 @@ fn attribute<const N: usize>(
     vertex_count: usize,
 ) -> Result<Option<Vec<[f32; N]>>> {
     let read = |accessor: Accessor<'_>| {
-        if accessor.count() != vertex_count {
-            return Err(Error::request(format!(
-                "{} has {} elements, but POSITION has {vertex_count}",
-                label::element("accessor", accessor.index(), accessor.name()),
-                accessor.count()
-            )));
-        }
+        accessors::require_count(&accessor, vertex_count)?;
         accessors::floats::<N>(buffers, &accessor)
     };
     primitive.get(semantic).map(read).transpose().map_err(|error| error.within(semantic.to_string()))
@@ -259,6 +281,11 @@ fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
 /// glTF 2.0, section 3.7.2.1: without normals a mesh is flat, so its triangles share no vertices.
 fn flat_normals(mesh: &mut Mesh) {
     topology::unshare_vertices(mesh);
+    flatten_normals(mesh);
+}
+
+/// Gives the vertices of each triangle its normal; triangles share none.
+pub fn flatten_normals(mesh: &mut Mesh) {
     mesh.normals = (0..mesh.triangle_count()).flat_map(|index| [triangle_normal(mesh.triangle(index)); 3]).collect();
 }
 

@@ -63,7 +63,7 @@ impl InterleavedFrame {
         let has_emissive = inputs.stats.has_emissive;
         let tree = shading.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading, tree)?;
-        let least = inputs.values.length("vpl-clamp", inputs.scene.bounds().diagonal());
+        let least = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
         let params = ShadeParams {
             mapping: *mapping,
             least_squared: least * least,
@@ -117,7 +117,7 @@ impl FilterStage {
         };
         let params = DiscontinuityParams {
             normal_threshold: inputs.values.number("normal-threshold") as f32,
-            position_threshold: inputs.values.length("position-threshold", inputs.scene.bounds().diagonal()),
+            position_threshold: inputs.values.length("position-threshold", inputs.scene.lasting_bounds().diagonal()),
             row_pitch: pitch,
         };
         Ok(Some(Self {

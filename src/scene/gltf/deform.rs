@@ -1,0 +1,129 @@
+//! What bends one primitive: its morph targets and the joints that take its vertices along.
+
+use glam::Mat4;
+use gltf::{Document, Semantic};
+
+use super::buffers::Buffers;
+use super::morph::{self, Target};
+use super::nodes::Hierarchy;
+use super::primitives;
+use super::skins::Influences;
+use super::{label, tangents};
+use crate::error::{Error, Result};
+use crate::scene::Mesh;
+
+/// How many indices the meshes that bend may have together, counted for each node that shows one: 22 million triangles.
+///
+/// Each such node has vertices of its own at each moment, so a short file in which many share a mesh asks for much.
+const MAX_BENT_INDICES: usize = 1 << 26;
+
+/// How many vectors of morph targets a file may have, and how many all nodes may add up at a moment.
+const MAX_TARGET_VECTORS: usize = 1 << 26;
+const MAX_MORPHED_VECTORS: usize = 1 << 30;
+
+/// Targets and influences of one mesh, a value for each of its vertices.
+#[derive(Debug)]
+pub struct Deform {
+    targets: Vec<Target>,
+    /// Of a mesh that a skin bends somewhere.
+    influences: Option<Influences>,
+    /// The file gives no normals: they are those of the triangles, whatever their shape.
+    flat: bool,
+}
+
+impl Deform {
+    /// What bends `primitive`, which became `mesh`; `corners`: its triangles as indices of vertices in the file.
+    ///
+    /// Errors: see `morph::read` and `Influences::read`.
+    pub fn read(
+        document: &Document,
+        buffers: &Buffers<'_>,
+        primitive: &gltf::Primitive<'_>,
+        mesh_index: usize,
+        is_skinned: bool,
+        (mesh, corners): (&Mesh, &[u32]),
+    ) -> Result<Self> {
+        let vertex_count = primitive.get(&Semantic::Positions).map_or(0, |accessor| accessor.count());
+        let origins = origins(mesh, corners);
+        let targets = document.as_json().meshes[mesh_index].primitives[primitive.index()].targets.as_deref();
+        let influences = is_skinned.then(|| Influences::read(buffers, primitive, vertex_count, &origins));
+        Ok(Self {
+            targets: morph::read(document, buffers, targets.unwrap_or_default(), vertex_count, &origins)?,
+            influences: influences.transpose()?,
+            flat: primitive.get(&Semantic::Normals).is_none(),
+        })
+    }
+
+    pub fn influences(&self) -> Option<&Influences> {
+        self.influences.as_ref()
+    }
+
+    /// `rest` morphed by `weights` and then taken along by `world_from_mesh`, the matrices of a skin's joints, where
+    /// there are some.
+    pub fn bend(&self, rest: &Mesh, weights: &[f32], world_from_mesh: Option<&[Mat4]>) -> Mesh {
+        let mut mesh = rest.clone();
+        morph::apply(&mut mesh, &self.targets, weights);
+        for (normal, rest) in mesh.normals.iter_mut().zip(&rest.normals) {
+            *normal = normal.try_normalize().unwrap_or(*rest);
+        }
+        if let (Some(influences), Some(matrices)) = (&self.influences, world_from_mesh) {
+            influences.apply(&mut mesh, matrices);
+        }
+        if self.flat {
+            primitives::flatten_normals(&mut mesh);
+        }
+        if mesh.tangents.iter().any(|tangent| tangent.w != 0.0) {
+            tangents::normalize(&mut mesh);
+        }
+        mesh
+    }
+}
+
+/// For each vertex of `mesh`, which vertex of the file it was: reading a primitive drops, parts and splits vertices, but
+/// keeps the order of its corners.
+fn origins(mesh: &Mesh, corners: &[u32]) -> Vec<u32> {
+    let mut origins = vec![0; mesh.positions.len()];
+    for (vertex, corner) in mesh.indices.iter().zip(corners) {
+        origins[*vertex as usize] = *corner;
+    }
+    origins
+}
+
+/// Whether a node shows vertices of its own: its mesh has morph targets or a skin bends it.
+pub fn bends(document: &Document, node_index: usize) -> Result<bool> {
+    let node = &document.as_json().nodes[node_index];
+    Ok(node.mesh.is_some() && (node.skin.is_some() || morph::target_count(document, node_index)? > 0))
+}
+
+/// Refuses what would take more memory or time than any scene here is worth, before anything is read.
+pub fn check_total(document: &Document, hierarchy: &Hierarchy) -> Result<()> {
+    let (mut indices, mut morphed, mut read) = (0usize, 0usize, 0usize);
+    let mut seen = vec![false; document.meshes().len()];
+    for node in document.nodes() {
+        let Some(mesh) = node.mesh().filter(|_| hierarchy.shows(node.index())) else { continue };
+        if !bends(document, node.index())? {
+            continue;
+        }
+        let targets = morph::target_count(document, node.index())?;
+        let corners =
+            mesh.primitives().fold(0usize, |sum, primitive| sum.saturating_add(primitives::corners(&primitive)));
+        // Positions, normals and tangents.
+        let vectors = corners.saturating_mul(3).saturating_mul(targets);
+        indices = indices.saturating_add(corners);
+        morphed = morphed.saturating_add(vectors);
+        if !std::mem::replace(&mut seen[mesh.index()], true) {
+            read = read.saturating_add(vectors);
+        }
+        for (count, limit, what) in [
+            (indices, MAX_BENT_INDICES, "indices of meshes that bend"),
+            (read, MAX_TARGET_VECTORS, "vectors of morph targets"),
+            (morphed, MAX_MORPHED_VECTORS, "vectors of morph targets over all nodes"),
+        ] {
+            if count > limit {
+                let node = label::node(document, node.index());
+                return Err(Error::request(format!("{node} brings the file to {count} {what}; {limit} is the limit")));
+            }
+        }
+    }
+    Ok(())
+}

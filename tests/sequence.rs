@@ -1,0 +1,140 @@
+//! `render --time` and `render --frames` from outside: which files, which reports, which exit codes.
+
+mod support;
+
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+use support::gltf_file::GltfFile;
+use support::program::Program;
+
+/// A triangle that crosses the frame within a second, in a folder of its own.
+fn moving() -> Program {
+    let program = Program::new();
+    let mut file = GltfFile::triangle();
+    file.animate(0, "translation", "LINEAR", &[0.0, 1.0], ("VEC3", &[0.0, 0.0, 0.0, 3.0, 0.0, 0.0]));
+    file.json["animations"][0]["name"] = json!("cross");
+    std::fs::write(program.path("moving.glb"), file.glb()).unwrap();
+    program
+}
+
+const RENDER: [&str; 6] = ["render", "moving.glb", "--technique", "deferred", "--size", "32x18"];
+
+fn render<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    RENDER.iter().chain(more).copied().collect()
+}
+
+#[test]
+fn a_frame_is_the_picture_at_its_time() {
+    let program = moving();
+    let ran = program
+        .run(&render(&[
+            "--frames", "2..4", "--fps", "4", "--time", "0.25", "-o", "a.png", "--json", "--report", "r.json",
+            "--quiet",
+        ]))
+        .fine();
+    let document = ran.json();
+    let frames = document["frames"].as_array().unwrap();
+    assert_eq!((&document["schema"], frames.len()), (&json!(1), 3));
+    let written: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(program.path("r.json")).unwrap()).unwrap();
+    assert_eq!(written, document);
+    for (report, (frame, time_s)) in frames.iter().zip([(2, 0.75), (3, 1.0), (4, 1.25)]) {
+        assert_eq!((&report["frame"], &report["time_s"]), (&json!(frame), &json!(time_s)));
+        assert_eq!(report["image"]["path"], format!("a.{frame:04}.png"));
+        let time = time_s.to_string();
+        assert_eq!(report["settings"]["time"].as_f64(), Some(time_s));
+        let single = program.run(&render(&["--time", &time, "--json", "-o", "single.png"])).fine().json();
+        assert_eq!(single["image"]["hash"], report["image"]["hash"], "frame {frame}");
+        assert_eq!(single["scene"]["hash"], report["scene"]["hash"], "frame {frame}");
+        let [a, b] = ["single.png".to_owned(), format!("a.{frame:04}.png")]
+            .map(|file| std::fs::read(program.path(&file)).unwrap());
+        assert_eq!(a, b, "frame {frame}");
+    }
+    // The triangle has arrived at 1 s.
+    assert_ne!(frames[0]["image"]["hash"], frames[1]["image"]["hash"]);
+    assert_eq!(frames[1]["image"]["hash"], frames[2]["image"]["hash"]);
+    assert_eq!(program.files(), ["a.0002.png", "a.0003.png", "a.0004.png", "moving.glb", "r.json", "single.png"]);
+}
+
+#[test]
+fn each_frame_has_a_line_and_stages_beside_it() {
+    let program = moving();
+    let ran = program.run(&render(&["--frames", "0..1", "--validate", "--aov", "gbuffer.normal", "-o", "a.png"]));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(ran.err, "frame 0, 1 of 2: wrote a.0000.png\nframe 1, 2 of 2: wrote a.0001.png\n");
+    assert_eq!(ran.out, "2 of 2 frames are written\n");
+    let files = ["a.0000.gbuffer.normal.png", "a.0000.png", "a.0001.gbuffer.normal.png", "a.0001.png", "moving.glb"];
+    assert_eq!(program.files(), files);
+    program.run(&render(&["--frames", "7..7", "-o", "b.exr", "--quiet"])).fine();
+    assert!(program.files().contains(&"b.0007.exr".to_owned()));
+}
+
+#[test]
+fn a_built_in_scene_is_the_same_at_all_times() {
+    let program = Program::new();
+    let cornell = |more: &[&str]| {
+        let base = ["render", "cornell", "--size", "32x18", "--technique", "deferred", "--json", "--quiet"];
+        program.run(&[&base[..], more].concat()).fine().json()
+    };
+    let still = cornell(&["-o", "a.png"]);
+    let later = cornell(&["-o", "a.png", "--time", "7.5", "--animation", "none"]);
+    assert_eq!((&still["image"]["hash"], &still["scene"]["hash"]), (&later["image"]["hash"], &later["scene"]["hash"]));
+    let frames = cornell(&["--frames", "0..1", "-o", "b.png"]);
+    for report in frames["frames"].as_array().unwrap() {
+        assert_eq!(report["image"]["hash"], still["image"]["hash"]);
+    }
+    program.fails(&["render", "cornell", "--animation", "walk"], 2, &["--animation walk", "the scene has none"]);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let program = moving();
+    program.fails(&render(&["--frames", "5..3"]), 2, &["--frames 5..3", "A <= B", "--frames 0..47"]);
+    program.fails(&render(&["--frames", "-1..3"]), 2, &["--frames -1..3"]);
+    program.fails(&render(&["--frames", "0..3", "--fps", "0"]), 2, &["--fps 0", "0.001 to 1000"]);
+    program.fails(&render(&["--frames", "0..3", "-o", "a.jpg"]), 2, &["a.jpg", ".png or .exr"]);
+    program.fails(
+        &render(&["--frames", "0..3", "--time", "1e9"]),
+        2,
+        &["frame 3", "--time 1000000000.125", "1000000000"],
+    );
+    program.fails(&render(&["--time", "-1"]), 2, &["--time -1", "0 to 1000000000"]);
+    program.fails(&render(&["--time", "nan"]), 2, &["--time nan"]);
+    program.fails(&render(&["--animation", "run"]), 2, &["moving.glb", "--animation run", "cross"]);
+    program.fails(&render(&["--fps", "12"]), 2, &["--frames"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_finished_frames() {
+    let program = moving();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_quincunx"))
+        .current_dir(program.folder.path())
+        .args(render(&["--frames", "0..99999", "--quiet", "-o", "a.png", "--report", "r.json"]))
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let second = program.folder.path().join("a.00001.png");
+    let started = Instant::now();
+    while !second.exists() {
+        if started.elapsed() > Duration::from_secs(120) || child.try_wait().unwrap().is_some() {
+            // It must not go on after the test.
+            child.kill().unwrap();
+            panic!("no frame came");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let report: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(program.path("r.json")).unwrap()).unwrap();
+    let finished = report["frames"].as_array().unwrap().len();
+    let pictures: Vec<String> = program.files().into_iter().filter(|file| file.ends_with(".png")).collect();
+    assert!((2..100_000).contains(&finished));
+    assert_eq!(pictures.len(), finished);
+    for picture in pictures {
+        image::open(program.path(&picture)).unwrap();
+    }
+}
