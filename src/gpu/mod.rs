@@ -7,6 +7,7 @@ pub mod caps;
 pub mod commands;
 pub mod descriptors;
 pub mod device;
+pub mod failure;
 pub mod image;
 pub mod known;
 pub mod pipeline;

@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub mod counted;
+pub mod failing;
 pub mod gltf_file;
 pub mod program;
 pub mod watched;
