@@ -98,10 +98,17 @@ impl Job {
     ///
     /// Errors: see `ErrorKind`; nothing half-written stays.
     pub fn run(&self) -> Result<Outcome> {
+        self.run_on(&self.device_request())
+    }
+
+    /// The same on a device that is asked for in another way.
+    ///
+    /// Errors: as `run`.
+    pub fn run_on(&self, request: &DeviceRequest) -> Result<Outcome> {
         self.check()?;
         let scene = self.load_scene()?;
         let path = self.output_path(&scene);
-        let session = Session::open(&self.device_request(), scene)?;
+        let session = Session::open(request, scene)?;
         let outcome = self.picture(&session, &self.values, &path)?;
         if let Some(file) = &self.report {
             write_whole(file, |out| writeln!(out, "{:#}", outcome.report.json()))?;
@@ -118,7 +125,9 @@ impl Job {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
         let renderer = session.renderer(self.technique, values, &self.aovs, submits)?;
         let memory = session.gpu.memory.snapshot();
+        interrupt::check()?;
         let times = self.frames(&renderer)?;
+        interrupt::check()?;
         let picture = renderer.picture()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
         let report = self.report(session, &renderer, values, &memory, &times, &picture, &aovs, path)?;

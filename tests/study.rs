@@ -2,33 +2,31 @@
 
 mod support;
 
-use quincunx::gpu::{DeviceRequest, Gpu, known};
+use quincunx::gpu::known;
 use quincunx::job::Job;
 use quincunx::{study, techniques};
 use serde_json::Value;
 
-/// The driver whose rules are data.
-const KNOWN: &str = "lavapipe-22.3.6";
-
-/// False, and said, where another driver runs.
-fn is_known_driver() -> bool {
-    let gpu = Gpu::open(&DeviceRequest::default()).unwrap();
-    let driver = gpu.caps.identity.driver_info.clone();
-    let is_known = driver.contains("Mesa 22.3.6");
-    if !is_known {
-        support::skip(&format!("{driver}: its rules are not those of {KNOWN}"));
+/// The known driver that runs, by name; None, and said, where another one does.
+fn known_driver() -> Option<&'static str> {
+    let live = support::driver().identity;
+    let is_live = |name: &&str| {
+        let known = known::caps(name).unwrap().identity;
+        (known.driver, known.driver_info) == (live.driver.clone(), live.driver_info.clone())
+    };
+    let name = known::names().find(is_live);
+    if name.is_none() {
+        support::skip(&format!("{} has no rules in assets/caps", live.driver_text()));
     }
-    is_known
+    name
 }
 
 #[test]
 fn the_known_caps_are_those_of_the_driver() {
-    if !is_known_driver() {
-        return;
-    }
-    let mut known = known::caps(KNOWN).unwrap();
+    let Some(name) = known_driver() else { return };
+    let mut known = known::caps(name).unwrap();
     known.layout = None;
-    let live = Gpu::open(&DeviceRequest::default()).unwrap().caps.clone();
+    let live = support::driver();
     let json = |caps| serde_json::to_value(caps).unwrap();
     let (mut known, mut live) = (json(&known), json(&live));
     // Lanes depend on the processor, the heap on the machine.
@@ -37,14 +35,12 @@ fn the_known_caps_are_those_of_the_driver() {
         caps["limits"]["subgroup_size"] = Value::Null;
         caps["heaps"] = Value::Null;
     }
-    assert_eq!(known, live);
+    assert_eq!(known, live, "{name}");
 }
 
 #[test]
 fn what_is_planned_without_a_device_is_what_is_made_on_it() {
-    if !is_known_driver() {
-        return;
-    }
+    let Some(known) = known_driver() else { return };
     let mut specs = vec!["cornell".to_owned(), "lamps:objects=10,lights=24".to_owned()];
     if let Some(folder) = support::shared_scenes() {
         specs.push(folder.join("samples/CesiumMilkTruck/CesiumMilkTruck.gltf").to_str().unwrap().to_owned());
@@ -68,7 +64,7 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
             let mut job = Job::new(spec, techniques::find(technique).unwrap());
             changes.iter().for_each(|(key, value)| job.set(key, value).unwrap());
             let what = format!("{technique} of {spec} with {changes:?}");
-            let planned = study::planned(&job, KNOWN, &known::caps(KNOWN).unwrap()).unwrap().table.json();
+            let planned = study::planned(&job, known, &known::caps(known).unwrap()).unwrap().table.json();
             let made = study::made(&job).unwrap().table.json();
             for key in ["planned_bytes", "allocated_bytes", "peak_bytes", "peak_pass", "groups"] {
                 assert_eq!(planned[key], made[key], "{what}: {key}");
@@ -89,10 +85,10 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
 
 #[test]
 fn a_stage_that_is_read_back_lives_until_the_end() {
-    let caps = known::caps(KNOWN).unwrap();
+    let caps = known::caps(known::DEFAULT).unwrap();
     let mut job = Job::new("cornell", techniques::find("interleaved_deferred").unwrap());
     let last_pass = |job: &Job| {
-        let table = study::planned(job, KNOWN, &caps).unwrap().table.json();
+        let table = study::planned(job, known::DEFAULT, &caps).unwrap().table.json();
         let rows = table["resources"].as_array().unwrap().clone();
         let row = rows.iter().find(|row| row["name"] == "interleaved_deferred.split.normal").unwrap();
         row["last_pass"].as_str().unwrap().to_owned()

@@ -5,6 +5,10 @@
 #
 # A need is a thing that can be looked for, not a package: what came by another road than apt counts.
 
+# Where tools/drivers unpacks drivers, and tools/test looks for them.
+# shellcheck disable=SC2034 # for the scripts that source this
+drivers_folder=target/drivers
+
 say() { printf '%s\n' "$*"; }
 fail() {
     printf '\nerror: %s\n' "$1" >&2

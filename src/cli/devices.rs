@@ -1,10 +1,13 @@
 //! `quincunx devices`: every device of every driver, what it can do, and what it lacks.
 
 use crate::error::Result;
+use crate::gpu::Need;
 use crate::gpu::device::{self, Listed};
+use crate::techniques;
+use crate::techniques::fitness::{Fitness, fitness};
 use crate::units::Bytes;
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The verb with its arguments.
@@ -20,7 +23,7 @@ pub fn command() -> Command {
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let listed = device::list()?;
     if matches.get_flag("json") {
-        let devices: Vec<_> = listed.iter().map(|one| json!({ "caps": one.caps, "missing": one.missing })).collect();
+        let devices: Vec<_> = listed.iter().map(document).collect();
         return super::print(&format!("{:#}\n", json!({ "schema": 1, "devices": devices })));
     }
     let mut text = String::new();
@@ -30,16 +33,60 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     super::print(&text)
 }
 
+/// What `--json` says of a device; no technique where it cannot be used.
+fn document(listed: &Listed) -> Value {
+    let needs = |needs: &[Need]| -> Vec<Value> {
+        let need = |need: &Need| json!({ "of": need.of, "needs": need.ability.name(), "instead": need.instead });
+        needs.iter().map(need).collect()
+    };
+    let fitting = techniques::ALL.iter().filter(|_| listed.missing.is_empty());
+    let techniques: Vec<Value> = fitting
+        .map(|technique| {
+            let Fitness { stopped_by, left_out, bounds } = fitness(*technique, &listed.caps);
+            json!({
+                "name": technique.name(),
+                "runs": stopped_by.is_empty(),
+                "stopped_by": needs(&stopped_by),
+                "left_out": needs(&left_out),
+                "bounds": bounds.iter().map(|(of, most)| json!({ "of": of, "most": most })).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    json!({ "caps": listed.caps, "missing": listed.missing, "techniques": techniques })
+}
+
+fn describe_fitness(text: &mut String, name: &str, fitness: &Fitness) -> std::fmt::Result {
+    let needs = |need: &Need| format!("{} needs {}", need.of, need.ability.name());
+    if let Some(need) = fitness.stopped_by.first() {
+        return writeln!(text, "   {name} does not run: {}", needs(need));
+    }
+    match fitness.left_out.is_empty() {
+        true => writeln!(text, "   {name} runs with every setting")?,
+        false => writeln!(text, "   {name} runs, but:")?,
+    }
+    for need in &fitness.left_out {
+        let instead = if need.instead.is_empty() { String::new() } else { format!("; {}", need.instead) };
+        writeln!(text, "      {}{instead}", needs(need))?;
+    }
+    let bounds: Vec<String> = fitness.bounds.iter().map(|(of, most)| format!("{of} to {most}")).collect();
+    writeln!(text, "      {}", bounds.join("; "))
+}
+
 fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Result {
     let caps = &listed.caps;
     let identity = &caps.identity;
     writeln!(
         text,
         "{index}: {} ({}, {}, Vulkan {})",
-        identity.name, identity.device_type, identity.driver_info, identity.api
+        identity.name,
+        identity.device_type,
+        identity.driver_text(),
+        identity.api
     )?;
     if listed.missing.is_empty() {
-        writeln!(text, "   fits: every technique and setting of this version runs here")?;
+        for technique in techniques::ALL {
+            describe_fitness(text, technique.name(), &fitness(*technique, caps))?;
+        }
     } else {
         writeln!(text, "   cannot be used: lacks {}", listed.missing.join(", "))?;
     }

@@ -8,6 +8,7 @@ pub struct Caps {
     pub identity: Identity,
     pub limits: Limits,
     pub features: Features,
+    pub formats: Formats,
     pub heaps: Vec<Heap>,
     pub memory_types: Vec<MemoryType>,
     /// Of known drivers only; a live device is asked instead.
@@ -19,12 +20,19 @@ pub struct Caps {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LayoutRules {
     pub buffer_size_multiple_bytes: u64,
+    /// Of storage buffers.
     pub buffer_alignment_bytes: u64,
+    /// Of buffers of vertices and indices.
+    pub vertex_buffer_alignment_bytes: u64,
     /// Texels of a row are rounded up to a multiple of this, then its bytes, then the rows.
     pub image_width_multiple_px: u64,
     pub image_row_multiple_bytes: u64,
     pub image_height_multiple_px: u64,
+    /// All of an image, after its levels and layers.
+    pub image_size_multiple_bytes: u64,
     pub image_alignment_bytes: u64,
+    /// Bytes that a texel of depth and stencil takes: 5, or with padding.
+    pub depth_stencil_texel_bytes: u32,
     /// A bit for each memory type that any resource may lie in.
     pub memory_type_bits: u32,
 }
@@ -48,6 +56,11 @@ impl Identity {
         let (_, version) = self.driver_info.split_once("Mesa ")?;
         let major: u32 = version.split('.').next()?.parse().ok()?;
         (self.is_software() && major < 25).then_some(65_535)
+    }
+
+    /// The driver with its version where it tells one.
+    pub fn driver_text(&self) -> &str {
+        if self.driver_info.is_empty() { &self.driver } else { &self.driver_info }
     }
 
     /// Whether times measured on it are those of a software driver.
@@ -80,6 +93,10 @@ pub struct Limits {
     pub non_coherent_atom_bytes: u64,
     pub min_storage_buffer_offset_bytes: u64,
     pub max_sampler_anisotropy: f32,
+    /// Where in a pixel vertices may lie, in bits a side: what is interpolated is as exact as that. As for
+    /// `max_image_layers`.
+    #[serde(default = "least_sub_pixel_bits")]
+    pub sub_pixel_bits: u32,
     pub subgroup_size: u32,
     /// Nanoseconds a tick; 0 where the queue writes no timestamps.
     pub timestamp_period_ns: f32,
@@ -88,6 +105,10 @@ pub struct Limits {
 
 fn least_image_layers() -> u32 {
     256
+}
+
+fn least_sub_pixel_bits() -> u32 {
+    4
 }
 
 fn least_shared_memory_bytes() -> u32 {
@@ -108,6 +129,17 @@ pub struct Features {
     pub conservative_rasterization: bool,
     pub ray_query: bool,
     pub memory_budget: bool,
+}
+
+/// What Vulkan leaves optional of the formats that this program uses, in optimally tiled images.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Formats {
+    /// D32_SFLOAT as depth attachment and sampled.
+    pub float_depth: bool,
+    /// D32_SFLOAT_S8_UINT as attachment of depth and stencil.
+    pub float_depth_with_stencil: bool,
+    /// R32G32B32A32_SFLOAT blends as colour attachment.
+    pub float_color_blend: bool,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

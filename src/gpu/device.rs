@@ -215,7 +215,7 @@ fn choose(instance: &ash::Instance, selector: Option<&str>) -> Result<(vk::Physi
     for (index, physical, caps) in &all {
         let lacks = missing(instance, *physical, caps);
         let verdict = if lacks.is_empty() { "fits".to_owned() } else { format!("lacks {}", lacks.join(", ")) };
-        error = error.note(format!("{index}: {} ({}): {verdict}", caps.identity.name, caps.identity.driver_info));
+        error = error.note(format!("{index}: {} ({}): {verdict}", caps.identity.name, caps.identity.driver_text()));
     }
     Err(error)
 }

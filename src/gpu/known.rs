@@ -4,7 +4,11 @@ use super::Caps;
 use crate::error::{Error, Result};
 
 /// Name and file of each.
-const KNOWN: &[(&str, &str)] = &[("lavapipe-22.3.6", include_str!("../../assets/caps/lavapipe-22.3.6.json"))];
+const KNOWN: &[(&str, &str)] = &[
+    ("lavapipe-22.3.6", include_str!("../../assets/caps/lavapipe-22.3.6.json")),
+    ("lavapipe-25.0.7", include_str!("../../assets/caps/lavapipe-25.0.7.json")),
+    ("swiftshader", include_str!("../../assets/caps/swiftshader.json")),
+];
 
 /// The caps that a plan without a device has where `--caps` names none.
 pub const DEFAULT: &str = "lavapipe-22.3.6";

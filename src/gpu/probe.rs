@@ -1,6 +1,6 @@
 //! A physical device's answers, looked up once, as `Caps`.
 
-use super::caps::{Caps, Features, Heap, Identity, Limits, MemoryType};
+use super::caps::{Caps, Features, Formats, Heap, Identity, Limits, MemoryType};
 use ash::vk;
 
 /// Queue family used here: the first that draws, computes and copies.
@@ -20,6 +20,20 @@ pub fn extensions(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Vec
         .filter_map(|property| property.extension_name_as_c_str().ok())
         .map(|name| name.to_string_lossy().into_owned())
         .collect()
+}
+
+fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
+    use vk::FormatFeatureFlags as Flags;
+    let has = |format, flags| {
+        // SAFETY: a live instance and one of its physical devices.
+        let properties = unsafe { instance.get_physical_device_format_properties(physical, format) };
+        properties.optimal_tiling_features.contains(flags)
+    };
+    Formats {
+        float_depth: has(vk::Format::D32_SFLOAT, Flags::DEPTH_STENCIL_ATTACHMENT | Flags::SAMPLED_IMAGE),
+        float_depth_with_stencil: has(vk::Format::D32_SFLOAT_S8_UINT, Flags::DEPTH_STENCIL_ATTACHMENT),
+        float_color_blend: has(vk::Format::R32G32B32A32_SFLOAT, Flags::COLOR_ATTACHMENT_BLEND),
+    }
 }
 
 /// Everything that `Caps` holds.
@@ -91,6 +105,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             non_coherent_atom_bytes: limits.non_coherent_atom_size,
             min_storage_buffer_offset_bytes: limits.min_storage_buffer_offset_alignment,
             max_sampler_anisotropy: limits.max_sampler_anisotropy,
+            sub_pixel_bits: limits.sub_pixel_precision_bits,
             subgroup_size: subgroup.subgroup_size,
             timestamp_period_ns: if timestamp_bits == 0 { 0.0 } else { limits.timestamp_period },
             framebuffer_sample_counts: (0..7)
@@ -111,6 +126,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             ray_query: has("VK_KHR_ray_query"),
             memory_budget: has("VK_EXT_memory_budget"),
         },
+        formats: formats(instance, physical),
         heaps: memory
             .memory_heaps_as_slice()
             .iter()

@@ -5,8 +5,9 @@
 //! frame can be repeated.
 
 use super::commands::{Commands, RecordedPass, Submits};
+use super::failure::failed;
 use super::timing::PassTime;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use ash::vk;
 use std::time::Instant;
 
@@ -78,9 +79,9 @@ impl Recorded {
 
     fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {
         let gpu = &self.commands.gpu;
-        let fail = |result| match self.commands.passes.as_slice() {
-            [] => Error::device(format!("running commands: {result}")),
-            [first, ..] => Error::device(format!("running the frame of {}: {result}", first.name)),
+        let fail = |result| match self.commands.passes.is_empty() {
+            true => failed(&format!("running commands ({})", self.commands.name), result),
+            false => failed(&format!("running a frame of {}", self.commands.name), result),
         };
         let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(buffer)];
         let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
@@ -88,7 +89,11 @@ impl Recorded {
         // SAFETY: the buffer is recorded and not running; the queue is locked; the fence is unsignalled.
         unsafe {
             gpu.device.queue_submit2(gpu.queue, &[submit], self.fence).map_err(fail)?;
-            gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(fail)?;
+            gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(|result| {
+                // What the work uses is given back next: none of it may still run. A lost device runs nothing.
+                let _ = gpu.device.device_wait_idle();
+                fail(result)
+            })?;
             gpu.device.reset_fences(&[self.fence]).map_err(fail)
         }
     }

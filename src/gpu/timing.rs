@@ -4,6 +4,7 @@
 //! a submit with a fence is the figure and the timestamp a second column; a disagreement is reported, not hidden.
 
 use super::Gpu;
+use super::failure::failed;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -58,7 +59,7 @@ impl Timestamps {
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         // SAFETY: the queries were written by the submit whose fence the caller waited for.
         unsafe { self.gpu.device.get_query_pool_results(self.pool, 0, &mut ticks, flags) }
-            .map_err(|result| Error::device(format!("reading timestamps: {result}")))?;
+            .map_err(|result| failed("reading timestamps", result))?;
         let period = f64::from(self.gpu.caps.limits.timestamp_period_ns);
         Ok(ticks.chunks_exact(2).map(|pair| (pair[1].saturating_sub(pair[0]) as f64 * period) as u64).collect())
     }

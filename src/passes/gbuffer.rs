@@ -18,7 +18,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::structs::GBufferParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, AccessSet, Barrier, Buffer, Commands, Edge, Gpu, Image, Traffic, readback};
+use crate::gpu::{Ability, Access, AccessSet, Barrier, Buffer, Commands, Edge, Gpu, Image, Need, Traffic, readback};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{DrawList, SceneGpu};
@@ -82,6 +82,16 @@ pub fn emissive_name(has_emissive: bool) -> &'static str {
 
 const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const WORDS: vk::Format = vk::Format::R32G32_UINT;
+
+/// What every frame with a G-buffer needs of a device; with BLEND surfaces, their pass too.
+pub fn needs(has_blend: bool) -> Vec<Need> {
+    let mut needs = vec![Need { of: "the G-buffer".to_owned(), ability: Ability::FloatDepth, instead: "" }];
+    if has_blend {
+        let of = "a scene with BLEND surfaces".to_owned();
+        needs.push(Need { of, ability: Ability::BlendFloats, instead: "scenes without them can be rendered" });
+    }
+    needs
+}
 
 /// Plans the images of one G-buffer, as resources of `technique`.
 pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, position: PositionStorage, has_emissive: bool) {

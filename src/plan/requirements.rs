@@ -5,6 +5,7 @@ use super::Shape;
 use crate::gpu::caps::LayoutRules;
 use crate::gpu::image::texel_bytes;
 use crate::gpu::{Buffer, Gpu, ImageDescription};
+use ash::vk;
 
 /// A driver's answer for one resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,9 +31,12 @@ impl Requirements<'_> {
         match (self, shape) {
             (Self::Device(gpu), Shape::Buffer { bytes, flags, .. }) => Buffer::requirements(gpu, *bytes, *flags).into(),
             (Self::Device(gpu), Shape::Image(description)) => description.requirements(gpu).into(),
-            (Self::Rules(rules), Shape::Buffer { bytes, .. }) => Requirement {
+            (Self::Rules(rules), Shape::Buffer { bytes, flags, .. }) => Requirement {
                 bound_bytes: bytes.next_multiple_of(rules.buffer_size_multiple_bytes),
-                alignment_bytes: rules.buffer_alignment_bytes,
+                alignment_bytes: match flags.contains(vk::BufferUsageFlags::STORAGE_BUFFER) {
+                    true => rules.buffer_alignment_bytes,
+                    false => rules.vertex_buffer_alignment_bytes,
+                },
                 memory_type_bits: rules.memory_type_bits,
             },
             (Self::Rules(rules), Shape::Image(description)) => Requirement {
@@ -46,7 +50,10 @@ impl Requirements<'_> {
 
 /// Each level with its rows and its height rounded up, as often as there are layers.
 fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
-    let texel = u64::from(texel_bytes(description.format));
+    let texel = u64::from(match description.format {
+        vk::Format::D32_SFLOAT_S8_UINT => rules.depth_stencil_texel_bytes,
+        format => texel_bytes(format),
+    });
     let layer_bytes: u64 = (0..description.level_count)
         .map(|level| {
             let side = |px: u32| u64::from((px >> level).max(1));
@@ -55,11 +62,11 @@ fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
             row * side(description.extent.height).next_multiple_of(rules.image_height_multiple_px)
         })
         .sum();
-    layer_bytes * u64::from(description.layers())
+    (layer_bytes * u64::from(description.layers())).next_multiple_of(rules.image_size_multiple_bytes)
 }
 
-impl From<ash::vk::MemoryRequirements> for Requirement {
-    fn from(answer: ash::vk::MemoryRequirements) -> Self {
+impl From<vk::MemoryRequirements> for Requirement {
+    fn from(answer: vk::MemoryRequirements) -> Self {
         Self {
             bound_bytes: answer.size,
             alignment_bytes: answer.alignment.max(1),

@@ -21,9 +21,8 @@ pub struct Resources {
 impl Resources {
     /// Makes every resource of the plan; those that share bytes in one arena a memory type, called `NAME.shared`.
     ///
-    /// Errors: memory is too small or a limit is passed (exit code 4).
+    /// Errors: memory is too small (exit code 4).
     pub fn make(gpu: &Arc<Gpu>, name: &str, plan: &Plan, sharing: &Sharing) -> Result<Self> {
-        plan.check(gpu.caps.limits.max_storage_buffer_range_bytes)?;
         let arenas = sharing
             .arenas
             .iter()

@@ -5,12 +5,13 @@
 //! the commands of one frame, in the order of the paper's overview figure.
 
 pub mod deferred;
+pub mod fitness;
 pub mod interleaved_deferred;
 
 use crate::bvh::LazyBvh;
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image};
+use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
@@ -54,6 +55,13 @@ pub trait Technique: Sync {
 
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
+
+    /// What these settings need of a device beyond Vulkan 1.3, met or not. `caps`: `auto` may depend on them. `has_blend`:
+    /// the scene has BLEND surfaces. Settings that contradict each other need nothing: `plan` refuses them.
+    fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need>;
+
+    /// How far its settings go on a device: a setting, and the most of it in words.
+    fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)>;
 
     /// What a frame needs. Arithmetic, but for the tree of shadow rays, whose size only building it tells.
     ///

@@ -4,11 +4,17 @@
 #![allow(dead_code)]
 
 pub mod counted;
+pub mod failing;
 pub mod gltf_file;
 pub mod program;
 pub mod watched;
 
+use quincunx::gpu::{Caps, DeviceRequest, Gpu};
+use std::io::Write;
 use std::path::PathBuf;
+
+/// The driver whose pictures are goldens and whose rules are the default of `memory --plan`.
+pub const PINNED: &str = "Mesa 22.3.6";
 
 /// The folder of the shared scenes, which QUINCUNX_SCENES names; None, with a line that says so, where it is not set.
 ///
@@ -21,10 +27,61 @@ pub fn shared_scenes() -> Option<PathBuf> {
     folder
 }
 
-/// Says that a test, or the rest of one, does not run here.
+/// Says that a test, or the rest of one, does not run here: on standard output, which runners show of failed tests only,
+/// and as a line of the file that QUINCUNX_SKIPS names.
 ///
 /// Panics where CI is `true`: a skip in CI is a failure.
 pub fn skip(why: &str) {
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "skipped in CI: {why}");
-    println!("skipped: {why}");
+    let thread = std::thread::current();
+    let line = format!("skipped: {}: {why}\n", thread.name().unwrap_or("a test"));
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "in CI, {line}");
+    print!("{line}");
+    if let Some(file) = std::env::var_os("QUINCUNX_SKIPS") {
+        let mut file = std::fs::OpenOptions::new().append(true).create(true).open(file).unwrap();
+        // One write: tests run side by side.
+        file.write_all(line.as_bytes()).unwrap();
+    }
+}
+
+/// The caps of the device that tests run on.
+pub fn driver() -> Caps {
+    Gpu::open(&DeviceRequest::default()).unwrap().caps.clone()
+}
+
+/// What a test needs of the driver that it runs on.
+#[derive(Clone, Copy, Debug)]
+pub enum Feature {
+    /// The driver that goldens are blessed on.
+    Pinned,
+    /// Points of a surface as exact as closed forms are: vertices are placed to a 256th of a pixel.
+    ExactPositions,
+}
+
+impl Feature {
+    fn is_there(self, caps: &Caps) -> bool {
+        match self {
+            Self::Pinned => caps.identity.driver_info.contains(PINNED),
+            Self::ExactPositions => caps.limits.sub_pixel_bits >= 8,
+        }
+    }
+
+    /// In words that follow "has no".
+    fn lack(self, caps: &Caps) -> String {
+        match self {
+            Self::Pinned => format!("goldens, which are blessed on {PINNED}"),
+            Self::ExactPositions => {
+                format!("vertices placed to a 256th of a pixel: {} bits, 8 are needed", caps.limits.sub_pixel_bits)
+            }
+        }
+    }
+}
+
+/// Whether the driver has what a test needs; where not, the test is skipped by name, with the reason.
+#[must_use]
+pub fn has(caps: &Caps, feature: Feature) -> bool {
+    let is_there = feature.is_there(caps);
+    if !is_there {
+        skip(&format!("{} has no {}", caps.identity.driver_text(), feature.lack(caps)));
+    }
+    is_there
 }

@@ -117,13 +117,11 @@ pub fn ignored_features(document: &Document) -> Vec<String> {
         primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(1..))))
     });
     let mut sentences = Vec::new();
-    for (count, one, many) in [
-        (
-            with_colors.count(),
-            "primitive has vertex colours beyond the first, which are ignored",
-            "primitives have vertex colours beyond the first, which are ignored",
-        ),
-    ] {
+    for (count, one, many) in [(
+        with_colors.count(),
+        "primitive has vertex colours beyond the first, which are ignored",
+        "primitives have vertex colours beyond the first, which are ignored",
+    )] {
         if count > 0 {
             sentences.push(label::count(count, one, many));
         }

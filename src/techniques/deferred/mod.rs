@@ -8,7 +8,7 @@ pub mod shade;
 use super::{Frame, Inputs, Prepared, Technique, left_out};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::cull::{self, Cull};
 use crate::passes::blend::{self, Blend, BlendLights};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
@@ -16,7 +16,7 @@ use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::settings::{SHADING, Setting};
+use crate::settings::{SHADING, Setting, Values};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -46,6 +46,14 @@ impl Technique for Deferred {
 
     fn aovs(&self) -> &'static [&'static str] {
         gbuffer::AOVS
+    }
+
+    fn needs(&self, _: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        gbuffer::needs(has_blend)
+    }
+
+    fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
+        Vec::new()
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

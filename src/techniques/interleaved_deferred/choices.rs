@@ -11,6 +11,7 @@ use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Kernel, StopBits};
+use crate::passes::gbuffer::PositionStorage;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::units::Bytes;
@@ -146,7 +147,7 @@ impl Choices {
     /// Workgroup memory that `--split tile` needs for a block.
     fn tile_bytes(&self) -> u64 {
         let [x, y] = self.block().map(u64::from);
-        x * y * (8 + self.shading.position.bytes())
+        x * y * tile_texel_bytes(self.shading.position)
     }
 
     /// The block after rounding; the pattern itself where the road has none.
@@ -232,6 +233,27 @@ impl Choices {
     pub fn subsets(&self) -> Vec<SubsetBlock> {
         subsets(self.light_pattern(), self.direct_pattern, self.vpl_count, self.joined_count())
     }
+}
+
+/// A texel of a block in workgroup memory: its normal and its position.
+fn tile_texel_bytes(position: PositionStorage) -> u64 {
+    8 + position.bytes()
+}
+
+/// How far the roads go on a device, by the limits that `Choices::new` and the plan refuse with.
+pub fn bounds(caps: &Caps) -> Vec<(&'static str, String)> {
+    let limits = &caps.limits;
+    let texels = |bytes: u64, texel_bytes: u64| bytes / texel_bytes;
+    let (unorm16, float) = (PositionStorage::Unorm16, PositionStorage::Float);
+    let range = limits.max_storage_buffer_range_bytes;
+    let shared = u64::from(limits.max_shared_memory_bytes);
+    let two = |unit: &str, most: [u64; 2]| format!("{} {unit}, {} with --position float", most[0], most[1]);
+    vec![
+        ("--storage buffer", two("pixels a frame", [unorm16, float].map(|position| texels(range, position.bytes())))),
+        ("--storage image", format!("{} px a side", limits.max_image_side_px)),
+        ("--split layered", format!("{} subsets", limits.max_image_layers)),
+        ("--split tile", two("pixels a block", [unorm16, float].map(|p| texels(shared, tile_texel_bytes(p))))),
+    ]
 }
 
 /// `--direct-pattern` beside a split of `pattern`.

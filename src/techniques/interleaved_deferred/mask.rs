@@ -1,6 +1,6 @@
 //! Mask: which subset each pixel belongs to, where a test can find it (Segovia 2006, section 3.1). Shaders:
 //! fullscreen.vert, mask.frag.
-//! writes  mask.stencil  image, 8 B a pixel (depth unused), or mask.depth  image, 4 B a pixel
+//! writes  mask.stencil  image, 5 B a pixel, with a driver's padding 8 (depth unused), or mask.depth  image, 4 B a pixel
 
 use super::NAME;
 use super::road::MaskKind;

@@ -46,16 +46,17 @@ pub mod upscale;
 use super::{Frame, Inputs, Prepared, Technique};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
+use crate::gpu::{Access, AccessSet, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::vpl;
 use crate::passes::blend::BlendLights;
-use crate::passes::direct;
+use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::settings::{SHADING, Setting};
+use crate::settings::{SHADING, Setting, Values};
 use choices::Choices;
 use frame::InterleavedFrame;
+use road::Road;
 use shade::SubsetLights;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -95,6 +96,18 @@ impl Technique for InterleavedDeferred {
 
     fn aovs(&self) -> &'static [&'static str] {
         AOVS
+    }
+
+    fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
+        let mut needs = gbuffer::needs(has_blend);
+        if let Ok(road) = Road::new(values, caps) {
+            needs.extend(road.needs(values));
+        }
+        needs
+    }
+
+    fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)> {
+        choices::bounds(caps)
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

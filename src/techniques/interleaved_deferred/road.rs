@@ -3,8 +3,8 @@
 use super::NAME;
 use super::sub_buffers::{Stage, Storage};
 use crate::error::{Error, Result};
-use crate::gpu::Caps;
 use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::{Ability, Caps, Need};
 use crate::settings::Values;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub enum Form {
 impl Road {
     /// What `--split`, `--storage`, `--copy` and `--fragment-passes` come to on a device.
     ///
-    /// Errors: they contradict each other, or the device (exit code 2).
+    /// Errors: they contradict each other (exit code 2).
     pub fn new(values: &Values, caps: &Caps) -> Result<Self> {
         let split = values.text("split");
         let by = match split {
@@ -92,6 +92,31 @@ impl Road {
         Ok(Self::Copy(Copies { by, storage: storage(split, values.text("storage"), caps)?, form }))
     }
 
+    /// What it needs of a device, with the filter behind it.
+    pub fn needs(self, values: &Values) -> Vec<Need> {
+        let split = values.text("split");
+        let mut needs = Vec::new();
+        let mut need = |of: String, ability, instead| needs.push(Need { of, ability, instead });
+        match self {
+            Self::Masked(MaskKind::Stencil) => {
+                need("--split stencil".to_owned(), Ability::DepthWithStencil, "--split depth tests a depth buffer");
+            }
+            Self::Copy(copies) if copies.storage != Storage::Buffer => {
+                let of = match split {
+                    "layered" | "fragment" => format!("--split {split}"),
+                    _ => "--storage image".to_owned(),
+                };
+                let instead = "--split one-pass, two-pass and tile know --storage buffer";
+                need(of, Ability::StoreWordPairs, instead);
+            }
+            _ => {}
+        }
+        if values.text("filter") == "gauss-fast" && !self.sums_all() {
+            need("--filter gauss-fast".to_owned(), Ability::StoreWordPairs, "--filter gauss filters in buffers");
+        }
+        needs
+    }
+
     /// How it copies; None where nothing is copied.
     pub fn copies(self) -> Option<Copies> {
         match self {
@@ -108,7 +133,7 @@ impl Road {
 
 /// What `--storage` comes to.
 ///
-/// Errors: the road or the device does not know it (exit code 2).
+/// Errors: the road does not know it (exit code 2).
 fn storage(split: &str, setting: &str, caps: &Caps) -> Result<Storage> {
     let needs_images = split == "layered" || split == "fragment";
     let stores_words = caps.features.storage_image_extended_formats;
@@ -116,10 +141,6 @@ fn storage(split: &str, setting: &str, caps: &Caps) -> Result<Storage> {
         "buffer" if needs_images => Err(needs_image(split)),
         "buffer" => Ok(Storage::Buffer),
         "auto" if !needs_images && (caps.identity.is_software() || !stores_words) => Ok(Storage::Buffer),
-        _ if !stores_words => Err(Error::request(format!(
-            "{NAME}: --split {split} with sub-buffers in images: this device lacks shaderStorageImageExtendedFormats"
-        ))
-        .note("--split one-pass, two-pass and tile know --storage buffer")),
         _ if split == "layered" => Ok(Storage::Layers),
         _ => Ok(Storage::Image),
     }
@@ -224,14 +245,5 @@ mod tests {
         }
         assert_eq!(storage_on("cpu", true, "tile", "image").unwrap(), Storage::Image);
         assert_eq!(storage_on("discrete-gpu", true, "tile", "buffer").unwrap(), Storage::Buffer);
-    }
-
-    #[test]
-    fn images_are_refused_where_no_shader_can_store_into_them() {
-        for (split, storage) in [("one-pass", "image"), ("layered", "auto"), ("fragment", "auto")] {
-            let error = storage_on("discrete-gpu", false, split, storage).unwrap_err();
-            assert_eq!(error.exit_code(), 2);
-            assert!(error.to_string().contains("shaderStorageImageExtendedFormats"), "{error}");
-        }
     }
 }

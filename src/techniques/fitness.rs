@@ -1,0 +1,131 @@
+//! What a technique can and cannot do on a device, from its caps alone: the same needs that refuse a render, tried for
+//! every value of every setting.
+
+use super::Technique;
+use crate::error::Result;
+use crate::gpu::{Caps, Need};
+use crate::job::settings_of;
+use crate::settings::{Kind, Values};
+
+/// What a technique lacks on a device, and how far its settings go.
+#[derive(Clone, Debug)]
+pub struct Fitness {
+    /// What no frame goes without. Empty: it runs.
+    pub stopped_by: Vec<Need>,
+    /// What single settings and kinds of scenes go without.
+    pub left_out: Vec<Need>,
+    /// A setting, and the most of it in words.
+    pub bounds: Vec<(&'static str, String)>,
+}
+
+/// Errors: the device cannot do what the settings ask for (exit code 3). `has_blend`: the scene has BLEND surfaces.
+pub fn require(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Result<()> {
+    match unmet(technique, values, caps, has_blend).first() {
+        Some(need) => Err(need.refusal(caps).within(technique.name())),
+        None => Ok(()),
+    }
+}
+
+fn unmet(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
+    technique.needs(values, caps, has_blend).into_iter().filter(|need| !need.is_met(caps)).collect()
+}
+
+/// What `technique` can do on a device of these caps.
+pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
+    let settings = settings_of(technique);
+    let defaults = Values::defaults(&settings);
+    let stopped_by = unmet(technique, &defaults, caps, false);
+    let mut left_out: Vec<Need> = Vec::new();
+    let mut leave_out = |needs: Vec<Need>| {
+        for need in needs {
+            if !stopped_by.contains(&need) && !left_out.contains(&need) {
+                left_out.push(need);
+            }
+        }
+    };
+    for setting in &settings {
+        let Kind::Choice(choices) = setting.kind else { continue };
+        for choice in choices {
+            let mut values = defaults.clone();
+            values.set(setting, choice).expect("a choice of the table");
+            leave_out(unmet(technique, &values, caps, false));
+        }
+    }
+    leave_out(unmet(technique, &defaults, caps, true));
+    let limits = &caps.limits;
+    let mut bounds = vec![
+        ("--size", format!("{} px a side", limits.max_image_side_px)),
+        ("--workgroup", format!("{} invocations", limits.max_workgroup_invocations)),
+    ];
+    bounds.extend(technique.bounds(caps));
+    Fitness { stopped_by, left_out, bounds }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::known;
+    use crate::techniques::{ALL, find};
+
+    /// A device that has everything, changed.
+    fn device(change: impl FnOnce(&mut Caps)) -> Caps {
+        let mut caps = known::caps(known::DEFAULT).unwrap();
+        change(&mut caps);
+        caps
+    }
+
+    fn of(needs: &[Need]) -> Vec<&str> {
+        needs.iter().map(|need| need.of.as_str()).collect()
+    }
+
+    #[test]
+    fn a_device_that_has_everything_lacks_nothing() {
+        for technique in ALL {
+            let fitness = fitness(*technique, &device(|_| {}));
+            assert!(fitness.stopped_by.is_empty() && fitness.left_out.is_empty(), "{fitness:?}");
+            assert!(fitness.bounds.contains(&("--size", "16384 px a side".to_owned())));
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_is_refused_and_nothing_else_is() {
+        let interleaved = find("interleaved_deferred").unwrap();
+        let settings = settings_of(interleaved);
+        for (caps, expected) in [
+            (device(|caps| caps.formats.float_depth_with_stencil = false), &["--split stencil"][..]),
+            (
+                device(|caps| caps.features.storage_image_extended_formats = false),
+                &["--split layered", "--split fragment", "--storage image", "--filter gauss-fast"],
+            ),
+            (device(|caps| caps.formats.float_color_blend = false), &["a scene with BLEND surfaces"]),
+        ] {
+            let fitness = fitness(interleaved, &caps);
+            assert!(fitness.stopped_by.is_empty(), "{fitness:?}");
+            assert_eq!(of(&fitness.left_out), expected);
+            for setting in &settings {
+                let Kind::Choice(choices) = setting.kind else { continue };
+                for choice in choices {
+                    let mut values = Values::defaults(&settings);
+                    values.set(setting, choice).unwrap();
+                    let refused = require(interleaved, &values, &caps, false);
+                    let flag = format!("--{} {choice}", setting.key);
+                    assert_eq!(refused.is_err(), expected.contains(&flag.as_str()), "{flag}: {refused:?}");
+                    if let Err(error) = refused {
+                        assert_eq!(error.exit_code(), 3);
+                        let text = error.to_string();
+                        let need = fitness.left_out.iter().find(|need| need.of == flag).unwrap();
+                        assert!(text.contains(need.ability.name()) && text.contains(need.instead), "{text}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_every_frame_needs_stops_the_technique() {
+        let caps = device(|caps| caps.formats.float_depth = false);
+        for technique in ALL {
+            assert_eq!(of(&fitness(*technique, &caps).stopped_by), ["the G-buffer"]);
+        }
+    }
+}
