@@ -23,9 +23,10 @@ struct Bounds {
     mean_part: f64,
 }
 
-/// Lavapipe of Mesa 25.0.7 makes the bits of 22.3.6. SwiftShader is at most FLIP 0.0232 and RMSE 0.0286 from them, with
-/// 0.72 % of the pixels over 0.1; the colours of its G-buffer alone, which are textures without light, are FLIP 0.018 off.
-const BOUNDS: Bounds = Bounds { most: 0.1, outlier_part: 0.015, flip: 0.03, rmse: 0.04, mean_part: 0.01 };
+/// Lavapipe of Mesa 25.0.7 makes the bits of 22.3.6 in five of the six pictures, and is no 0.0001 off in the sixth.
+/// SwiftShader is at most FLIP 0.0232 and RMSE 0.0286 from them, with 0.72 % of the pixels over 0.1 and means 0.094 %
+/// apart; the colours of its G-buffer alone, which are textures without light, are FLIP 0.018 off.
+const BOUNDS: Bounds = Bounds { most: 0.1, outlier_part: 0.015, flip: 0.03, rmse: 0.04, mean_part: 0.005 };
 
 fn difference(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0.0, f32::max)
