@@ -1,6 +1,7 @@
 //! Which lights there are, and which reach what: the scene's own, scattered ones, the default rig, virtual ones.
 
 pub mod cull;
+mod glow;
 pub mod vpl;
 
 use crate::error::{Error, Result};
@@ -13,6 +14,10 @@ use glam::Vec3;
 const RIG_KEY_LUX: f32 = 3.0;
 /// The default rig's ambient radiance.
 const RIG_AMBIENT: f32 = 0.3;
+/// Emissive surfaces that send out less, a square metre of all surfaces, leave the scene dark: the rig's ambient light alone
+/// gives each of them nine times as much. The glTF samples DamagedHelmet and WaterBottle have 0.004 and
+/// 0.0000004.
+const LEAST_GLOW: f32 = 0.1;
 /// Irradiance that all scattered lights together give the scene's box on average, in lux: white diffuse surfaces then
 /// have radiance 1.
 const SCATTERED_LUX: f32 = std::f32::consts::PI;
@@ -23,7 +28,7 @@ pub struct LightSet {
     pub lights: Vec<Light>,
     /// Radiance.
     pub ambient: Vec3,
-    /// The scene had no light of its own, and got the rig.
+    /// The scene had no light of its own that is worth the name, and got the rig.
     pub has_rig: bool,
     /// The scene, or `--lights`, has punctual lights that are not the rig's.
     pub has_punctual: bool,
@@ -39,8 +44,9 @@ impl LightSet {
         let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
-        let emissive = scene.drawn_materials().any(Material::is_emissive);
-        let has_rig = !has_punctual && !emissive && values.text("rig") == "default";
+        let may_have_rig = !has_punctual && values.text("rig") == "default";
+        let is_lit = || scene.drawn_materials().any(Material::is_emissive) && glow::mean_exitance(scene) >= LEAST_GLOW;
+        let has_rig = may_have_rig && !is_lit();
         if has_rig {
             lights.push(rig_key(view));
         }
