@@ -12,10 +12,18 @@ struct BvhNodeBlock {
 
 // One triangle, in the order in which leaves list them.
 struct BvhTriangleBlock {
+    // xyz: the first corner; w as bits: TRIANGLE_ bits.
     vec4 corner;
     vec4 edge1;
     vec4 edge2;
 };
+
+// Alpha decides whether a ray meets it (MASK, BLEND).
+const uint TRIANGLE_TESTED = 1u;
+// Its back is not drawn.
+const uint TRIANGLE_SINGLE_SIDED = 2u;
+// Its draw mirrors: its front is the side from which its corners run clockwise.
+const uint TRIANGLE_MIRRORED = 4u;
 
 // A shadow ray starts this many metres off its surface, along the normal.
 layout(constant_id = 60) const float RAY_OFFSET = 1e-4;

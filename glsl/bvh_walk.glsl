@@ -18,7 +18,9 @@ float box_entry(BvhNodeBlock node, vec3 origin, vec3 inverse, float limit) {
     return entry <= leave ? entry : -1.0;
 }
 
-bool triangle_hit(BvhTriangleBlock triangle, vec3 origin, vec3 direction, float limit) {
+// `met`: distance in lengths of the direction, weights of the second and the third corner.
+bool triangle_hit(BvhTriangleBlock triangle, vec3 origin, vec3 direction, float limit, out vec3 met) {
+    met = vec3(0.0);
     vec3 p = cross(direction, triangle.edge2.xyz);
     float determinant = dot(triangle.edge1.xyz, p);
     if (determinant == 0.0) {
@@ -30,6 +32,7 @@ bool triangle_hit(BvhTriangleBlock triangle, vec3 origin, vec3 direction, float 
     vec3 q = cross(offset, triangle.edge1.xyz);
     float v = dot(direction, q) * inverse;
     float t = dot(triangle.edge2.xyz, q) * inverse;
+    met = vec3(t, u, v);
     return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < limit;
 }
 
@@ -38,6 +41,7 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
     vec3 origin = position_ws + normal_ws * RAY_OFFSET;
     float limit = distance - 2.0 * RAY_OFFSET;
     vec3 inverse = 1.0 / mix(direction_ws, vec3(1e-20), equal(direction_ws, vec3(0.0)));
+    vec3 met;
     uint stack[BVH_STACK];
     int depth = 0;
     stack[depth++] = 0u;
@@ -57,7 +61,7 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
         }
         uint triangle = first;
         for (; triangle < first + count; triangle++) {
-            if (triangle_hit(bvh_triangles[triangle], origin, direction_ws, limit)) {
+            if (triangle_hit(bvh_triangles[triangle], origin, direction_ws, limit, met)) {
                 return true;
             }
         }

@@ -22,6 +22,9 @@ struct FrameBlock {
     uint height_px;
     uint light_count;
     uint vpl_count;
+    // Which run of the frame this is, of techniques that sum several up to a picture; else 0.
+    uint sample_index;
+    uint _unused[3];
 };
 
 // Unit vector from a surface point to the eye.

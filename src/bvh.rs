@@ -1,12 +1,13 @@
 //! The tree that rays walk, for the host and for compute shaders (glsl/bvh.glsl, glsl/bvh_walk.glsl).
 //!
 //! A crate builds it (PLOC with reinsertion); this file lays it out as the shaders read it and walks it on the host, as
-//! the shaders' twin. BLEND surfaces are left out: they stop no light. MASK surfaces are in it; the caller of
-//! `closest_hit` decides about holes, shadow rays take them as solid.
+//! the shaders' twin. MASK surfaces are in it: the caller of `closest_hit` decides about holes, shadow rays of `occluded`
+//! take them as solid. BLEND surfaces stop no light of the techniques that rasterise, and are in the whole tree only,
+//! whose triangles say what a ray must ask of them (TRIANGLE_ bits).
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
-use crate::scene::{AlphaMode, Scene};
+use crate::scene::{AlphaMode, Material, Scene};
 use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::builder::build_bvh2_from_tris;
@@ -25,15 +26,23 @@ pub struct Bvh {
     pub sources: Vec<Source>,
 }
 
+/// glsl/bvh.glsl's bits: alpha decides whether a ray meets it (MASK, BLEND); its back is not drawn; its front is the side
+/// from which its corners run clockwise, because its draw mirrors.
+const TRIANGLE_TESTED: u32 = 1;
+const TRIANGLE_SINGLE_SIDED: u32 = 2;
+const TRIANGLE_MIRRORED: u32 = 4;
+
 /// A scene's tree, built when the first ray asks for it: pictures without rays do not wait for it.
 pub struct LazyBvh {
     built: OnceLock<Bvh>,
+    /// With BLEND surfaces, where there are any.
+    whole: OnceLock<Bvh>,
     empty: Bvh,
 }
 
 impl Default for LazyBvh {
     fn default() -> Self {
-        Self { built: OnceLock::new(), empty: Bvh::empty() }
+        Self { built: OnceLock::new(), whole: OnceLock::new(), empty: Bvh::empty() }
     }
 }
 
@@ -47,6 +56,20 @@ impl LazyBvh {
         }
         let bvh = Bvh::build(scene)?;
         Ok(self.built.get_or_init(|| bvh))
+    }
+
+    /// The tree over all of `scene`, BLEND surfaces included, which must be the same at every call.
+    ///
+    /// Errors: as `Bvh::build`.
+    pub fn whole(&self, scene: &Scene) -> Result<&Bvh> {
+        if scene.drawn_materials().all(|material| material.alpha != AlphaMode::Blend) {
+            return self.over(scene);
+        }
+        if let Some(bvh) = self.whole.get() {
+            return Ok(bvh);
+        }
+        let bvh = Bvh::whole(scene)?;
+        Ok(self.whole.get_or_init(|| bvh))
     }
 
     /// The tree that no ray meets.
@@ -78,11 +101,22 @@ impl Bvh {
     ///
     /// Errors: the tree is deeper than a walk's stack (exit code 2).
     pub fn build(scene: &Scene) -> Result<Self> {
+        Self::of(scene, |material| material.alpha != AlphaMode::Blend)
+    }
+
+    /// Builds the tree over everything, BLEND surfaces included, in world space.
+    ///
+    /// Errors: as `build`.
+    pub fn whole(scene: &Scene) -> Result<Self> {
+        Self::of(scene, |_| true)
+    }
+
+    fn of(scene: &Scene, holds: impl Fn(&Material) -> bool) -> Result<Self> {
         let mut corners = Vec::new();
         let mut sources = Vec::new();
         for (draw_index, draw) in scene.draws.iter().enumerate() {
             let mesh = &scene.meshes[draw.mesh];
-            if scene.materials[mesh.material].alpha == AlphaMode::Blend {
+            if !holds(&scene.materials[mesh.material]) {
                 continue;
             }
             for triangle in 0..mesh.triangle_count() {
@@ -117,8 +151,9 @@ impl Bvh {
             .iter()
             .map(|index| {
                 let Triangle { v0, v1, v2 } = corners[*index];
-                let four = |v: glam::Vec3A| [v.x, v.y, v.z, 0.0];
-                BvhTriangleBlock { corner: four(v0), edge1: four(v1 - v0), edge2: four(v2 - v0) }
+                let four = |v: glam::Vec3A, w: f32| [v.x, v.y, v.z, w];
+                let flags = word(flags_of(scene, &sources[*index]));
+                BvhTriangleBlock { corner: four(v0, flags), edge1: four(v1 - v0, 0.0), edge2: four(v2 - v0, 0.0) }
             })
             .collect();
         Ok(Self { nodes, triangles, sources: order.iter().map(|index| sources[*index]).collect() })
@@ -184,6 +219,16 @@ impl Bvh {
     }
 }
 
+/// TRIANGLE_ bits of a triangle.
+fn flags_of(scene: &Scene, source: &Source) -> u32 {
+    let draw = &scene.draws[source.draw as usize];
+    let material = &scene.materials[scene.meshes[draw.mesh].material];
+    let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+    bit(material.alpha != AlphaMode::Opaque, TRIANGLE_TESTED)
+        | bit(!material.double_sided, TRIANGLE_SINGLE_SIDED)
+        | bit(draw.world_from_object.determinant() < 0.0, TRIANGLE_MIRRORED)
+}
+
 fn enters(node: &BvhNodeBlock, origin: Vec3, inverse: Vec3, limit: f32) -> bool {
     let [x, y, z, _] = node.min_count;
     let near = (Vec3::new(x, y, z) - origin) * inverse;
@@ -216,7 +261,7 @@ fn intersect(triangle: &BvhTriangleBlock, origin: Vec3, direction: Vec3, limit: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Draw, Material, Mesh};
+    use crate::scene::{Draw, Mesh};
     use glam::Mat4;
     use proptest::prelude::*;
 

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::scene::{Bounds, Camera, Projection, Scene};
 use crate::units::Extent;
+use bytemuck::Zeroable;
 use glam::{Mat4, Vec3, Vec4};
 
 /// A camera and the picture it fills.
@@ -119,6 +120,7 @@ impl View {
             height_px: self.extent.height,
             light_count,
             vpl_count,
+            ..FrameBlock::zeroed()
         }
     }
 }

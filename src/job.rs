@@ -49,6 +49,15 @@ pub struct Outcome {
     pub report: Report,
     pub picture: Picture,
     pub path: PathBuf,
+    /// Ctrl-C ended it: samples a pixel that it has, and that it was to have.
+    pub ended_after: Option<(u32, u32)>,
+}
+
+/// What becomes of a picture that Ctrl-C has ended between two of its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unfinished {
+    Kept,
+    Dropped,
 }
 
 /// Frames measured with `--profile`, after one that warms the pipelines up.
@@ -109,7 +118,7 @@ impl Job {
         let scene = self.load_scene()?;
         let path = self.output_path(&scene);
         let session = Session::open(request, scene)?;
-        let outcome = self.picture(&session, &self.values, &path)?;
+        let outcome = self.picture(&session, &self.values, &path, Unfinished::Kept)?;
         if let Some(file) = &self.report {
             write_whole(file, |out| writeln!(out, "{:#}", outcome.report.json()))?;
         }
@@ -117,22 +126,40 @@ impl Job {
         // Closing says what was leaked: only then is the log whole.
         drop(session);
         judge(log.as_deref())?;
-        Ok(outcome)
+        match outcome.ended_after {
+            None => Ok(outcome),
+            Some((runs, all)) => Err(Error::interrupted(format!(
+                "interrupted after {runs} of {all} samples a pixel; {} is the picture so far",
+                outcome.path.display()
+            ))),
+        }
     }
 
     /// Makes and writes the picture of what `session` shows, and reports on it.
-    pub(crate) fn picture(&self, session: &Session, values: &Values, path: &Path) -> Result<Outcome> {
+    ///
+    /// Errors: as `run`; the user has asked to stop, and nothing is to be kept (exit code 130).
+    pub(crate) fn picture(
+        &self,
+        session: &Session,
+        values: &Values,
+        path: &Path,
+        unfinished: Unfinished,
+    ) -> Result<Outcome> {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
         let renderer = session.renderer(self.technique, values, &self.aovs, submits)?;
         let memory = session.gpu.memory.snapshot();
         interrupt::check()?;
         let times = self.frames(&renderer)?;
-        interrupt::check()?;
+        let (runs, all) = renderer.runs();
+        let ended_after = (runs < all && unfinished == Unfinished::Kept).then_some((runs, all));
+        if ended_after.is_none() {
+            interrupt::check()?;
+        }
         let picture = renderer.picture()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
         let report = self.report(session, &renderer, values, &memory, &times, &picture, &aovs, path)?;
         self.write(path, &picture, &aovs, &report)?;
-        Ok(Outcome { report, picture, path: path.to_owned() })
+        Ok(Outcome { report, picture, path: path.to_owned(), ended_after })
     }
 
     /// Where the picture of `scene` goes.

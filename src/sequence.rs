@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
-use crate::job::{Job, Outcome, judge};
+use crate::job::{Job, Outcome, Unfinished, judge};
 use crate::report::run::Report;
 use crate::report::whole_file::write_whole;
 use crate::session::Session;
@@ -100,7 +100,7 @@ impl Job {
                 None => Session::open(&self.device_request(), scene)?,
                 Some(session) => session.showing(scene)?,
             };
-            let made = self.picture(&shown, &values, &path);
+            let made = self.picture(&shown, &values, &path, Unfinished::Dropped);
             session = Some(shown);
             match made {
                 Ok(mut outcome) => {

@@ -8,6 +8,7 @@ use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
+use crate::interrupt;
 use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::report::image_file::Aov;
@@ -16,6 +17,7 @@ use crate::resident::{self, SceneGpu, SceneStats};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
 use crate::techniques::{Frame, Inputs, Technique, fitness};
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -33,7 +35,10 @@ pub struct Renderer {
     // Dropped in this order: commands, what they use, the scene.
     recorded: Recorded,
     frame: Box<dyn Frame>,
-    _block: Buffer,
+    /// What `numbers` is in device memory, written between runs.
+    block: RefCell<Buffer>,
+    numbers: FrameBlock,
+    runs: Cell<u32>,
     _scene: Arc<SceneGpu>,
     gpu: Arc<Gpu>,
     pub view: View,
@@ -136,7 +141,9 @@ impl Session {
         Ok(Renderer {
             recorded: cmd.finish()?,
             frame,
-            _block: block,
+            block: RefCell::new(block),
+            numbers,
+            runs: Cell::new(0),
             _scene: self.scene_gpu.clone(),
             gpu: self.gpu.clone(),
             view,
@@ -181,11 +188,33 @@ fn block_name(technique: &dyn Technique) -> String {
 }
 
 impl Renderer {
-    /// Makes one frame and waits for it.
+    /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes. Ctrl-C
+    /// ends it after a run: `runs` tells which.
     ///
     /// Errors: the device fails (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
-        self.recorded.run()
+        let mut total = self.run(0)?;
+        for index in 1..self.frame.run_count() {
+            if interrupt::check().is_err() {
+                break;
+            }
+            total.add(&self.run(index)?);
+        }
+        Ok(total)
+    }
+
+    fn run(&self, index: u32) -> Result<FrameTime> {
+        let numbers = FrameBlock { sample_index: index, ..self.numbers };
+        // The run before has ended: the device reads the block no more.
+        self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
+        let time = self.recorded.run()?;
+        self.runs.set(index + 1);
+        Ok(time)
+    }
+
+    /// Runs that the last frame's picture is made of, and those that it takes.
+    pub fn runs(&self) -> (u32, u32) {
+        (self.runs.get(), self.frame.run_count())
     }
 
     /// Makes the first `pass_count` passes of a frame that was recorded with a submit a pass. It makes no picture: that
@@ -240,6 +269,9 @@ impl Renderer {
     pub fn measured_counters(&self) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.counters.clone();
         counters.extend(self.frame.counters(&self.gpu)?);
+        if let (runs, 2..) = self.runs() {
+            counters.insert("samples", f64::from(runs));
+        }
         Ok(counters)
     }
 

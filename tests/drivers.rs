@@ -69,7 +69,7 @@ fn every_driver_makes_the_reference_s_pictures() {
         [("VK_DRIVER_FILES", &reference[..]), ("VK_ICD_FILENAMES", &reference[..]), ("LD_LIBRARY_PATH", "")];
     let program = Program::new();
     for scene in ["cornell", "hall:triangles=8000", "lamps:objects=40,lights=40"] {
-        for technique in ["interleaved_deferred", "deferred"] {
+        for technique in ["interleaved_deferred", "deferred", "path_traced"] {
             let render = |file: &str, variables: &[(&str, &str)]| {
                 let mut arguments = vec!["render", scene, "--technique", technique, "--size", "160x90", "--json"];
                 arguments.extend(["-o", file]);

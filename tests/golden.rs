@@ -101,6 +101,12 @@ fn lamps_deferred() {
     require_golden("lamps_deferred", "lamps", "deferred", &[("direct-shadow", "ray")]);
 }
 
+/// By its panel alone, as photographs of the box are.
+#[test]
+fn cornell_path_traced() {
+    require_golden("cornell_path_traced", "cornell", "path_traced", &[("punctual", "off"), ("spp", "64")]);
+}
+
 /// The files themselves: none that no test reads, none too large.
 #[test]
 fn every_golden_is_small_and_has_a_test() {

@@ -49,19 +49,15 @@ pub fn with_job_args(command: Command) -> Command {
 fn all_settings() -> Vec<(String, &'static Setting)> {
     let mut all: Vec<(String, &'static Setting)> =
         COMMON.iter().map(|setting| ("Common settings".to_owned(), setting)).collect();
-    for technique in techniques::ALL {
-        for table in technique.settings() {
-            let readers: Vec<&str> = techniques::ALL
-                .iter()
-                .filter(|other| other.settings().iter().any(|theirs| theirs[0].key == table[0].key))
-                .map(|other| other.name())
-                .collect();
-            for setting in table.iter() {
-                if all.iter().all(|(_, known)| known.key != setting.key) {
-                    all.push((format!("Settings of {}", readers.join(", ")), setting));
-                }
-            }
+    for setting in techniques::ALL.iter().flat_map(|technique| technique.settings()).copied().flatten() {
+        if all.iter().any(|(_, known)| known.key == setting.key) {
+            continue;
         }
+        let reads = |technique: &&&dyn Technique| {
+            technique.settings().iter().copied().flatten().any(|theirs| theirs.key == setting.key)
+        };
+        let readers: Vec<&str> = techniques::ALL.iter().filter(reads).map(|technique| technique.name()).collect();
+        all.push((format!("Settings of {}", readers.join(", ")), setting));
     }
     all
 }

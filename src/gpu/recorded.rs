@@ -25,6 +25,18 @@ pub struct FrameTime {
     pub passes: Vec<PassTime>,
 }
 
+impl FrameTime {
+    /// Another run of the same frame, which makes the same picture with it.
+    pub fn add(&mut self, run: &Self) {
+        let sum = |total: &mut Option<u64>, more: Option<u64>| *total = total.zip(more).map(|(a, b)| a + b);
+        self.wall_ns += run.wall_ns;
+        for (total, more) in self.passes.iter_mut().zip(&run.passes) {
+            sum(&mut total.wall_ns, more.wall_ns);
+            sum(&mut total.timestamp_ns, more.timestamp_ns);
+        }
+    }
+}
+
 impl Recorded {
     /// `commands` are ended; the fence is unsignalled and theirs alone.
     pub(super) fn new(commands: Commands, fence: vk::Fence) -> Self {

@@ -1,6 +1,7 @@
 //! Which lights there are, and which reach what: the scene's own, scattered ones, the default rig, virtual ones.
 
 pub mod cull;
+pub mod emitters;
 mod glow;
 pub mod vpl;
 

@@ -195,7 +195,8 @@ impl Report {
     /// What an EXR's header carries.
     pub fn attributes(&self) -> Vec<(String, String)> {
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        [
+        let samples = self.document["counters"].get("samples").and_then(Value::as_f64).map(|count| json!(count as u64));
+        let mut attributes = [
             ("quincunx.version", &self.document["quincunx"]["version"]),
             ("quincunx.technique", &self.document["technique"]),
             ("quincunx.scene", &self.document["scene"]["name"]),
@@ -203,7 +204,9 @@ impl Report {
             ("quincunx.settings", &self.document["settings"]),
         ]
         .map(|(name, value)| (name.to_owned(), text(value)))
-        .to_vec()
+        .to_vec();
+        attributes.extend(samples.map(|count| ("quincunx.samples".to_owned(), count.to_string())));
+        attributes
     }
 
     /// What a person reads.
@@ -250,6 +253,9 @@ impl Report {
             line(format!(
                 "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
             ));
+        }
+        if let Some(samples) = counter("samples") {
+            line(format!("{samples} samples a pixel"));
         }
         if let (Some(evaluated), Some(left_out)) = (counter("light_evaluations"), counter("light_evaluations_culled"))
             && evaluated + left_out > 0.0

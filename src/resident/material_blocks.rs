@@ -41,11 +41,13 @@ pub fn block(material: &Material) -> MaterialBlock {
 
 /// Where each texture of each material is read, `TextureSlot::ALL` of one material after the other's.
 pub fn placements(scene: &Scene) -> Vec<PlacementBlock> {
-    let block = |placement: &Placement| {
-        let [x, y] = [0, 1].map(|row| placement.picture_from_uv.matrix2.row(row));
-        let shift = placement.picture_from_uv.translation;
-        PlacementBlock { u: [x.x, x.y, shift.x, placement.uv_set as f32], v: [y.x, y.y, shift.y, 0.0] }
-    };
-    let of = |material: &Material| TextureSlot::ALL.map(|slot| block(material.placement(slot)));
+    let of = |material: &Material| TextureSlot::ALL.map(|slot| placement(material.placement(slot)));
     scene.materials.iter().flat_map(of).collect()
+}
+
+/// Coordinates on the picture as shaders make them.
+pub fn placement(placement: &Placement) -> PlacementBlock {
+    let [x, y] = [0, 1].map(|row| placement.picture_from_uv.matrix2.row(row));
+    let shift = placement.picture_from_uv.translation;
+    PlacementBlock { u: [x.x, x.y, shift.x, placement.uv_set as f32], v: [y.x, y.y, shift.y, 0.0] }
 }

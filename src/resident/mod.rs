@@ -12,6 +12,7 @@ mod geometry;
 mod material_blocks;
 mod relief;
 mod textures;
+pub mod traced;
 mod visible;
 
 pub use clusters::Cluster;
@@ -23,7 +24,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
 use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
-use crate::scene::{AlphaMode, ColorSpace, Material, Mesh, Scene, TextureSlot, mipmaps};
+use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps};
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -299,21 +300,27 @@ fn sort(calls: &mut [DrawCall]) {
     });
 }
 
+/// Turns normals as a draw turns its surface: the inverse transpose up to a positive factor, which normalising takes out
+/// again.
+fn normals_from(draw: &Draw) -> Mat3 {
+    let linear = Mat3::from_mat4(draw.world_from_object);
+    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    Mat3::from_cols(sign * y.cross(z), sign * z.cross(x), sign * x.cross(y))
+}
+
 fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
     scene
         .draws
         .iter()
         .map(|draw| {
-            // The inverse transpose up to a positive factor, which normalising takes out again.
-            let linear = Mat3::from_mat4(draw.world_from_object);
-            let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-            let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-            let column = |v: Vec3| (sign * v).extend(0.0).to_array();
+            let normals = normals_from(draw);
+            let column = |v: Vec3| v.extend(0.0).to_array();
             DrawBlock {
                 world_from_object: draw.world_from_object.to_cols_array_2d(),
-                normal_x: column(y.cross(z)),
-                normal_y: column(z.cross(x)),
-                normal_z: column(x.cross(y)),
+                normal_x: column(normals.x_axis),
+                normal_y: column(normals.y_axis),
+                normal_z: column(normals.z_axis),
                 material: scene.meshes[draw.mesh].material as u32,
                 ..DrawBlock::zeroed()
             }

@@ -40,6 +40,18 @@ pub fn levels(image: &Image, color_space: ColorSpace) -> Vec<u8> {
     all
 }
 
+/// Bytes of `levels` before the level of `size_px`, which must be one of the image's.
+pub fn bytes_before(image: &Image, size_px: [u32; 2]) -> usize {
+    let mut size = [image.width, image.height];
+    let mut bytes = 0;
+    while size != size_px {
+        assert!(size != [1, 1], "{}: no level has {size_px:?} texels", image.name);
+        bytes += 4 * size[0] as usize * size[1] as usize;
+        size = size.map(|side| (side / 2).max(1));
+    }
+    bytes
+}
+
 /// Code values to numbers and back, by table where it is a curve.
 struct Codec {
     linear: Vec<f32>,

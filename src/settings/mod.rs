@@ -5,7 +5,7 @@
 
 mod tables;
 
-pub use tables::{COMMON, SHADING};
+pub use tables::{BRDF, COMMON, EMISSIVE, SHADING, VPL_CLAMP, WORKGROUP};
 
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};

@@ -1,4 +1,4 @@
-//! The rows that several techniques read: those of every picture, and those of shading with a G-buffer.
+//! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
 use super::{Kind, Setting};
 
@@ -170,17 +170,53 @@ pub const COMMON: &[Setting] = &[
     },
 ];
 
+/// What a surface does with light.
+pub const BRDF: Setting = Setting {
+    key: "brdf",
+    symbol: "",
+    kind: Kind::Choice(&["lambert", "blinn-phong", "ggx"]),
+    default: "ggx",
+    unit: "",
+    paper: "",
+    help: "of direct light",
+};
+
+/// Of every compute shader whose invocations are pixels.
+pub const WORKGROUP: Setting = Setting {
+    key: "workgroup",
+    symbol: "",
+    kind: Kind::Pair { min: 1, max: 256 },
+    default: "64x1",
+    unit: "",
+    paper: "",
+    help: "shape of compute workgroups",
+};
+
+/// How near virtual point lights count.
+pub const VPL_CLAMP: Setting = Setting {
+    key: "vpl-clamp",
+    symbol: "",
+    kind: Kind::Length,
+    default: "2%",
+    unit: "m",
+    paper: "",
+    help: "least distance of a virtual point light: nearer surfaces get no more light",
+};
+
+/// Whether emissive triangles light others.
+pub const EMISSIVE: Setting = Setting {
+    key: "emissive",
+    symbol: "",
+    kind: Kind::Choice(&["auto", "on", "off"]),
+    default: "auto",
+    unit: "",
+    paper: "",
+    help: "emissive triangles light other surfaces; auto: off where the scene has punctual lights, because maps carry both",
+};
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
-    Setting {
-        key: "brdf",
-        symbol: "",
-        kind: Kind::Choice(&["lambert", "blinn-phong", "ggx"]),
-        default: "ggx",
-        unit: "",
-        paper: "",
-        help: "of direct light",
-    },
+    BRDF,
     Setting {
         key: "position",
         symbol: "",
@@ -230,13 +266,5 @@ pub const SHADING: &[Setting] = &[
                is the plain way to the same bits; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
                22, 16 on other software drivers, else 1",
     },
-    Setting {
-        key: "workgroup",
-        symbol: "",
-        kind: Kind::Pair { min: 1, max: 256 },
-        default: "64x1",
-        unit: "",
-        paper: "",
-        help: "shape of compute workgroups",
-    },
+    WORKGROUP,
 ];

@@ -1,4 +1,5 @@
-//! A material at one point, on the host: what a light walk reads where its rays land. Finest texture level, bilinear.
+//! A material at one point, on the host: what a light walk reads where its rays land. Finest texture level,
+//! bilinear, or nearest where the sampler magnifies so. Twin of glsl/shading/texel.glsl.
 
 use crate::report::tonemap::linear_from_srgb;
 use crate::scene::{AlphaMode, ColorSpace, Image, Material, Mesh, Scene, Texture, TextureSlot, Wrap};
@@ -66,9 +67,10 @@ fn texel_of(scene: &Scene, material: &Material, slot: TextureSlot, point: &MeshP
 fn sample(scene: &Scene, texture: &Texture, uv: Vec2) -> Vec4 {
     let image = &scene.images[texture.image];
     let size = Vec2::new(image.width as f32, image.height as f32);
-    let at = uv * size - 0.5;
+    let is_linear = texture.sampler.mag_linear;
+    let at = uv * size - if is_linear { 0.5 } else { 0.0 };
     let low = at.floor();
-    let fraction = at - low;
+    let fraction = if is_linear { at - low } else { Vec2::ZERO };
     let mut sum = Vec4::ZERO;
     for (step, weight) in [
         (Vec2::new(0.0, 0.0), (1.0 - fraction.x) * (1.0 - fraction.y)),

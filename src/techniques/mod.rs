@@ -7,6 +7,7 @@
 pub mod deferred;
 pub mod fitness;
 pub mod interleaved_deferred;
+pub mod path_traced;
 
 use crate::bvh::LazyBvh;
 use crate::error::{Error, Result};
@@ -103,8 +104,13 @@ pub trait Frame {
     /// Records one frame. `frame`: the block of glsl/frame.glsl.
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()>;
 
+    /// How often what was recorded runs for a picture; the frame's block counts the runs (`sample_index`).
+    fn run_count(&self) -> u32 {
+        1
+    }
+
     /// What is drawn of the scene, for the report's `counters`.
-    fn drawn(&self) -> [(&'static str, f64); 3];
+    fn drawn(&self) -> BTreeMap<&'static str, f64>;
 
     /// The finished picture (RGBA32F) and how the frame touched it last.
     fn picture(&self) -> (&Image, Access);
@@ -121,7 +127,8 @@ pub trait Frame {
 }
 
 /// Every technique.
-pub const ALL: &[&dyn Technique] = &[&interleaved_deferred::InterleavedDeferred, &deferred::Deferred];
+pub const ALL: &[&dyn Technique] =
+    &[&interleaved_deferred::InterleavedDeferred, &deferred::Deferred, &path_traced::PathTraced];
 
 /// The technique of this name.
 ///

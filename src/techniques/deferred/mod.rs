@@ -175,8 +175,8 @@ impl Frame for DeferredFrame {
         Ok(())
     }
 
-    fn drawn(&self) -> [(&'static str, f64); 3] {
-        self.gbuffer_pass.counters()
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        self.gbuffer_pass.counters().into()
     }
 
     fn picture(&self) -> (&Image, Access) {

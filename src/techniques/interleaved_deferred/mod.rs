@@ -242,8 +242,8 @@ impl Frame for InterleavedFrame {
         Ok(())
     }
 
-    fn drawn(&self) -> [(&'static str, f64); 3] {
-        self.gbuffer_pass.counters()
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        self.gbuffer_pass.counters().into()
     }
 
     fn picture(&self) -> (&Image, Access) {

@@ -1,6 +1,6 @@
 //! The settings of interleaved deferred shading.
 
-use crate::settings::{Kind, Setting};
+use crate::settings::{EMISSIVE, Kind, Setting, VPL_CLAMP};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -94,24 +94,8 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 6.2",
         help: "surfaces that a light walk lands on at most",
     },
-    Setting {
-        key: "vpl-clamp",
-        symbol: "",
-        kind: Kind::Length,
-        default: "2%",
-        unit: "m",
-        paper: "",
-        help: "least distance of a virtual point light: nearer surfaces get no more light",
-    },
-    Setting {
-        key: "emissive",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "on", "off"]),
-        default: "auto",
-        unit: "",
-        paper: "",
-        help: "emissive triangles send light walks; auto: off where the scene has punctual lights, because maps carry both",
-    },
+    VPL_CLAMP,
+    EMISSIVE,
     Setting {
         key: "direct",
         symbol: "",

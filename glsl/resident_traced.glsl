@@ -1,0 +1,72 @@
+// The scene for rays that may meet anything, as src/resident/traced.rs lays it out.
+#ifndef RESIDENT_TRACED_GLSL
+#define RESIDENT_TRACED_GLSL
+
+#include "resident.glsl"
+
+// A scene without textures, vertex tangents or a third vertex stream pays for none.
+layout(constant_id = 62) const uint HAS_TEXTURES = 1;
+layout(constant_id = 63) const uint HAS_TANGENTS = 1;
+layout(constant_id = 64) const uint HAS_EXTENDED = 1;
+// Texel buffers that hold anything.
+layout(constant_id = 65) const uint TEXEL_BUFFERS = 1;
+
+// Where a material finds one of its textures.
+struct TexelsBlock {
+    // As PlacementBlock's: coordinates on the picture; u.w: 1 for the second UV set, else 0.
+    vec4 u;
+    vec4 v;
+    // Word of the first texel in its buffer.
+    uint first;
+    // Width and height in pixels; 0: there is no texture, which is white.
+    uint width_px;
+    uint height_px;
+    // TEXELS_ bits.
+    uint flags;
+};
+
+// Bits 0 and 1: the buffer. 2 and 3: how u is wrapped, 4 and 5: how v is (WRAP_).
+const uint TEXELS_NEAREST = 64u;
+const uint TEXELS_SRGB = 128u;
+
+const uint WRAP_REPEAT = 0u;
+const uint WRAP_MIRRORED = 1u;
+const uint WRAP_CLAMP = 2u;
+
+// What the corners of one triangle carry, in the tree's order, in world space.
+struct TracedTriangleBlock {
+    // xyz: normals, not unit length; w: u of each corner.
+    vec4 corners[3];
+    // xyz: v of each corner; w as bits: the material.
+    vec4 v_material;
+};
+
+struct TracedTangentsBlock {
+    vec4 corners[3];
+};
+
+struct TracedExtendedBlock {
+    vec4 colors[3];
+    // uv_1 of the first two corners, and of the third.
+    vec4 uvs_01;
+    vec4 uv_2;
+};
+
+struct TracedMaterialBlock {
+    MaterialBlock material;
+    TexelsBlock base_color;
+    TexelsBlock metallic_roughness;
+    TexelsBlock normal;
+    TexelsBlock emissive;
+    // How likely an emitter's point is chosen, per square metre; 0: it is none.
+    float emitter_density;
+    // ALPHA_IS_ values.
+    uint alpha;
+    uint _unused[2];
+};
+
+const uint ALPHA_IS_OPAQUE = 0u;
+const uint ALPHA_IS_MASK = 1u;
+const uint ALPHA_IS_BLEND = 2u;
+
+#endif

@@ -1,0 +1,70 @@
+// Textures for shaders that choose one by material: their finest levels as words of RGBA8, one picture after the other, in
+// storage buffers, because a driver need not index sampled images (lavapipe of Mesa 22 does not). Twin:
+// src/shading/material.rs.
+//
+// The including shader declares texels_0[] to texels_3[].
+#ifndef SHADING_TEXEL_GLSL
+#define SHADING_TEXEL_GLSL
+
+#include "resident_traced.glsl"
+
+int wrapped(uint wrap, int at, int size) {
+    if (wrap == WRAP_CLAMP) {
+        return clamp(at, 0, size - 1);
+    }
+    int period = wrap == WRAP_MIRRORED ? 2 * size : size;
+    int inside = at - period * int(floor(float(at) / float(period)));
+    // Far out a float is off by one period.
+    inside = clamp(inside, 0, period - 1);
+    return inside >= size ? period - 1 - inside : inside;
+}
+
+vec4 texel_at(TexelsBlock texels, int x, int y) {
+    uint at = texels.first + uint(y) * texels.width_px + uint(x);
+    uint buffer_index = texels.flags & 3u;
+    uint word = 0u;
+    if (buffer_index == 0u) {
+        word = texels_0[at];
+    } else if (TEXEL_BUFFERS != 1u) {
+        if (buffer_index == 1u) {
+            word = texels_1[at];
+        } else if (buffer_index == 2u) {
+            word = texels_2[at];
+        } else {
+            word = texels_3[at];
+        }
+    }
+    vec4 value = unpackUnorm4x8(word);
+    if ((texels.flags & TEXELS_SRGB) != 0u) {
+        vec3 curve = pow((value.rgb + 0.055) / 1.055, vec3(2.4));
+        value.rgb = mix(curve, value.rgb / 12.92, lessThanEqual(value.rgb, vec3(0.04045)));
+    }
+    return value;
+}
+
+// `uvs`: the two UV sets of the point. Bilinear, or nearest where the sampler magnifies so.
+vec4 texel_of(TexelsBlock texels, vec4 uvs) {
+    if (texels.width_px == 0u) {
+        return vec4(1.0);
+    }
+    vec2 uv = texels.u.w > 0.5 ? uvs.zw : uvs.xy;
+    vec2 size = vec2(texels.width_px, texels.height_px);
+    vec2 at = vec2(dot(texels.u.xy, uv) + texels.u.z, dot(texels.v.xy, uv) + texels.v.z) * size;
+    bool is_nearest = (texels.flags & TEXELS_NEAREST) != 0u;
+    at -= is_nearest ? 0.0 : 0.5;
+    // Integers end at 2^31: a coordinate that is farther out is nowhere in particular.
+    at = clamp(at, vec2(-1e9), vec2(1e9));
+    vec2 low = floor(at);
+    vec2 fraction = is_nearest ? vec2(0.0) : at - low;
+    uint wrap_u = (texels.flags >> 2) & 3u;
+    uint wrap_v = (texels.flags >> 4) & 3u;
+    int x0 = wrapped(wrap_u, int(low.x), int(texels.width_px));
+    int x1 = wrapped(wrap_u, int(low.x) + 1, int(texels.width_px));
+    int y0 = wrapped(wrap_v, int(low.y), int(texels.height_px));
+    int y1 = wrapped(wrap_v, int(low.y) + 1, int(texels.height_px));
+    vec4 upper = mix(texel_at(texels, x0, y0), texel_at(texels, x1, y0), fraction.x);
+    vec4 lower = mix(texel_at(texels, x0, y1), texel_at(texels, x1, y1), fraction.x);
+    return mix(upper, lower, fraction.y);
+}
+
+#endif

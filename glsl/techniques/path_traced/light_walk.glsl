@@ -1,0 +1,111 @@
+// Light between surfaces as virtual point lights give it, where it may pass through walls: a light walk of its own for each
+// pixel and sample, whose landings light the pixel's point with the facing test and the clamp of vpl_irradiance. Twin of
+// the walk: src/lights/vpl.rs. Its mean is what infinitely many virtual point lights sum up to.
+#ifndef PATH_TRACED_LIGHT_WALK_GLSL
+#define PATH_TRACED_LIGHT_WALK_GLSL
+
+#include "techniques/path_traced/path.glsl"
+
+struct WalkStart {
+    vec3 origin;
+    vec3 direction;
+    // Carried by the whole walk, divided by how likely this start is.
+    vec3 flux;
+    // The start itself, where it is a light: on an emitter.
+    VplBlock vpl;
+};
+
+WalkStart start_on_emitter(float number, float chance) {
+    SourceBlock source = source_of(0u, params.emitter_count, number);
+    vec2 barycentric = barycentric_of(next_pair());
+    BvhTriangleBlock triangle = bvh_triangles[source.index];
+    vec3 twice = cross(triangle.edge1.xyz, triangle.edge2.xyz);
+    uint flags = floatBitsToUint(triangle.corner.w);
+    vec3 normal = normalize(twice);
+    float area = 0.5 * length(twice) / (source.chance * chance);
+    vec2 numbers = next_pair();
+    normal = (flags & TRIANGLE_MIRRORED) != 0u ? -normal : normal;
+    if ((flags & TRIANGLE_SINGLE_SIDED) == 0u) {
+        // Both sides shine: each walk takes one of them, and stands for both.
+        area *= 2.0;
+        normal = numbers.x < 0.5 ? normal : -normal;
+    }
+    vec3 at = triangle.corner.xyz + triangle.edge1.xyz * barycentric.x + triangle.edge2.xyz * barycentric.y;
+    vec3 radiance = emitted_at(source.index, barycentric);
+    WalkStart start;
+    start.origin = at + normal * RAY_OFFSET;
+    start.direction = cosine_direction(normal, next_pair());
+    start.flux = radiance * area * PI;
+    start.vpl = VplBlock(vec4(at, 0.0), vec4(normal, 0.0), vec4(radiance * area, 0.0));
+    return start;
+}
+
+WalkStart start_on_punctual(float number, float chance) {
+    SourceBlock source = source_of(params.emitter_count, params.punctual_count, number);
+    LightBlock light = lights[source.index];
+    vec2 numbers = next_pair();
+    float angle = 2.0 * PI * numbers.y;
+    WalkStart start;
+    start.vpl = VplBlock(light.position_ws, vec4(0.0), vec4(0.0));
+    start.origin = light.position_ws.xyz;
+    vec3 intensity = light.intensity.rgb / (source.chance * chance);
+    if (light.kind == LIGHT_DIRECTIONAL) {
+        float radius = params.sphere_ws.w;
+        vec3 on_disc = around(light.direction_ws.xyz, vec3(cos(angle), sin(angle), 0.0) * (radius * sqrt(numbers.x)));
+        start.origin = params.sphere_ws.xyz + on_disc - light.direction_ws.xyz * (1.01 * radius);
+        start.direction = light.direction_ws.xyz;
+        start.flux = intensity * (PI * radius * radius);
+        return start;
+    }
+    // Uniform in the outer cone, which is the whole sphere of a point.
+    float outer = light.kind == LIGHT_SPOT ? -light.spot_offset / light.spot_scale : -1.0;
+    float z = 1.0 - numbers.x * (1.0 - outer);
+    float radius = sqrt(max(1.0 - z * z, 0.0));
+    vec3 axis = light.kind == LIGHT_SPOT ? light.direction_ws.xyz : vec3(0.0, 0.0, 1.0);
+    start.direction = around(axis, vec3(radius * cos(angle), radius * sin(angle), z));
+    float cone = light.kind == LIGHT_SPOT ? clamp(z * light.spot_scale + light.spot_offset, 0.0, 1.0) : 1.0;
+    start.flux = intensity * (2.0 * PI * (1.0 - outer) * cone * cone);
+    return start;
+}
+
+// Irradiance of the point.
+vec3 walked_irradiance(SurfacePoint point) {
+    vec3 received = vec3(0.0);
+    if (params.emitter_count + params.punctual_count == 0u) {
+        return received;
+    }
+    float number = next_pair().x;
+    bool is_punctual = number < params.punctual_part;
+    WalkStart start;
+    if (is_punctual) {
+        start = start_on_punctual(min(number / params.punctual_part, 0.99999994), params.punctual_part);
+    } else {
+        float part = 1.0 - params.punctual_part;
+        start = start_on_emitter(min((number - params.punctual_part) / part, 0.99999994), part);
+        received += vpl_irradiance(start.vpl, point.position_ws, point.normal_ws, params.least_squared);
+    }
+    vec3 origin = start.origin;
+    vec3 direction = start.direction;
+    vec3 flux = start.flux;
+    uint landing = 0u;
+    bool goes_on = true;
+    for (; landing < WALK_LANDINGS && goes_on; landing++) {
+        TraceHit hit = trace(origin, direction, 4.0 * params.sphere_ws.w, RAY_SOLID, 0u);
+        goes_on = hit.is_hit;
+        if (goes_on) {
+            SurfacePoint landed = surface_point(hit.triangle, hit.barycentric, direction);
+            bool is_black = landed.is_back || landed.is_unlit;
+            flux = is_black ? vec3(0.0) : flux * albedo_of(landed.surface);
+            vec4 intensity = vec4(flux / PI, 0.0);
+            VplBlock vpl = VplBlock(vec4(landed.position_ws, 0.0), vec4(landed.plane_ws, 0.0), intensity);
+            received += vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
+            origin = off_surface(landed);
+            direction = cosine_direction(landed.plane_ws, next_pair());
+            goes_on = flux != vec3(0.0);
+        }
+    }
+    expect_done(landing == WALK_LANDINGS || !goes_on);
+    return received;
+}
+
+#endif

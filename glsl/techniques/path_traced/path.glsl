@@ -1,0 +1,111 @@
+// What the parts of path_traced's shader share: its numbers, its buffers, its ray.
+#ifndef PATH_TRACED_PATH_GLSL
+#define PATH_TRACED_PATH_GLSL
+
+#include "frame.glsl"
+#include "bvh.glsl"
+#include "loops.glsl"
+#include "resident_traced.glsl"
+#include "shading/light.glsl"
+#include "shading/scatter.glsl"
+
+layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
+// BRDF_.
+layout(constant_id = 2) const uint BRDF_KIND = 2;
+// Surfaces that scatter a path at most.
+layout(constant_id = 5) const uint BOUNCES = 1;
+// 1: paths end by chance where they carry little.
+layout(constant_id = 6) const uint ROULETTE = 0;
+// 0: lights cast no shadows.
+layout(constant_id = 7) const uint LIGHT_VISIBILITY = 1;
+// 1: light between surfaces is that of virtual point lights, without shadows.
+layout(constant_id = 8) const uint IS_WALKED = 0;
+// Surfaces that a light walk lands on at most.
+layout(constant_id = 9) const uint WALK_LANDINGS = 0;
+
+struct SampleParams {
+    // The scene's sphere: what a sun's walk starts over.
+    vec4 sphere_ws;
+    // Square of --vpl-clamp, in square metres.
+    float least_squared;
+    // How likely a light walk starts on a punctual light and not on an emitter.
+    float punctual_part;
+    // Entries of sources[]: emitters first, punctual lights after them.
+    uint emitter_count;
+    uint punctual_count;
+    uint seed;
+};
+
+// Something that light starts on, in a list sorted by the sum of chances.
+struct SourceBlock {
+    // A triangle of the tree, or a light of the list.
+    uint index;
+    float chance;
+    // Of this one and all before it in its list.
+    float cumulative;
+    uint _unused;
+};
+
+layout(push_constant) uniform Push { SampleParams params; };
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 1) readonly buffer Lights { LightBlock lights[]; };
+layout(std430, set = 0, binding = 2) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
+layout(std430, set = 0, binding = 3) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
+layout(std430, set = 0, binding = 4) readonly buffer TracedTriangles { TracedTriangleBlock surfaces[]; };
+layout(std430, set = 0, binding = 5) readonly buffer TracedTangents { TracedTangentsBlock tangents[]; };
+layout(std430, set = 0, binding = 6) readonly buffer TracedExtended { TracedExtendedBlock extended[]; };
+layout(std430, set = 0, binding = 7) readonly buffer TracedMaterials { TracedMaterialBlock traced_materials[]; };
+layout(std430, set = 0, binding = 8) readonly buffer Texels0 { uint texels_0[]; };
+layout(std430, set = 0, binding = 9) readonly buffer Texels1 { uint texels_1[]; };
+layout(std430, set = 0, binding = 10) readonly buffer Texels2 { uint texels_2[]; };
+layout(std430, set = 0, binding = 11) readonly buffer Texels3 { uint texels_3[]; };
+layout(std430, set = 0, binding = 12) readonly buffer Sources { SourceBlock sources[]; };
+layout(std430, set = 0, binding = 13) buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 14, rgba32f) writeonly uniform image2D color;
+
+#include "shading/traced.glsl"
+#include "bvh_trace.glsl"
+
+// The numbers of this pixel's sample, a pair at a time.
+uint numbers_seed;
+uint numbers_pair;
+
+vec2 next_pair() {
+    numbers_pair++;
+    return sobol_pair(frame.sample_index, pair_seed(numbers_seed, numbers_pair));
+}
+
+// Of a ray's decisions about BLEND surfaces, which have no pairs of their own: how many a ray meets is not known.
+uint next_seed() {
+    numbers_pair++;
+    return mixed(pair_seed(numbers_seed, numbers_pair) ^ mixed(frame.sample_index));
+}
+
+// Off a surface, on the side of its plane that `plane_ws` points to.
+vec3 off_surface(SurfacePoint point) {
+    return point.position_ws + point.plane_ws * RAY_OFFSET;
+}
+
+// The first of `count` sources from `first` on whose sum of chances is beyond `number`.
+SourceBlock source_of(uint first, uint count, float number) {
+    uint low = first;
+    uint high = first + count - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (sources[middle].cumulative > number) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    expect_done(low >= high);
+    return sources[low];
+}
+
+// Uniform over a triangle.
+vec2 barycentric_of(vec2 numbers) {
+    float root = sqrt(numbers.x);
+    return vec2(root * (1.0 - numbers.y), root * numbers.y);
+}
+
+#endif

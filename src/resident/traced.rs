@@ -1,0 +1,325 @@
+//! The scene for rays that may meet anything: what each triangle of the tree carries, materials with the places of their
+//! textures, texels in storage buffers, and the triangles that shine. Shaders see it through glsl/shading/traced.glsl.
+//!
+//! Each triangle has its own copy of its corners: a ray reads one place instead of three indices and three vertices, which
+//! lavapipe would fetch lane by lane.
+
+use super::{limited, material_blocks};
+use crate::bvh::{Bvh, Source};
+use crate::error::{Error, Result};
+use crate::gpu::shader::structs::{
+    BvhNodeBlock, BvhTriangleBlock, TexelsBlock, TracedExtendedBlock, TracedMaterialBlock, TracedTangentsBlock,
+    TracedTriangleBlock,
+};
+use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
+use crate::plan::{Plan, Resources};
+use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, Wrap, mipmaps};
+use crate::units::Bytes;
+use bytemuck::Zeroable;
+use glam::{Mat3, Vec2, Vec3, Vec4};
+use std::sync::Arc;
+
+/// glsl/shading/texel.glsl's bits.
+const WRAP_U_SHIFT: u32 = 2;
+const WRAP_V_SHIFT: u32 = 4;
+const NEAREST: u32 = 64;
+const SRGB: u32 = 128;
+/// glsl/shading/traced.glsl's kinds.
+const ALPHA_OPAQUE: u32 = 0;
+const ALPHA_MASK: u32 = 1;
+const ALPHA_BLEND: u32 = 2;
+
+/// Buffers that texels may fill: the shader's texels_0 to texels_3.
+const TEXEL_BUFFERS: usize = 4;
+
+/// Names of the buffers after the technique's, and of their blocks in GLSL.
+const BUFFERS: [(&str, &str); 6] = [
+    ("bvh.nodes", "BvhNodes"),
+    ("bvh.triangles", "BvhTriangles"),
+    ("traced.triangles", "TracedTriangles"),
+    ("traced.tangents", "TracedTangents"),
+    ("traced.extended", "TracedExtended"),
+    ("traced.materials", "TracedMaterials"),
+];
+const TEXELS: [(&str, &str); TEXEL_BUFFERS] = [
+    ("traced.texels.0", "Texels0"),
+    ("traced.texels.1", "Texels1"),
+    ("traced.texels.2", "Texels2"),
+    ("traced.texels.3", "Texels3"),
+];
+
+/// Where the first texel of a picture lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Place {
+    buffer: u32,
+    first: u32,
+    width_px: u32,
+    height_px: u32,
+}
+
+/// What a scene needs to be traced, by arithmetic.
+pub struct Layout {
+    triangle_count: usize,
+    node_count: usize,
+    material_count: usize,
+    has_tangents: bool,
+    has_extended: bool,
+    /// Of each image of the scene; None where no traced material reads it.
+    places: Vec<Option<Place>>,
+    /// Texels of each buffer.
+    texel_counts: Vec<u64>,
+}
+
+/// Textures that rays read: occlusion is found by rays.
+const SLOTS: [TextureSlot; 4] =
+    [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Normal, TextureSlot::Emissive];
+
+impl Layout {
+    /// `most_bytes`: what a device binds of a buffer at once.
+    ///
+    /// Errors: the textures are more than the shader's buffers hold (exit code 4).
+    pub fn new(scene: &Scene, bvh: &Bvh, most_bytes: u64) -> Result<Self> {
+        let mut places = vec![None; scene.images.len()];
+        let mut texel_counts = Vec::new();
+        let most_texels = (most_bytes / 4).min(u64::from(u32::MAX));
+        for texture in scene.drawn_materials().flat_map(|material| SLOTS.map(|slot| material.texture(slot))) {
+            let Some(index) = texture.map(|texture| scene.textures[texture].image) else { continue };
+            if places[index].is_some() {
+                continue;
+            }
+            let extent = limited(&scene.images[index], scene.texture_limit_px);
+            let count = extent.pixel_count();
+            let fits = |used: &u64| used + count <= most_texels;
+            let buffer = texel_counts.iter().position(fits).unwrap_or(texel_counts.len());
+            if buffer == TEXEL_BUFFERS || count > most_texels {
+                return Err(Error::memory(format!(
+                    "{}: its textures need more than the {TEXEL_BUFFERS} buffers of {} that rays can read them from",
+                    scene.name,
+                    Bytes(most_bytes)
+                ))
+                .note("--texture-limit 1024, or less, makes them smaller"));
+            }
+            if buffer == texel_counts.len() {
+                texel_counts.push(0);
+            }
+            let first = texel_counts[buffer] as u32;
+            texel_counts[buffer] += count;
+            let (width_px, height_px) = (extent.width, extent.height);
+            places[index] = Some(Place { buffer: buffer as u32, first, width_px, height_px });
+        }
+        Ok(Self {
+            triangle_count: bvh.triangles.len(),
+            node_count: bvh.nodes.len(),
+            material_count: scene.materials.len(),
+            has_tangents: scene.drawn_materials().any(|material| material.normal_texture.is_some()),
+            has_extended: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty()),
+            places,
+            texel_counts,
+        })
+    }
+
+    /// Plans the buffers, as resources of `technique`.
+    pub fn plan(&self, plan: &mut Plan, technique: &str) {
+        let of = |count: usize, size: usize| count as u64 * size as u64;
+        let when = |is_there: bool, bytes: u64| if is_there { bytes } else { 0 };
+        let bytes = [
+            of(self.node_count, size_of::<BvhNodeBlock>()),
+            of(self.triangle_count, size_of::<BvhTriangleBlock>()),
+            of(self.triangle_count, size_of::<TracedTriangleBlock>()),
+            when(self.has_tangents, of(self.triangle_count, size_of::<TracedTangentsBlock>())),
+            when(self.has_extended, of(self.triangle_count, size_of::<TracedExtendedBlock>())),
+            of(self.material_count, size_of::<TracedMaterialBlock>()),
+        ];
+        for ((name, _), (bytes, group)) in
+            BUFFERS.iter().zip(bytes.into_iter().zip(["bvh", "bvh", "traced", "traced", "traced", "traced"]))
+        {
+            plan.buffer(group, format!("{technique}.{name}"), bytes);
+        }
+        for (index, (name, _)) in TEXELS.iter().enumerate() {
+            let count = self.texel_counts.get(index).copied().unwrap_or(0);
+            plan.buffer("traced", format!("{technique}.{name}"), 4 * count);
+        }
+    }
+
+    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS.
+    pub fn constants(&self) -> [(&'static str, u32); 4] {
+        [
+            ("HAS_TEXTURES", u32::from(!self.texel_counts.is_empty())),
+            ("HAS_TANGENTS", u32::from(self.has_tangents)),
+            ("HAS_EXTENDED", u32::from(self.has_extended)),
+            ("TEXEL_BUFFERS", self.texel_counts.len().max(1) as u32),
+        ]
+    }
+
+    fn texels(&self, scene: &Scene, material: &Material, slot: TextureSlot) -> TexelsBlock {
+        let Some(index) = material.texture(slot) else { return TexelsBlock::zeroed() };
+        let texture = &scene.textures[index];
+        // A material that nothing draws has no texels.
+        let Some(place) = self.places[texture.image] else { return TexelsBlock::zeroed() };
+        let wrap = |wrap: Wrap| match wrap {
+            Wrap::Repeat => 0,
+            Wrap::MirroredRepeat => 1,
+            Wrap::ClampToEdge => 2,
+        };
+        let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+        let placed = material_blocks::placement(material.placement(slot));
+        TexelsBlock {
+            u: placed.u,
+            v: placed.v,
+            first: place.first,
+            width_px: place.width_px,
+            height_px: place.height_px,
+            flags: place.buffer
+                | wrap(texture.sampler.wrap_u) << WRAP_U_SHIFT
+                | wrap(texture.sampler.wrap_v) << WRAP_V_SHIFT
+                | bit(!texture.sampler.mag_linear, NEAREST)
+                | bit(texture.color_space == ColorSpace::Srgb, SRGB),
+        }
+    }
+
+    /// `emitter_density` of a material: how likely a point of it is chosen, per square metre; 0: it lights nothing.
+    fn materials(&self, scene: &Scene, emitter_density: impl Fn(&Material) -> f32) -> Vec<TracedMaterialBlock> {
+        let block = |material: &Material| TracedMaterialBlock {
+            material: material_blocks::block(material),
+            base_color: self.texels(scene, material, TextureSlot::BaseColor),
+            metallic_roughness: self.texels(scene, material, TextureSlot::MetallicRoughness),
+            normal: self.texels(scene, material, TextureSlot::Normal),
+            emissive: self.texels(scene, material, TextureSlot::Emissive),
+            emitter_density: emitter_density(material),
+            alpha: match material.alpha {
+                AlphaMode::Opaque => ALPHA_OPAQUE,
+                AlphaMode::Mask { .. } => ALPHA_MASK,
+                AlphaMode::Blend => ALPHA_BLEND,
+            },
+            ..TracedMaterialBlock::zeroed()
+        };
+        scene.materials.iter().map(block).collect()
+    }
+
+    /// The words of each texel buffer. An image in both colour spaces lies there once: its words are as the file has them.
+    fn words(&self, scene: &Scene) -> Vec<Vec<u8>> {
+        let mut buffers: Vec<Vec<u8>> = self.texel_counts.iter().map(|count| vec![0; 4 * *count as usize]).collect();
+        for (image, place) in scene.images.iter().zip(&self.places) {
+            let Some(place) = place else { continue };
+            let start = 4 * place.first as usize;
+            let bytes = 4 * place.width_px as usize * place.height_px as usize;
+            let target = &mut buffers[place.buffer as usize][start..start + bytes];
+            if (place.width_px, place.height_px) == (image.width, image.height) {
+                target.copy_from_slice(&image.rgba8);
+                continue;
+            }
+            let color_space = scene
+                .textures
+                .iter()
+                .find(|texture| std::ptr::eq(&scene.images[texture.image], image))
+                .map_or(ColorSpace::Linear, |texture| texture.color_space);
+            let finer = mipmaps::bytes_before(image, [place.width_px, place.height_px]);
+            target.copy_from_slice(&mipmaps::levels(image, color_space)[finer..finer + bytes]);
+        }
+        buffers
+    }
+}
+
+/// The scene's rays on the device.
+pub struct TracedGpu {
+    buffers: Vec<(&'static str, Buffer)>,
+}
+
+impl TracedGpu {
+    /// Fills the planned buffers. `emitter_density`: as of `TracedMaterialBlock`.
+    ///
+    /// Errors: memory for the copies (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        technique: &str,
+        scene: &Scene,
+        bvh: &Bvh,
+        layout: &Layout,
+        emitter_density: impl Fn(&Material) -> f32,
+    ) -> Result<Self> {
+        let mut buffers = Vec::new();
+        let mut fill = |(name, block): (&str, &'static str), bytes: &[u8]| {
+            let buffer = resources.buffer(&format!("{technique}.{name}"));
+            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;
+            buffers.push((block, buffer));
+            Result::Ok(())
+        };
+        let [nodes, planes, triangles, tangents, extended, materials] = BUFFERS;
+        fill(nodes, bytemuck::cast_slice(&bvh.nodes))?;
+        fill(planes, bytemuck::cast_slice(&bvh.triangles))?;
+        let of = |source: &Source| Corners::of(scene, source);
+        let all: Vec<TracedTriangleBlock> = bvh.sources.iter().map(|source| of(source).triangle()).collect();
+        fill(triangles, bytemuck::cast_slice(&all))?;
+        let all: Vec<TracedTangentsBlock> = match layout.has_tangents {
+            true => bvh.sources.iter().map(|source| of(source).tangents()).collect(),
+            false => Vec::new(),
+        };
+        fill(tangents, bytemuck::cast_slice(&all))?;
+        let all: Vec<TracedExtendedBlock> = match layout.has_extended {
+            true => bvh.sources.iter().map(|source| of(source).extended()).collect(),
+            false => Vec::new(),
+        };
+        fill(extended, bytemuck::cast_slice(&all))?;
+        fill(materials, bytemuck::cast_slice(&layout.materials(scene, emitter_density)))?;
+        let words = layout.words(scene);
+        for (index, names) in TEXELS.into_iter().enumerate() {
+            fill(names, words.get(index).map_or(&[], Vec::as_slice))?;
+        }
+        Ok(Self { buffers })
+    }
+
+    /// What shading/traced.glsl and bvh_trace.glsl bind.
+    pub fn bound(&self) -> impl Iterator<Item = (&'static str, Bound<'_>)> {
+        self.buffers.iter().map(|(block, buffer)| (*block, Bound::Buffer(buffer)))
+    }
+}
+
+/// One triangle where it is drawn.
+struct Corners<'a> {
+    mesh: &'a Mesh,
+    draw: &'a Draw,
+    vertices: [usize; 3],
+}
+
+impl<'a> Corners<'a> {
+    fn of(scene: &'a Scene, source: &Source) -> Self {
+        let draw = &scene.draws[source.draw as usize];
+        let mesh = &scene.meshes[draw.mesh];
+        Self { mesh, draw, vertices: mesh.corners(source.triangle as usize) }
+    }
+
+    fn triangle(&self) -> TracedTriangleBlock {
+        let normals = super::normals_from(self.draw);
+        let uvs = self.vertices.map(|vertex| self.mesh.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO));
+        let corner = |at: usize| {
+            let normal: Vec3 = normals * self.mesh.normals[self.vertices[at]];
+            normal.extend(uvs[at].x).to_array()
+        };
+        let material = f32::from_bits(self.mesh.material as u32);
+        TracedTriangleBlock {
+            corners: [corner(0), corner(1), corner(2)],
+            v_material: [uvs[0].y, uvs[1].y, uvs[2].y, material],
+        }
+    }
+
+    fn tangents(&self) -> TracedTangentsBlock {
+        let turn = Mat3::from_mat4(self.draw.world_from_object);
+        let corners = self.vertices.map(|vertex| {
+            let tangent = self.mesh.tangents.get(vertex).copied().unwrap_or(Vec4::ZERO);
+            (turn * tangent.truncate()).extend(tangent.w).to_array()
+        });
+        TracedTangentsBlock { corners }
+    }
+
+    fn extended(&self) -> TracedExtendedBlock {
+        let color = |vertex: usize| self.mesh.colors.get(vertex).copied().unwrap_or(Vec4::ONE).to_array();
+        let [first, second, third] =
+            self.vertices.map(|vertex| self.mesh.uvs_1.get(vertex).copied().unwrap_or(Vec2::ZERO));
+        TracedExtendedBlock {
+            colors: self.vertices.map(color),
+            uvs_01: [first.x, first.y, second.x, second.y],
+            uv_2: [third.x, third.y, 0.0, 0.0],
+        }
+    }
+}

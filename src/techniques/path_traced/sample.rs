@@ -1,0 +1,116 @@
+//! Sample: one path a pixel, added to those before it. Shader: sample.comp.
+//! reads  the whole tree, the traced scene, the lights      writes  path_traced.sums  buffer, four floats a pixel, kept
+//! from run to run, and path_traced.color  image, RGBA32F, frame extent: the mean so far
+
+use super::{COLOR, NAME, SUMS};
+use crate::bvh::Bvh;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::{LightBlock, SampleParams, SourceBlock};
+use crate::gpu::shader::techniques::path_traced::sample::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
+use crate::plan::Resources;
+use crate::resident::traced::{Layout, TracedGpu};
+use crate::techniques::Inputs;
+use bytemuck::bytes_of;
+use std::sync::Arc;
+
+/// Bytes that a pixel sums up in: three channels, and the sum of their squares.
+pub const SUM_BYTES: u64 = 16;
+
+/// What the pass is made with.
+pub struct Choices {
+    /// Surfaces that scatter a path at most.
+    pub bounces: u32,
+    pub roulette: bool,
+    pub light_visibility: bool,
+    /// Light walks instead of paths between surfaces, each with this many landings.
+    pub walk_landings: Option<u32>,
+    pub brdf: u32,
+    pub extras: bool,
+    pub workgroup: [u32; 2],
+    /// Metres that a ray starts off its surface.
+    pub ray_offset: f32,
+    /// The scene has MASK or BLEND surfaces.
+    pub is_tested: bool,
+    pub params: SampleParams,
+}
+
+pub struct Sample {
+    pipeline: ComputePipeline,
+    params: SampleParams,
+    traced: TracedGpu,
+    lights: Buffer,
+    sources: Buffer,
+    sums: Buffer,
+    pub color: Image,
+}
+
+impl Sample {
+    /// Takes the planned resources and fills them. `density_of`: of the materials that light others.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        resources: &mut Resources,
+        choices: &Choices,
+        (lights, sources): (&[LightBlock], &[SourceBlock]),
+        (bvh, layout): (&Bvh, &Layout),
+        density_of: impl Fn(&crate::scene::Material) -> f32,
+    ) -> Result<Self> {
+        let alpha = if choices.is_tested { "tested" } else { "opaque" };
+        let own = [
+            ("WORKGROUP_X", choices.workgroup[0]),
+            ("WORKGROUP_Y", choices.workgroup[1]),
+            ("BRDF_KIND", choices.brdf),
+            ("SURFACE_EXTRAS", u32::from(choices.extras)),
+            ("RAY_OFFSET", choices.ray_offset.to_bits()),
+            ("BOUNCES", choices.bounces),
+            ("ROULETTE", u32::from(choices.roulette)),
+            ("LIGHT_VISIBILITY", u32::from(choices.light_visibility)),
+            ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
+            ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
+        ];
+        let constants = [&own[..], &layout.constants()].concat();
+        let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
+        let mut filled = |what: &str, bytes: &[u8]| {
+            let buffer = resources.buffer(&format!("{NAME}.{what}"));
+            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;
+            Result::Ok(buffer)
+        };
+        Ok(Self {
+            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha]), &constants)?,
+            params: choices.params,
+            traced,
+            lights: filled("lights", bytemuck::cast_slice(lights))?,
+            sources: filled("sources", bytemuck::cast_slice(sources))?,
+            sums: resources.buffer(SUMS),
+            color: resources.image(COLOR),
+        })
+    }
+
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer) -> Result<()> {
+        let extent = self.color.description.extent;
+        let pixels = extent.pixel_count();
+        let traffic = Traffic {
+            read_bytes: pixels * SUM_BYTES,
+            written_bytes: pixels * (SUM_BYTES + 16),
+            invocations: Some(pixels),
+        };
+        cmd.pass("path_traced.sample", traffic, |cmd| {
+            // The run before ended with its fence: nothing of this frame has touched the sums.
+            cmd.barriers([self.sums.from(Access::ComputeRead).to(Access::ComputeWrite)]);
+            cmd.barriers([self.color.discard(Access::ComputeWrite)]);
+            let mut bound: Vec<_> = self.traced.bound().collect();
+            bound.extend([
+                ("Frame", Bound::Buffer(frame)),
+                ("Lights", Bound::Buffer(&self.lights)),
+                ("Sources", Bound::Buffer(&self.sources)),
+                ("Sums", Bound::Buffer(&self.sums)),
+                ("color", Bound::Storage(&self.color)),
+            ]);
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, bytes_of(&self.params), &bound, groups)
+        })
+    }
+}
