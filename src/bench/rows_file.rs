@@ -135,6 +135,20 @@ mod tests {
     }
 
     #[test]
+    fn what_can_be_no_rows_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        // No byte of it takes room on the disk.
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        let refused = || RowsFile::open(folder.path(), Existing::Resume).err().unwrap();
+        let error = refused();
+        assert!(error.exit_code() == 2 && error.message().contains("1.00 TiB"), "{error}");
+        std::fs::remove_file(&path).unwrap();
+        std::fs::create_dir(&path).unwrap();
+        assert!(refused().message().contains("not a regular file"));
+    }
+
+    #[test]
     fn rows_are_replaced_only_on_request() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
