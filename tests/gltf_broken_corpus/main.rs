@@ -131,6 +131,16 @@ fn run(cases: Vec<Case>) {
 }
 
 #[test]
+fn an_argument_that_is_not_utf8() {
+    use std::os::unix::ffi::OsStrExt;
+    let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
+    let output = command.arg("render").arg(std::ffi::OsStr::from_bytes(b"a\xff.glb")).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(err, "error: the argument \"a\\xFF.glb\" is not UTF-8\n");
+}
+
+#[test]
 fn containers_and_json() {
     run(containers::cases());
 }
