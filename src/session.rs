@@ -254,10 +254,11 @@ impl Renderer {
         match self.gpu.caps.identity.loop_turns() {
             Some(turns) if is_nan => error
                 .note(format!(
-                    "this driver ends the loops of a thread after {turns} turns: lights, times steps of shadow rays"
+                    "this driver ends the loops of a thread after {turns} turns: lights, times steps of shadow rays; or all \
+                     steps of a path's rays"
                 ))
                 .note(
-                    "fewer lights, --direct-shadow none or sun, --cull tiled, or a newer driver (lavapipe of Mesa 25)",
+                    "fewer lights or --bounces, --direct-shadow none or sun, --cull tiled, or a newer driver (lavapipe of Mesa 25)",
                 ),
             _ => error,
         }

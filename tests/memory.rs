@@ -158,6 +158,8 @@ fn what_is_planned_is_what_is_made() {
         ("cornell", "deferred", &[("size", "161x91"), ("position", "depth"), ("cull", "tiled")]),
         ("cornell", "deferred", &[("size", "161x91"), ("position", "float"), ("direct-shadow", "ray")]),
         ("lamps:objects=8,lights=40", "deferred", &[("size", "97x53"), ("position", "half"), ("cull", "tiled")]),
+        ("cornell", "path_traced", &[("size", "97x53"), ("spp", "2"), ("emissive", "on")]),
+        ("lamps:objects=8,lights=40", "path_traced", &[("size", "161x91"), ("spp", "1"), ("texture-limit", "64")]),
         ("cornell", "interleaved_deferred", &[("size", "160x90"), ("vpls", "64")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("pattern", "5x7"), ("position", "float")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "none"), ("position", "depth")]),
