@@ -88,7 +88,7 @@ impl Head<'_> {
         }
         match reference {
             Ok(reference) => {
-                let comparison = metrics::compare(picture, &reference.picture)?;
+                let comparison = metrics::compare(picture, &reference.picture, metrics::DEFAULT_THRESHOLD)?;
                 row["error_against_none"] = json!(comparison.metrics);
                 overhead(&mut row, picture, reference);
             }

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod compare;
 pub mod devices;
+mod gate_args;
 mod job_args;
 pub mod memory;
 pub mod render;

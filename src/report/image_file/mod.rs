@@ -98,6 +98,11 @@ pub fn require_png(path: &Path) -> Result<()> {
     }
 }
 
+/// Whether a file of this name holds no light above 1: a PNG.
+pub fn is_cut(path: &Path) -> bool {
+    matches!(Format::of(path), Ok(Format::Png))
+}
+
 /// Reads a picture as `path`'s extension says, to scene-linear RGB.
 ///
 /// PNG: 8 or 16 bits a channel or fewer, grey, palette or RGB, sRGB-decoded to 0 to 1; alpha is dropped. EXR: the channels
