@@ -84,22 +84,16 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// The measures that a PNG has cut.
-    fn cut(&self) -> &'static [&'static str] {
-        if [self.a, self.b].into_iter().any(image_file::is_cut) { &Metrics::OF_LIGHT } else { &[] }
+    fn is_cut(&self) -> bool {
+        [self.a, self.b].into_iter().any(image_file::is_cut)
     }
 
     fn table(&self) -> String {
         let Self { a, b, comparison, .. } = self;
         let mut text = format!("{} against {}, {}\n", a.display(), b.display(), comparison.extent);
         for (name, value) in Metrics::NAMES.into_iter().zip(comparison.metrics.values()) {
-            let unit = match name {
-                "psnr" => " dB",
-                "over_threshold" => &format!(" % of pixels above {}", self.threshold),
-                _ => "",
-            };
-            let cut = if self.cut().contains(&name) { "  (light above 1 is cut by a PNG)" } else { "" };
-            writeln!(text, "  {name:<14}  {value:>12.6}{unit}{cut}").expect("a string takes any text");
+            let line = metrics::line(name, value, self.threshold, self.is_cut());
+            writeln!(text, "{line}").expect("a string takes any text");
         }
         for gate in self.gates {
             writeln!(text, "  {}", gate.text(&comparison.metrics)).expect("a string takes any text");
@@ -118,7 +112,7 @@ impl Seen<'_> {
             "height": comparison.extent.height,
             "metrics": comparison.metrics,
             "threshold": self.threshold,
-            "cut": self.cut(),
+            "cut": if self.is_cut() { &Metrics::OF_LIGHT[..] } else { &[] },
             "gates": self.gates.iter().map(|gate| gate.json(&comparison.metrics)).collect::<Vec<_>>(),
         });
         format!("{document}\n")

@@ -54,6 +54,17 @@ impl Metrics {
     }
 }
 
+/// One measure as a person reads it, with its unit. `is_cut`: a PNG is among the pictures.
+pub fn line(name: &str, value: f64, threshold: f64, is_cut: bool) -> String {
+    let unit = match name {
+        "psnr" => " dB",
+        "over_threshold" => &format!(" % of pixels above {threshold}"),
+        _ => "",
+    };
+    let cut = if is_cut && Metrics::OF_LIGHT.contains(&name) { "  (light above 1 is cut by a PNG)" } else { "" };
+    format!("  {name:<14}  {value:>12.6}{unit}{cut}")
+}
+
 /// What a comparison leaves: the numbers, and where the difference is.
 #[derive(Clone, Debug)]
 pub struct Comparison {

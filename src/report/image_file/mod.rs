@@ -3,6 +3,7 @@
 mod exr_file;
 mod png_file;
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -115,6 +116,13 @@ pub fn read(path: &Path) -> Result<Picture> {
         Format::Png => png_file::read(path),
         Format::Exr => exr_file::read(path),
     }
+}
+
+/// Reads an EXR and the texts in its header, by name: what `WriteOptions::attributes` wrote.
+///
+/// Fails as [`read`] does, whatever the name's ending.
+pub fn read_exr_with_texts(path: &Path) -> Result<(Picture, BTreeMap<String, String>)> {
+    exr_file::read_with_texts(path)
 }
 
 #[derive(Clone, Copy)]
