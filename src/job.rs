@@ -10,6 +10,7 @@ use crate::memory::Strategy;
 use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
 use crate::plan::Requirements;
+use crate::reference::Asked;
 use crate::report::image_file::{Aov, AovChannels, ExrPrecision, WriteOptions, write};
 use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
@@ -34,6 +35,8 @@ pub struct Job {
     /// None: into `SCENE-TECHNIQUE.png` in the current folder.
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
+    /// What the picture is judged against.
+    pub reference: Option<Asked>,
     /// An index or a part of a name, as `devices` lists them.
     pub device: Option<String>,
     /// One submit for each pass: pass times.
@@ -51,6 +54,8 @@ pub struct Outcome {
     pub path: PathBuf,
     /// Ctrl-C ended it: samples a pixel that it has, and that it was to have.
     pub ended_after: Option<(u32, u32)>,
+    /// Whether the gates of `Job::reference` hold; a caller prints first and fails then.
+    pub gates: Result<()>,
 }
 
 /// What becomes of a picture that Ctrl-C has ended between two of its samples.
@@ -78,6 +83,7 @@ impl Job {
             aovs: Vec::new(),
             output: None,
             report: None,
+            reference: None,
             device: None,
             profile: false,
             validate: false,
@@ -158,9 +164,17 @@ impl Job {
         }
         let picture = renderer.picture()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let report = self.report(session, &renderer, values, &memory, &times, &picture, &aovs, path)?;
+        let mut report = self.report(session, &renderer, values, &memory, &times, &picture, &aovs, path)?;
         self.write(path, &picture, &aovs, &report)?;
-        Ok(Outcome { report, picture, path: path.to_owned(), ended_after })
+        // A reference that is made needs the memory.
+        drop(renderer);
+        let mut gates = Ok(());
+        if let Some(asked) = self.reference.as_ref().filter(|_| ended_after.is_none()) {
+            let judged = asked.judge(&picture, self.technique, values, session)?;
+            report.errors(judged.errors);
+            gates = judged.gates.map_err(|error| error.within(path.display()));
+        }
+        Ok(Outcome { report, picture, path: path.to_owned(), ended_after, gates })
     }
 
     /// Where the picture of `scene` goes.
@@ -179,6 +193,9 @@ impl Job {
         }
         if let Some(path) = &self.report {
             require_folder(path)?;
+        }
+        if let Some(asked) = &self.reference {
+            asked.check(self.values.extent("size"))?;
         }
         for aov in &self.aovs {
             if !self.technique.aovs().contains(&aov.as_str()) {

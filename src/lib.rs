@@ -37,7 +37,7 @@
 //! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
 //! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
-//! | [`metrics`], [`mod@bench`] | errors of pictures; times of variants, in turn |
+//! | [`metrics`], [`reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
 
 pub mod bench;
 pub mod bvh;
@@ -52,6 +52,7 @@ pub mod memory;
 pub mod metrics;
 pub mod passes;
 pub mod plan;
+pub mod reference;
 pub mod report;
 pub mod resident;
 pub mod sampling;

@@ -3,6 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
 use crate::job::{Job, Outcome, Unfinished, judge};
+use crate::reference::Asked;
 use crate::report::run::Report;
 use crate::report::whole_file::write_whole;
 use crate::session::Session;
@@ -32,6 +33,8 @@ pub struct Sequence {
     pub reports: Vec<Report>,
     /// The user stopped it: the frames that `reports` tells of are whole.
     pub is_interrupted: bool,
+    /// Whether the gates of `Job::reference` hold in all of these frames.
+    pub gates: Result<()>,
 }
 
 impl Frames {
@@ -84,10 +87,11 @@ impl Job {
     /// Errors: as `Job::run`. Ctrl-C is no error: finished frames stay.
     pub fn run_sequence(&self, frames: &Frames, finished: &mut dyn FnMut(u32, &Outcome)) -> Result<Sequence> {
         self.check()?;
+        self.reference.as_ref().map_or(Ok(()), Asked::check_sequence)?;
         frames.values(self, frames.last)?;
         let model = self.open_model()?;
         let mut session: Option<Session> = None;
-        let mut sequence = Sequence { reports: Vec::new(), is_interrupted: false };
+        let mut sequence = Sequence { reports: Vec::new(), is_interrupted: false, gates: Ok(()) };
         for frame in frames.first..=frames.last {
             if interrupt::check().is_err() {
                 sequence.is_interrupted = true;
@@ -107,6 +111,7 @@ impl Job {
                 Ok(mut outcome) => {
                     outcome.report.frame(frame, values.number("time"));
                     finished(frame, &outcome);
+                    sequence.gates = sequence.gates.and(outcome.gates);
                     sequence.reports.push(outcome.report);
                 }
                 Err(stop) if stop.kind() == ErrorKind::Interrupted => {

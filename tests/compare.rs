@@ -45,13 +45,13 @@ fn an_exr_compares_exactly_and_a_png_within_half_a_code() {
 
     // What the PNG cut off is an error of light, but not of what the screen shows.
     let png = image_file::read(&path("a.png")).unwrap();
-    let metrics = metrics::compare(&png, &picture).unwrap().metrics;
+    let metrics = metrics::compare(&png, &picture, metrics::DEFAULT_THRESHOLD).unwrap().metrics;
     assert!(metrics.psnr.is_infinite() && metrics.rmse > 0.1, "{metrics:?}");
     for channel in picture.pixels.as_flattened_mut() {
         *channel = channel.min(1.0);
     }
     // Half a code at the steep end of the curve: 2.4 / 1.055 / 510 is 0.00446.
-    assert!(metrics::compare(&png, &picture).unwrap().metrics.rmse < 0.0045);
+    assert!(metrics::compare(&png, &picture, metrics::DEFAULT_THRESHOLD).unwrap().metrics.rmse < 0.0045);
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn judge(picture: &Picture, reference: &Picture) -> Result<String, String> {
     differences.sort_by(f32::total_cmp);
     let outlier_count = differences.iter().filter(|difference| **difference > BOUNDS.most).count();
     let outlier_part = outlier_count as f64 / differences.len() as f64;
-    let metrics = metrics::compare(picture, reference).unwrap().metrics;
+    let metrics = metrics::compare(picture, reference, metrics::DEFAULT_THRESHOLD).unwrap().metrics;
     let (mean, expected_mean) = (picture.mean(), reference.mean());
     let apart: f64 = (0..3).map(|channel| (mean[channel] - expected_mean[channel]).abs()).fold(0.0, f64::max);
     let mean_part = apart / expected_mean.into_iter().fold(0.0, f64::max);

@@ -35,7 +35,9 @@ fn leave(name: &str, actual: &Srgb8, expected: Option<&Srgb8>) -> PathBuf {
     write_srgb8(&folder.join(format!("{name}.actual.png")), actual).unwrap();
     if let Some(expected) = expected {
         write_srgb8(&folder.join(format!("{name}.expected.png")), expected).unwrap();
-        if let Ok(comparison) = metrics::compare(&actual.to_picture(), &expected.to_picture()) {
+        if let Ok(comparison) =
+            metrics::compare(&actual.to_picture(), &expected.to_picture(), metrics::DEFAULT_THRESHOLD)
+        {
             write_srgb8(&folder.join(format!("{name}.difference.png")), &comparison.error_picture()).unwrap();
         }
     }

@@ -2,10 +2,15 @@
 
 use serde_json::Value;
 
+/// The row's errors against the reference that was asked for, else against `--split none`.
+pub fn errors(row: &Value) -> &Value {
+    if row["errors"].is_object() { &row["errors"] } else { &row["error_against_none"] }
+}
+
 /// The row's time and error, each better when less: the ratio to the baseline, which groups share where milliseconds
-/// drift, and the RMSE against `--split none`. None where it has not both.
+/// drift, and the RMSE of its `errors`. None where it has not both.
 pub fn place(row: &Value) -> Option<[f64; 2]> {
-    Some([row["ratio"]["mean"].as_f64()?, row["error_against_none"]["rmse"].as_f64()?])
+    Some([row["ratio"]["mean"].as_f64()?, errors(row)["rmse"].as_f64()?])
 }
 
 /// Whether each place belongs to the set: no other is at least as good in both and better in one.

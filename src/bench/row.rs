@@ -9,6 +9,7 @@ use super::what::What;
 use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::metrics;
+use crate::reference::Asked;
 use crate::report::picture::Picture;
 use crate::report::run::spread;
 use serde_json::{Map, Value, json};
@@ -27,7 +28,7 @@ impl Head<'_> {
     /// The keys that say what a row is of; `key` reads these.
     pub fn row(&self, candidate: &Candidate) -> Value {
         let Ground { job, session, what } = &self.ground;
-        json!({
+        let mut row = json!({
             "schema": 1,
             "bench": what.name(),
             "variant": candidate.label,
@@ -38,7 +39,11 @@ impl Head<'_> {
             "settings": candidate.settings,
             "repeat": self.repeat,
             "baseline": self.baseline,
-        })
+        });
+        if let Some(asked) = &job.reference {
+            row["reference"] = asked.identity();
+        }
+        row
     }
 
     /// The row of a variant that cannot be, and why.
@@ -88,7 +93,7 @@ impl Head<'_> {
         }
         match reference {
             Ok(reference) => {
-                let comparison = metrics::compare(picture, &reference.picture)?;
+                let comparison = metrics::compare(picture, &reference.picture, metrics::DEFAULT_THRESHOLD)?;
                 row["error_against_none"] = json!(comparison.metrics);
                 overhead(&mut row, picture, reference);
             }
@@ -116,7 +121,7 @@ impl Head<'_> {
 
 /// What says that two rows are of the same measurement.
 pub fn key(row: &Value) -> String {
-    let parts = ["bench", "technique", "device", "commit", "settings", "repeat", "baseline", "variant"];
+    let parts = ["bench", "technique", "device", "commit", "settings", "repeat", "baseline", "variant", "reference"];
     let mut key: Vec<&Value> = parts.iter().map(|part| &row[*part]).collect();
     key.push(&row["scene"]["hash"]);
     json!(key).to_string()
@@ -132,6 +137,7 @@ fn repeating_command(job: &Job, what: What, candidate: &Candidate) -> Vec<String
             command.extend([format!("--{key}"), candidate.settings[key].clone()]);
         }
     }
+    command.extend(job.reference.iter().flat_map(Asked::arguments));
     if what != What::Frame {
         command.push("--profile".to_owned());
     }

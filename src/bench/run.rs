@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
 use crate::job::{Job, judge};
 use crate::session::Session;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::rc::Rc;
 
@@ -35,6 +35,8 @@ pub struct Rows {
     pub rows: Vec<Value>,
     /// The user stopped it: these are the rows of the groups that ended before.
     pub interrupted: bool,
+    /// Whether the gates of the job's reference hold in all rows of this run.
+    pub gates: Result<()>,
 }
 
 /// Who is told how it goes.
@@ -61,18 +63,25 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
     let session = Session::open(&job.device_request(), job.load_scene()?)?;
     let candidates: Vec<Candidate> = grid.iter().map(|point| Candidate::new(job, point, &session.scene.hash)).collect();
+    if let Some(asked) = &job.reference {
+        for candidate in &candidates {
+            let Ok(values) = &candidate.values else { continue };
+            asked.check(values.extent("size")).map_err(|error| error.within(&candidate.label))?;
+        }
+    }
     let mut sweep = Sweep::start(request, &session, candidates, named, file, observer)?;
     let interrupted = match sweep.measure() {
         Err(stop) if stop.kind() == ErrorKind::Interrupted => true,
         done => done.map(|()| false)?,
     };
     let rows = sweep.rows.drain(..).flatten().collect();
+    let gates = std::mem::replace(&mut sweep.gates, Ok(()));
     let log = session.gpu.validation_log();
     // Closing says what was leaked: only then is the log whole.
     drop(sweep);
     drop(session);
     judge(log.as_deref())?;
-    Ok(Rows { rows, interrupted })
+    Ok(Rows { rows, interrupted, gates })
 }
 
 /// Whether a point that fails like this, before a frame ran, is passed over with its reason.
@@ -91,6 +100,7 @@ struct Sweep<'a> {
     /// By place in the grid.
     rows: Vec<Option<Value>>,
     references: References,
+    gates: Result<()>,
     file: Option<&'a mut RowsFile>,
     observer: &'a mut dyn Observer,
 }
@@ -132,7 +142,8 @@ impl<'a> Sweep<'a> {
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
         let rows = candidates.iter().map(kept).collect();
         let references = References::default();
-        Ok(Self { head, candidates, baseline, baseline_variant, refused, rows, references, file, observer })
+        let gates = Ok(());
+        Ok(Self { head, candidates, baseline, baseline_variant, refused, rows, references, gates, file, observer })
     }
 
     fn measure(&mut self) -> Result<()> {
@@ -199,7 +210,18 @@ impl<'a> Sweep<'a> {
             let Ground { job, session, what } = &self.head.ground;
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             let reference = self.references.of(job, session, *what, values)?;
-            let row = self.head.measured(candidate, member, picture, &samples, &reference)?;
+            let mut row = self.head.measured(candidate, member, picture, &samples, &reference)?;
+            if let Some(asked) = &job.reference {
+                match asked.judge(picture, job.technique, values, session) {
+                    Ok(judged) => {
+                        row["errors"] = judged.errors;
+                        let gates = judged.gates.map_err(|error| error.within(&candidate.label));
+                        self.gates = std::mem::replace(&mut self.gates, Ok(())).and(gates);
+                    }
+                    Err(error) if is_impossible(&error) => row["errors_skipped"] = json!(error.message()),
+                    Err(error) => return Err(error),
+                }
+            }
             self.emit(member.candidate, row)?;
         }
         Ok(())

@@ -44,7 +44,7 @@ impl Summary {
             "technique": first["technique"],
             "baseline": first["baseline"],
             "repeat": first["repeat"],
-            "pareto_of": ["ratio.mean", "error_against_none.rmse"],
+            "pareto_of": ["ratio.mean", if first["reference"].is_null() { "error_against_none.rmse" } else { "errors.rmse" }],
             "rows": self.rows,
             "best_blocks": self.best_blocks,
         })
@@ -98,9 +98,10 @@ impl Summary {
     fn legend(&self) -> String {
         let baseline = self.rows[0]["baseline"].as_str().unwrap_or_default();
         format!(
-            "time ratios to {baseline}, of {} rounds; errors against --split none; {MARK}: nothing beats it in time or rmse \
+            "time ratios to {baseline}, of {} rounds; errors against {}; {MARK}: nothing beats it in time or rmse \
              without losing in the other",
-            self.rows[0]["repeat"]
+            self.rows[0]["repeat"],
+            self.rows[0]["reference"]["name"].as_str().unwrap_or("--split none")
         )
     }
 

@@ -1,5 +1,6 @@
 //! Rows as a table: which columns a benchmark has, in plain text or Markdown.
 
+use super::pareto::errors;
 use super::what::What;
 use crate::units::Bytes;
 use serde_json::Value;
@@ -74,8 +75,8 @@ fn columns(what: What) -> Vec<Column> {
     columns.extend([
         Column { title: "moved", cell: moved },
         Column { title: "memory peak", cell: |row| bytes(&row["memory"]["peak_bytes"]) },
-        Column { title: "rmse", cell: |row| fixed(&row["error_against_none"]["rmse"], 5) },
-        Column { title: "flip", cell: |row| fixed(&row["error_against_none"]["flip"], 4) },
+        Column { title: "rmse", cell: |row| fixed(&errors(row)["rmse"], 5) },
+        Column { title: "flip", cell: |row| fixed(&errors(row)["flip"], 4) },
         Column { title: "Pareto", cell: |row| (row["pareto"] == true).then(|| MARK.to_owned()) },
     ]);
     columns

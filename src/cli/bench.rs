@@ -1,6 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
-use super::job_args;
+use super::{job_args, reference_args};
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
 use crate::bench::summary::Summary;
@@ -24,7 +24,9 @@ pub fn command() -> Command {
         )
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands(What::ALL.map(|what| job_args::with_job_args(sub_command(what))))
+        .subcommands(
+            What::ALL.map(|what| reference_args::with_reference_args(job_args::with_job_args(sub_command(what)))),
+        )
 }
 
 fn sub_command(what: What) -> Command {
@@ -68,7 +70,8 @@ fn sub_command(what: What) -> Command {
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let (name, matches) = matches.subcommand().expect("clap requires a sub-verb");
     let what = What::ALL.into_iter().find(|what| what.name() == name).expect("clap knows these only");
-    let job = job_args::job(matches, argv)?;
+    let mut job = job_args::job(matches, argv)?;
+    job.reference = reference_args::asked(matches)?;
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
     let axes = sweep::axes(&sweeps)?;
     let folder = matches.get_one::<PathBuf>("output");
@@ -97,7 +100,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         let way_out = if folder.is_some() { "--resume goes on" } else { "with -o DIR, --resume could go on" };
         return Err(Error::interrupted("interrupted; finished rows are valid").note(way_out));
     }
-    Ok(())
+    found.gates
 }
 
 fn rows_file(folder: &PathBuf, matches: &ArgMatches) -> Result<RowsFile> {

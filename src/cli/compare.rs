@@ -7,28 +7,29 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::json;
 
+use super::gate_args;
 use crate::error::{Error, Result};
+use crate::metrics::gate::{self, Gate};
 use crate::metrics::{self, Comparison, Metrics};
 use crate::report::image_file;
 
 /// The verb with its arguments.
 pub fn command() -> Command {
-    let gate = |name: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name("METRIC=VALUE").action(ArgAction::Append).help(help)
-    };
-    Command::new("compare")
-        .about("Compare a picture with its reference: RMSE, relMSE, PSNR, SSIM, FLIP")
+    let command = Command::new("compare")
+        .about("Compare a picture with its reference: RMSE, relMSE, PSNR, SSIM, FLIP, HDR-FLIP, pixels over a threshold")
         .long_about(
             "Compare a picture with its reference (PNG or EXR, of one size).\n\n\
-             rmse and relmse are of scene-linear light; psnr (dB), ssim and flip of 8-bit sRGB at exposure 0. Equal \
-             pictures have psnr inf (null in JSON). Exit code 1: a gate failed, or a picture holds NaN or infinity.",
+             rmse, relmse, hdr_flip and over_threshold (percent of pixels) are of scene-linear light; psnr (dB), ssim and \
+             flip of 8-bit sRGB at exposure 0. A PNG holds no light above 1: where one is compared, the measures of light \
+             are marked as cut. Equal pictures have psnr inf (null in JSON). Exit code 1: a gate failed, or a picture holds \
+             NaN or infinity.",
         )
         .arg(path_arg("a", "A").required(true).help("The picture"))
         .arg(path_arg("b", "B").required(true).help("The reference"))
-        .arg(gate("max", "Fail when METRIC (rmse, relmse, psnr, ssim, flip) is above VALUE; may be repeated"))
-        .arg(gate("min", "Fail when METRIC is below VALUE; may be repeated"))
         .arg(path_arg("diff", "FILE.png").long("diff").help("Write FLIP's error map in the magma colours"))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
+        .arg(path_arg("hdr-diff", "FILE.png").long("hdr-diff").help("Write HDR-FLIP's error map in the same colours"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"));
+    gate_args::with_gate_args(command)
 }
 
 fn path_arg(name: &'static str, value_name: &'static str) -> Arg {
@@ -55,141 +56,67 @@ struct Outcome {
 fn outcome(matches: &ArgMatches) -> Result<Outcome> {
     let path = |name| matches.get_one::<PathBuf>(name).map(PathBuf::as_path);
     let (a, b) = (path("a").expect("clap requires A"), path("b").expect("clap requires B"));
-    let diff = path("diff");
+    let (diff, hdr_diff) = (path("diff"), path("hdr-diff"));
     // Everything that can be refused without reading a picture is refused first.
-    let gates = gates(matches)?;
-    diff.map_or(Ok(()), image_file::require_png)?;
+    let (gates, threshold) = (gate_args::gates(matches)?, gate_args::threshold(matches)?);
+    [diff, hdr_diff].into_iter().flatten().try_for_each(image_file::require_png)?;
     let (actual, reference) = (image_file::read(a)?, image_file::read(b)?);
-    let comparison = metrics::compare(&actual, &reference)
-        .map_err(|error| error.within(format!("comparing {} with {}", a.display(), b.display())))?;
-    if let Some(diff) = diff {
-        image_file::write_srgb8(diff, &comparison.error_picture())?;
-    }
-    let text =
-        if matches.get_flag("json") { json_text(a, b, &comparison, &gates) } else { table(a, b, &comparison, &gates) };
-    let failed = gates.iter().find(|gate| !gate.passes(&comparison.metrics));
-    Ok(Outcome { text, gates: failed.map_or(Ok(()), |gate| Err(gate.failure(a, b, &comparison.metrics))) })
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Bound {
-    Max,
-    Min,
-}
-
-impl Bound {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Max => "max",
-            Self::Min => "min",
+    let context = format!("comparing {} with {}", a.display(), b.display());
+    let comparison =
+        metrics::compare(&actual, &reference, threshold).map_err(|error| error.within(context.as_str()))?;
+    for (path, draw) in [(diff, Comparison::error_picture as fn(&_) -> _), (hdr_diff, Comparison::hdr_error_picture)] {
+        if let Some(path) = path {
+            image_file::write_srgb8(path, &draw(&comparison))?;
         }
     }
+    let seen = Seen { a, b, comparison: &comparison, threshold, gates: &gates };
+    let text = if matches.get_flag("json") { seen.json() } else { seen.table() };
+    Ok(Outcome { text, gates: gate::judge(&gates, &comparison.metrics, context) })
 }
 
-/// A bound on one metric.
-struct Gate {
-    /// Index into `Metrics::NAMES`.
-    metric_index: usize,
-    bound: Bound,
-    value: f64,
+/// What is printed.
+struct Seen<'a> {
+    a: &'a Path,
+    b: &'a Path,
+    comparison: &'a Comparison,
+    threshold: f64,
+    gates: &'a [Gate],
 }
 
-impl Gate {
-    fn parse(bound: Bound, argument: &str) -> Result<Self> {
-        let refused = |cause: &str| {
-            let (flag, names) = (bound.name(), Metrics::NAMES.join(", "));
-            Error::request(format!("--{flag} {argument}: {cause}"))
-                .note(format!("for example --{flag} rmse=0.01; the metrics are {names}"))
-        };
-        let (name, value) = argument.split_once('=').ok_or_else(|| refused("it has no ="))?;
-        let metric_index = Metrics::NAMES
-            .iter()
-            .position(|known| *known == name)
-            .ok_or_else(|| refused(&format!("there is no metric {name}")))?;
-        match value.parse::<f64>() {
-            Ok(value) if !value.is_nan() => Ok(Self { metric_index, bound, value }),
-            _ => Err(refused(&format!("{value} is no number"))),
+impl Seen<'_> {
+    fn is_cut(&self) -> bool {
+        [self.a, self.b].into_iter().any(image_file::is_cut)
+    }
+
+    fn table(&self) -> String {
+        let Self { a, b, comparison, .. } = self;
+        let mut text = format!("{} against {}, {}\n", a.display(), b.display(), comparison.extent);
+        for (name, value) in Metrics::NAMES.into_iter().zip(comparison.metrics.values()) {
+            let line = metrics::line(name, value, self.threshold, self.is_cut());
+            writeln!(text, "{line}").expect("a string takes any text");
         }
-    }
-
-    fn name(&self) -> &'static str {
-        Metrics::NAMES[self.metric_index]
-    }
-
-    fn measured(&self, metrics: &Metrics) -> f64 {
-        metrics.values()[self.metric_index]
-    }
-
-    fn passes(&self, metrics: &Metrics) -> bool {
-        match self.bound {
-            Bound::Max => self.measured(metrics) <= self.value,
-            Bound::Min => self.measured(metrics) >= self.value,
+        for gate in self.gates {
+            writeln!(text, "  {}", gate.text(&comparison.metrics)).expect("a string takes any text");
         }
+        text
     }
 
-    fn failure(&self, a: &Path, b: &Path, metrics: &Metrics) -> Error {
-        let side = if self.bound == Bound::Max { "above" } else { "below" };
-        Error::gate(format!(
-            "comparing {} with {}: {} is {}, {side} --{} {}",
-            a.display(),
-            b.display(),
-            self.name(),
-            self.measured(metrics),
-            self.bound.name(),
-            self.value
-        ))
+    /// One document on one line. What is infinite (the PSNR of equal pictures, or a bound) is null.
+    fn json(&self) -> String {
+        let Self { a, b, comparison, .. } = self;
+        let document = json!({
+            "schema": 1,
+            "a": a.display().to_string(),
+            "b": b.display().to_string(),
+            "width": comparison.extent.width,
+            "height": comparison.extent.height,
+            "metrics": comparison.metrics,
+            "threshold": self.threshold,
+            "cut": if self.is_cut() { &Metrics::OF_LIGHT[..] } else { &[] },
+            "gates": self.gates.iter().map(|gate| gate.json(&comparison.metrics)).collect::<Vec<_>>(),
+        });
+        format!("{document}\n")
     }
-}
-
-/// The gates in the order max, min, each as given.
-fn gates(matches: &ArgMatches) -> Result<Vec<Gate>> {
-    [Bound::Max, Bound::Min]
-        .into_iter()
-        .flat_map(|bound| {
-            let arguments = matches.get_many::<String>(bound.name()).into_iter().flatten();
-            arguments.map(move |argument| Gate::parse(bound, argument))
-        })
-        .collect()
-}
-
-fn table(a: &Path, b: &Path, comparison: &Comparison, gates: &[Gate]) -> String {
-    let mut text = format!("{} against {}, {}\n", a.display(), b.display(), comparison.extent);
-    for (name, value) in Metrics::NAMES.into_iter().zip(comparison.metrics.values()) {
-        let unit = if name == "psnr" { " dB" } else { "" };
-        writeln!(text, "  {name:<6}  {value:>12.6}{unit}").expect("a string takes any text");
-    }
-    for gate in gates {
-        let verdict = if gate.passes(&comparison.metrics) { "passed" } else { "failed" };
-        writeln!(text, "  --{} {}={}: {verdict}", gate.bound.name(), gate.name(), gate.value)
-            .expect("a string takes any text");
-    }
-    text
-}
-
-/// One document on one line. What is infinite (the PSNR of equal pictures, or a bound) is null.
-fn json_text(a: &Path, b: &Path, comparison: &Comparison, gates: &[Gate]) -> String {
-    let gates: Vec<_> = gates
-        .iter()
-        .map(|gate| {
-            json!({
-                "metric": gate.name(),
-                "bound": gate.bound.name(),
-                "value": gate.value,
-                "measured": gate.measured(&comparison.metrics),
-                "passed": gate.passes(&comparison.metrics),
-            })
-        })
-        .collect();
-    let document = json!({
-        "schema": 1,
-        "a": a.display().to_string(),
-        "b": b.display().to_string(),
-        "width": comparison.extent.width,
-        "height": comparison.extent.height,
-        "metrics": comparison.metrics,
-        "gates": gates,
-    });
-    format!("{document}\n")
 }
 
 #[cfg(test)]
@@ -225,11 +152,16 @@ mod tests {
         let folder = folder();
         let output = compare(folder.path(), "a.exr", "b.exr", &["--max", "rmse=0.25", "--min", "ssim=0.99"]).unwrap();
         let lines: Vec<&str> = output.text.lines().skip(1).collect();
-        assert_eq!(lines[0], "  rmse        0.250000");
+        assert_eq!(lines[0], "  rmse                0.250000");
         assert!(lines[2].starts_with("  psnr ") && lines[2].ends_with(" dB"), "{}", lines[2]);
-        assert_eq!(lines[5..], ["  --max rmse=0.25: passed", "  --min ssim=0.99: failed"]);
+        assert!(
+            lines[6].starts_with("  over_threshold ") && lines[6].ends_with(" % of pixels above 0.1"),
+            "{}",
+            lines[6]
+        );
+        assert_eq!(lines[7..], ["  --max rmse=0.25: passed", "  --min ssim=0.99: failed"]);
         let equal = compare(folder.path(), "a.exr", "a.exr", &["--min", "psnr=inf"]).unwrap();
-        assert!(equal.text.contains("psnr             inf dB"), "{}", equal.text);
+        assert!(equal.text.contains("psnr                     inf dB"), "{}", equal.text);
         assert!(equal.gates.is_ok());
     }
 
@@ -277,7 +209,11 @@ mod tests {
             let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--max", argument]).err().unwrap();
             assert_eq!(error.exit_code(), 2);
             assert!(error.message().ends_with(cause), "{error}");
-            assert!(error.to_string().contains("the metrics are rmse, relmse, psnr, ssim, flip"), "{error}");
+            assert!(error.to_string().contains("the metrics are rmse, relmse, psnr, ssim, flip, hdr_flip"), "{error}");
+        }
+        for threshold in ["-0.1", "1.5", "nan", "much"] {
+            let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--threshold", threshold]).err().unwrap();
+            assert!(error.exit_code() == 2 && error.message().contains("0 to 1"), "{error}");
         }
         let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--diff", "d.exr"]).err().unwrap();
         assert!(error.message().contains("name it .png"), "{error}");
@@ -287,8 +223,30 @@ mod tests {
     fn the_difference_is_written_even_when_a_gate_fails() {
         let folder = folder();
         let diff = folder.path().join("diff.png");
-        let more = ["--max", "rmse=0", "--diff", diff.to_str().unwrap()];
+        let hdr = folder.path().join("hdr.png");
+        let more = ["--max", "rmse=0", "--diff", diff.to_str().unwrap(), "--hdr-diff", hdr.to_str().unwrap()];
         assert!(compare(folder.path(), "a.exr", "b.exr", &more).unwrap().gates.is_err());
-        assert_eq!(image_file::read(&diff).unwrap().extent, Extent::new(16, 12));
+        let [diff, hdr] = [diff, hdr].map(|path| image_file::read(&path).unwrap());
+        assert_eq!((diff.extent, hdr.extent), (Extent::new(16, 12), Extent::new(16, 12)));
+        assert_ne!(diff, hdr);
+    }
+
+    #[test]
+    fn a_png_says_what_it_cuts_and_a_threshold_is_heeded() {
+        let folder = folder();
+        let picture = image_file::read(&folder.path().join("a.exr")).unwrap();
+        image_file::write(&folder.path().join("a.png"), &picture, &WriteOptions::default()).unwrap();
+        let document = |a: &str, more: &[&str]| -> serde_json::Value {
+            let text = compare(folder.path(), a, "b.exr", &[&["--json"], more].concat()).unwrap().text;
+            serde_json::from_str(&text).unwrap()
+        };
+        assert_eq!(document("a.exr", &[])["cut"], json!([]));
+        assert_eq!(document("a.png", &[])["cut"], json!(Metrics::OF_LIGHT));
+        let text = compare(folder.path(), "a.png", "b.exr", &[]).unwrap().text;
+        assert_eq!(text.lines().filter(|line| line.ends_with("(light above 1 is cut by a PNG)")).count(), 4, "{text}");
+        // The pictures are flat: every pixel is above a threshold or none.
+        assert_eq!(document("a.exr", &[])["threshold"], 0.1);
+        assert_eq!(document("a.exr", &["--threshold", "0"])["metrics"]["over_threshold"], 100.0);
+        assert_eq!(document("a.exr", &["--threshold", "1"])["metrics"]["over_threshold"], 0.0);
     }
 }

@@ -3,8 +3,10 @@
 pub mod bench;
 pub mod compare;
 pub mod devices;
+mod gate_args;
 mod job_args;
 pub mod memory;
+mod reference_args;
 pub mod render;
 pub mod scene;
 

@@ -1,6 +1,6 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
-use super::job_args;
+use super::{job_args, reference_args};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::sequence::Frames;
@@ -15,7 +15,7 @@ pub fn command() -> Command {
     let path = |name: &'static str, value: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf))
     };
-    job_args::with_job_args(
+    let command = job_args::with_job_args(
         Command::new("render")
             .about("Render a scene")
             .arg(
@@ -50,7 +50,8 @@ pub fn command() -> Command {
                     .action(ArgAction::SetTrue)
                     .help("Time each pass: one submit and fence a pass, three frames after one that warms up"),
             ),
-    )
+    );
+    reference_args::with_reference_args(command)
 }
 
 /// Renders and prints.
@@ -59,6 +60,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.output = matches.get_one::<PathBuf>("output").cloned();
     job.report = matches.get_one::<PathBuf>("report").cloned();
     job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
+    job.reference = reference_args::asked(matches)?;
     job.profile = matches.get_flag("profile");
     if let Some(range) = matches.get_one::<String>("frames") {
         let frames = Frames::parse(range, matches.get_one::<String>("fps").map_or(DEFAULT_FPS, String::as_str))?;
@@ -66,12 +68,11 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     }
     let outcome = job.run()?;
     if matches.get_flag("json") {
-        super::print(&format!("{:#}\n", outcome.report.json()))
-    } else if matches.get_flag("quiet") {
-        Ok(())
-    } else {
-        super::print(&outcome.report.text())
+        super::print(&format!("{:#}\n", outcome.report.json()))?;
+    } else if !matches.get_flag("quiet") {
+        super::print(&outcome.report.text())?;
     }
+    outcome.gates
 }
 
 /// Renders each frame, with a line for it on standard error, and prints the sum.
@@ -91,6 +92,6 @@ fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> 
     }
     match sequence.is_interrupted {
         true => Err(Error::interrupted("interrupted; finished frames are valid")),
-        false => Ok(()),
+        false => sequence.gates,
     }
 }

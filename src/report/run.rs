@@ -4,6 +4,7 @@
 use crate::error::Result;
 use crate::gpu::caps::Identity;
 use crate::gpu::recorded::FrameTime;
+use crate::metrics::{self, Metrics};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
@@ -187,6 +188,11 @@ impl Report {
         self.document.insert("counters".into(), json!(counters));
     }
 
+    /// What the picture is away from its reference.
+    pub fn errors(&mut self, errors: Value) {
+        self.document.insert("errors".into(), errors);
+    }
+
     /// The whole document.
     pub fn json(&self) -> Value {
         Value::Object(self.document.clone())
@@ -280,6 +286,15 @@ impl Report {
             bytes("aliased_bytes"),
             bytes("memory_block_bytes")
         ));
+        if let Some(errors) = document.get("errors") {
+            line(format!("errors against {}", string(&errors["reference"])));
+            for name in Metrics::NAMES {
+                // Equal pictures have a PSNR without end.
+                let value = errors[name].as_f64().unwrap_or(f64::INFINITY);
+                let is_cut = errors["cut"].as_array().is_some_and(|cut| !cut.is_empty());
+                line(metrics::line(name, value, errors["threshold"].as_f64().unwrap_or_default(), is_cut));
+            }
+        }
         line(format!("image hash {}", string(&document["image"]["hash"])));
         line(format!("wrote {}", string(&document["image"]["path"])));
         text

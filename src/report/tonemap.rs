@@ -33,7 +33,7 @@ impl ToneMap {
     }
 
     /// Linear RGB, finite and at least 0, to linear RGB in 0 to 1.
-    fn apply(self, color: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn apply(self, color: [f64; 3]) -> [f64; 3] {
         match self {
             Self::Clip => color.map(|channel| channel.min(1.0)),
             Self::Reinhard => {

@@ -64,6 +64,20 @@ pub trait Technique: Sync {
     /// How far its settings go on a device: a setting, and the most of it in words.
     fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)>;
 
+    /// The light transport that it claims to compute, as settings of `path_traced` (`--transport` and the like) by key: what
+    /// `--reference auto` judges it against. Settings that both read are carried over without being named here, those that
+    /// the reference does not read are passed over. None named: the whole integral.
+    ///
+    /// Errors: path tracing has no such transport (exit code 2).
+    fn reference_settings(&self, _: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        Ok(Vec::new())
+    }
+
+    /// Raised whenever the same settings give another picture than before: references that are kept are of one version.
+    fn estimator_version(&self) -> u32 {
+        1
+    }
+
     /// What a frame needs. Arithmetic, but for the tree of shadow rays, whose size only building it tells.
     ///
     /// Errors: settings that contradict each other, the scene or the device (exit code 2).
@@ -139,6 +153,26 @@ pub fn find(name: &str) -> Result<&'static dyn Technique> {
         Error::request(format!("--technique {name}: there is no such technique"))
             .note(format!("there are {}", names.join(", ")))
     })
+}
+
+/// Whether path tracing must let the scene's own lights cast shadows to compute what `--direct-shadow` does.
+///
+/// Errors: some of the lights would, and others not (exit code 2).
+fn light_visibility(values: &Values, lights: &LightSet) -> Result<String> {
+    let shadowed = match values.text("direct-shadow") {
+        "none" => 0,
+        "sun" => lights.sun_count(),
+        _ => lights.lights.len(),
+    };
+    match shadowed {
+        0 => Ok("off".to_owned()),
+        all if all == lights.lights.len() => Ok("on".to_owned()),
+        some => Err(Error::request(format!(
+            "--direct-shadow sun: {some} of {} lights cast shadows, and path tracing lets all of them or none",
+            lights.lights.len()
+        ))
+        .note("--direct-shadow ray and none have a reference")),
+    }
 }
 
 /// An AOV that the settings leave out.

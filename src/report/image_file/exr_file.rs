@@ -3,6 +3,7 @@
 //! Why this way: OpenEXR knows parts (each a picture of its own) and layers (channels with a dotted name). Viewers such as
 //! tev show both, but many programs read only the first part, so the AOVs are layers of the one part.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
@@ -93,6 +94,11 @@ fn half_from_float(value: f32) -> f16 {
 }
 
 pub(super) fn read(path: &Path) -> Result<Picture> {
+    read_with_texts(path).map(|(picture, _)| picture)
+}
+
+/// The picture, and the texts of its part's header by name.
+pub(super) fn read_with_texts(path: &Path) -> Result<(Picture, BTreeMap<String, String>)> {
     let broken = |error: ExrError| match error {
         ExrError::Io(error) => unreadable(path, &error),
         other => unreadable(path, &format!("it is no EXR, or a broken one ({other})")),
@@ -100,7 +106,13 @@ pub(super) fn read(path: &Path) -> Result<Picture> {
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
     let reader = Reader::read_from_buffered(BufReader::new(file), false).map_err(broken)?;
     let part_index = require_readable(path, reader.headers())?;
-    decode(reader, part_index).map_err(broken)
+    let others = reader.headers()[part_index].own_attributes.other.iter();
+    let texts = others.filter_map(|(name, value)| match value {
+        AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+        _ => None,
+    });
+    let texts = texts.collect();
+    Ok((decode(reader, part_index).map_err(broken)?, texts))
 }
 
 /// The index of the part that is the picture, when all that decoding makes by the headers' word is within the limits.

@@ -3,6 +3,7 @@
 mod exr_file;
 mod png_file;
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -98,6 +99,11 @@ pub fn require_png(path: &Path) -> Result<()> {
     }
 }
 
+/// Whether a file of this name holds no light above 1: a PNG.
+pub fn is_cut(path: &Path) -> bool {
+    matches!(Format::of(path), Ok(Format::Png))
+}
+
 /// Reads a picture as `path`'s extension says, to scene-linear RGB.
 ///
 /// PNG: 8 or 16 bits a channel or fewer, grey, palette or RGB, sRGB-decoded to 0 to 1; alpha is dropped. EXR: the channels
@@ -110,6 +116,13 @@ pub fn read(path: &Path) -> Result<Picture> {
         Format::Png => png_file::read(path),
         Format::Exr => exr_file::read(path),
     }
+}
+
+/// Reads an EXR and the texts in its header, by name: what `WriteOptions::attributes` wrote.
+///
+/// Fails as [`read`] does, whatever the name's ending.
+pub fn read_exr_with_texts(path: &Path) -> Result<(Picture, BTreeMap<String, String>)> {
+    exr_file::read_with_texts(path)
 }
 
 #[derive(Clone, Copy)]

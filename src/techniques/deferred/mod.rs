@@ -5,10 +5,11 @@
 
 pub mod shade;
 
-use super::{Frame, Inputs, Prepared, Technique, left_out};
+use super::{Frame, Inputs, Prepared, Technique, left_out, light_visibility};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::lights::LightSet;
 use crate::lights::cull::{self, Cull};
 use crate::passes::blend::{self, Blend, BlendLights};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
@@ -54,6 +55,15 @@ impl Technique for Deferred {
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
+    }
+
+    /// Punctual lights, straight.
+    fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        Ok(vec![
+            ("transport", "direct".to_owned()),
+            ("light-visibility", light_visibility(values, lights)?),
+            ("emissive", "off".to_owned()),
+        ])
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

@@ -43,11 +43,11 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
-use super::{Frame, Inputs, Prepared, Technique};
-use crate::error::Result;
+use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, AccessSet, Buffer, Caps, Commands, Gpu, Image, Need};
-use crate::lights::vpl;
+use crate::lights::{LightSet, vpl};
 use crate::passes::blend::BlendLights;
 use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
@@ -108,6 +108,27 @@ impl Technique for InterleavedDeferred {
 
     fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)> {
         choices::bounds(caps)
+    }
+
+    /// Direct light, and what as many bounces as light walks have bring, unshadowed (SNSM) and clamped.
+    fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        let mut settings =
+            vec![("light-visibility", light_visibility(values, lights)?), ("vpl-visibility", "off".to_owned())];
+        match values.integer("vpl-bounces") {
+            1 => settings.push(("transport", "one-bounce".to_owned())),
+            // The surface that is seen scatters too.
+            more => settings.extend([("transport", "full".to_owned()), ("bounces", (more + 1).to_string())]),
+        }
+        match values.text("direct") {
+            // Joined to the subsets, direct light is diffuse.
+            "interleaved" => settings.push(("brdf", "lambert".to_owned())),
+            "none" => {
+                return Err(Error::request("--direct none: path tracing does not leave direct light out")
+                    .note("--direct full and interleaved have a reference"));
+            }
+            _ => {}
+        }
+        Ok(settings)
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

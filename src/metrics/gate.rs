@@ -1,0 +1,94 @@
+//! Gates: bounds on an error, for scripts. One that fails is the exit code 1 of the command.
+
+use super::Metrics;
+use crate::error::{Error, Result};
+use serde_json::{Value, json};
+use std::fmt::Display;
+
+/// Which side of its value a gate lets pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    Max,
+    Min,
+}
+
+impl Bound {
+    /// The flag without its dashes.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Max => "max",
+            Self::Min => "min",
+        }
+    }
+}
+
+/// A bound on one metric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gate {
+    /// Index into `Metrics::NAMES`.
+    metric_index: usize,
+    bound: Bound,
+    value: f64,
+}
+
+impl Gate {
+    /// `argument`: `METRIC=VALUE`.
+    ///
+    /// Errors: no such metric, or no number (exit code 2).
+    pub fn parse(bound: Bound, argument: &str) -> Result<Self> {
+        let refused = |cause: &str| {
+            let (flag, names) = (bound.name(), Metrics::NAMES.join(", "));
+            Error::request(format!("--{flag} {argument}: {cause}"))
+                .note(format!("for example --{flag} rmse=0.01; the metrics are {names}"))
+        };
+        let (name, value) = argument.split_once('=').ok_or_else(|| refused("it has no ="))?;
+        let metric_index = Metrics::NAMES
+            .iter()
+            .position(|known| *known == name)
+            .ok_or_else(|| refused(&format!("there is no metric {name}")))?;
+        match value.parse::<f64>() {
+            Ok(value) if !value.is_nan() => Ok(Self { metric_index, bound, value }),
+            _ => Err(refused(&format!("{value} is no number"))),
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        Metrics::NAMES[self.metric_index]
+    }
+
+    fn measured(&self, metrics: &Metrics) -> f64 {
+        metrics.values()[self.metric_index]
+    }
+
+    fn passes(&self, metrics: &Metrics) -> bool {
+        match self.bound {
+            Bound::Max => self.measured(metrics) <= self.value,
+            Bound::Min => self.measured(metrics) >= self.value,
+        }
+    }
+
+    /// What a person reads: the gate and its verdict.
+    pub fn text(&self, metrics: &Metrics) -> String {
+        let verdict = if self.passes(metrics) { "passed" } else { "failed" };
+        format!("--{} {}={}: {verdict}", self.bound.name(), self.name(), self.value)
+    }
+
+    /// What a program reads.
+    pub fn json(&self, metrics: &Metrics) -> Value {
+        json!({
+            "metric": self.name(),
+            "bound": self.bound.name(),
+            "value": self.value,
+            "measured": self.measured(metrics),
+            "passed": self.passes(metrics),
+        })
+    }
+}
+
+/// Errors: a gate fails (exit code 1), the first of `gates`. `context`: what was compared.
+pub fn judge(gates: &[Gate], metrics: &Metrics, context: impl Display) -> Result<()> {
+    let Some(gate) = gates.iter().find(|gate| !gate.passes(metrics)) else { return Ok(()) };
+    let side = if gate.bound == Bound::Max { "above" } else { "below" };
+    let (name, measured) = (gate.name(), gate.measured(metrics));
+    Err(Error::gate(format!("{context}: {name} is {measured}, {side} --{} {}", gate.bound.name(), gate.value)))
+}

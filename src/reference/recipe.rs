@@ -1,0 +1,130 @@
+//! A recipe: the technique and the settings that make a reference, and the key under which its picture is kept.
+
+use crate::error::Result;
+use crate::frame::View;
+use crate::job::{Job, settings_of};
+use crate::lights::LightSet;
+use crate::session::Session;
+use crate::settings::Values;
+use crate::techniques::Technique;
+use crate::units::Extent;
+use serde_json::{Map, Value, json};
+
+/// Goes into every key; raised whenever the kept files, or what goes into a key, change.
+const FORMAT: u32 = 1;
+
+/// Settings that both techniques read and that are none of the picture's: they stay at their defaults, so that one
+/// reference serves all of them.
+const NOT_OF_THE_PICTURE: &[&str] =
+    &["exposure", "tonemap", "exr", "allocation", "alias", "memory-budget", "workgroup", "texels", "geometry", "cull"];
+
+/// The seed of references: not the default one, so that a path-traced picture is not judged by its own samples.
+const SEED: &str = "2654435769";
+
+/// The setting that says how many samples a pixel has, of techniques that have it.
+pub const SAMPLES: &str = "spp";
+
+/// What makes a reference.
+pub struct Recipe {
+    pub technique: &'static dyn Technique,
+    pub values: Values,
+    key: String,
+    identity: Value,
+}
+
+impl Recipe {
+    /// `technique` with `values`, of what `session` shows.
+    ///
+    /// Errors: no such camera or lights (exit code 2).
+    pub fn new(technique: &'static dyn Technique, values: Values, session: &Session) -> Result<Self> {
+        let scene = &session.scene;
+        let view = View::new(scene, values.text("camera"), values.extent("size"))?;
+        let lights = LightSet::new(scene, &view, &values)?;
+        let camera = &view.camera;
+        let settings: Map<String, Value> = values.iter().map(|(key, text)| (key.to_owned(), json!(text))).collect();
+        // Floats are printed with as many digits as tell them apart.
+        let identity = json!({
+            "format": FORMAT,
+            "technique": technique.name(),
+            "estimator": technique.estimator_version(),
+            "scene": scene.hash,
+            "texture_limit_px": scene.texture_limit_px,
+            "camera": [camera.world_from_view.to_cols_array().to_vec(), format!("{:?}", camera.projection)],
+            "size": view.extent.to_string(),
+            "lights": format!("{:?}", lights.lights),
+            "ambient": lights.ambient.to_array(),
+            "settings": settings,
+        });
+        let key = blake3::hash(identity.to_string().as_bytes()).to_hex().to_string();
+        Ok(Self { technique, values, key, identity })
+    }
+
+    /// What `judged` with `values` is held against: `technique` with the settings that both read, those of the transport
+    /// that `judged` claims to compute, and `spp` samples a pixel where `technique` counts them.
+    ///
+    /// Errors: `technique` has no such transport (exit code 2).
+    pub fn judging(
+        technique: &'static dyn Technique,
+        judged: &dyn Technique,
+        values: &Values,
+        session: &Session,
+        spp: u64,
+    ) -> Result<Self> {
+        let view = View::new(&session.scene, values.text("camera"), values.extent("size"))?;
+        let lights = LightSet::new(&session.scene, &view, values)?;
+        let mut job = Job::new(&session.scene.name, technique);
+        let reads = |key: &str| settings_of(technique).iter().any(|setting| setting.key == key);
+        for (key, text) in values.iter().filter(|(key, _)| reads(key) && !NOT_OF_THE_PICTURE.contains(key)) {
+            job.set(key, text)?;
+        }
+        let scattered = values.text("lights");
+        if !scattered.contains(':') {
+            // Which `--lights` there are hangs on the judged seed, not on the reference's.
+            job.set("lights", &format!("{scattered}:{}", values.integer("seed")))?;
+        }
+        job.set("seed", SEED)?;
+        for (key, text) in judged.reference_settings(values, &lights)? {
+            if reads(key) {
+                job.set(key, &text)?;
+            }
+        }
+        if reads(SAMPLES) {
+            job.set(SAMPLES, &spp.to_string())?;
+        }
+        Self::new(technique, job.values, session)
+    }
+
+    /// The same with another count of samples.
+    ///
+    /// Errors: the technique counts none (exit code 2).
+    pub fn with_samples(&self, spp: u64) -> Result<Values> {
+        let mut job = Job::new("", self.technique).at(&self.values);
+        job.set(SAMPLES, &spp.to_string())?;
+        Ok(job.values)
+    }
+
+    /// Samples a pixel; None where the technique counts none.
+    pub fn samples(&self) -> Option<u64> {
+        let has = settings_of(self.technique).iter().any(|setting| setting.key == SAMPLES);
+        has.then(|| self.values.integer(SAMPLES))
+    }
+
+    /// BLAKE3, in hexadecimal, of all that its picture hangs on: scene, camera, size, lights, settings, estimator.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// What the key is of.
+    pub fn identity(&self) -> &Value {
+        &self.identity
+    }
+
+    /// Every setting as text.
+    pub fn settings(&self) -> Value {
+        self.identity["settings"].clone()
+    }
+
+    pub fn extent(&self) -> Extent {
+        self.values.extent("size")
+    }
+}
