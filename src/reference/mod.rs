@@ -56,14 +56,10 @@ pub struct Judged {
 impl Asked {
     /// `text`: a picture's file, or `auto` with `spp` samples a pixel. `watch` is told of a reference in the making.
     ///
-    /// Errors: the file cannot be read, or nothing is there that makes `auto` (exit code 2); the file holds NaN or
-    /// infinity (1).
+    /// Errors: the file cannot be read (exit code 2), or holds NaN or infinity (1).
     pub fn new(text: &str, spp: u64, threshold: f64, gates: Vec<Gate>, watch: Box<dyn Watch>) -> Result<Self> {
         let source = if text == "auto" {
-            let technique = techniques::find(TRUTH).map_err(|_| {
-                Error::request(format!("--reference auto: {TRUTH}, which makes it, is not among the techniques"))
-                    .note("--reference FILE.exr takes a picture from elsewhere")
-            })?;
+            let technique = techniques::find(TRUTH)?;
             Source::Auto { technique, spp, known: RefCell::default() }
         } else {
             let within = |error: Error| error.within("--reference");
