@@ -6,8 +6,8 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
-use crate::scene::{AlphaMode, Scene};
-use glam::Vec3;
+use crate::scene::{AlphaMode, Bounds, Scene};
+use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::builder::build_bvh2_from_tris;
 use obvhs::triangle::Triangle;
@@ -16,6 +16,9 @@ use std::time::Duration;
 
 /// A walk's stack: the shader's BVH_STACK.
 const STACK: usize = 64;
+
+/// Its tree takes some 16 GiB.
+const MOST_TRIANGLES: u64 = 1 << 26;
 
 /// Boxes and triangles in leaf order.
 pub struct Bvh {
@@ -76,8 +79,15 @@ pub struct Hit {
 impl Bvh {
     /// Builds the tree over everything opaque or masked, in world space.
     ///
-    /// Errors: the tree is deeper than a walk's stack (exit code 2).
+    /// Errors: more triangles than a tree is built over (exit code 2).
     pub fn build(scene: &Scene) -> Result<Self> {
+        let count = scene.triangle_count();
+        if count > MOST_TRIANGLES {
+            return Err(Error::request(format!(
+                "rays are cast among up to {MOST_TRIANGLES} triangles, and the scene draws {count}"
+            ))
+            .note("`--technique deferred --direct-shadow none` casts none"));
+        }
         let mut corners = Vec::new();
         let mut sources = Vec::new();
         for (draw_index, draw) in scene.draws.iter().enumerate() {
@@ -95,24 +105,17 @@ impl Bvh {
             return Ok(Self::empty());
         }
         let tree = build_bvh2_from_tris(&corners, BvhBuildParams::medium_build(), &mut Duration::default());
-        let depth = tree.depth(0);
         // A walk holds at most one waiting node a level, and one more.
-        if depth + 1 > STACK {
-            return Err(Error::request(format!(
-                "the scene's tree is {depth} levels deep, {} can be walked",
-                STACK - 1
-            )));
-        }
-        let word = f32::from_bits;
-        let nodes = tree
-            .nodes
-            .iter()
-            .map(|node| BvhNodeBlock {
-                min_count: [node.aabb.min.x, node.aabb.min.y, node.aabb.min.z, word(node.prim_count)],
-                max_first: [node.aabb.max.x, node.aabb.max.y, node.aabb.max.z, word(node.first_index)],
-            })
-            .collect();
-        let order: Vec<usize> = tree.primitive_indices.iter().map(|index| *index as usize).collect();
+        let (nodes, order) = if tree.depth(0) < STACK {
+            let blocks = tree.nodes.iter().map(|node| {
+                let bounds = Bounds { min: node.aabb.min.into(), max: node.aabb.max.into() };
+                block(&bounds, node.prim_count, node.first_index)
+            });
+            (blocks.collect(), tree.primitive_indices)
+        } else {
+            halved(&corners)
+        };
+        let order: Vec<usize> = order.into_iter().map(|index| index as usize).collect();
         let triangles = order
             .iter()
             .map(|index| {
@@ -182,6 +185,45 @@ impl Bvh {
             }
         }
     }
+}
+
+fn block(bounds: &Bounds, count: u32, first: u32) -> BvhNodeBlock {
+    let (Vec3 { x, y, z }, far) = (bounds.min, bounds.max);
+    BvhNodeBlock {
+        min_count: [x, y, z, f32::from_bits(count)],
+        max_first: [far.x, far.y, far.z, f32::from_bits(first)],
+    }
+}
+
+/// Nodes and triangles in leaf order of a tree whose every node halves its triangles, whatever lies where.
+///
+/// Why this way: PLOC joins what lies in one place one after the other, so that coincident triangles make a tree as deep
+/// as they are many. This one is never deeper than the logarithm of their number.
+fn halved(corners: &[Triangle]) -> (Vec<BvhNodeBlock>, Vec<u32>) {
+    const LEAF: usize = 4;
+    let sides = |index: u32| [corners[index as usize].v0, corners[index as usize].v1, corners[index as usize].v2];
+    let middle = |index: u32| sides(index).into_iter().sum::<Vec3A>();
+    let mut order: Vec<u32> = (0..corners.len() as u32).collect();
+    let mut nodes = vec![BvhNodeBlock { min_count: [0.0; 4], max_first: [0.0; 4] }];
+    let mut waiting = vec![(0, 0..corners.len())];
+    while let Some((node, range)) = waiting.pop() {
+        let mut bounds = Bounds::EMPTY;
+        order[range.clone()].iter().flat_map(|index| sides(*index)).for_each(|corner| bounds.include(corner.into()));
+        if range.len() <= LEAF {
+            nodes[node] = block(&bounds, range.len() as u32, range.start as u32);
+            continue;
+        }
+        let axis = (bounds.max - bounds.min).max_position();
+        let half = range.len() / 2;
+        order[range.clone()]
+            .select_nth_unstable_by(half, |a, b| middle(*a)[axis].total_cmp(&middle(*b)[axis]).then(a.cmp(b)));
+        let first = nodes.len();
+        nodes[node] = block(&bounds, 0, first as u32);
+        nodes.extend([nodes[node]; 2]);
+        waiting.push((first, range.start..range.start + half));
+        waiting.push((first + 1, range.start + half..range.end));
+    }
+    (nodes, order)
 }
 
 fn enters(node: &BvhNodeBlock, origin: Vec3, inverse: Vec3, limit: f32) -> bool {
@@ -255,6 +297,43 @@ mod tests {
             prop_assert_eq!(hit.map_or(f32::INFINITY, |hit| hit.distance), every);
             prop_assert_eq!(bvh.occluded(origin, direction, 100.0), every.is_finite());
         }
+    }
+
+    #[test]
+    fn coincident_triangles_make_no_deep_tree() {
+        let mut scene = field(1, 60);
+        let mesh = &mut scene.meshes[0];
+        mesh.indices = [0, 1, 2].repeat(5000).into_iter().chain(0..180).collect();
+        let bvh = Bvh::build(&scene).unwrap();
+        let inside = scene.meshes[0].triangle(0).into_iter().sum::<Vec3>() / 3.0 + Vec3::new(0.5, 0.0, 0.0);
+        let direction = (inside - Vec3::splat(5.0)).normalize();
+        assert!(bvh.occluded(Vec3::splat(5.0), direction, 100.0));
+        let mut sources: Vec<u32> = bvh.sources.iter().map(|source| source.triangle).collect();
+        sources.sort_unstable();
+        assert!(sources.into_iter().eq(0..5060));
+    }
+
+    #[test]
+    fn halving_meets_what_the_builder_meets() {
+        let scene = field(3, 500);
+        let bvh = Bvh::build(&scene).unwrap();
+        let corners: Vec<Triangle> = bvh.triangles.iter().map(triangle_of).collect();
+        let (nodes, order) = halved(&corners);
+        let triangles = order.iter().map(|index| bvh.triangles[*index as usize]).collect();
+        let other = Bvh { nodes, triangles, sources: Vec::new() };
+        for ray in 0..200 {
+            let number = |axis: u32| sobol_burley::sample(ray, axis, 9) * 2.0 - 1.0;
+            let origin = 3.0 * Vec3::new(number(0), number(1), number(2));
+            let direction = Vec3::new(number(3), number(4), number(5)) - origin;
+            let hit = |bvh: &Bvh| bvh.closest_hit(origin, direction, 100.0, |_| true).map(|hit| hit.distance);
+            assert_eq!(hit(&other), hit(&bvh), "{ray}");
+        }
+    }
+
+    fn triangle_of(block: &BvhTriangleBlock) -> Triangle {
+        let three = |[x, y, z, _]: [f32; 4]| Vec3A::new(x, y, z);
+        let v0 = three(block.corner);
+        Triangle { v0, v1: v0 + three(block.edge1), v2: v0 + three(block.edge2) }
     }
 
     #[test]
