@@ -2,6 +2,7 @@
 
 use super::row::key;
 use crate::error::{Error, Result};
+use crate::units::Bytes;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -10,6 +11,9 @@ use std::path::{Path, PathBuf};
 
 /// Its name in the folder of `-o`.
 pub const NAME: &str = "rows.jsonl";
+
+/// A row has some kilobytes: a longer file is none of rows.
+const MAX_BYTES: u64 = 256 << 20;
 
 /// What happens to rows that are there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +56,17 @@ impl RowsFile {
     }
 
     fn read(&mut self) -> Result<()> {
+        let metadata = std::fs::metadata(&self.path).map_err(|error| self.error(&error.to_string()))?;
+        // A pipe or a device would block or never end.
+        if !metadata.is_file() {
+            return Err(self.error("it is not a regular file"));
+        }
+        if metadata.len() > MAX_BYTES {
+            let (has, most) = (Bytes(metadata.len()), Bytes(MAX_BYTES));
+            return Err(self
+                .error(&format!("it has {has}; up to {most} of rows are read"))
+                .note("--force replaces it"));
+        }
         let bytes = std::fs::read(&self.path).map_err(|error| self.error(&error.to_string()))?;
         let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         self.kept_bytes = whole as u64;
@@ -117,6 +132,20 @@ mod tests {
         rows.append(&row("b")).unwrap();
         let text = std::fs::read(&path).unwrap();
         assert_eq!(text, [&whole[..], format!("{}\n", row("b")).as_bytes()].concat());
+    }
+
+    #[test]
+    fn what_can_be_no_rows_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        // No byte of it takes room on the disk.
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        let refused = || RowsFile::open(folder.path(), Existing::Resume).err().unwrap();
+        let error = refused();
+        assert!(error.exit_code() == 2 && error.message().contains("1.00 TiB"), "{error}");
+        std::fs::remove_file(&path).unwrap();
+        std::fs::create_dir(&path).unwrap();
+        assert!(refused().message().contains("not a regular file"));
     }
 
     #[test]

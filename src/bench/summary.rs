@@ -130,6 +130,21 @@ mod tests {
     }
 
     #[test]
+    fn a_kept_row_may_say_anything() {
+        let mut kept = row("a", 1e308, f64::MAX);
+        kept["bytes_read"] = json!(u64::MAX);
+        kept["bytes_written"] = json!(u64::MAX);
+        // Longer than a column can be padded to.
+        kept["variant"] = json!("x".repeat(70_000));
+        kept["settings"] = json!([1, { "block": null }]);
+        let rows = vec![kept, json!({}), json!({ "ratio": 7, "device": [] })];
+        for what in [What::Frame, What::Split, What::Shade] {
+            let summary = Summary::new(what, &[], rows.clone(), &[]);
+            assert!(summary.text().contains("xxx") && summary.markdown().contains("xxx"));
+        }
+    }
+
+    #[test]
     fn a_summary_marks_the_pareto_set_and_says_what_was_skipped() {
         let mut skipped = row("c", 0.0, 0.0);
         skipped["skipped"] = json!("it cannot be");

@@ -8,6 +8,9 @@ use serde_json::Value;
 pub const MARK: &str = "*";
 
 /// One column: a title, and what it says of a row.
+/// How much of a variant's name a table shows: kept rows come from a file, and a column is padded to 65,535 at most.
+const MOST_NAME_CHARS: usize = 1000;
+
 struct Column {
     title: &'static str,
     cell: fn(&Value) -> Option<String>,
@@ -37,7 +40,8 @@ fn bytes(value: &Value) -> Option<String> {
 
 /// Read and written.
 fn moved(row: &Value) -> Option<String> {
-    let sum = row["bytes_read"].as_u64()? + row["bytes_written"].as_u64()?;
+    // Kept rows come from a file: their sum may be any.
+    let sum = row["bytes_read"].as_u64()?.checked_add(row["bytes_written"].as_u64()?)?;
     Some(Bytes(sum).to_string())
 }
 
@@ -84,7 +88,7 @@ impl Table {
         let titles = std::iter::once("variant").chain(columns.iter().map(|column| column.title));
         let mut lines = vec![titles.map(str::to_owned).collect::<Vec<_>>()];
         for row in rows.iter().filter(|row| row["skipped"].is_null()) {
-            let name = row["variant"].as_str().unwrap_or_default().to_owned();
+            let name = row["variant"].as_str().unwrap_or_default().chars().take(MOST_NAME_CHARS).collect();
             let cells = columns.iter().map(|column| (column.cell)(row).unwrap_or_else(|| "-".to_owned()));
             lines.push(std::iter::once(name).chain(cells).collect());
         }
