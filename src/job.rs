@@ -17,7 +17,7 @@ use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
 use crate::report::whole_file::write_whole;
 use crate::scene::{self, AnimationChoice, Model, Scene};
-use crate::session::{Renderer, Session};
+use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::{COMMON, Setting, Values};
 use crate::techniques::Technique;
 use std::io::Write;
@@ -107,6 +107,7 @@ impl Job {
     pub fn run_on(&self, request: &DeviceRequest) -> Result<Outcome> {
         self.check()?;
         let scene = self.load_scene()?;
+        self.require_triangle(&scene)?;
         let path = self.output_path(&scene);
         let session = Session::open(request, scene)?;
         let outcome = self.picture(&session, &self.values, &path)?;
@@ -182,6 +183,11 @@ impl Job {
     pub fn with_texture_limit(&self, mut scene: Scene) -> Scene {
         scene.texture_limit_px = self.values.integer("texture-limit") as u32;
         scene
+    }
+
+    /// Errors: nothing of `scene` is drawn (exit code 2); it is named as the request names it.
+    pub(crate) fn require_triangle(&self, scene: &Scene) -> Result<()> {
+        require_triangle(scene, &self.scene)
     }
 
     /// The device that the request names.

@@ -4,7 +4,16 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     quincunx::interrupt::install();
-    let argv: Vec<String> = std::env::args().collect();
+    let mut argv = Vec::new();
+    for argument in std::env::args_os() {
+        match argument.into_string() {
+            Ok(argument) => argv.push(argument),
+            Err(argument) => {
+                eprintln!("error: the argument {argument:?} is not UTF-8");
+                return ExitCode::from(2);
+            }
+        }
+    }
     match quincunx::cli::run(&argv) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -95,6 +95,7 @@ impl Job {
             }
             let values = frames.values(self, frame)?;
             let scene = self.with_texture_limit(model.pose(values.number("time"))?);
+            self.require_triangle(&scene)?;
             let path = frames.path_of(&self.output_path(&scene), frame);
             let shown = match session.take() {
                 None => Session::open(&self.device_request(), scene)?,

@@ -53,7 +53,7 @@ impl Session {
     ///
     /// Errors: no fitting device (exit code 3); memory (4); a scene without a triangle (2).
     pub fn open(request: &DeviceRequest, scene: Scene) -> Result<Self> {
-        require_triangle(&scene)?;
+        require_triangle(&scene, &scene.name)?;
         Self::on(Gpu::open(request)?, scene)
     }
 
@@ -64,7 +64,7 @@ impl Session {
         if scene.hash == self.scene.hash && scene.texture_limit_px == self.scene.texture_limit_px {
             return Ok(self);
         }
-        require_triangle(&scene)?;
+        require_triangle(&scene, &scene.name)?;
         let gpu = self.gpu.clone();
         // The old scene goes first: the device need not have room for both.
         drop(self);
@@ -151,10 +151,10 @@ impl Session {
     }
 }
 
-/// Errors: nothing is drawn (exit code 2).
-fn require_triangle(scene: &Scene) -> Result<()> {
+/// Errors: nothing of the scene, which messages call `name`, is drawn (exit code 2).
+pub(crate) fn require_triangle(scene: &Scene, name: &str) -> Result<()> {
     match scene.draws.is_empty() {
-        true => Err(Error::request(format!("{}: there is no triangle to draw", scene.name))),
+        true => Err(Error::request(format!("{name}: there is no triangle to draw"))),
         false => Ok(()),
     }
 }

@@ -15,6 +15,7 @@ mod textures;
 mod visible;
 
 pub use clusters::Cluster;
+pub use geometry::Geometry;
 pub use relief::advise;
 pub use visible::{DrawList, GeometryChoice};
 
@@ -27,8 +28,8 @@ use crate::scene::{AlphaMode, ColorSpace, Material, Mesh, Scene, TextureSlot, mi
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
-use geometry::Geometry;
 use glam::{Mat3, Vec3};
+use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
 use textures::Textures;
@@ -102,13 +103,9 @@ fn format_of(color_space: ColorSpace) -> vk::Format {
 
 /// Distinct images in their colour spaces, in the order of their first texture.
 fn distinct_images(scene: &Scene) -> Vec<(usize, ColorSpace)> {
-    let mut distinct = Vec::new();
-    for texture in &scene.textures {
-        if !distinct.contains(&(texture.image, texture.color_space)) {
-            distinct.push((texture.image, texture.color_space));
-        }
-    }
-    distinct
+    let mut seen = HashSet::new();
+    let all = scene.textures.iter().map(|texture| (texture.image, texture.color_space));
+    all.filter(|image| seen.insert(*image)).collect()
 }
 
 /// The first level of an image whose sides are at most `limit_px`; 0: no limit.

@@ -6,6 +6,7 @@
 pub mod counted;
 pub mod failing;
 pub mod gltf_file;
+pub mod measured;
 pub mod program;
 pub mod watched;
 

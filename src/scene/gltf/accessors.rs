@@ -14,6 +14,15 @@ use crate::error::{Error, Result};
 
 /// Vectors of `N` floats, all finite. Integers become floats as they are, or over their range where normalised.
 pub fn floats<const N: usize>(buffers: &Buffers<'_>, accessor: &Accessor<'_>) -> Result<Vec<[f32; N]>> {
+    floats_at(buffers, accessor, None)
+}
+
+/// The same of the elements `picked` alone, each below the accessor's count; None: of all.
+pub fn floats_at<const N: usize>(
+    buffers: &Buffers<'_>,
+    accessor: &Accessor<'_>,
+    picked: Option<&[u32]>,
+) -> Result<Vec<[f32; N]>> {
     within(accessor, || {
         if accessor.dimensions().multiplicity() != N || matches!(accessor.dimensions(), Dimensions::Mat2) {
             return Err(Error::request(format!(
@@ -23,27 +32,30 @@ pub fn floats<const N: usize>(buffers: &Buffers<'_>, accessor: &Accessor<'_>) ->
         }
         let elements = Elements::of(buffers, accessor)?;
         let values = match (accessor.data_type(), accessor.normalized()) {
-            (DataType::F32, _) => elements.components(f32::from_le_bytes),
-            (DataType::U8, false) => elements.components(|bytes| f32::from(u8::from_le_bytes(bytes))),
-            (DataType::I8, false) => elements.components(|bytes| f32::from(i8::from_le_bytes(bytes))),
-            (DataType::U16, false) => elements.components(|bytes| f32::from(u16::from_le_bytes(bytes))),
-            (DataType::I16, false) => elements.components(|bytes| f32::from(i16::from_le_bytes(bytes))),
+            (DataType::F32, _) => elements.components(picked, f32::from_le_bytes),
+            (DataType::U8, false) => elements.components(picked, |bytes| f32::from(u8::from_le_bytes(bytes))),
+            (DataType::I8, false) => elements.components(picked, |bytes| f32::from(i8::from_le_bytes(bytes))),
+            (DataType::U16, false) => elements.components(picked, |bytes| f32::from(u16::from_le_bytes(bytes))),
+            (DataType::I16, false) => elements.components(picked, |bytes| f32::from(i16::from_le_bytes(bytes))),
             // glTF 2.0, section 3.11: the signed ranges are symmetric, so the lowest integer is clamped.
-            (DataType::U8, true) => elements.components(|bytes| f32::from(u8::from_le_bytes(bytes)) / 255.0),
+            (DataType::U8, true) => elements.components(picked, |bytes| f32::from(u8::from_le_bytes(bytes)) / 255.0),
             (DataType::I8, true) => {
-                elements.components(|bytes| (f32::from(i8::from_le_bytes(bytes)) / 127.0).max(-1.0))
+                elements.components(picked, |bytes| (f32::from(i8::from_le_bytes(bytes)) / 127.0).max(-1.0))
             }
-            (DataType::U16, true) => elements.components(|bytes| f32::from(u16::from_le_bytes(bytes)) / 65535.0),
+            (DataType::U16, true) => {
+                elements.components(picked, |bytes| f32::from(u16::from_le_bytes(bytes)) / 65535.0)
+            }
             (DataType::I16, true) => {
-                elements.components(|bytes| (f32::from(i16::from_le_bytes(bytes)) / 32767.0).max(-1.0))
+                elements.components(picked, |bytes| (f32::from(i16::from_le_bytes(bytes)) / 32767.0).max(-1.0))
             }
             (DataType::U32, _) => {
                 return Err(Error::request("holds 32-bit integers; floats, bytes or shorts are needed"));
             }
         };
         match values.iter().position(|value: &[f32; N]| value.iter().any(|component| !component.is_finite())) {
-            Some(element) => {
-                Err(Error::request(format!("element {element} is {:?}; all must be finite", values[element])))
+            Some(place) => {
+                let element = picked.map_or(place, |picked| picked[place] as usize);
+                Err(Error::request(format!("element {element} is {:?}; all must be finite", values[place])))
             }
             None => Ok(values),
         }
@@ -58,9 +70,9 @@ pub fn indices(buffers: &Buffers<'_>, accessor: &Accessor<'_>, vertex_count: usi
         }
         let elements = Elements::of(buffers, accessor)?;
         let values: Vec<[u32; 1]> = match accessor.data_type() {
-            DataType::U8 => elements.components(|bytes| u32::from(u8::from_le_bytes(bytes))),
-            DataType::U16 => elements.components(|bytes| u32::from(u16::from_le_bytes(bytes))),
-            DataType::U32 => elements.components(u32::from_le_bytes),
+            DataType::U8 => elements.components(None, |bytes| u32::from(u8::from_le_bytes(bytes))),
+            DataType::U16 => elements.components(None, |bytes| u32::from(u16::from_le_bytes(bytes))),
+            DataType::U32 => elements.components(None, u32::from_le_bytes),
             other => return Err(Error::request(format!("holds {other:?} components; indices are unsigned integers"))),
         };
         let values = values.into_flattened();
@@ -82,13 +94,23 @@ pub fn joints(buffers: &Buffers<'_>, accessor: &Accessor<'_>) -> Result<Vec<[u16
         }
         let elements = Elements::of(buffers, accessor)?;
         match accessor.data_type() {
-            DataType::U8 => Ok(elements.components(|bytes| u16::from(u8::from_le_bytes(bytes)))),
-            DataType::U16 => Ok(elements.components(u16::from_le_bytes)),
+            DataType::U8 => Ok(elements.components(None, |bytes| u16::from(u8::from_le_bytes(bytes)))),
+            DataType::U16 => Ok(elements.components(None, u16::from_le_bytes)),
             other => {
                 Err(Error::request(format!("holds {other:?} components; joints are unsigned bytes or unsigned shorts")))
             }
         }
     })
+}
+
+/// Errors: the file does not hold all elements of the accessor (exit code 2).
+pub fn require_there(buffers: &Buffers<'_>, accessor: &Accessor<'_>) -> Result<()> {
+    within(accessor, || Elements::of(buffers, accessor).map(|_| ()))
+}
+
+/// Whether each reading copies the whole accessor, because its elements do not lie in one view.
+pub fn is_packed(accessor: &Accessor<'_>) -> bool {
+    accessor.view().is_none() || accessor.sparse().is_some()
 }
 
 /// Errors: the accessor has not one element for each of `vertex_count` vertices (exit code 2).
@@ -166,14 +188,25 @@ impl<'a> Elements<'a> {
         Ok(Self { bytes: Cow::Borrowed(bytes), stride, size, count })
     }
 
-    fn iter(&self) -> impl Iterator<Item = &[u8]> {
-        (0..self.count).map(|element| &self.bytes[element * self.stride..][..self.size])
+    fn at(&self, element: usize) -> &[u8] {
+        &self.bytes[element * self.stride..][..self.size]
     }
 
-    /// `N` components of `S` bytes of each element.
-    fn components<const N: usize, const S: usize, T>(&self, convert: impl Fn([u8; S]) -> T) -> Vec<[T; N]> {
+    fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.count).map(|element| self.at(element))
+    }
+
+    /// `N` components of `S` bytes of each element, or of those `picked`.
+    fn components<const N: usize, const S: usize, T>(
+        &self,
+        picked: Option<&[u32]>,
+        convert: impl Fn([u8; S]) -> T,
+    ) -> Vec<[T; N]> {
         let element = |bytes: &[u8]| std::array::from_fn(|component| convert(bytes.as_chunks::<S>().0[component]));
-        self.iter().map(element).collect()
+        match picked {
+            None => self.iter().map(element).collect(),
+            Some(picked) => picked.iter().map(|place| element(self.at(*place as usize))).collect(),
+        }
     }
 }
 
@@ -186,12 +219,11 @@ fn span(bytes: &[u8], offset: usize, stride: usize, size: usize, count: usize) -
 
 /// An accessor without a view is zero before its sparse values; nothing in the file backs its count.
 fn zeros(buffers: &Buffers<'_>, size: usize, count: usize) -> Result<Vec<u8>> {
-    let total_bytes = buffers.total_bytes();
-    let length = count.checked_mul(size).filter(|_| count <= total_bytes);
+    let file_bytes = buffers.file_bytes();
+    let length = count.checked_mul(size).filter(|_| count <= file_bytes);
     length.map(|length| vec![0; length]).ok_or_else(|| {
         Error::request(format!(
-            "{count} elements without a buffer view are more than a file with {total_bytes} bytes of buffers may \
-             ask for"
+            "{count} elements without a buffer view are more than a file with {file_bytes} bytes may ask for"
         ))
     })
 }
@@ -247,7 +279,7 @@ mod tests {
                 "accessors": [{"bufferView": 0, "componentType": component_type, "normalized": normalized,
                     "count": 4, "type": "SCALAR"}],
             });
-            let document = super::super::document::parse(json.to_string().as_bytes()).unwrap();
+            let document = super::super::document::parse(json.to_string().as_bytes()).unwrap().document;
             floats(&buffers, &document.accessors().next().unwrap()).unwrap()
         };
         assert_eq!(read(5120, true), [[-1.0], [-1.0], [1.0], [0.0]]);

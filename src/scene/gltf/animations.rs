@@ -7,16 +7,14 @@ use gltf::json::validation::Checked;
 use gltf::{Accessor, Document, json};
 
 use super::buffers::Buffers;
+use super::limits::Allowance;
 use super::nodes::Hierarchy;
 use super::{accessors, label, morph};
 use crate::error::{Error, Result};
 use crate::scene::animation::{AnimationChoice, Curve, Interpolation, unit_quaternion};
 
-/// How many numbers the curves of a file may have together: 256 MiB of them.
-///
-/// A short file can name the same accessors in thousands of channels, so that each is backed by bytes and their sum is
-/// not.
-const MAX_CURVE_NUMBERS: usize = 1 << 26;
+/// How many numbers the curves of a file may have together, beside one for each byte of it: 16 MiB of them.
+const FREE_CURVE_NUMBERS: usize = 1 << 22;
 
 /// What a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,7 +50,9 @@ pub fn read(
         AnimationChoice::None => 0..0,
         AnimationChoice::One(name) => one(animations, name)?,
     };
-    let (mut channels, mut taken, mut numbers, mut overruled) = (Vec::new(), BTreeSet::new(), 0, Vec::new());
+    let (mut channels, mut taken, mut overruled) = (Vec::new(), BTreeSet::new(), Vec::new());
+    let what = "numbers of animations";
+    let mut numbers = Allowance::new(what, FREE_CURVE_NUMBERS, 1, buffers.file_bytes());
     for animation_index in chosen {
         let animation = &animations[animation_index];
         for (channel_index, channel) in animation.channels.iter().enumerate() {
@@ -109,7 +109,7 @@ fn read_channel(
     buffers: &Buffers<'_>,
     animation: &json::Animation,
     channel: &json::animation::Channel,
-    numbers: &mut usize,
+    numbers: &mut Allowance,
 ) -> Result<Channel> {
     let node_index = channel.target.node.value();
     // The crate's validation does not look at this index.
@@ -151,12 +151,7 @@ fn read_channel(
     };
     let (input, output) = (accessor(sampler.input.value(), "input")?, accessor(sampler.output.value(), "output")?);
     let sum = |accessor: &Accessor<'_>| accessor.count().saturating_mul(accessor.dimensions().multiplicity());
-    *numbers = numbers.saturating_add(sum(&input)).saturating_add(sum(&output));
-    if *numbers > MAX_CURVE_NUMBERS {
-        return Err(Error::request(format!(
-            "brings the animations to {numbers} numbers; {MAX_CURVE_NUMBERS} is the limit"
-        )));
-    }
+    numbers.spend(sum(&input).saturating_add(sum(&output)))?;
 
     let times_s = accessors::floats::<1>(buffers, &input).map_err(|error| error.within("input"))?.into_flattened();
     let values = match motion {

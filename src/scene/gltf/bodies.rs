@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::animations::{Channel, Motion};
 use super::buffers::Buffers;
 use super::deform::{self, Deform};
+use super::limits::Allowance;
 use super::nodes::{Hierarchy, PlacedNode};
 use super::primitives::{Piece, Shown};
 use super::skins::Skin;
@@ -19,6 +20,10 @@ use crate::scene::{Draw, Mesh};
 
 /// A short file can have many nodes that all draw one mesh of many primitives; this many draws take 320 MiB.
 const MAX_DRAWS: usize = 1 << 22;
+
+/// How many triangles all draws together may have, beside sixteen for each byte of the file: a tree over these takes
+/// 500 MiB.
+const FREE_TRIANGLES: usize = 1 << 21;
 
 /// To which part of a metre a metre shrinks where the transform of a moving draw has no inverse: no pixel is that small,
 /// and the normal matrix, the lengths of whose columns are squared twice, still is one.
@@ -106,6 +111,7 @@ impl Bodies {
         let mut shown = Vec::new();
         let mut is_still = vec![false; document.meshes().len()];
         let mut draw_count = 0;
+        let mut triangles = Allowance::new("triangles over all nodes", FREE_TRIANGLES, 16, buffers.file_bytes());
         for node in document.nodes().filter(|node| hierarchy.shows(node.index())) {
             let Some(mesh) = node.mesh().map(|mesh| mesh.index()) else { continue };
             draw_count += pieces.get(&mesh).map_or(0, Vec::len);
@@ -115,6 +121,8 @@ impl Bodies {
                     "{node} brings the scene to more than {MAX_DRAWS} draws, the limit"
                 )));
             }
+            let of_mesh = pieces.get(&mesh).into_iter().flatten().map(|piece| piece.mesh.triangle_count());
+            triangles.spend(of_mesh.sum()).map_err(|error| error.within(label::node(document, node.index())))?;
             let bends = deform::bends(document, node.index())?;
             is_still[mesh] |= !bends;
             shown.push((node.index(), mesh, bends));
@@ -125,10 +133,13 @@ impl Bodies {
         for (mesh, pieces) in pieces {
             let (first_still, first_bent) = (still.len(), bent.len());
             for Piece { mesh: piece, deform } in pieces {
-                if is_still[mesh] {
-                    still.push(piece.clone());
+                match deform {
+                    Some(deform) => {
+                        still.extend(is_still[mesh].then(|| piece.clone()));
+                        bent.push((piece, deform));
+                    }
+                    None => still.push(piece),
                 }
-                bent.extend(deform.map(|deform| (piece, deform)));
             }
             ranges.insert(mesh, [first_still..still.len(), first_bent..bent.len()]);
         }

@@ -4,22 +4,25 @@ use glam::Mat4;
 use gltf::{Document, Semantic};
 
 use super::buffers::Buffers;
+use super::limits::Allowance;
 use super::morph::{self, Target};
 use super::nodes::Hierarchy;
 use super::primitives;
 use super::skins::Influences;
 use super::{label, tangents};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::Mesh;
 
-/// How many indices the meshes that bend may have together, counted for each node that shows one: 22 million triangles.
+/// How many indices the meshes that bend may have together, counted for each node that shows one, beside sixteen for each
+/// byte of the file: 700,000 triangles.
 ///
 /// Each such node has vertices of its own at each moment, so a short file in which many share a mesh asks for much.
-const MAX_BENT_INDICES: usize = 1 << 26;
+const FREE_BENT_INDICES: usize = 1 << 21;
 
-/// How many vectors of morph targets a file may have, and how many all nodes may add up at a moment.
-const MAX_TARGET_VECTORS: usize = 1 << 26;
-const MAX_MORPHED_VECTORS: usize = 1 << 30;
+/// How many vectors of morph targets a file may have, and how many all nodes may add up at a moment, beside those that its
+/// bytes back.
+const FREE_TARGET_VECTORS: usize = 1 << 24;
+const FREE_MORPHED_VECTORS: usize = 1 << 25;
 
 /// Targets and influences of one mesh, a value for each of its vertices.
 #[derive(Debug)]
@@ -96,8 +99,12 @@ pub fn bends(document: &Document, node_index: usize) -> Result<bool> {
 }
 
 /// Refuses what would take more memory or time than any scene here is worth, before anything is read.
-pub fn check_total(document: &Document, hierarchy: &Hierarchy) -> Result<()> {
-    let (mut indices, mut morphed, mut read) = (0usize, 0usize, 0usize);
+pub fn check_total(document: &Document, hierarchy: &Hierarchy, buffers: &Buffers<'_>) -> Result<()> {
+    let file_bytes = buffers.file_bytes();
+    let mut indices = Allowance::new("indices of meshes that bend", FREE_BENT_INDICES, 16, file_bytes);
+    let mut read = Allowance::new("vectors of morph targets", FREE_TARGET_VECTORS, 1, file_bytes);
+    let what = "vectors of morph targets over all nodes";
+    let mut morphed = Allowance::new(what, FREE_MORPHED_VECTORS, 16, file_bytes);
     let mut seen = vec![false; document.meshes().len()];
     for node in document.nodes() {
         let Some(mesh) = node.mesh().filter(|_| hierarchy.shows(node.index())) else { continue };
@@ -105,25 +112,20 @@ pub fn check_total(document: &Document, hierarchy: &Hierarchy) -> Result<()> {
             continue;
         }
         let targets = morph::target_count(document, node.index())?;
-        let corners =
-            mesh.primitives().fold(0usize, |sum, primitive| sum.saturating_add(primitives::corners(&primitive)));
+        // Targets and influences are read for all vertices, whatever triangles use of them.
+        let longest = |primitive: gltf::Primitive<'_>| {
+            let vertices = primitive.get(&Semantic::Positions).map_or(0, |accessor| accessor.count());
+            primitives::corners(&primitive).max(vertices)
+        };
+        let corners = mesh.primitives().fold(0usize, |sum, primitive| sum.saturating_add(longest(primitive)));
         // Positions, normals and tangents.
         let vectors = corners.saturating_mul(3).saturating_mul(targets);
-        indices = indices.saturating_add(corners);
-        morphed = morphed.saturating_add(vectors);
-        if !std::mem::replace(&mut seen[mesh.index()], true) {
-            read = read.saturating_add(vectors);
-        }
-        for (count, limit, what) in [
-            (indices, MAX_BENT_INDICES, "indices of meshes that bend"),
-            (read, MAX_TARGET_VECTORS, "vectors of morph targets"),
-            (morphed, MAX_MORPHED_VECTORS, "vectors of morph targets over all nodes"),
-        ] {
-            if count > limit {
-                let node = label::node(document, node.index());
-                return Err(Error::request(format!("{node} brings the file to {count} {what}; {limit} is the limit")));
-            }
-        }
+        let is_new = !std::mem::replace(&mut seen[mesh.index()], true);
+        let spent = indices
+            .spend(corners)
+            .and_then(|()| read.spend(if is_new { vectors } else { 0 }))
+            .and_then(|()| morphed.spend(vectors));
+        spent.map_err(|error| error.within(label::node(document, node.index())))?;
     }
     Ok(())
 }

@@ -9,6 +9,8 @@ use gltf::{Document, Semantic};
 use serde::Deserialize;
 
 use super::label;
+use super::skins::SETS;
+use super::survey::survey;
 use crate::error::{Error, Result};
 
 /// What is honoured where a file uses it. Quantised vertices need nothing beyond what `accessors` reads anyway.
@@ -26,21 +28,44 @@ const EXTENSIONS: [&str; 8] = [
 /// How many of the crate's findings a message shows.
 const SHOWN_FINDINGS: usize = 4;
 
+/// A document, and what had to be left out of it.
+#[derive(Debug)]
+pub struct Parsed {
+    pub document: Document,
+    pub warnings: Vec<String>,
+}
+
 /// Parses and checks the JSON of a glTF 2.0 file.
-pub fn parse(json: &[u8]) -> Result<Document> {
+///
+/// Errors: it is none, or a part of it points nowhere (exit code 2).
+pub fn parse(json: &[u8]) -> Result<Parsed> {
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     if json.trim_ascii_start().first() != Some(&b'{') {
         return Err(Error::request("is neither glTF JSON nor a .glb: it begins with neither '{' nor 'glTF'"));
     }
     check_version(json)?;
-    let root: json::Root = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    let surveyed = survey(json)?;
+    let root: json::Root = serde_json::from_slice(&surveyed.json).map_err(|error| json_error(&error))?;
     check_required_extensions(&root)?;
     check_indices(&root)?;
-    Ok(Document::from_json_without_validation(root))
+    let document = Document::from_json_without_validation(root);
+    let mut warnings = ignored_features(&document);
+    if surveyed.pointer_channels > 0 {
+        warnings.push(label::count(
+            surveyed.pointer_channels,
+            "animation channel has no node and is left out",
+            "animation channels have no node and are left out",
+        ));
+    }
+    Ok(Parsed { document, warnings })
 }
 
-fn json_error(error: &serde_json::Error) -> Error {
-    let refused = Error::request(format!("is not glTF 2.0 JSON: {error}"));
+/// A message of the parser's, which may quote the file: its beginning, and the place at its end.
+pub fn json_error(error: &serde_json::Error) -> Error {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let what = text.strip_suffix(&place).unwrap_or(&text);
+    let refused = Error::request(format!("is not glTF 2.0 JSON: {}{place}", label::shown(what).escape_debug()));
     if error.is_eof() { refused.note("the file seems cut short") } else { refused }
 }
 
@@ -59,18 +84,20 @@ fn check_version(json: &[u8]) -> Result<()> {
     let Head { asset } = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
     let needed = asset.min_version.unwrap_or(asset.version);
     if needed != "2.0" && !(needed.starts_with("2.") && needed.len() > 2) {
-        return Err(Error::request(format!("is glTF version {needed:?}; version 2.0 is what is read")));
+        return Err(Error::request(format!(
+            "is glTF version {:?}; version 2.0 is what is read",
+            label::shown(&needed)
+        )));
     }
     Ok(())
 }
 
 fn check_required_extensions(root: &json::Root) -> Result<()> {
-    let missing: Vec<&str> =
-        root.extensions_required.iter().map(String::as_str).filter(|name| !EXTENSIONS.contains(name)).collect();
-    if missing.is_empty() {
+    let missing = || root.extensions_required.iter().map(String::as_str).filter(|name| !EXTENSIONS.contains(name));
+    if missing().next().is_none() {
         return Ok(());
     }
-    Err(Error::request(format!("extensionsRequired asks for {}, which is not handled", missing.join(", ")))
+    Err(Error::request(format!("extensionsRequired asks for {}, which is not handled", label::list(missing())))
         .note(format!("export the scene without it; handled are {}", EXTENSIONS.join(", "))))
 }
 
@@ -110,24 +137,36 @@ fn check_indices(root: &json::Root) -> Result<()> {
 }
 
 /// One sentence for each thing in the file that the scene leaves out.
-pub fn ignored_features(document: &Document) -> Vec<String> {
+fn ignored_features(document: &Document) -> Vec<String> {
     let root = document.as_json();
-    let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let with_colors = primitives().filter(|primitive| {
-        primitive.attributes.keys().any(|semantic| matches!(semantic, Checked::Valid(Semantic::Colors(1..))))
-    });
+    let with = |is_ignored: fn(&Semantic) -> bool| {
+        let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        let has = |semantic: &Checked<Semantic>| matches!(semantic, Checked::Valid(semantic) if is_ignored(semantic));
+        primitives.filter(|primitive| primitive.attributes.keys().any(has)).count()
+    };
     let mut sentences = Vec::new();
-    for (count, one, many) in [(
-        with_colors.count(),
-        "primitive has vertex colours beyond the first, which are ignored",
-        "primitives have vertex colours beyond the first, which are ignored",
-    )] {
+    for (count, one, many) in [
+        (
+            with(|semantic| matches!(semantic, Semantic::Colors(1..))),
+            "primitive has vertex colours beyond the first, which are ignored",
+            "primitives have vertex colours beyond the first, which are ignored",
+        ),
+        (
+            with(|semantic| matches!(semantic, Semantic::Joints(SETS..) | Semantic::Weights(SETS..))),
+            "primitive has joints beyond eight a vertex, which are ignored",
+            "primitives have joints beyond eight a vertex, which are ignored",
+        ),
+    ] {
         if count > 0 {
             sentences.push(label::count(count, one, many));
         }
     }
-    let unknown = root.extensions_used.iter().filter(|name| !EXTENSIONS.contains(&name.as_str()));
-    sentences.extend(unknown.map(|name| format!("the extension {name} is ignored")));
+    let unknown = || root.extensions_used.iter().map(String::as_str).filter(|name| !EXTENSIONS.contains(name));
+    match unknown().count() {
+        0 => {}
+        1 => sentences.push(format!("the extension {} is ignored", label::list(unknown()))),
+        _ => sentences.push(format!("the extensions {} are ignored", label::list(unknown()))),
+    }
     sentences
 }
 

@@ -56,7 +56,7 @@ pub fn inspect(path: &Path) -> Result<(Scene, Facts)> {
 
 fn facts(path: &Path) -> Result<Facts> {
     let source = Source::open(path)?;
-    let document = document::parse(source.json())?;
+    let document = document::parse(source.json())?.document;
     // Here the hasher only counts the bytes of external files.
     let mut hasher = blake3::Hasher::new();
     let buffers = Buffers::read(&document, &source, &mut hasher)?;

@@ -1,33 +1,48 @@
 //! PNG and JPEG images, decoded in parallel under limits: a few bytes can claim gigabytes of pixels.
 
-use std::borrow::Cow;
 use std::io::Cursor;
 
 use gltf::Document;
-use image::{ImageFormat, ImageReader, Limits};
+use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 
 use super::buffers::Buffers;
 use super::facts::ImageFacts;
 use super::label;
-use super::source::Source;
+use super::source::{Data, Source};
 use crate::error::{Error, Result};
 use crate::scene::Image;
 use crate::units::{Bytes, Extent};
 
 /// maxImageDimension2D of lavapipe and of most GPUs.
 const MAX_SIDE_PX: u32 = 16384;
-/// What the decoder may hold for one image: 16-bit RGBA at the longest sides.
-const MAX_DECODER_BYTES: u64 = 2 << 30;
+/// What the decoder may hold beside the pixels: colour profiles and texts stand before them and pack well.
+const MAX_ASIDE_BYTES: u64 = 16 << 20;
 /// What all images of a file may take as 8-bit RGBA: four of the largest, or 256 of 2048 x 2048.
 const MAX_TOTAL_BYTES: u64 = 4 << 30;
+/// The same, of a file that backs it with nothing: eight of 2048 x 2048 in one colour.
+const FREE_BYTES: u64 = 128 << 20;
+/// And with each byte of it: pictures pack to a tenth or a fiftieth, those of one colour to a thousandth.
+const BYTES_PER_FILE_BYTE: u64 = 64;
 
 /// An image before it is decoded.
 struct Encoded<'a> {
     label: String,
     name: String,
-    bytes: Cow<'a, [u8]>,
+    bytes: Data<'a>,
     format: ImageFormat,
+    extent: Extent,
+    /// Of the pixels as the file has them: sixteen bits a channel take more than eight.
+    decoded_bytes: u64,
+}
+
+/// A decoder that allocates no more than `most_bytes`.
+fn limited(bytes: &[u8], format: ImageFormat, most_bytes: u64) -> ImageReader<Cursor<&[u8]>> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(most_bytes);
+    reader.limits(limits);
+    reader
 }
 
 /// Decodes the images `image_indices` of the file, in that order; external ones go into `hasher`.
@@ -39,17 +54,21 @@ pub fn read(
     hasher: &mut blake3::Hasher,
 ) -> Result<Vec<Image>> {
     let mut encoded = Vec::with_capacity(image_indices.len());
-    let mut total = Bytes(0);
+    let mut total_bytes = 0u64;
     for image_index in image_indices {
         let image = &document.as_json().images[*image_index];
         let label = label::element("image", *image_index, image.name.as_deref().or(file_name(image)));
-        let (opened, extent) =
-            open(document, image, *image_index, source, buffers, hasher).map_err(|error| error.within(&label))?;
-        total.0 += 4 * extent.pixel_count();
-        if total.0 > MAX_TOTAL_BYTES {
+        let opened = open(document, image, *image_index, source, buffers, hasher);
+        let opened = opened.map_err(|error| error.within(&label))?;
+        let extent = opened.extent;
+        total_bytes = total_bytes.saturating_add(opened.decoded_bytes.max(4 * extent.pixel_count()));
+        let limit_bytes = limit_bytes(source.size_bytes());
+        if total_bytes > limit_bytes {
             return Err(Error::request(format!(
-                "{label}: {extent} pixels bring the file's images to {total}; {} is the limit",
-                Bytes(MAX_TOTAL_BYTES)
+                "{label}: {extent} pixels bring the file's images to {}; {} is the limit for a file of {}",
+                Bytes(total_bytes),
+                Bytes(limit_bytes),
+                Bytes(source.size_bytes() as u64)
             ))
             .note("make its images smaller"));
         }
@@ -58,6 +77,12 @@ pub fn read(
     // Collected before the first error is taken: always the same image is reported.
     let decoded: Vec<Result<Image>> = encoded.par_iter().map(decode).collect();
     decoded.into_iter().collect()
+}
+
+/// What the images of a file of this size may take as 8-bit RGBA.
+fn limit_bytes(file_bytes: usize) -> u64 {
+    let backed = BYTES_PER_FILE_BYTE.saturating_mul(file_bytes as u64);
+    FREE_BYTES.saturating_add(backed).min(MAX_TOTAL_BYTES)
 }
 
 /// Names, formats and extents of all images of the file, by their headers; bytes of external ones go into `hasher`.
@@ -71,8 +96,8 @@ pub fn headers(
     images
         .map(|(index, image)| {
             let opened = open(document, image, index, source, buffers, hasher).ok();
-            let header = opened
-                .map(|(encoded, extent)| (if encoded.format == ImageFormat::Png { "PNG" } else { "JPEG" }, extent));
+            let header =
+                opened.map(|encoded| (if encoded.format == ImageFormat::Png { "PNG" } else { "JPEG" }, encoded.extent));
             ImageFacts { name: name_of(image, index), header }
         })
         .collect()
@@ -97,26 +122,27 @@ fn open<'a>(
     source: &Source,
     buffers: &'a Buffers<'_>,
     hasher: &mut blake3::Hasher,
-) -> Result<(Encoded<'a>, Extent)> {
+) -> Result<Encoded<'a>> {
     let view = image.buffer_view.and_then(|view| document.views().nth(view.value()));
     let bytes = match (view, &image.uri) {
-        (Some(view), _) => Cow::Borrowed(buffers.view(&view)?),
-        (None, Some(uri)) => Cow::Owned(source.fetch(uri, hasher)?),
+        (Some(view), _) => Data::Part(buffers.view(&view)?),
+        (None, Some(uri)) => source.fetch(uri, hasher)?,
         (None, None) => return Err(Error::request("has neither a uri nor a buffer view")),
     };
     // The bytes decide, not the MIME type or the name: exporters get those wrong.
     let format =
         image::guess_format(&bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
     let format = format.ok_or_else(|| Error::request("is neither PNG nor JPEG; those two are what is read"))?;
-    let (width, height) =
-        ImageReader::with_format(Cursor::new(&*bytes), format).into_dimensions().map_err(|error| broken(&error))?;
+    let header = limited(&bytes, format, MAX_ASIDE_BYTES).into_decoder().map_err(|error| broken(&error))?;
+    let ((width, height), decoded_bytes) = (header.dimensions(), header.total_bytes());
+    drop(header);
     let extent = Extent::new(width, height);
     if width.max(height) > MAX_SIDE_PX || width.min(height) == 0 {
         return Err(Error::request(format!("has {extent} pixels; 1 to {MAX_SIDE_PX} a side can be drawn")));
     }
     let name = name_of(image, image_index);
     let label = label::element("image", image_index, Some(&name));
-    Ok((Encoded { label, name, bytes, format }, extent))
+    Ok(Encoded { label, name, bytes, format, extent, decoded_bytes })
 }
 
 fn broken(error: &image::ImageError) -> Error {
@@ -124,12 +150,7 @@ fn broken(error: &image::ImageError) -> Error {
 }
 
 fn decode(encoded: &Encoded<'_>) -> Result<Image> {
-    let mut reader = ImageReader::with_format(Cursor::new(&*encoded.bytes), encoded.format);
-    let mut limits = Limits::no_limits();
-    limits.max_image_width = Some(MAX_SIDE_PX);
-    limits.max_image_height = Some(MAX_SIDE_PX);
-    limits.max_alloc = Some(MAX_DECODER_BYTES);
-    reader.limits(limits);
+    let reader = limited(&encoded.bytes, encoded.format, encoded.decoded_bytes.saturating_add(MAX_ASIDE_BYTES));
     let pixels = reader.decode().map_err(|error| broken(&error).within(&encoded.label))?.into_rgba8();
     let (width, height) = pixels.dimensions();
     Ok(Image { name: encoded.name.clone(), width, height, rgba8: pixels.into_raw() })

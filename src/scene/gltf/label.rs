@@ -1,10 +1,33 @@
 //! How messages name the elements of a file: by index, and by name where there is one.
 
+/// How much of a name is shown: a file may have one of megabytes.
+const SHOWN_CHARS: usize = 80;
+
 /// `kind 3 "name"`, or `kind 3` where the file gives no name.
 pub fn element(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) if !name.is_empty() => format!("{kind} {index} {name:?}"),
+        Some(name) if !name.is_empty() => format!("{kind} {index} {:?}", shown(name)),
         _ => format!("{kind} {index}"),
+    }
+}
+
+/// The beginning of a text of the file's.
+pub fn shown(text: &str) -> String {
+    let mut shown: String = text.chars().take(SHOWN_CHARS).collect();
+    if shown.len() < text.len() {
+        shown.push_str("...");
+    }
+    shown
+}
+
+/// The first of `names`, which are the file's, and how many more there are.
+pub fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    const SHOWN_NAMES: usize = 8;
+    let mut names = names.map(|name| shown(name).escape_debug().to_string());
+    let first: Vec<String> = names.by_ref().take(SHOWN_NAMES).collect();
+    match names.count() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
     }
 }
 
@@ -26,6 +49,9 @@ mod tests {
     fn an_element_shows_its_name_where_it_has_one() {
         assert_eq!(element("mesh", 3, Some("door")), "mesh 3 \"door\"");
         assert_eq!(element("mesh", 3, None), "mesh 3");
+        assert_eq!(shown(&"x".repeat(1000)).len(), SHOWN_CHARS + 3);
+        assert_eq!(list(["a"; 10].into_iter()), "a, a, a, a, a, a, a, a and 2 more");
+        assert_eq!(list(["\u{1b}[2J"].into_iter()), "\\u{1b}[2J");
         assert_eq!(count(1, "mesh is", "meshes are"), "1 mesh is");
         assert_eq!(count(2, "mesh is", "meshes are"), "2 meshes are");
     }

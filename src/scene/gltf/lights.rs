@@ -11,6 +11,9 @@ use super::nodes::PlacedNode;
 use crate::error::{Error, Result};
 use crate::scene::{Light, LightKind};
 
+/// Greatest candela or lux: what it gives at the least distance, and over many lights, is still within 32-bit floats.
+pub const MAX_INTENSITY: f32 = 1e18;
+
 /// By how much an outer cone angle may exceed pi/2: what a file with few digits rounds up.
 const ANGLE_TOLERANCE: f32 = 1e-4;
 
@@ -38,9 +41,9 @@ fn read_light(
     placed: &PlacedNode,
 ) -> Result<Option<Light>> {
     let intensity = Vec3::from_array(light.color()) * light.intensity();
-    if !intensity.is_finite() || intensity.min_element() < 0.0 {
+    if !(intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() <= MAX_INTENSITY) {
         return Err(Error::request(format!(
-            "colour times intensity is {intensity}; each must be finite and at least 0"
+            "colour times intensity is {intensity}; each must be 0 to {MAX_INTENSITY:e}"
         )));
     }
     if let Some(range) = light.range().filter(|range| !(range.is_finite() && *range > 0.0)) {

@@ -4,6 +4,8 @@
 //! it does not let through, 1 - transmission * (1 - F0): light goes straight on and takes no colour. KHR_materials_specular
 //! scales F0 by its factor and by the mean of its colour: grazing reflection stays whole where the factor is not 0.
 
+use std::collections::HashMap;
+
 use glam::{Affine2, Vec2, Vec4};
 use gltf::Document;
 use gltf::json::extensions::texture::{
@@ -13,6 +15,7 @@ use gltf::material::AlphaMode as GltfAlphaMode;
 use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 
 use super::label;
+use super::lights::MAX_INTENSITY;
 use crate::error::{Error, Result};
 use crate::scene::material::DEFAULT_DIELECTRIC_F0;
 use crate::scene::{AlphaMode, ColorSpace, Material, Placement, Sampler, Texture, TextureSlot, Wrap};
@@ -71,6 +74,8 @@ pub fn read(document: &Document, warnings: &mut Vec<String>) -> Result<Materials
 #[derive(Default)]
 struct Reader {
     textures: Vec<Texture>,
+    /// Where each of `textures` is.
+    places: HashMap<Texture, usize>,
     other_uv_sets: usize,
     clamped: usize,
     transmissive: usize,
@@ -154,7 +159,7 @@ impl Reader {
         let strength = material.emissive_strength().unwrap_or(1.0);
         for (channel, factor) in material.emissive_factor().into_iter().enumerate() {
             read.emissive[channel] =
-                self.in_range("emissiveFactor times emissiveStrength", factor * strength, f32::MAX)?;
+                self.in_range("emissiveFactor times emissiveStrength", factor * strength, MAX_INTENSITY)?;
         }
         Ok(())
     }
@@ -241,7 +246,7 @@ impl Reader {
     /// Index of the image seen so; the same image may be seen in two colour spaces.
     fn texture(&mut self, texture: &gltf::Texture<'_>, color_space: ColorSpace) -> usize {
         let seen = Texture { image: texture.source().index(), sampler: sampler(&texture.sampler()), color_space };
-        self.textures.iter().position(|known| *known == seen).unwrap_or_else(|| {
+        *self.places.entry(seen).or_insert_with(|| {
             self.textures.push(seen);
             self.textures.len() - 1
         })

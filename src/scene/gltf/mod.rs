@@ -10,6 +10,7 @@
 
 mod accessors;
 mod animations;
+mod attributes;
 mod bodies;
 mod buffers;
 mod cameras;
@@ -19,6 +20,7 @@ mod facts;
 mod images;
 mod label;
 mod lights;
+mod limits;
 mod materials;
 mod model;
 mod morph;
@@ -26,6 +28,7 @@ mod nodes;
 mod primitives;
 mod skins;
 mod source;
+mod survey;
 mod tangents;
 mod topology;
 mod uri;

@@ -15,6 +15,7 @@ use gltf::Document;
 use super::animations::{self, Channel};
 use super::bodies::{self, Bodies, Shapes};
 use super::buffers::Buffers;
+use super::document::Parsed;
 use super::materials::{self, Materials};
 use super::nodes::Hierarchy;
 use super::source::Source;
@@ -63,8 +64,7 @@ impl Model {
 
     fn read(path: &Path, choice: &AnimationChoice) -> Result<Self> {
         let source = Source::open(path)?;
-        let document = document::parse(source.json())?;
-        let mut warnings = document::ignored_features(&document);
+        let Parsed { document, mut warnings } = document::parse(source.json())?;
 
         let mut hasher = blake3::Hasher::new();
         hasher.update(source.bytes());
@@ -78,7 +78,7 @@ impl Model {
         if !channels.is_empty() {
             hasher.update(format!("{choice:?}").as_bytes());
         }
-        deform::check_total(&document, &hierarchy)?;
+        deform::check_total(&document, &hierarchy, &buffers)?;
         let shown = bodies::shown(&document, &hierarchy)?;
         let pieces = primitives::read(&document, &shown, &buffers, &mut materials, &mut warnings)?;
         let (meshes, bodies) = Bodies::new(&document, &hierarchy, &channels, &buffers, pieces)?;

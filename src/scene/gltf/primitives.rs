@@ -3,22 +3,23 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3, Vec4};
-use gltf::accessor::Dimensions;
-use gltf::{Accessor, Document, Semantic};
+use gltf::{Document, Semantic};
 use rayon::prelude::*;
 
+use super::attributes::{Attributes, Vertices, vectors};
 use super::buffers::Buffers;
 use super::deform::Deform;
+use super::limits::Allowance;
 use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
 use crate::scene::{Material, Mesh, TextureSlot};
 
-/// How many indices the drawn meshes may have together: 89 million triangles of a list, 13 GiB where no two share a
-/// vertex.
-///
-/// A short file can name the same accessors in thousands of primitives, so that each is backed by bytes and their sum
-/// is not.
-const MAX_INDICES: usize = 1 << 28;
+/// How many indices the drawn meshes may have together beside one for each byte of the file: 1.4 million triangles,
+/// 210 MiB where no two share a vertex.
+const FREE_INDICES: usize = 1 << 22;
+
+/// How many elements of attributes that are read whole, whatever triangles use of them (`is_packed`).
+const FREE_ELEMENTS: usize = 1 << 24;
 
 /// A primitive as a mesh.
 #[derive(Debug)]
@@ -63,7 +64,7 @@ pub fn read(
 ) -> Result<BTreeMap<usize, Vec<Piece>>> {
     let jobs: Vec<gltf::Mesh<'_>> = document.meshes().filter(|mesh| drawn.contains_key(&mesh.index())).collect();
     let jobs: Vec<_> = jobs.iter().flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh, primitive))).collect();
-    check_total(&jobs)?;
+    check_total(&jobs, buffers)?;
     let default_material = materials.len();
     let outcomes: Vec<Result<Outcome>> = jobs
         .par_iter()
@@ -140,16 +141,14 @@ pub fn corners(primitive: &gltf::Primitive<'_>) -> usize {
 }
 
 /// Refuses what would take more memory than any scene here is worth, before anything is read.
-fn check_total(jobs: &[(&gltf::Mesh<'_>, gltf::Primitive<'_>)]) -> Result<()> {
-    let mut total = 0usize;
+fn check_total(jobs: &[(&gltf::Mesh<'_>, gltf::Primitive<'_>)], buffers: &Buffers<'_>) -> Result<()> {
+    let mut indices = Allowance::new("indices", FREE_INDICES, 1, buffers.file_bytes());
+    let mut elements = Allowance::new("elements of sparse attributes", FREE_ELEMENTS, 1, buffers.file_bytes());
     for (mesh, primitive) in jobs {
-        total = total.saturating_add(corners(primitive));
-        if total > MAX_INDICES {
-            let label = primitive_label(mesh, primitive);
-            return Err(Error::request(format!(
-                "{label}: brings the file to {total} indices; {MAX_INDICES} is the limit"
-            )));
-        }
+        let packed = primitive.attributes().filter(|(_, accessor)| accessors::is_packed(accessor));
+        let count = packed.fold(0usize, |sum, (_, accessor)| sum.saturating_add(accessor.count()));
+        let spent = indices.spend(corners(primitive)).and_then(|()| elements.spend(count));
+        spent.map_err(|error| error.within(primitive_label(mesh, primitive)))?;
     }
     Ok(())
 }
@@ -174,32 +173,39 @@ fn read_primitive(
     };
     let vertex_count = u32::try_from(positions.count())
         .map_err(|_| Error::request(format!("{} vertices are more than 32-bit indices can name", positions.count())))?;
-    let positions = accessors::floats::<3>(buffers, &positions).map_err(|error| error.within("POSITION"))?;
+    accessors::require_there(buffers, &positions).map_err(|error| error.within("POSITION"))?;
     let indices = match primitive.indices() {
         Some(accessor) => {
-            accessors::indices(buffers, &accessor, positions.len()).map_err(|error| error.within("indices"))?
+            accessors::indices(buffers, &accessor, positions.count()).map_err(|error| error.within("indices"))?
         }
         None => (0..vertex_count).collect(),
     };
-    let Some(triangles) = topology::triangle_list(primitive.mode(), indices) else { return Ok(Outcome::NotTriangles) };
+    let Some(mut triangles) = topology::triangle_list(primitive.mode(), indices) else {
+        return Ok(Outcome::NotTriangles);
+    };
     if triangles.indices.is_empty() {
         return Ok(Outcome::Empty);
     }
+    let corners = if shown.is_bent { triangles.indices.clone() } else { Vec::new() };
+    let vertices = Vertices::used_by(&mut triangles.indices, positions.count());
+    let read = Attributes { buffers, primitive, vertices };
 
-    let normals = attribute::<3>(buffers, primitive, &Semantic::Normals, positions.len())?;
-    let uvs = attribute::<2>(buffers, primitive, &Semantic::TexCoords(0), positions.len())?;
+    let positions = accessors::floats_at::<3>(buffers, &positions, read.vertices.picked.as_deref());
+    let positions = positions.map_err(|error| error.within("POSITION"))?;
+    let normals = read.attribute::<3>(&Semantic::Normals)?;
+    let uvs = read.attribute::<2>(&Semantic::TexCoords(0))?;
     let uvs_1 = match material.reads_uvs_1() {
-        true => attribute::<2>(buffers, primitive, &Semantic::TexCoords(1), positions.len())?
+        true => read
+            .attribute::<2>(&Semantic::TexCoords(1))?
             .map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
         false => Vec::new(),
     };
-    let (colors, clamped_colors) = colors(buffers, primitive, positions.len())?;
+    let (colors, clamped_colors) = read.colors()?;
     // glTF 2.0, section 3.7.2.1: without normals the file's tangents mean nothing.
     let tangents = match normal_mapped && normals.is_some() {
-        true => attribute::<4>(buffers, primitive, &Semantic::Tangents, positions.len())?,
+        true => read.attribute::<4>(&Semantic::Tangents)?,
         false => None,
     };
-    let corners = if shown.is_bent { triangles.indices.clone() } else { Vec::new() };
     let mut mesh = Mesh {
         uvs: uvs.map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
         uvs_1,
@@ -228,47 +234,6 @@ fn read_primitive(
     let deform = deform.transpose()?;
     let piece = Box::new(Piece { mesh, deform });
     Ok(Outcome::Piece { piece, left_over_indices: triangles.left_over, repaired_normals, clamped_colors })
-}
-
-/// COLOR_0, RGB or RGBA, and how many of its colours were outside 0 to 1; empty where it is missing or white.
-fn colors(buffers: &Buffers<'_>, primitive: &gltf::Primitive<'_>, vertex_count: usize) -> Result<(Vec<Vec4>, usize)> {
-    let semantic = Semantic::Colors(0);
-    let has_alpha = primitive.get(&semantic).is_some_and(|accessor| accessor.dimensions() == Dimensions::Vec4);
-    let read = if has_alpha {
-        attribute::<4>(buffers, primitive, &semantic, vertex_count)?.map(|colors| vectors(colors, Vec4::from_array))
-    } else {
-        let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
-        attribute::<3>(buffers, primitive, &semantic, vertex_count)?.map(|colors| vectors(colors, opaque))
-    };
-    let mut colors = read.unwrap_or_default();
-    let mut clamped_count = 0;
-    for color in &mut colors {
-        let clamped = color.clamp(Vec4::ZERO, Vec4::ONE);
-        clamped_count += usize::from(clamped != *color);
-        *color = clamped;
-    }
-    if colors.iter().all(|color| *color == Vec4::ONE) {
-        colors.clear();
-    }
-    Ok((colors, clamped_count))
-}
-
-/// An optional attribute, which must have one element a vertex.
-fn attribute<const N: usize>(
-    buffers: &Buffers<'_>,
-    primitive: &gltf::Primitive<'_>,
-    semantic: &Semantic,
-    vertex_count: usize,
-) -> Result<Option<Vec<[f32; N]>>> {
-    let read = |accessor: Accessor<'_>| {
-        accessors::require_count(&accessor, vertex_count)?;
-        accessors::floats::<N>(buffers, &accessor)
-    };
-    primitive.get(semantic).map(read).transpose().map_err(|error| error.within(semantic.to_string()))
-}
-
-fn vectors<const N: usize, V>(arrays: Vec<[f32; N]>, vector: fn([f32; N]) -> V) -> Vec<V> {
-    arrays.into_iter().map(vector).collect()
 }
 
 /// Unit normal of a triangle; +y where it has no area.

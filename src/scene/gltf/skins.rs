@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::scene::Mesh;
 
 /// How many sets JOINTS_n, WEIGHTS_n are read: eight joints a vertex.
-const SETS: u32 = 2;
+pub const SETS: u32 = 2;
 
 /// A skin: joints, and the meshes' space in each of them.
 #[derive(Debug)]

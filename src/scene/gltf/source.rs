@@ -1,11 +1,15 @@
 //! The bytes of a scene file: the file itself, the two chunks of a .glb, and the files it points at.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::Read;
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::uri::{self, Target};
 use crate::error::{Error, Result};
+use crate::units::Bytes;
 
 const GLB_MAGIC: &[u8; 4] = b"glTF";
 const HEADER_BYTES: usize = 12;
@@ -17,6 +21,28 @@ pub struct Source {
     folder: PathBuf,
     bytes: Vec<u8>,
     chunks: Chunks,
+    /// Files that it points at, read so far: a short file may name a long one many times.
+    files: Mutex<HashMap<PathBuf, Arc<Vec<u8>>>>,
+}
+
+/// Bytes of a scene.
+#[derive(Clone, Debug)]
+pub enum Data<'a> {
+    /// A part of what is in memory.
+    Part(&'a [u8]),
+    /// The first `length` bytes of a file, or of a data URI.
+    Fetched { bytes: Arc<Vec<u8>>, length: usize },
+}
+
+impl Deref for Data<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Part(bytes) => bytes,
+            Self::Fetched { bytes, length } => &bytes[..*length],
+        }
+    }
 }
 
 /// Where JSON and binary data lie in the main file.
@@ -36,7 +62,7 @@ impl Source {
             Chunks { json: 0..bytes.len(), binary: None }
         };
         let folder = path.parent().map(Path::to_owned).unwrap_or_default();
-        Ok(Self { folder, bytes, chunks })
+        Ok(Self { folder, bytes, chunks, files: Mutex::default() })
     }
 
     /// The whole main file.
@@ -54,19 +80,53 @@ impl Source {
         self.chunks.binary.clone().map(|range| &self.bytes[range])
     }
 
-    /// The bytes behind a URI. Those of an external file go into `hasher`; embedded ones are in the main file already.
-    pub fn fetch(&self, uri: &str, hasher: &mut blake3::Hasher) -> Result<Vec<u8>> {
-        match uri::resolve(uri)? {
-            Target::Data(bytes) => Ok(bytes),
+    /// Bytes of the main file and of the files that it points at, as far as they were read, each once.
+    pub fn size_bytes(&self) -> usize {
+        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        self.bytes.len() + files.values().map(|bytes| bytes.len()).sum::<usize>()
+    }
+
+    /// The bytes behind a URI. Those of an external file go into `hasher` when it is read, which is done once; embedded
+    /// ones are in the main file already.
+    ///
+    /// Errors: the URI is broken or leads outside, or the file cannot be read (exit code 2).
+    pub fn fetch(&self, uri: &str, hasher: &mut blake3::Hasher) -> Result<Data<'static>> {
+        let bytes = match uri::resolve(uri)? {
+            Target::Data(bytes) => Arc::new(bytes),
             Target::File(relative) => {
-                let path = self.folder.join(&relative);
-                let bytes = read_file(&path).map_err(|error| error.within(path.display()))?;
-                hasher.update(&bytes);
-                Ok(bytes)
+                let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+                match files.entry(self.folder.join(&relative)) {
+                    Entry::Occupied(known) => known.get().clone(),
+                    Entry::Vacant(free) => {
+                        let path = free.key();
+                        let read = self.require_inside(path).and_then(|()| read_file(path));
+                        let bytes = read.map_err(|error| error.within(path.display()))?;
+                        hasher.update(&bytes);
+                        free.insert(Arc::new(bytes)).clone()
+                    }
+                }
             }
+        };
+        let length = bytes.len();
+        Ok(Data::Fetched { bytes, length })
+    }
+
+    /// Errors: links lead from `path` out of the scene's folder (exit code 2).
+    fn require_inside(&self, path: &Path) -> Result<()> {
+        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
+        let (Ok(folder), Ok(target)) = (folder.canonicalize(), path.canonicalize()) else {
+            // Reading it says why.
+            return Ok(());
+        };
+        match target.starts_with(folder) {
+            true => Ok(()),
+            false => Err(Error::request("is a link that leads outside the scene's folder; copy the file there")),
         }
     }
 }
+
+/// What a .glb's header can say; a longer file is no part of a scene.
+const MAX_FILE_BYTES: u64 = 1 << 32;
 
 /// A regular, non-empty file, whole.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
@@ -80,6 +140,13 @@ fn read_file(path: &Path) -> Result<Vec<u8>> {
     // A pipe or a device would block or never end.
     if !metadata.is_file() {
         return Err(Error::request("is not a regular file"));
+    }
+    if metadata.len() > MAX_FILE_BYTES {
+        return Err(Error::request(format!(
+            "has {}; files of up to {} are read",
+            Bytes(metadata.len()),
+            Bytes(MAX_FILE_BYTES)
+        )));
     }
     let mut bytes = Vec::new();
     let read = std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut bytes));
