@@ -31,6 +31,14 @@ impl Mesh {
         self.indices.len() / 3
     }
 
+    /// What its vertices and indices take in memory.
+    pub fn size_bytes(&self) -> usize {
+        let vectors = size_of_val(self.positions.as_slice()) + size_of_val(self.normals.as_slice());
+        let coordinates = size_of_val(self.uvs.as_slice()) + size_of_val(self.uvs_1.as_slice());
+        let others = size_of_val(self.tangents.as_slice()) + size_of_val(self.colors.as_slice());
+        vectors + coordinates + others + size_of_val(self.indices.as_slice())
+    }
+
     /// The vertices of triangle `triangle`.
     pub fn corners(&self, triangle: usize) -> [usize; 3] {
         [0, 1, 2].map(|corner| self.indices[3 * triangle + corner] as usize)

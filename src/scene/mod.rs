@@ -131,6 +131,13 @@ impl Model {
 }
 
 impl Scene {
+    /// What its vertices, indices, draws and pictures take in memory.
+    pub fn size_bytes(&self) -> u64 {
+        let meshes: usize = self.meshes.iter().map(Mesh::size_bytes).sum();
+        let images: usize = self.images.iter().map(|image| image.rgba8.len()).sum();
+        (meshes + images + size_of_val(self.draws.as_slice())) as u64
+    }
+
     /// How many triangles all draws together have.
     pub fn triangle_count(&self) -> u64 {
         self.draws.iter().map(|draw| self.meshes[draw.mesh].triangle_count() as u64).sum()
