@@ -1,10 +1,10 @@
 //! Job: a checked request for one picture; `Job::run` is the whole road on one screen.
 
 use crate::error::{Error, Result};
-use crate::gpu::DeviceRequest;
 use crate::gpu::commands::Submits;
 use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
+use crate::gpu::{Caps, DeviceRequest, Gpu};
 use crate::interrupt;
 use crate::memory::Strategy;
 use crate::memory::kinds::Kinds;
@@ -17,6 +17,7 @@ use crate::report::picture::Picture;
 use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
 use crate::report::whole_file::write_whole;
+use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::{COMMON, Setting, Values};
@@ -122,9 +123,8 @@ impl Job {
     pub fn run_on(&self, request: &DeviceRequest) -> Result<Outcome> {
         self.check()?;
         let scene = self.load_scene()?;
-        self.require_triangle(&scene)?;
         let path = self.output_path(&scene);
-        let session = Session::open(request, scene)?;
+        let session = self.open_session(request, scene)?;
         let outcome = self.picture(&session, &self.values, &path, Unfinished::Kept)?;
         if let Some(file) = &self.report {
             write_whole(file, |out| writeln!(out, "{:#}", outcome.report.json()))?;
@@ -215,23 +215,32 @@ impl Job {
         scene::open(&self.scene, self.values.integer("seed"), &choice)
     }
 
-    /// The scene that the request names, at its time, its textures limited as it says.
+    /// The scene that the request names, at its time.
     ///
     /// Errors: no such scene or animation, or a broken file (exit code 2).
     pub fn load_scene(&self) -> Result<Scene> {
-        let scene = self.open_model()?.into_pose(self.values.number("time"))?;
-        Ok(self.with_texture_limit(scene))
+        self.open_model()?.into_pose(self.values.number("time"))
     }
 
-    /// `scene` as the request wants its textures.
-    pub fn with_texture_limit(&self, mut scene: Scene) -> Scene {
-        scene.texture_limit_px = self.values.integer("texture-limit") as u32;
+    /// `scene` with its textures as the request wants them on a device of `caps`.
+    pub fn with_texture_limit(&self, mut scene: Scene, caps: &Caps) -> Scene {
+        let budget_bytes = self.values.bytes("memory-budget");
+        scene.texture_limit_px = match self.values.integer_or_auto("texture-limit") {
+            Some(limit_px) => limit_px as u32,
+            None => SceneStats::fitting_limit_px(&scene, caps, budget_bytes),
+        };
         scene
     }
 
-    /// Errors: nothing of `scene` is drawn (exit code 2); it is named as the request names it.
-    pub(crate) fn require_triangle(&self, scene: &Scene) -> Result<()> {
-        require_triangle(scene, &self.scene)
+    /// Opens a device with `scene` as the request wants it.
+    ///
+    /// Errors: nothing of it is drawn (exit code 2), no fitting device (3), memory (4).
+    pub fn open_session(&self, request: &DeviceRequest, scene: Scene) -> Result<Session> {
+        // Named as the request names it.
+        require_triangle(&scene, &self.scene)?;
+        let gpu = Gpu::open(request)?;
+        let scene = self.with_texture_limit(scene, &gpu.caps);
+        Session::on(gpu, scene)
     }
 
     /// The device that the request names.
@@ -268,7 +277,9 @@ impl Job {
     ) -> Result<Report> {
         let mut report = Report::new(self.technique.name(), &self.command, &session.gpu.caps.identity);
         report.scene(session, renderer);
-        report.settings(values, &renderer.resolved);
+        let mut resolved = renderer.resolved.clone();
+        resolved.insert("texture-limit", session.scene.texture_limit_px.to_string());
+        report.settings(values, &resolved);
         report.image(picture, path)?;
         report.aovs(aovs, picture.extent);
         report.times(renderer, times, self.profile);

@@ -98,12 +98,14 @@ impl Job {
                 break;
             }
             let values = frames.values(self, frame)?;
-            let scene = self.with_texture_limit(model.pose(values.number("time"))?);
-            self.require_triangle(&scene)?;
+            let scene = model.pose(values.number("time"))?;
             let path = frames.path_of(&self.output_path(&scene), frame);
             let shown = match session.take() {
-                None => Session::open(&self.device_request(), scene)?,
-                Some(session) => session.showing(scene)?,
+                None => self.open_session(&self.device_request(), scene)?,
+                Some(session) => {
+                    let scene = self.with_texture_limit(scene, &session.gpu.caps);
+                    session.showing(scene)?
+                }
             };
             let made = self.picture(&shown, &values, &path, Unfinished::Dropped);
             session = Some(shown);

@@ -76,7 +76,10 @@ impl Session {
         Self::on(gpu, scene)
     }
 
-    fn on(gpu: Arc<Gpu>, scene: Scene) -> Result<Self> {
+    /// Uploads the scene.
+    ///
+    /// Errors: memory (exit code 4).
+    pub(crate) fn on(gpu: Arc<Gpu>, scene: Scene) -> Result<Self> {
         let stats = SceneStats::of(&scene);
         let uploaded = SceneGpu::new(&gpu, &scene).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);

@@ -12,7 +12,7 @@ use crate::memory::kinds::Kinds;
 use crate::plan::{Requirements, Sharing};
 use crate::report::memory::MemoryTable;
 use crate::resident::SceneStats;
-use crate::session::{Session, frame_plan};
+use crate::session::frame_plan;
 use crate::techniques::Inputs;
 
 /// A table, and what it is of.
@@ -27,7 +27,7 @@ pub struct Study {
 ///
 /// Errors: impossible settings or a broken scene (exit code 2); caps that do not say how the driver rounds sizes (2).
 pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
-    let scene = job.load_scene()?;
+    let scene = job.with_texture_limit(job.load_scene()?, caps);
     let view = View::new(&scene, job.values.text("camera"), job.values.extent("size"))?;
     let lights = LightSet::new(&scene, &view, &job.values)?;
     let stats = SceneStats::of(&scene);
@@ -46,7 +46,7 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
 ///
 /// Errors: impossible settings or a broken scene (exit code 2), no device (3), memory (4).
 pub fn made(job: &Job) -> Result<Study> {
-    let session = Session::open(&job.device_request(), job.load_scene()?)?;
+    let session = job.open_session(&job.device_request(), job.load_scene()?)?;
     let renderer = session.renderer(job.technique, &job.values, &job.aovs, Submits::One)?;
     let snapshot = session.gpu.memory.snapshot();
     let caps = &session.gpu.caps;

@@ -126,10 +126,16 @@ fn a_budget_that_is_spent_says_what_would_help() {
     program.fails(&frame, 4, &["allocating interleaved_deferred.", "the budget of 8.00 MiB is spent", help]);
     let textured = ["render", "hall:triangles=8000", "--size", "64x36", "--memory-budget", "30MiB"];
     program.fails(
-        &textured,
+        &[&textured[..], &["--texture-limit", "0"]].concat(),
         4,
         &["allocating scene.textures.", "most of it by scene.textures (", "--texture-limit 256"],
     );
+    // What fits is found where nothing is asked for.
+    let found = program.run(&[&textured[..], &["--technique", "deferred", "--json"]].concat()).fine().json();
+    let limit_px = found["settings"]["texture-limit"].as_u64().unwrap();
+    assert!(limit_px.is_power_of_two() && limit_px <= 256, "{limit_px}");
+    let planned = program.run(&["memory", textured[1], "--plan", "--memory-budget", "30MiB", "--json"]).fine().json();
+    assert!(planned["techniques"][0]["memory"]["groups"]["scene.textures"].as_u64().unwrap() < 23 << 20, "{planned}");
     let limited = textured.iter().copied().chain(["--technique", "deferred", "--texture-limit", "256", "--json"]);
     let report = program.run(&limited.collect::<Vec<_>>()).fine().json();
     assert_eq!(

@@ -3,10 +3,9 @@
 
 mod support;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use support::gltf_file::GltfFile;
 use support::program::Program;
 
 const NOWHERE: [(&str, &str); 2] = [("VK_DRIVER_FILES", "/nowhere.json"), ("VK_ICD_FILENAMES", "/nowhere.json")];
@@ -52,16 +51,6 @@ fn a_gate_ends_with_1() {
     program.run(&small(&["render"], &["-o", "b.exr", "--seed", "2"])).fine();
     require_code(&program, &["compare", "a.exr", "b.exr", "--max", "rmse=0"], &[], 1);
     require_code(&program, &["compare", "a.exr", "b.exr", "--min", "psnr=inf"], &[], 1);
-    // Light without end: nothing of such a picture is written.
-    let mut file = GltfFile::triangle();
-    file.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
-    file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3e38}]}});
-    file.root(json!({"translation": [0.2, 0.2, 0.1], "extensions": {"KHR_lights_punctual": {"light": 0}}}));
-    std::fs::write(program.path("blinding.glb"), file.glb()).unwrap();
-    let before = program.files();
-    let blinding = ["render", "blinding.glb", "--size", "32x18", "--technique", "deferred", "-o", "c.exr"];
-    require_code(&program, &blinding, &[], 1);
-    assert_eq!(program.files(), before);
 }
 
 #[test]

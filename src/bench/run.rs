@@ -61,7 +61,7 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     let job = request.job;
     let grid = sweep::grid(request.axes);
     let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
-    let session = Session::open(&job.device_request(), job.load_scene()?)?;
+    let session = job.open_session(&job.device_request(), job.load_scene()?)?;
     let candidates: Vec<Candidate> = grid.iter().map(|point| Candidate::new(job, point, &session.scene.hash)).collect();
     if let Some(asked) = &job.reference {
         for candidate in &candidates {

@@ -80,6 +80,7 @@ fn value_name(setting: &Setting) -> &'static str {
     use crate::settings::Kind;
     match setting.kind {
         Kind::Integer { .. } | Kind::Number { .. } => "N",
+        Kind::IntegerOrAuto { .. } => "auto|N",
         Kind::Choice(_) => "NAME",
         Kind::Pair { .. } => "NxM",
         Kind::PairOrAuto { .. } => "auto|NxM",

@@ -15,10 +15,9 @@ use glam::Vec3;
 const RIG_KEY_LUX: f32 = 3.0;
 /// The default rig's ambient radiance.
 const RIG_AMBIENT: f32 = 0.3;
-/// Emissive surfaces that send out less, a square metre of all surfaces, leave the scene dark: the rig's ambient light alone
-/// gives each of them nine times as much. The glTF samples DamagedHelmet and WaterBottle have 0.004 and
-/// 0.0000004.
-const LEAST_GLOW: f32 = 0.1;
+/// Emissive surfaces that send out less, a square metre of all surfaces, leave the scene dark: white walls would come out at
+/// about code 10 of 255. The glTF samples DamagedHelmet and WaterBottle have 0.004 and 0.0000004.
+const LEAST_GLOW: f32 = 0.01;
 /// Irradiance that all scattered lights together give the scene's box on average, in lux: white diffuse surfaces then
 /// have radiance 1.
 const SCATTERED_LUX: f32 = std::f32::consts::PI;

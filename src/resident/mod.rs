@@ -23,7 +23,7 @@ pub use visible::{DrawList, GeometryChoice};
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
-use crate::gpu::{Access, Buffer, Gpu, Image, ImageDescription, upload};
+use crate::gpu::{Access, Buffer, Caps, Gpu, Image, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
 use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps};
 use crate::units::Extent;
@@ -140,6 +140,20 @@ impl SceneStats {
             has_extended: scene.meshes.iter().any(is_extended) || drawn().any(Material::has_placements),
             has_blend: drawn().any(|material| material.alpha == AlphaMode::Blend),
         }
+    }
+
+    /// The texture limit that `auto` comes to on a device of `caps`: 0, none, where the scene takes at most three quarters of
+    /// the greatest heap, or of `budget_bytes` where that is less; else the greatest power of two with which it does. 0 too
+    /// where no limit would do.
+    ///
+    /// The last quarter is the frame's and the staging buffers'.
+    pub fn fitting_limit_px(scene: &Scene, caps: &Caps, budget_bytes: Option<u64>) -> u32 {
+        let heap_bytes = caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
+        let room_bytes = heap_bytes.min(budget_bytes.unwrap_or(u64::MAX)) / 4 * 3;
+        let fits = |limit_px: u32| Self::with_texture_limit(scene, limit_px).plan().bytes() <= room_bytes;
+        let side_px = scene.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(1);
+        let powers = 0..=side_px.ilog2();
+        if fits(0) { 0 } else { powers.rev().map(|power| 1 << power).find(|limit_px| fits(*limit_px)).unwrap_or(0) }
     }
 
     /// The scene's resources.

@@ -19,6 +19,11 @@ pub enum Kind {
         min: u64,
         max: u64,
     },
+    /// In the range, or `auto`.
+    IntegerOrAuto {
+        min: u64,
+        max: u64,
+    },
     Number {
         min: f64,
         max: f64,
@@ -69,6 +74,7 @@ impl Setting {
     pub fn range(&self) -> String {
         match self.kind {
             Kind::Integer { min, max } => format!("{min} to {max}"),
+            Kind::IntegerOrAuto { min, max } => format!("auto or {min} to {max}"),
             Kind::Number { min, max } => format!("{min} to {max}"),
             Kind::Choice(choices) => choices.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
@@ -90,6 +96,9 @@ impl Setting {
         let in_range = |pair: [u32; 2], min: u32, max: u32| pair.iter().all(|side| (min..=max).contains(side));
         let possible = match self.kind {
             Kind::Integer { min, max } => text.parse::<u64>().is_ok_and(|value| (min..=max).contains(&value)),
+            Kind::IntegerOrAuto { min, max } => {
+                parse_integer_or_auto(text).is_some_and(|value| value.is_none_or(|value| (min..=max).contains(&value)))
+            }
             Kind::Number { min, max } => {
                 text.parse::<f64>().is_ok_and(|value| value.is_finite() && (min..=max).contains(&value))
             }
@@ -116,6 +125,14 @@ impl Setting {
 fn parse_pair(text: &str) -> Option<[u32; 2]> {
     let (first, second) = text.split_once('x')?;
     Some([first.parse().ok()?, second.parse().ok()?])
+}
+
+/// Some(None) is `auto`.
+fn parse_integer_or_auto(text: &str) -> Option<Option<u64>> {
+    match text {
+        "auto" => Some(None),
+        text => text.parse().ok().map(Some),
+    }
 }
 
 /// Some(None) is `auto`.
@@ -200,6 +217,11 @@ impl Values {
         self.parsed(key, |text| text.parse().ok())
     }
 
+    /// None: `auto`.
+    pub fn integer_or_auto(&self, key: &str) -> Option<u64> {
+        self.parsed(key, parse_integer_or_auto)
+    }
+
     pub fn number(&self, key: &str) -> f64 {
         self.parsed(key, |text| text.parse().ok())
     }
@@ -279,6 +301,7 @@ mod tests {
             (Kind::PairOrAuto { min: 1, max: 9 }, &["", "AUTO", "none", "3", "3x", "0x2", "3x10", "autoxauto"]),
             (Kind::Sides { min: 1, max: 9 }, &["", "x", "0", "10", "3x", "3x10", "3x2x1"]),
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
+            (Kind::IntegerOrAuto { min: 0, max: 9 }, &["", "AUTO", "none", "-1", "10", "1.5"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
             (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),

@@ -162,11 +162,12 @@ pub const COMMON: &[Setting] = &[
     Setting {
         key: "texture-limit",
         symbol: "",
-        kind: Kind::Integer { min: 0, max: 16384 },
-        default: "0",
+        kind: Kind::IntegerOrAuto { min: 0, max: 16384 },
+        default: "auto",
         unit: "px",
         paper: "",
-        help: "greatest side of a texture: larger ones begin at a coarser level; 0: no limit",
+        help: "greatest side of a texture: larger ones begin at a coarser level; 0: no limit; auto: none, or where the scene \
+               would take more than three quarters of the heap or of --memory-budget the greatest power of two with which it does not",
     },
 ];
 

@@ -33,6 +33,9 @@ fn read_back(values: &Values, setting: &Setting) {
     let key = setting.key;
     match setting.kind {
         Kind::Integer { min, max } => assert!((min..=max).contains(&values.integer(key))),
+        Kind::IntegerOrAuto { min, max } => {
+            assert!(values.integer_or_auto(key).is_none_or(|value| (min..=max).contains(&value)));
+        }
         Kind::Number { min, max } => assert!((min..=max).contains(&values.number(key))),
         Kind::Choice(choices) => assert!(choices.contains(&values.text(key))),
         Kind::Pair { min, max } => assert!(values.pair(key).iter().all(|side| (min..=max).contains(side))),
