@@ -37,7 +37,7 @@
 //! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
 //! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
-//! | [`metrics`], [`reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
+//! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
 
 pub mod bench;
 pub mod bvh;
