@@ -2,7 +2,6 @@
 
 pub mod cull;
 pub mod emitters;
-mod glow;
 pub mod vpl;
 
 use crate::error::{Error, Result};
@@ -15,9 +14,6 @@ use glam::Vec3;
 const RIG_KEY_LUX: f32 = 3.0;
 /// The default rig's ambient radiance.
 const RIG_AMBIENT: f32 = 0.3;
-/// Emissive surfaces that send out less, a square metre of all surfaces, leave the scene dark: white walls would come out at
-/// about code 10 of 255. The glTF samples DamagedHelmet and WaterBottle have 0.004 and 0.0000004.
-const LEAST_GLOW: f32 = 0.01;
 /// Irradiance that all scattered lights together give the scene's box on average, in lux: white diffuse surfaces then
 /// have radiance 1.
 const SCATTERED_LUX: f32 = std::f32::consts::PI;
@@ -28,7 +24,7 @@ pub struct LightSet {
     pub lights: Vec<Light>,
     /// Radiance.
     pub ambient: Vec3,
-    /// The scene had no light of its own that is worth the name, and got the rig.
+    /// The scene had no light of its own, and got the rig.
     pub has_rig: bool,
     /// The scene, or `--lights`, has punctual lights that are not the rig's.
     pub has_punctual: bool,
@@ -44,9 +40,8 @@ impl LightSet {
         let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
-        let may_have_rig = !has_punctual && values.text("rig") == "default";
-        let is_lit = || scene.drawn_materials().any(Material::is_emissive) && glow::mean_exitance(scene) >= LEAST_GLOW;
-        let has_rig = may_have_rig && !is_lit();
+        let emissive = scene.drawn_materials().any(Material::is_emissive);
+        let has_rig = !has_punctual && !emissive && values.text("rig") == "default";
         if has_rig {
             lights.push(rig_key(view));
         }
