@@ -90,7 +90,7 @@ void shade_points(SubsetBlock subset) {
     }
     uint light_end = HAS_JOINED && is_lit ? subset.light_first + subset.light_count : 0u;
     uint light_index = min(subset.light_first, light_end);
-    for (; HAS_JOINED && light_index < light_end; light_index++) {
+    for (; light_index < light_end; light_index++) {
         LightBlock light = subset_lights[light_index];
         uint i = 0u;
         for (; i < TEXELS; i++) {
