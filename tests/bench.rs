@@ -165,6 +165,9 @@ fn a_bad_request_measures_nothing() {
         2,
         &["none of the 2", "split=none: --split none"],
     );
+    for stage in ["gather", "filter"] {
+        program.fails(&bench(stage, &["--fuse", "on"]), 2, &["--fuse on", &format!("of the {stage} alone")]);
+    }
     program.fails(&bench("gather", &["--technique", "deferred"]), 2, &["--vpls"]);
     let deferred = ["bench", "gather", "lamps:objects=3,lights=3", "--size", "33x17", "--technique", "deferred"];
     program.fails(&deferred, 2, &["deferred has no pass deferred.gather"]);

@@ -298,6 +298,10 @@ fn stages_go_into_layers_of_an_exr_and_beside_a_png() {
     assert_eq!(program.files(), ["a.exr"]);
     program.run(&small(&["--quiet", "--aov", "gbuffer.normal,discontinuity.flags", "-o", "b.png"])).fine();
     assert_eq!(program.files(), ["a.exr", "b.discontinuity.flags.png", "b.gbuffer.normal.png", "b.png"]);
+    for stage in ["gather.irradiance", "filter.irradiance"] {
+        let fused = small(&["--quiet", "--fuse", "on", "--aov", stage, "-o", "c.exr"]);
+        program.fails(&fused, 2, &[stage, "--fuse off"]);
+    }
     // An EXR holds what was rendered; a PNG of it is the same to half a code.
     program.run(&["compare", "b.png", "a.exr", "--min", "psnr=inf"]).fine();
 }

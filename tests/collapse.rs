@@ -96,6 +96,40 @@ fn every_road_is_branch_behind_every_filter() {
 }
 
 #[test]
+fn passes_fused_change_no_pixel() {
+    let watched = Watched::open("cornell");
+    for filter in [
+        [("size", "161x91"), ("pattern", "4x4"), ("kernel", "5"), ("discontinuity", "directional")],
+        [("size", "97x53"), ("pattern", "3x2"), ("kernel", "17"), ("discontinuity", "any")],
+    ] {
+        for road in ROADS {
+            let common = both(&both(&[("vpls", "64")], &filter), road);
+            require_one_hash(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
+        }
+    }
+    // What the composite shades beside walking its columns.
+    for lit in [&[("cull", "tiled")][..], &[("direct-shadow", "ray")], &[("texels", "1")], &[("size", "7x5")]] {
+        let common = both(&[("vpls", "64"), ("size", "97x53")], lit);
+        require_one_hash(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
+    }
+}
+
+#[test]
+fn fused_passes_are_fewer() {
+    let watched = Watched::open("cornell");
+    let names = |changes: Changes<'_>| -> Vec<String> {
+        let renderer = watched.render(INTERLEAVED, &both(&[("size", "64x36")], changes));
+        renderer.passes().iter().map(|pass| pass.name.replace("interleaved_deferred.", "")).collect()
+    };
+    let all = ["gbuffer", "split", "shade", "gather", "discontinuity", "filter", "composite"];
+    assert_eq!(names(&[]), all);
+    assert_eq!(names(&[("fuse", "on")]), ["gbuffer", "discontinuity", "split", "shade", "gather", "composite"]);
+    // Rows are filtered by a pass of their own where no single compute shader pulls each pixel.
+    assert_eq!(names(&[("fuse", "on"), ("copy", "push")]), all);
+    assert_eq!(names(&[("fuse", "on"), ("filter", "none")]), ["gbuffer", "split", "shade", "gather", "composite"]);
+}
+
+#[test]
 fn shared_bytes_change_no_pixel_on_any_road() {
     let watched = Watched::open("cornell");
     for road in ROADS {

@@ -171,6 +171,8 @@ fn what_is_planned_is_what_is_made() {
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "stencil"), ("position", "depth")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "depth"), ("filter", "gauss-fast")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("storage", "image"), ("position", "float")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("fuse", "on"), ("storage", "image")]),
+        ("cornell", "interleaved_deferred", &[("size", "161x91"), ("fuse", "on"), ("split", "remap")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("block", "24x10")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "two-pass"), ("storage", "image")]),
         ("cornell", "interleaved_deferred", &[("size", "161x91"), ("split", "tile"), ("pattern", "5x7")]),

@@ -9,7 +9,7 @@ use crate::job::Job;
 use crate::report::picture::Picture;
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 /// Frames of a renderer's passes, after one that warms up.
@@ -31,6 +31,7 @@ const UNREAD: &[&str] = &[
     "storage",
     "copy",
     "fragment-passes",
+    "fuse",
     "alias",
 ];
 
@@ -43,8 +44,8 @@ pub struct Reference {
 
 /// What its frame costs.
 pub struct Cost {
-    /// Passes that it has too are no overhead of a variant.
-    pub pass_names: Vec<String>,
+    /// Milliseconds of each of its passes: those that it has too are no overhead of a variant.
+    pub pass_ms: BTreeMap<String, f64>,
     /// Nanoseconds for each light at each pixel, where all lights are summed in one pass.
     pub evaluation_ns: f64,
     /// Milliseconds of a pass that shades one light on every pixel, the G-buffer read and the irradiance written for it:
@@ -111,11 +112,7 @@ impl Reference {
                 let light_pass_ms = pass_ms(job, session, &one_light)?.and_then(|passes| shade_ms(&passes));
                 let evaluations = picture.extent.pixel_count() as f64 * lights;
                 let evaluation_ns = 1e6 * shade_ms(&passes).unwrap_or(0.0) / evaluations.max(1.0);
-                Some(Cost {
-                    pass_names: passes.into_iter().map(|(name, _)| name).collect(),
-                    evaluation_ns,
-                    light_pass_ms,
-                })
+                Some(Cost { pass_ms: passes.into_iter().collect(), evaluation_ns, light_pass_ms })
             }
         };
         Ok(Self { picture, cost })

@@ -189,10 +189,17 @@ fn taps(row: &mut Value, candidate: &Candidate, member: &Member, times: &[f64]) 
 /// What a frame has beside plain deferred shading, in evaluations of one light at each pixel.
 fn overhead(row: &mut Value, picture: &Picture, reference: &Reference) {
     let (Some(cost), Some(passes)) = (&reference.cost, row["pass_ms"].as_object()) else { return };
-    let own = passes
+    // With --fuse on the composite does a part of the filter's work.
+    let is_fused = row["settings"]["fuse"] == "on";
+    let own: f64 = passes
         .iter()
-        .filter(|(name, _)| !cost.pass_names.contains(name))
-        .fold(0.0, |sum, (_, ms)| sum + ms.as_f64().unwrap_or_default());
+        .map(|(name, ms)| (name, ms.as_f64().unwrap_or_default()))
+        .map(|(name, ms)| match cost.pass_ms.get(name) {
+            None => ms,
+            Some(plain_ms) if is_fused && name.ends_with(".composite") => (ms - plain_ms).max(0.0),
+            Some(_) => 0.0,
+        })
+        .sum();
     let pixels = picture.extent.pixel_count() as f64;
     row["evaluation_ns"] = json!(cost.evaluation_ns);
     row["overhead_ms"] = json!(own);

@@ -27,7 +27,7 @@ impl Variant {
         let renderer = session.renderer(technique, values, &[], what.submits())?;
         let bound_bytes = session.gpu.memory.snapshot().bound_bytes() - before;
         let stage = what.passes(technique.name(), renderer.passes());
-        if stage.is_empty() {
+        if stage.is_empty() || what.is_fused(values) {
             return Err(Error::request(what.absence(technique.name(), values)));
         }
         Ok(Self { renderer, stage, bound_bytes, what })

@@ -76,10 +76,19 @@ impl What {
         passes.iter().enumerate().filter(|(_, pass)| belongs(&pass.name)).map(|(index, _)| index).collect()
     }
 
-    /// Why a frame with these settings has none of its passes.
+    /// Whether its work is done in passes that do other work too.
+    pub fn is_fused(self, values: &Values) -> bool {
+        let mut settings = values.iter();
+        matches!(self, Self::Gather | Self::Filter) && settings.any(|(key, text)| key == "fuse" && text == "on")
+    }
+
+    /// Why a frame with these settings has none of its passes, or none that do nothing else.
     pub fn absence(self, technique: &str, values: &Values) -> String {
         let text = |key: &str| values.iter().find(|(known, _)| *known == key).map(|(_, text)| text);
         match (self, text("split"), text("pattern"), text("filter")) {
+            _ if self.is_fused(values) => {
+                format!("--fuse on: {technique} has no passes of the {} alone", self.name())
+            }
             (Self::Split, Some(split), ..) => format!("--split {split} makes no copy"),
             (Self::Gather, Some(split), ..) => format!("--split {split} makes no copy, and gathers none"),
             (Self::Filter, .., Some("none")) => "--filter none filters nothing".to_owned(),

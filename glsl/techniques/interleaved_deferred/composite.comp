@@ -1,17 +1,43 @@
 // Composite: albedo times the filtered irradiance, plus direct light by the full BRDF, plus emission (Segovia 2006,
 // section 4.5: albedo only after the filter). Pass: src/techniques/interleaved_deferred/composite.rs.
-// variants: POSITION=half|unorm16|depth|float EMISSIVE=off|on CULL=none|tiled
+//
+// FILTER: whole, the irradiance is what it will be; columns, it was filtered along its rows, and a thread filters its column.
+// variants: POSITION=half|unorm16|depth|float EMISSIVE=off|on CULL=none|tiled FILTER=whole|columns
 #version 460
 #include "passes/composite.glsl"
+#include "passes/filter/walk.glsl"
 
 struct CompositeParams {
+    // Of FILTER=columns.
+    WalkParams walk;
     uint row_pitch;
     // 1: --direct full. 0: the punctual lights are in the irradiance, or left out.
     uint direct_full;
+    uint _unused[2];
 };
 
 layout(push_constant) uniform Push { CompositeParams params; };
 layout(std430, set = 0, binding = 6) readonly buffer Irradiance { uvec2 irradiance[]; };
+#ifdef FILTER_COLUMNS
+layout(std430, set = 0, binding = 7) readonly buffer Flags { uint flags[]; };
+
+// The first pixel of a thread lies in the frame's columns.
+void read_column(uvec2 first) {
+    for (uint i = 0u; i < WINDOW; i++) {
+        int place = window_place(first.y, i);
+        uint texel = uint(clamp(place, 0, int(frame.height_px) - 1)) * params.row_pitch + first.x;
+        set_window(params.walk, i, place, frame.height_px, irradiance[texel], flags[texel]);
+    }
+}
+#endif
+
+uvec2 received_at(uint i, uvec2 pixel) {
+#ifdef FILTER_COLUMNS
+    return walked(params.walk, i);
+#else
+    return irradiance[pixel.y * params.row_pitch + pixel.x];
+#endif
+}
 
 void main() {
     bool direct_full = params.direct_full != 0u;
@@ -21,6 +47,9 @@ void main() {
     if (direct_full) {
         shade_points();
     }
+#ifdef FILTER_COLUMNS
+    read_column(min(pixel_of_point(0u), uvec2(frame.width_px, frame.height_px) - 1u));
+#endif
     for (uint i = 0u; i < TEXELS; i++) {
         uvec2 pixel = pixel_of_point(i);
         if (!is_in_frame(pixel)) {
@@ -29,7 +58,7 @@ void main() {
         vec4 value = vec4(frame.background.rgb, 0.0);
         if (point_has_surface[i]) {
             Surface surface = point_surface[i];
-            vec3 received = unpack_halves(irradiance[pixel.y * params.row_pitch + pixel.x]);
+            vec3 received = unpack_halves(received_at(i, pixel));
             precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
             radiance += ambient_of(i);
             if (direct_full) {

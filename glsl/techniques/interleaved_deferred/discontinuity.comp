@@ -14,8 +14,9 @@ struct DiscontinuityParams {
 };
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
-// Pixels of a column that a thread flags, so that it reads a neighbour once.
-layout(constant_id = 2) const uint TEXELS = 1;
+// Pixels that a thread flags, so that it reads a neighbour once.
+layout(constant_id = 2) const uint COLUMNS = 1;
+layout(constant_id = 3) const uint ROWS = 1;
 
 layout(push_constant) uniform Push { DiscontinuityParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
@@ -41,24 +42,29 @@ bool differ(Point point, Point other) {
 }
 
 void main() {
-    uvec2 first = gl_GlobalInvocationID.xy * uvec2(1u, TEXELS);
+    uvec2 first = gl_GlobalInvocationID.xy * uvec2(COLUMNS, ROWS);
     if (first.x >= frame.width_px || first.y >= frame.height_px) {
         return;
     }
     uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
-    uint right = min(first.x + 1u, last.x);
-    Point point = point_at(first);
-    Point beside = point_at(uvec2(right, first.y));
-    for (uint i = 0u; i < TEXELS; i++) {
-        uint y = first.y + i;
+    Point above[COLUMNS + 1u];
+    for (uint x = 0u; x <= COLUMNS; x++) {
+        above[x] = point_at(uvec2(min(first.x + x, last.x), first.y));
+    }
+    for (uint row = 0u; row < ROWS; row++) {
+        uint y = first.y + row;
         uint below = min(y + 1u, last.y);
         Point under = point_at(uvec2(first.x, below));
-        Point across = point_at(uvec2(right, below));
-        if (y <= last.y) {
-            flags[y * params.row_pitch + first.x] = (differ(point, beside) ? 1u : 0u) | (differ(point, under) ? 2u : 0u)
-                | (differ(point, across) ? 4u : 0u);
+        for (uint column = 0u; column < COLUMNS; column++) {
+            uint x = first.x + column;
+            Point across = point_at(uvec2(min(x + 1u, last.x), below));
+            if (x <= last.x && y <= last.y) {
+                flags[y * params.row_pitch + x] = (differ(above[column], above[column + 1u]) ? 1u : 0u)
+                    | (differ(above[column], under) ? 2u : 0u) | (differ(above[column], across) ? 4u : 0u);
+            }
+            above[column] = under;
+            under = across;
         }
-        point = under;
-        beside = across;
+        above[COLUMNS] = under;
     }
 }

@@ -33,6 +33,7 @@ impl Gauss {
         Ok(Self { pipeline, extent, row_pitch, kernel, texels })
     }
 
+    /// Both directions.
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -42,29 +43,62 @@ impl Gauss {
         between: &Buffer,
         target: &Buffer,
     ) -> Result<()> {
-        let pixels = self.extent.pixel_count();
-        let Extent { width, height } = self.extent;
-        let runs = |along: u32, across: u32| u64::from(along.div_ceil(self.texels)) * u64::from(across);
-        let threads = runs(width, height) + runs(height, width);
-        let window = u64::from(self.texels + 2 * self.kernel.radius());
-        let traffic = Traffic {
-            read_bytes: threads * window * (8 + 4),
-            written_bytes: 2 * pixels * 8,
-            invocations: Some(threads),
-        };
-        cmd.pass(&format!("{technique}.filter"), traffic, |cmd| {
-            cmd.barriers([
-                source.to(Access::ComputeRead),
-                flags.to(Access::ComputeRead),
-                between.discard(Access::ComputeWrite),
-            ]);
-            self.direction(cmd, true, source.resource, flags.resource, between)?;
+        cmd.pass(&format!("{technique}.filter"), self.traffic(&[true, false]), |cmd| {
+            self.rows(cmd, source, flags, between)?;
             cmd.barriers([
                 between.from(Access::ComputeWrite).to(Access::ComputeRead),
                 target.discard(Access::ComputeWrite),
             ]);
             self.direction(cmd, false, between, flags.resource, target)
         })
+    }
+
+    /// Along the rows only: whoever reads `target` walks its columns.
+    pub fn record_rows(
+        &self,
+        cmd: &mut Commands,
+        technique: &str,
+        source: Edge<'_, Buffer>,
+        flags: Edge<'_, Buffer>,
+        target: &Buffer,
+    ) -> Result<()> {
+        let traffic = self.traffic(&[true]);
+        cmd.pass(&format!("{technique}.filter"), traffic, |cmd| self.rows(cmd, source, flags, target))
+    }
+
+    fn rows(
+        &self,
+        cmd: &mut Commands,
+        source: Edge<'_, Buffer>,
+        flags: Edge<'_, Buffer>,
+        target: &Buffer,
+    ) -> Result<()> {
+        cmd.barriers([
+            source.to(Access::ComputeRead),
+            flags.to(Access::ComputeRead),
+            target.discard(Access::ComputeWrite),
+        ]);
+        self.direction(cmd, true, source.resource, flags.resource, target)
+    }
+
+    /// Of walks along x (true) and y.
+    fn traffic(&self, walks: &[bool]) -> Traffic {
+        let count = |threads: [u32; 3]| threads.map(u64::from).iter().product::<u64>();
+        let threads: u64 = walks.iter().map(|horizontal| count(self.threads(*horizontal))).sum();
+        let window = u64::from(self.texels + 2 * self.kernel.radius());
+        Traffic {
+            read_bytes: threads * window * (8 + 4),
+            written_bytes: walks.len() as u64 * self.extent.pixel_count() * 8,
+            invocations: Some(threads),
+        }
+    }
+
+    fn threads(&self, horizontal: bool) -> [u32; 3] {
+        let Extent { width, height } = self.extent;
+        match horizontal {
+            true => [width.div_ceil(self.texels), height, 1],
+            false => [width, height.div_ceil(self.texels), 1],
+        }
     }
 
     fn direction(
@@ -75,26 +109,16 @@ impl Gauss {
         flags: &Buffer,
         target: &Buffer,
     ) -> Result<()> {
-        let weights = |first: u32| [0, 1, 2, 3].map(|next| self.kernel.weight(first + next));
         let params = GaussParams {
-            weights_near: weights(1),
-            weights_far: weights(5),
+            walk: self.kernel.walk(horizontal),
             width_px: self.extent.width,
             height_px: self.extent.height,
             row_pitch: self.row_pitch,
             horizontal: u32::from(horizontal),
-            stop_bits: if horizontal { self.kernel.stop_bits.x } else { self.kernel.stop_bits.y },
-            _unused: [0; 3],
         };
         let bound =
             [("Source", Bound::Buffer(source)), ("Flags", Bound::Buffer(flags)), ("Target", Bound::Buffer(target))];
-        let Extent { width, height } = self.extent;
-        let threads = if horizontal {
-            [width.div_ceil(self.texels), height, 1]
-        } else {
-            [width, height.div_ceil(self.texels), 1]
-        };
-        let groups = self.pipeline.groups(threads);
+        let groups = self.pipeline.groups(self.threads(horizontal));
         cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&params), &bound, groups)
     }
 }

@@ -4,6 +4,8 @@ pub mod gauss;
 pub mod gauss_fast;
 pub mod gauss_pack;
 
+use crate::gpu::shader::structs::WalkParams;
+
 /// Which discontinuities end a walk: bits of the flags (1: differs from +x, 2: from +y, 4: from +xy).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StopBits {
@@ -37,6 +39,17 @@ impl Kernel {
     /// Weight of the tap `distance_px` beside the middle, whose weight is 1.
     pub fn weight(self, distance_px: u32) -> f32 {
         ((distance_px * distance_px) as f32 * self.falloff()).exp()
+    }
+
+    /// The walk along x, or along y, for walk.glsl.
+    pub fn walk(self, horizontal: bool) -> WalkParams {
+        let weights = |first: u32| [0, 1, 2, 3].map(|next| self.weight(first + next));
+        WalkParams {
+            weights_near: weights(1),
+            weights_far: weights(5),
+            stop_bits: if horizontal { self.stop_bits.x } else { self.stop_bits.y },
+            _unused: [0; 3],
+        }
     }
 
     /// -1 / (2 sigma^2), in 1/px^2.

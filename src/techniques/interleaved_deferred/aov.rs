@@ -38,6 +38,9 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
             "shade.irradiance",
             Roads::Branch { irradiance, .. } | Roads::Strided { irradiance, .. } | Roads::Masked { irradiance, .. },
         ) => rgb(in_frame_order(frame, gpu, irradiance)?),
+        ("gather.irradiance", Roads::SubBuffers(road)) if road.gather_filters() => {
+            Err(left_out(NAME, name, "with --fuse on the gather filters what it reads; --fuse off"))
+        }
         ("gather.irradiance", Roads::SubBuffers(road)) => rgb(in_frame_order(frame, gpu, &road.gathered)?),
         ("discontinuity.flags", _) => match &frame.filter {
             Some(filter) => {
@@ -51,7 +54,10 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
             None => Err(left_out(NAME, name, why_no_filter)),
         },
         ("filter.irradiance", _) => match &frame.filter {
-            Some(filter) => rgb(in_frame_order(frame, gpu, &filter.irradiance)?),
+            Some(filter) => match filter.irradiance() {
+                Some(irradiance) => rgb(in_frame_order(frame, gpu, irradiance)?),
+                None => Err(left_out(NAME, name, "with --fuse on the composite ends the filter; --fuse off")),
+            },
             None => Err(left_out(NAME, name, why_no_filter)),
         },
         ("split.normal" | "gather.irradiance", _) => Err(left_out(NAME, name, why_no_split)),

@@ -2,7 +2,7 @@
 
 use super::NAME;
 use super::mapping::mapping;
-use super::road::{Copier, MaskKind, Road};
+use super::road::{Copier, Copies, Form, MaskKind, Road};
 use super::sub_buffers::Storage;
 use super::subsets::subsets;
 use crate::error::{Error, Result};
@@ -33,6 +33,8 @@ pub struct Choices {
     pub mapping: MappingParams,
     pub filter: Filter,
     pub kernel: Kernel,
+    /// The composite walks the columns of the filter; the rows too are walked elsewhere where `gather_filters`.
+    pub fused: bool,
     /// The scene's own lights shaded per pixel in the composite.
     pub direct_full: bool,
     /// The scene's own lights joined to the subsets.
@@ -77,6 +79,7 @@ impl Choices {
             mapping,
             filter,
             kernel: kernel(values)?,
+            fused: filter == Filter::Gauss && values.is_on("fuse"),
             direct_full: direct == "full",
             direct_interleaved: direct == "interleaved",
             blend_subsets: values.text("blend-lights") == "subset",
@@ -181,6 +184,12 @@ impl Choices {
         }
         let [pattern_x, pattern_y] = [self.mapping.pattern_x, self.mapping.pattern_y];
         BlendParams { least_squared, weight: self.subset_count() as f32, pattern_x, pattern_y }
+    }
+
+    /// Whether the gather walks the rows of the filter: where one compute shader pulls each pixel.
+    pub fn gather_filters(&self) -> bool {
+        let pulls = |copies: Copies| copies.by == Copier::OnePass && copies.form == Form::Pull;
+        self.fused && self.road.copies().is_some_and(pulls)
     }
 
     /// Punctual lights that are joined to the subsets.

@@ -2,6 +2,8 @@
 //! reads  the G-buffer, the irradiance, the punctual lights      writes  composite.color  image, RGBA32F, frame extent
 
 use super::NAME;
+use super::choices::Choices;
+use super::filter::Filtered;
 use crate::error::Result;
 use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
@@ -9,7 +11,7 @@ use crate::gpu::shader::structs::CompositeParams;
 use crate::gpu::shader::techniques::interleaved_deferred::composite::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
-use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, emissive_name};
 use std::sync::Arc;
 
@@ -21,19 +23,23 @@ pub struct Composite {
 }
 
 impl Composite {
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        settings: &ShadingSettings,
-        has_emissive: bool,
-        tiled: bool,
-        params: CompositeParams,
-        light_count: usize,
-    ) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, has_emissive: bool, tiled: bool, light_count: usize) -> Result<Self> {
+        let Choices { shading, mapping, kernel, .. } = choices;
         let cull = if tiled { "tiled" } else { "none" };
-        let shader = variant(COMP_VARIANTS, &[settings.position.name(), emissive_name(has_emissive), cull]);
-        let texels = settings.texels.of_column(settings.load(light_count));
-        let constants =
-            [&settings.workgroup_constants()[..], &settings.light_constants(), &[("TEXELS", texels)]].concat();
+        let filter = if choices.fused { "columns" } else { "whole" };
+        let shader = variant(COMP_VARIANTS, &[shading.position.name(), emissive_name(has_emissive), cull, filter]);
+        let texels = shading.texels.of_column(shading.load(light_count));
+        let mut constants =
+            [&shading.workgroup_constants()[..], &shading.light_constants(), &[("TEXELS", texels)]].concat();
+        if choices.fused {
+            constants.push(("RADIUS", kernel.radius()));
+        }
+        let params = CompositeParams {
+            walk: kernel.walk(false),
+            row_pitch: mapping.row_pitch(),
+            direct_full: u32::from(choices.direct_full),
+            _unused: [0; 2],
+        };
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }
 
@@ -43,7 +49,7 @@ impl Composite {
         frame: &Buffer,
         direct: &DirectGpu,
         gbuffer: Edge<'_, GBuffer>,
-        irradiance: Edge<'_, Buffer>,
+        filtered: Filtered<'_>,
         color: &Image,
     ) -> Result<()> {
         let extent = color.description.extent;
@@ -55,15 +61,17 @@ impl Composite {
         };
         cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {
             cmd.barriers(gbuffer.shading_to_sampled());
-            cmd.barriers([irradiance.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
+            cmd.barriers([filtered.irradiance.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
+            cmd.barriers(filtered.flags.iter().map(|flags| flags.to(Access::ComputeRead)));
             cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
             let mut bound = gbuffer.resource.bound_shading();
             bound.extend(direct.bound());
             bound.extend([
                 ("Frame", Bound::Buffer(frame)),
-                ("Irradiance", Bound::Buffer(irradiance.resource)),
+                ("Irradiance", Bound::Buffer(filtered.irradiance.resource)),
                 ("color", Bound::Storage(color)),
             ]);
+            bound.extend(filtered.flags.iter().map(|flags| ("Flags", Bound::Buffer(flags.resource))));
             let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })

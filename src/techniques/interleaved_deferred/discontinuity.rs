@@ -17,46 +17,60 @@ use crate::gpu::shader::techniques::interleaved_deferred::discontinuity::COMP_VA
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::ShadingSettings;
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{self, GBuffer, PositionStorage};
 use crate::plan::Plan;
 use std::sync::Arc;
 
-/// Plans the flags.
-pub fn plan(plan: &mut Plan, mapping: &MappingParams) {
-    plan.buffer("discontinuity", format!("{NAME}.discontinuity.flags"), mapping.frame_texel_count() * 4);
+/// Full name of the flags.
+pub fn flags() -> String {
+    format!("{NAME}.discontinuity.flags")
 }
+
+/// Plans the flags and their pass.
+pub fn plan(plan: &mut Plan, mapping: &MappingParams, position: PositionStorage) {
+    plan.buffer("discontinuity", flags(), mapping.frame_texel_count() * 4);
+    let surface = gbuffer::surface(NAME, position);
+    plan.pass(format!("{NAME}.discontinuity"), surface.into_iter().chain([(flags(), Access::ComputeWrite)]));
+}
+
+/// Columns that a thread flags at most: 1024x768 take 7.9 ms with 1, 6.5 with 2, 6.3 with 4, 9.7 with 8 (rows of 8; lavapipe
+/// 22.3.6).
+const MOST_COLUMNS: u32 = 2;
 
 pub struct Discontinuity {
     pipeline: ComputePipeline,
     params: DiscontinuityParams,
-    /// Pixels of a column that a thread flags.
-    texels: u32,
+    /// Pixels that a thread flags: a rectangle.
+    columns: u32,
+    rows: u32,
 }
 
 impl Discontinuity {
     pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, params: DiscontinuityParams) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        let texels = settings.texels.of_filter();
-        let constants = [&settings.workgroup_constants()[..], &[("TEXELS", texels)]].concat();
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
+        let rows = settings.texels.of_filter();
+        let columns = rows.min(MOST_COLUMNS);
+        let constants = [&settings.workgroup_constants()[..], &[("COLUMNS", columns), ("ROWS", rows)]].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, columns, rows })
     }
 
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, gbuffer: Edge<'_, GBuffer>, flags: &Buffer) -> Result<()> {
         let extent = gbuffer.resource.extent();
         let pixels = extent.pixel_count();
+        let [across, down] = [extent.width.div_ceil(self.columns), extent.height.div_ceil(self.rows)];
+        let threads = u64::from(across) * u64::from(down);
         let traffic = Traffic {
-            // Two columns, a row more than are flagged.
-            read_bytes: 2 * pixels * u64::from(self.texels + 1) / u64::from(self.texels)
-                * gbuffer.resource.surface_bytes(),
+            // A column and a row more than are flagged.
+            read_bytes: threads * u64::from((self.columns + 1) * (self.rows + 1)) * gbuffer.resource.surface_bytes(),
             written_bytes: pixels * 4,
-            invocations: Some(u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels))),
+            invocations: Some(threads),
         };
         cmd.pass(&format!("{NAME}.discontinuity"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([flags.discard(Access::ComputeWrite)]);
             let mut bound = gbuffer.resource.bound_surface();
             bound.extend([("Frame", Bound::Buffer(frame)), ("Flags", Bound::Buffer(flags))]);
-            let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
+            let groups = self.pipeline.groups([across, down, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })
     }

@@ -27,6 +27,7 @@ mod aov;
 mod choices;
 pub mod composite;
 pub mod discontinuity;
+pub mod filter;
 mod frame;
 pub mod gather;
 pub mod lookup;
@@ -55,6 +56,7 @@ use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::settings::{SHADING, Setting, Values};
 use choices::Choices;
+use filter::Filtered;
 use frame::InterleavedFrame;
 use road::Road;
 use shade::SubsetLights;
@@ -237,17 +239,24 @@ impl Frame for InterleavedFrame {
             cull.record(cmd, NAME, gbuffer.from(surface), frame, lights, masks)?;
             surface = surface.after(Access::ComputeSample);
         }
-        let lit = self.roads.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface))?;
+        let flags = match &self.filter {
+            Some(filter) => filter.record_before_gather(cmd, frame, gbuffer.from(surface))?,
+            None => None,
+        };
+        if flags.is_some() {
+            surface = surface.after(Access::ComputeSample);
+        }
+        let lit = self.roads.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface), flags)?;
         surface = lit.readers;
-        let irradiance = match &self.filter {
+        let filtered = match &self.filter {
             Some(filter) => {
                 let filtered = filter.record(cmd, frame, gbuffer.from(surface), lit.irradiance)?;
                 surface = surface.after(Access::ComputeSample);
                 filtered
             }
-            None => lit.irradiance,
+            None => Filtered { irradiance: lit.irradiance, flags: None },
         };
-        self.composite.record(cmd, frame, &self.direct, gbuffer.from(surface), irradiance, &self.color)?;
+        self.composite.record(cmd, frame, &self.direct, gbuffer.from(surface), filtered, &self.color)?;
         surface = surface.after(Access::ComputeSample);
         if let Some(blend) = &self.blend {
             let lights = BlendLights {

@@ -43,6 +43,13 @@ pub struct SubBuffers {
     pub gathered: Buffer,
 }
 
+impl SubBuffers {
+    /// Whether `gathered` is filtered along the rows already.
+    pub fn gather_filters(&self) -> bool {
+        matches!(self.gather, Gather::Filtered(_))
+    }
+}
+
 /// What a road leaves.
 pub struct Lit<'a> {
     /// In frame order.
@@ -117,7 +124,7 @@ impl Roads {
             }
             Road::Copy(copies) => Self::SubBuffers(SubBuffers {
                 copies,
-                gathered: buffer("gather"),
+                gathered: resources.buffer(&format!("{NAME}.{}", gather::target(choices))),
                 split: Split::new(gpu, resources, choices, copies)?,
                 surface: Surface::new(gpu, resources, "split", copies.storage)?,
                 shade: ShadeSubBuffers::new(gpu, choices, copies.storage)?,
@@ -127,7 +134,7 @@ impl Roads {
         })
     }
 
-    /// Split, shade, gather, or what stands for them.
+    /// Split, shade, gather, or what stands for them. `flags`: as `Gather::record`.
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -135,6 +142,7 @@ impl Roads {
         lights: &ShadeGpu,
         direct: &DirectGpu,
         gbuffer: Edge<'_, GBuffer>,
+        flags: Option<Edge<'_, Buffer>>,
     ) -> Result<Lit<'_>> {
         let mapping = lights.mapping();
         let (irradiance, last, stage) = match self {
@@ -160,7 +168,7 @@ impl Roads {
                 split.record(cmd, mapping, gbuffer, surface)?;
                 let written = copies.storage.written(copies.stage());
                 shade.record(cmd, frame, lights, direct, surface.from(written), shaded)?;
-                let last = gather.record(cmd, mapping, shaded.from(Access::ComputeWrite), gathered)?;
+                let last = gather.record(cmd, mapping, shaded.from(Access::ComputeWrite), flags, gathered)?;
                 (gathered, last, copies.stage())
             }
         };

@@ -143,6 +143,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "taps of the filter in one direction, odd",
     },
     Setting {
+        key: "fuse",
+        symbol: "",
+        kind: Kind::Choice(&["off", "on"]),
+        default: "off",
+        unit: "",
+        paper: "",
+        help: "of --filter gauss: on, the composite walks the filter's columns, and a gather in one pass that pulls walks its rows; the \
+               same pixels with fewer passes, and fewer stages to time and to look at",
+    },
+    Setting {
         key: "sigma",
         symbol: "",
         kind: Kind::Number { min: 0.0, max: 64.0 },

@@ -1,7 +1,8 @@
 //! Buffer gathering (BG): the irradiance of n x m sub-buffers back to the frame, by the road that split it. Segovia 2006,
-//! sections 3.4 and 4.4. All end in one buffer in frame order, which the filter reads.
+//! sections 3.4 and 4.4. All end in one buffer in frame order, which the filter reads; one filters the rows on the way.
 
 pub mod blocks;
+pub mod filtered;
 pub mod fragment;
 pub mod one_pass;
 pub mod tile;
@@ -9,6 +10,7 @@ pub mod translate;
 
 use super::NAME;
 use super::choices::Choices;
+use super::discontinuity;
 use super::rendered::Rendered;
 use super::road::{Copier, Copies};
 use super::sub_buffers::{Stage, Texels};
@@ -17,6 +19,7 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::plan::{Plan, Resources};
 use blocks::GatherBlocks;
+use filtered::GatherFiltered;
 use fragment::{FragmentGather, FragmentGatherBlocks};
 use one_pass::GatherOnePass;
 use std::sync::Arc;
@@ -27,6 +30,7 @@ use translate::GatherTranslate;
 #[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
 pub enum Gather {
     OnePass(GatherOnePass),
+    Filtered(GatherFiltered),
     TwoPass { translate: GatherTranslate, between: Texels, blocks: GatherBlocks },
     Tile(GatherTile),
     OneFragmentPass(FragmentGather),
@@ -38,10 +42,13 @@ pub enum Gather {
 pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) -> String {
     let mapping = &choices.mapping;
     let (storage, stage) = (copies.storage, copies.stage());
-    let gathered = format!("{NAME}.gather.irradiance");
+    let gathered = format!("{NAME}.{}", target(choices));
     plan.buffer("irradiance", &gathered, mapping.frame_texel_count() * 8);
     fragment::plan(plan, mapping, copies.by);
-    let source = (shaded, storage.read(stage));
+    let mut source = vec![(shaded, storage.read(stage))];
+    if choices.gather_filters() {
+        source.push((discontinuity::flags(), Access::ComputeRead));
+    }
     let target = match stage {
         Stage::Compute => vec![(gathered.clone(), Access::ComputeWrite)],
         Stage::Fragment => Rendered::touches("gather").to_vec(),
@@ -49,18 +56,24 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) 
     if copies.is_two_pass() {
         storage.plan(plan, "irradiance", "gather.blocks.irradiance", mapping, 8, stage);
         let between = |access| (format!("{NAME}.gather.blocks.irradiance"), access);
-        plan.pass(format!("{NAME}.gather.translate"), [source, between(storage.written(stage))]);
+        plan.pass(format!("{NAME}.gather.translate"), source.into_iter().chain([between(storage.written(stage))]));
         plan.pass(format!("{NAME}.gather.blocks"), [between(storage.read(stage))].into_iter().chain(target));
     } else {
-        plan.pass(format!("{NAME}.gather"), [source].into_iter().chain(target));
+        plan.pass(format!("{NAME}.gather"), source.into_iter().chain(target));
     }
     gathered
+}
+
+/// What it ends in, without the technique.
+pub fn target(choices: &Choices) -> &'static str {
+    if choices.gather_filters() { "filter.rows" } else { "gather.irradiance" }
 }
 
 impl Gather {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, copies: Copies) -> Result<Self> {
         let mut between = || Texels::new(gpu, resources, "gather.blocks.irradiance", copies.storage);
         Ok(match copies.by {
+            Copier::OnePass if choices.gather_filters() => Self::Filtered(GatherFiltered::new(gpu, choices, copies)?),
             Copier::OnePass => Self::OnePass(GatherOnePass::new(gpu, choices, copies)?),
             Copier::TwoPass => Self::TwoPass {
                 translate: GatherTranslate::new(gpu, choices, copies)?,
@@ -76,16 +89,22 @@ impl Gather {
         })
     }
 
-    /// Fills `irradiance` from the sub-buffers; says how it left it.
+    /// Fills `irradiance` from the sub-buffers; says how it left it. `flags`: where walks of the filter end, for a gather that
+    /// filters.
     pub fn record(
         &self,
         cmd: &mut Commands,
         mapping: &MappingParams,
         source: Edge<'_, Texels>,
+        flags: Option<Edge<'_, Buffer>>,
         irradiance: &Buffer,
     ) -> Result<Access> {
         match self {
             Self::OnePass(copy) => copy.record(cmd, mapping, source, irradiance)?,
+            Self::Filtered(copy) => {
+                let flags = flags.expect("discontinuities are flagged before a gather that filters");
+                copy.record(cmd, mapping, source, flags, irradiance)?;
+            }
             Self::TwoPass { translate, between, blocks } => {
                 translate.record(cmd, mapping, source, between)?;
                 blocks.record(cmd, mapping, between.from(Access::ComputeWrite), irradiance)?;
