@@ -4,7 +4,7 @@
 #ifndef PATH_TRACED_LIGHT_WALK_GLSL
 #define PATH_TRACED_LIGHT_WALK_GLSL
 
-#include "techniques/path_traced/path.glsl"
+#include "techniques/path_traced/next_event.glsl"
 
 struct WalkStart {
     vec3 origin;
@@ -30,7 +30,7 @@ WalkStart start_on_emitter(float number, float chance) {
         area *= 2.0;
         normal = numbers.x < 0.5 ? normal : -normal;
     }
-    vec3 at = triangle.corner.xyz + triangle.edge1.xyz * barycentric.x + triangle.edge2.xyz * barycentric.y;
+    vec3 at = place_of(source.index, barycentric);
     vec3 radiance = emitted_at(source.index, barycentric);
     WalkStart start;
     start.origin = at + normal * RAY_OFFSET;

@@ -22,10 +22,20 @@ layout(constant_id = 7) const uint LIGHT_VISIBILITY = 1;
 layout(constant_id = 8) const uint IS_WALKED = 0;
 // Surfaces that a light walk lands on at most.
 layout(constant_id = 9) const uint WALK_LANDINGS = 0;
+// MEDIUM_ (airlight.glsl).
+layout(constant_id = 10) const uint MEDIUM = 0;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.
     vec4 sphere_ws;
+    // The medium's box.
+    vec4 medium_min_ws;
+    vec4 medium_max_ws;
+    // Of the medium, per metre: light that it scatters, and all that it stops.
+    float scattering;
+    float extinction;
+    // Mean cosine of the angle by which the medium turns light, -1 to 1.
+    float asymmetry;
     // Square of --vpl-clamp, in square metres.
     float least_squared;
     // How likely a light walk starts on a punctual light and not on an emitter.

@@ -19,10 +19,14 @@
 //!   shadow rays take the first for solid and the second for nothing)
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
+//! - `--medium`: a homogeneous medium in the box around all that is drawn, the eye and the lights. On each stretch of a path
+//!   one light, chosen by power, is looked for at one place, drawn by the angle under which the light sees the stretch or as
+//!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces
 //!
 //! Equal to others: `--transport direct` is `deferred --direct-shadow ray`; `--transport one-bounce --vpl-visibility off` is
 //! what `interleaved_deferred --split none` comes to with ever more virtual point lights.
 
+mod airlight;
 pub mod sample;
 pub mod settings;
 
@@ -41,6 +45,7 @@ use crate::resident::traced::Layout;
 use crate::scene::{AlphaMode, Material};
 use crate::settings::{Setting, Values};
 use crate::shading::brdf::Brdf;
+use airlight::Air;
 use bytemuck::Zeroable;
 use sample::{Choices, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
@@ -87,6 +92,7 @@ impl Technique for PathTraced {
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        Air::new(inputs)?;
         let bvh = inputs.bvh.whole(inputs.scene)?;
         let sources = Sources::new(inputs, bvh);
         let mut plan = Plan::default();
@@ -103,7 +109,7 @@ impl Technique for PathTraced {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?);
-        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources), sources }))
+        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources)?, sources }))
     }
 }
 
@@ -151,17 +157,30 @@ impl Sources {
     }
 }
 
-fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Choices {
+fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     let values = inputs.values;
     let bounds = inputs.scene.bounds();
     let bounces = match values.text("transport") {
-        "direct" => 1,
+        "direct" | "single-scatter" => 1,
         "one-bounce" => 2,
         _ => values.integer("bounces") as u32,
     };
     let is_walked = !values.is_on("vpl-visibility");
     let least = values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
-    Choices {
+    let (air, medium) = Air::new(inputs)?;
+    let mut params = SampleParams {
+        sphere_ws: bounds.center().extend(0.5 * bounds.diagonal()).to_array(),
+        least_squared: least * least,
+        punctual_part: sources.punctual_part as f32,
+        emitter_count: sources.emitter_count() as u32,
+        punctual_count: sources.punctual.len() as u32,
+        seed: values.integer("seed") as u32,
+        ..SampleParams::zeroed()
+    };
+    if let Some(medium) = medium {
+        airlight::write(&mut params, &medium, inputs, &sources.lights);
+    }
+    Ok(Choices {
         bounces: if is_walked { 1 } else { bounces },
         roulette: values.text("transport") == "full" && !is_walked,
         light_visibility: values.is_on("light-visibility"),
@@ -171,16 +190,9 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Choices {
         workgroup: values.pair("workgroup"),
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),
         is_tested: inputs.scene.drawn_materials().any(|material| material.alpha != AlphaMode::Opaque),
-        params: SampleParams {
-            sphere_ws: bounds.center().extend(0.5 * bounds.diagonal()).to_array(),
-            least_squared: least * least,
-            punctual_part: sources.punctual_part as f32,
-            emitter_count: sources.emitter_count() as u32,
-            punctual_count: sources.punctual.len() as u32,
-            seed: values.integer("seed") as u32,
-            ..SampleParams::zeroed()
-        },
-    }
+        air,
+        params,
+    })
 }
 
 struct PreparedPaths {

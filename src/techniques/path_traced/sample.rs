@@ -2,6 +2,7 @@
 //! reads  the whole tree, the traced scene, the lights      writes  path_traced.sums  buffer, four floats a pixel, kept
 //! from run to run, and path_traced.color  image, RGBA32F, frame extent: the mean so far
 
+use super::airlight::Air;
 use super::{COLOR, NAME, SUMS};
 use crate::bvh::Bvh;
 use crate::error::Result;
@@ -34,6 +35,7 @@ pub struct Choices {
     pub ray_offset: f32,
     /// The scene has MASK or BLEND surfaces.
     pub is_tested: bool,
+    pub air: Air,
     pub params: SampleParams,
 }
 
@@ -70,6 +72,7 @@ impl Sample {
             ("LIGHT_VISIBILITY", u32::from(choices.light_visibility)),
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
             ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
+            ("MEDIUM", choices.air as u32),
         ];
         let constants = [&own[..], &layout.constants()].concat();
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
