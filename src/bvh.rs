@@ -184,6 +184,16 @@ impl Bvh {
         best
     }
 
+    /// Whether a ray of this direction meets the back of a single-sided surface, which is not drawn.
+    pub fn is_culled_back(&self, hit: &Hit, direction: Vec3) -> bool {
+        let triangle = &self.triangles[hit.triangle];
+        let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+        let flags = triangle.corner[3].to_bits();
+        let is_front = (three(triangle.edge1).cross(three(triangle.edge2)).dot(direction) < 0.0)
+            != (flags & TRIANGLE_MIRRORED != 0);
+        !is_front && flags & TRIANGLE_SINGLE_SIDED != 0
+    }
+
     /// Whether anything lies on the ray before `limit`.
     pub fn occluded(&self, origin: Vec3, direction: Vec3, limit: f32) -> bool {
         let mut met = false;

@@ -84,7 +84,7 @@ fn flag(setting: &'static Setting) -> Arg {
 fn value_name(setting: &Setting) -> &'static str {
     match setting.kind {
         Kind::Integer { .. } | Kind::Number { .. } => "N",
-        Kind::IntegerOrAuto { .. } => "auto|N",
+        Kind::IntegerOrAuto { .. } | Kind::NumberOrAuto { .. } => "auto|N",
         Kind::Choice(_) => "NAME",
         Kind::Pair { .. } => "NxM",
         Kind::PairOrAuto { .. } => "auto|NxM",

@@ -6,7 +6,7 @@
 mod optics;
 mod tables;
 
-pub use optics::MEDIUM;
+pub use optics::{APERTURE, FOCUS, MEDIUM};
 pub use tables::{BRDF, COMMON, EMISSIVE, SHADING, VPL_CLAMP, WORKGROUP};
 
 use crate::error::{Error, Result};
@@ -27,6 +27,11 @@ pub enum Kind {
         max: u64,
     },
     Number {
+        min: f64,
+        max: f64,
+    },
+    /// In the range, or `auto`.
+    NumberOrAuto {
         min: f64,
         max: f64,
     },
@@ -88,6 +93,7 @@ impl Setting {
             Kind::Integer { min, max } => format!("{min} to {max}"),
             Kind::IntegerOrAuto { min, max } => format!("auto or {min} to {max}"),
             Kind::Number { min, max } => format!("{min} to {max}"),
+            Kind::NumberOrAuto { min, max } => format!("auto or {min} to {max}"),
             Kind::Choice(choices) => choices.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
             Kind::PairOrAuto { min, max } => format!("auto or NxM, both {min} to {max}"),
@@ -118,6 +124,9 @@ impl Setting {
             }
             Kind::Number { min, max } => {
                 text.parse::<f64>().is_ok_and(|value| value.is_finite() && (min..=max).contains(&value))
+            }
+            Kind::NumberOrAuto { min, max } => {
+                parse_number_or_auto(text).is_some_and(|value| value.is_none_or(|value| (min..=max).contains(&value)))
             }
             Kind::Choice(choices) => choices.contains(&text),
             Kind::Pair { min, max } => parse_pair(text).is_some_and(|pair| in_range(pair, min, max)),
@@ -152,6 +161,14 @@ fn parse_pair(text: &str) -> Option<[u32; 2]> {
 
 /// Some(None) is `auto`.
 fn parse_integer_or_auto(text: &str) -> Option<Option<u64>> {
+    match text {
+        "auto" => Some(None),
+        text => text.parse().ok().map(Some),
+    }
+}
+
+/// Some(None) is `auto`.
+fn parse_number_or_auto(text: &str) -> Option<Option<f64>> {
     match text {
         "auto" => Some(None),
         text => text.parse().ok().map(Some),
@@ -257,6 +274,11 @@ impl Values {
         self.parsed(key, |text| text.parse().ok())
     }
 
+    /// None: `auto`.
+    pub fn number_or_auto(&self, key: &str) -> Option<f64> {
+        self.parsed(key, parse_number_or_auto)
+    }
+
     pub fn pair(&self, key: &str) -> [u32; 2] {
         self.parsed(key, parse_pair)
     }
@@ -340,6 +362,7 @@ mod tests {
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
             (Kind::IntegerOrAuto { min: 0, max: 9 }, &["", "AUTO", "none", "-1", "10", "1.5"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
+            (Kind::NumberOrAuto { min: 0.5, max: 9.0 }, &["", "AUTO", "nan", "inf", "0", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
             (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),
             (Kind::Bytes, &["", "0", "-1", "1.5", "64MB", "MiB", "64 M", "inf", "nanMiB", "99999999TiB", "None"]),

@@ -2,6 +2,29 @@
 
 use super::{Kind, Part, Setting};
 
+/// How wide the lens is.
+pub const APERTURE: Setting = Setting {
+    key: "aperture",
+    symbol: "",
+    kind: Kind::Number { min: 0.0, max: 1e6 },
+    default: "0",
+    unit: "m",
+    paper: "Clarberg 2014, table 3",
+    help: "diameter of the camera's thin lens: what is out of focus is blurred; 0: a pinhole, all is sharp",
+};
+
+/// Where the lens makes a sharp picture of.
+pub const FOCUS: Setting = Setting {
+    key: "focus",
+    symbol: "",
+    kind: Kind::NumberOrAuto { min: 1e-6, max: 1e9 },
+    default: "auto",
+    unit: "m",
+    paper: "",
+    help: "of --aperture: how far before the camera the plane in focus lies; auto: where the middle of the picture sees \
+           something, else through the middle of the scene",
+};
+
 /// A homogeneous medium that fills the scene.
 pub const MEDIUM: Setting = Setting {
     key: "medium",

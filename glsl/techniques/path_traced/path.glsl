@@ -24,6 +24,8 @@ layout(constant_id = 8) const uint IS_WALKED = 0;
 layout(constant_id = 9) const uint WALK_LANDINGS = 0;
 // MEDIUM_ (airlight.glsl).
 layout(constant_id = 10) const uint MEDIUM = 0;
+// 1: rays leave all over a lens.
+layout(constant_id = 11) const uint HAS_LENS = 0;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.
@@ -36,6 +38,9 @@ struct SampleParams {
     float extinction;
     // Mean cosine of the angle by which the medium turns light, -1 to 1.
     float asymmetry;
+    // Of the lens, in metres, and how far before it the plane in focus lies.
+    float lens_radius;
+    float focus;
     // Square of --vpl-clamp, in square metres.
     float least_squared;
     // How likely a light walk starts on a punctual light and not on an emitter.

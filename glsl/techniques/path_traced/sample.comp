@@ -24,6 +24,25 @@ struct Path {
     bool goes_on;
 };
 
+// Moves a ray from the lens's middle to another point of the lens; both meet in the plane in focus. `near`: how far before
+// the lens its origin lies.
+void through_lens(inout Path path, vec2 numbers, float near) {
+    vec3 right = normalize(frame.world_from_clip[0].xyz);
+    vec3 down = normalize(frame.world_from_clip[1].xyz);
+    vec3 forward = frame.forward_ws.xyz;
+    float angle = 2.0 * PI * numbers.y;
+    vec3 aside = (right * cos(angle) + down * sin(angle)) * (params.lens_radius * sqrt(numbers.x));
+    float steepness = dot(path.direction, forward);
+    // From the origin on: next to it floats are finer than next to the world's.
+    vec3 focused = path.direction * (params.focus / steepness);
+    vec3 direction = normalize(focused - aside);
+    float longer = steepness / dot(direction, forward);
+    path.origin += aside + (direction * longer - path.direction) * (near / steepness);
+    path.limit = path.limit < FAR ? path.limit * longer : FAR;
+    path.behind *= longer;
+    path.direction = direction;
+}
+
 // The ray through a place of the picture, from the near plane to the far one.
 Path camera_path(vec2 at_px) {
     vec2 ndc = at_px / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0;
@@ -37,7 +56,11 @@ Path camera_path(vec2 at_px) {
     // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
     vec3 origin = is_perspective ? frame.eye_ws.xyz + direction * behind : start;
     float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
-    return Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true);
+    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true);
+    if (HAS_LENS != 0u) {
+        through_lens(path, next_pair(), dot(start - frame.eye_ws.xyz, frame.forward_ws.xyz));
+    }
+    return path;
 }
 
 // What a path may still find by scattering once more: a last scattering leads to what shines by itself alone.

@@ -19,6 +19,7 @@
 //!   shadow rays take the first for solid and the second for nothing)
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
+//! - `--aperture`: a thin lens, whose points rays leave evenly
 //! - `--medium`: a homogeneous medium in the box around all that is drawn, the eye and the lights. On each stretch of a path
 //!   one light, chosen by power, is looked for at one place, drawn by the angle under which the light sees the stretch or as
 //!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces
@@ -35,6 +36,7 @@ use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, SampleParams, SourceBlock};
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::lights::emitters::{self, Emitters};
 use crate::passes::direct;
@@ -180,6 +182,11 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     if let Some(medium) = medium {
         airlight::write(&mut params, &medium, inputs, &sources.lights);
     }
+    let lens = Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?);
+    if let Some(lens) = lens {
+        params.lens_radius = lens.radius;
+        params.focus = lens.focus;
+    }
     Ok(Choices {
         bounces: if is_walked { 1 } else { bounces },
         roulette: values.text("transport") == "full" && !is_walked,
@@ -191,6 +198,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),
         is_tested: inputs.scene.drawn_materials().any(|material| material.alpha != AlphaMode::Opaque),
         air,
+        has_lens: lens.is_some(),
         params,
     })
 }
@@ -214,10 +222,14 @@ impl Prepared for PreparedPaths {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let emissive = if self.sources.emitters.is_some() { "on" } else { "off" };
-        BTreeMap::from([
+        let mut resolved = BTreeMap::from([
             ("emissive", emissive.to_owned()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
-        ])
+        ]);
+        if self.choices.has_lens {
+            resolved.insert("focus", format!("{}", self.choices.params.focus));
+        }
+        resolved
     }
 
     fn light_counts(&self) -> [u32; 2] {

@@ -36,6 +36,8 @@ pub struct Choices {
     /// The scene has MASK or BLEND surfaces.
     pub is_tested: bool,
     pub air: Air,
+    /// The camera has a lens that is open.
+    pub has_lens: bool,
     pub params: SampleParams,
 }
 
@@ -73,6 +75,7 @@ impl Sample {
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
             ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
             ("MEDIUM", choices.air as u32),
+            ("HAS_LENS", u32::from(choices.has_lens)),
         ];
         let constants = [&own[..], &layout.constants()].concat();
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;

@@ -1,6 +1,6 @@
 //! The settings of path tracing.
 
-use crate::settings::{BRDF, EMISSIVE, Kind, MEDIUM, Setting, VPL_CLAMP, WORKGROUP};
+use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, Setting, VPL_CLAMP, WORKGROUP};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -60,6 +60,8 @@ pub const SETTINGS: &[Setting] = &[
         paper: "",
         help: "point, spot and directional lights; off: emissive triangles light the scene even where --emissive is auto",
     },
+    APERTURE,
+    FOCUS,
     MEDIUM,
     EMISSIVE,
     VPL_CLAMP,

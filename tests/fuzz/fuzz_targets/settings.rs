@@ -37,6 +37,9 @@ fn read_back(values: &Values, setting: &Setting) {
             assert!(values.integer_or_auto(key).is_none_or(|value| (min..=max).contains(&value)));
         }
         Kind::Number { min, max } => assert!((min..=max).contains(&values.number(key))),
+        Kind::NumberOrAuto { min, max } => {
+            assert!(values.number_or_auto(key).is_none_or(|value| (min..=max).contains(&value)));
+        }
         Kind::Choice(choices) => assert!(choices.contains(&values.text(key))),
         Kind::Pair { min, max } => assert!(values.pair(key).iter().all(|side| (min..=max).contains(side))),
         Kind::PairOrAuto { min, max } => {
