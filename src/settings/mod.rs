@@ -6,7 +6,7 @@
 mod optics;
 mod tables;
 
-pub use optics::{APERTURE, FOCUS, MEDIUM};
+pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
 pub use tables::{BRDF, COMMON, EMISSIVE, SHADING, VPL_CLAMP, WORKGROUP};
 
 use crate::error::{Error, Result};

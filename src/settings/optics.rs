@@ -1,6 +1,7 @@
 //! The rows of what lies between a surface and the film, which several techniques read.
 
-use super::{Kind, Part, Setting};
+use super::{Kind, Part, Setting, Values};
+use crate::error::{Error, Result};
 
 /// How wide the lens is.
 pub const APERTURE: Setting = Setting {
@@ -24,6 +25,36 @@ pub const FOCUS: Setting = Setting {
     help: "of --aperture: how far before the camera the plane in focus lies; auto: where the middle of the picture sees \
            something, else through the middle of the scene",
 };
+
+/// How long the film is exposed.
+pub const SHUTTER: Setting = Setting {
+    key: "shutter",
+    symbol: "",
+    kind: Kind::PartsOrNone(&[Part { word: "OPEN", min: -1e9, max: 1e9 }, Part { word: "CLOSE", min: -1e9, max: 1e9 }]),
+    default: "none",
+    unit: "s",
+    paper: "Keller 2001, 3.2",
+    help: "when the shutter opens and closes, after --time: what animations move meanwhile is blurred, along straight lines \
+           from its place at the one to that at the other; none: one moment",
+};
+
+/// The moments of `--time` and `--shutter` at which the shutter opens and closes, seconds; the same one where there is no
+/// shutter, or the technique reads none.
+///
+/// Errors: it closes before it opens (exit code 2).
+pub fn exposure_s(values: &Values) -> Result<[f64; 2]> {
+    let time_s = values.number("time");
+    let has_shutter = values.iter().any(|(key, _)| key == SHUTTER.key);
+    let Some([open_s, close_s]) = has_shutter.then(|| values.numbers_or_none("shutter")).flatten() else {
+        return Ok([time_s; 2]);
+    };
+    if open_s > close_s {
+        let text = values.text("shutter");
+        return Err(Error::request(format!("--shutter {text}: it closes before it opens"))
+            .note(format!("--shutter {close_s},{open_s} is the same time in order")));
+    }
+    Ok([time_s + open_s, time_s + close_s])
+}
 
 /// A homogeneous medium that fills the scene.
 pub const MEDIUM: Setting = Setting {

@@ -50,7 +50,7 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
     uint count = is_punctual ? params.punctual_count : params.emitter_count;
     SourceBlock source = source_of(first, count, min(choice, 0.99999994));
     // Of the other kind there may be none to be read.
-    LightBlock light = lights[is_punctual ? source.index : 0u];
+    LightBlock light = light_at(is_punctual ? source.index : 0u);
     uint triangle = is_punctual ? 0u : source.index;
     vec3 source_ws = is_punctual ? light.position_ws.xyz : place_of(triangle, barycentric);
     bool is_somewhere = !is_punctual || light.kind != LIGHT_DIRECTIONAL;

@@ -18,7 +18,7 @@ struct WalkStart {
 WalkStart start_on_emitter(float number, float chance) {
     SourceBlock source = source_of(0u, params.emitter_count, number);
     vec2 barycentric = barycentric_of(next_pair());
-    BvhTriangleBlock triangle = bvh_triangles[source.index];
+    BvhTriangleBlock triangle = triangle_at(source.index);
     vec3 twice = cross(triangle.edge1.xyz, triangle.edge2.xyz);
     uint flags = floatBitsToUint(triangle.corner.w);
     vec3 normal = normalize(twice);
@@ -42,7 +42,7 @@ WalkStart start_on_emitter(float number, float chance) {
 
 WalkStart start_on_punctual(float number, float chance) {
     SourceBlock source = source_of(params.emitter_count, params.punctual_count, number);
-    LightBlock light = lights[source.index];
+    LightBlock light = light_at(source.index);
     vec2 numbers = next_pair();
     float angle = 2.0 * PI * numbers.y;
     WalkStart start;

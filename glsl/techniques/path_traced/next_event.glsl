@@ -36,7 +36,7 @@ Waiting punctual_light(SurfacePoint point, vec3 to_eye) {
     float chosen_weight = 1.0;
     uint light = min(uint(numbers.y * float(stride)), stride - 1u);
     for (; light < params.punctual_count; light += stride) {
-        Incident incident = incident_from(lights[light], point.position_ws);
+        Incident incident = incident_from(light_at(light), point.position_ws);
         vec3 radiance = reflected_by(point, incident.direction_ws, to_eye) * incident.irradiance;
         float weight = largest(radiance);
         if (weight > 0.0) {
@@ -64,7 +64,7 @@ float weight_of(float drawn, float other) {
 }
 
 vec3 place_of(uint triangle_index, vec2 barycentric) {
-    BvhTriangleBlock triangle = bvh_triangles[triangle_index];
+    BvhTriangleBlock triangle = triangle_at(triangle_index);
     return triangle.corner.xyz + triangle.edge1.xyz * barycentric.x + triangle.edge2.xyz * barycentric.y;
 }
 
@@ -78,7 +78,7 @@ struct Shining {
 
 // `at_ws`: of the triangle that `source` is.
 Shining shining_to(vec3 position_ws, SourceBlock source, vec3 at_ws) {
-    BvhTriangleBlock triangle = bvh_triangles[source.index];
+    BvhTriangleBlock triangle = triangle_at(source.index);
     vec3 to_light = at_ws - position_ws;
     float distance_squared = max(dot(to_light, to_light), 1e-12);
     float distance = sqrt(distance_squared);

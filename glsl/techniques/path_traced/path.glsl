@@ -76,6 +76,9 @@ layout(std430, set = 0, binding = 10) readonly buffer Texels2 { uint texels_2[];
 layout(std430, set = 0, binding = 11) readonly buffer Texels3 { uint texels_3[]; };
 layout(std430, set = 0, binding = 12) readonly buffer Sources { SourceBlock sources[]; };
 layout(std430, set = 0, binding = 13) buffer Sums { vec4 sums[]; };
+layout(std430, set = 0, binding = 15) readonly buffer BvhClosing { BvhTriangleBlock bvh_closing[]; };
+layout(std430, set = 0, binding = 16) readonly buffer TracedClosing { TracedClosingBlock closings[]; };
+layout(std430, set = 0, binding = 17) readonly buffer FrameClosing { FrameBlock frame_closing; };
 layout(set = 0, binding = 14, rgba32f) writeonly uniform image2D color;
 
 #include "shading/traced.glsl"
@@ -99,6 +102,17 @@ uint next_seed() {
 // Off a surface, on the side of its plane that `plane_ws` points to.
 vec3 off_surface(SurfacePoint point) {
     return point.position_ws + point.plane_ws * RAY_OFFSET;
+}
+
+// A light of the list; those of the moment when the shutter closes lie behind those of the moment when it opens.
+LightBlock light_at(uint index) {
+    LightBlock light = lights[index];
+    if (MOVES != 0u) {
+        LightBlock closing = lights[frame.light_count + index];
+        light.position_ws = mix(light.position_ws, closing.position_ws, shutter_part);
+        light.direction_ws.xyz = normalize(mix(light.direction_ws.xyz, closing.direction_ws.xyz, shutter_part));
+    }
+    return light;
 }
 
 // The first of `count` sources from `first` on whose sum of chances is beyond `number`.

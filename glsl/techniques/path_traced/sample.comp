@@ -24,12 +24,12 @@ struct Path {
     bool goes_on;
 };
 
-// Moves a ray from the lens's middle to another point of the lens; both meet in the plane in focus. `near`: how far before
-// the lens its origin lies.
-void through_lens(inout Path path, vec2 numbers, float near) {
-    vec3 right = normalize(frame.world_from_clip[0].xyz);
-    vec3 down = normalize(frame.world_from_clip[1].xyz);
-    vec3 forward = frame.forward_ws.xyz;
+// Moves a ray of `view` from the lens's middle to another point of the lens; both meet in the plane in focus. `near`: how
+// far before the lens its origin lies.
+void through_lens(FrameBlock view, inout Path path, vec2 numbers, float near) {
+    vec3 right = normalize(view.world_from_clip[0].xyz);
+    vec3 down = normalize(view.world_from_clip[1].xyz);
+    vec3 forward = view.forward_ws.xyz;
     float angle = 2.0 * PI * numbers.y;
     vec3 aside = (right * cos(angle) + down * sin(angle)) * (params.lens_radius * sqrt(numbers.x));
     float steepness = dot(path.direction, forward);
@@ -43,22 +43,39 @@ void through_lens(inout Path path, vec2 numbers, float near) {
     path.direction = direction;
 }
 
-// The ray through a place of the picture, from the near plane to the far one.
-Path camera_path(vec2 at_px) {
-    vec2 ndc = at_px / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0;
-    vec4 near = frame.world_from_clip * vec4(ndc, 1.0, 1.0);
-    vec4 far = frame.world_from_clip * vec4(ndc, 0.0, 1.0);
-    bool is_perspective = frame.eye_ws.w > 0.0;
+// The ray of `view` through a place of the picture and, as `lens` says, of the lens, from the near plane to the far one.
+Path view_path(FrameBlock view, vec2 at_px, vec2 lens) {
+    vec2 ndc = at_px / vec2(view.width_px, view.height_px) * 2.0 - 1.0;
+    vec4 near = view.world_from_clip * vec4(ndc, 1.0, 1.0);
+    vec4 far = view.world_from_clip * vec4(ndc, 0.0, 1.0);
+    bool is_perspective = view.eye_ws.w > 0.0;
     // A far plane at infinity has w = 0: this is a direction all the same.
-    vec3 direction = is_perspective ? normalize(far.xyz - frame.eye_ws.xyz * far.w) : frame.forward_ws.xyz;
+    vec3 direction = is_perspective ? normalize(far.xyz - view.eye_ws.xyz * far.w) : view.forward_ws.xyz;
     vec3 start = near.xyz / near.w;
-    float behind = is_perspective ? distance(start, frame.eye_ws.xyz) : 0.0;
+    float behind = is_perspective ? distance(start, view.eye_ws.xyz) : 0.0;
     // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
-    vec3 origin = is_perspective ? frame.eye_ws.xyz + direction * behind : start;
+    vec3 origin = is_perspective ? view.eye_ws.xyz + direction * behind : start;
     float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
     Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true);
     if (HAS_LENS != 0u) {
-        through_lens(path, next_pair(), dot(start - frame.eye_ws.xyz, frame.forward_ws.xyz));
+        through_lens(view, path, lens, dot(start - view.eye_ws.xyz, view.forward_ws.xyz));
+    }
+    return path;
+}
+
+Path camera_path(vec2 at_px) {
+    vec2 lens = vec2(0.0);
+    if (HAS_LENS != 0u) {
+        lens = next_pair();
+    }
+    Path path = view_path(frame, at_px, lens);
+    if (MOVES != 0u) {
+        shutter_part = next_pair().x;
+        Path closing = view_path(frame_closing, at_px, lens);
+        path.origin = mix(path.origin, closing.origin, shutter_part);
+        path.direction = normalize(mix(path.direction, closing.direction, shutter_part));
+        path.behind = mix(path.behind, closing.behind, shutter_part);
+        path.limit = min(path.limit, closing.limit);
     }
     return path;
 }

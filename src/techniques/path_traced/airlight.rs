@@ -3,8 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::SampleParams;
-use crate::lights::LightSet;
-use crate::scene::LightKind;
+use crate::scene::{Light, LightKind};
 use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
 
@@ -39,10 +38,15 @@ impl Air {
 
 /// Writes the medium and its box: around all that is drawn while animations play, the eye, and the lights that are
 /// somewhere. Outside it, light from the sun and the sky comes undimmed.
-pub fn write(params: &mut SampleParams, medium: &Medium, inputs: &Inputs<'_>, lights: &LightSet) {
+pub fn write<'a>(
+    params: &mut SampleParams,
+    medium: &Medium,
+    inputs: &Inputs<'_>,
+    lights: impl Iterator<Item = &'a Light>,
+) {
     let mut bounds = inputs.scene.lasting_bounds();
     bounds.include(inputs.view.eye());
-    for light in lights.lights.iter().filter(|light| light.kind != LightKind::Directional) {
+    for light in lights.filter(|light| light.kind != LightKind::Directional) {
         bounds.include(light.position);
     }
     params.medium_min_ws = bounds.min.extend(0.0).to_array();

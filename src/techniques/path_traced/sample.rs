@@ -7,7 +7,7 @@ use super::{COLOR, NAME, SUMS};
 use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::{LightBlock, SampleParams, SourceBlock};
+use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::shader::techniques::path_traced::sample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
@@ -47,6 +47,8 @@ pub struct Sample {
     traced: TracedGpu,
     lights: Buffer,
     sources: Buffer,
+    /// Frame when the shutter closes.
+    closing: Buffer,
     sums: Buffer,
     pub color: Image,
 }
@@ -58,7 +60,7 @@ impl Sample {
         inputs: &Inputs<'_>,
         resources: &mut Resources,
         choices: &Choices,
-        (lights, sources): (&[LightBlock], &[SourceBlock]),
+        (lights, sources, closing): (&[LightBlock], &[SourceBlock], &[FrameBlock]),
         (bvh, layout): (&Bvh, &Layout),
         density_of: impl Fn(&crate::scene::Material) -> f32,
     ) -> Result<Self> {
@@ -90,6 +92,7 @@ impl Sample {
             traced,
             lights: filled("lights", bytemuck::cast_slice(lights))?,
             sources: filled("sources", bytemuck::cast_slice(sources))?,
+            closing: filled("frame.closing", bytemuck::cast_slice(closing))?,
             sums: resources.buffer(SUMS),
             color: resources.image(COLOR),
         })
@@ -112,6 +115,7 @@ impl Sample {
                 ("Frame", Bound::Buffer(frame)),
                 ("Lights", Bound::Buffer(&self.lights)),
                 ("Sources", Bound::Buffer(&self.sources)),
+                ("FrameClosing", Bound::Buffer(&self.closing)),
                 ("Sums", Bound::Buffer(&self.sums)),
                 ("color", Bound::Storage(&self.color)),
             ]);

@@ -1,6 +1,6 @@
 //! The settings of path tracing.
 
-use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, Setting, VPL_CLAMP, WORKGROUP};
+use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, Setting, VPL_CLAMP, WORKGROUP};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -62,6 +62,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     APERTURE,
     FOCUS,
+    SHUTTER,
     MEDIUM,
     EMISSIVE,
     VPL_CLAMP,
