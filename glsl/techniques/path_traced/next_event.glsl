@@ -26,16 +26,16 @@ vec3 reflected_by(SurfacePoint point, vec3 to_light, vec3 to_eye) {
 // Chosen as strongly as each would light the point if nothing stood between.
 Waiting punctual_light(SurfacePoint point, vec3 to_eye) {
     Waiting chosen = NOTHING;
-    if (params.punctual_count == 0u) {
+    if (frame.light_count == 0u) {
         return chosen;
     }
     vec2 numbers = next_pair();
-    uint stride = (params.punctual_count + MOST_LOOKS - 1u) / MOST_LOOKS;
+    uint stride = (frame.light_count + MOST_LOOKS - 1u) / MOST_LOOKS;
     float sum = 0.0;
     float choice = numbers.x;
     float chosen_weight = 1.0;
     uint light = min(uint(numbers.y * float(stride)), stride - 1u);
-    for (; light < params.punctual_count; light += stride) {
+    for (; light < frame.light_count; light += stride) {
         Incident incident = incident_from(light_at(light), point.position_ws);
         vec3 radiance = reflected_by(point, incident.direction_ws, to_eye) * incident.irradiance;
         float weight = largest(radiance);
@@ -51,7 +51,7 @@ Waiting punctual_light(SurfacePoint point, vec3 to_eye) {
             }
         }
     }
-    expect_done(light >= params.punctual_count);
+    expect_done(light >= frame.light_count);
     chosen.radiance *= float(stride) * sum / chosen_weight;
     return chosen;
 }
