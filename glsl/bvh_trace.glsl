@@ -2,11 +2,12 @@
 // that a shader holds it once. Twin: src/bvh.rs, `Bvh::closest_hit`.
 //
 // The walk goes in two loops, down to a leaf and through its triangles, and looks at alpha outside both: a driver that runs
-// lanes side by side runs what any of them needs for all. The including shader has the axis ALPHA and what bvh_walk.glsl
-// and, with ALPHA=tested, shading/traced.glsl want.
+// lanes side by side runs what any of them needs for all. The including shader has the axis ALPHA and what bvh_walk.glsl,
+// bvh_moving.glsl and, with ALPHA=tested, shading/traced.glsl want.
 #ifndef BVH_TRACE_GLSL
 #define BVH_TRACE_GLSL
 
+#include "bvh_moving.glsl"
 #include "bvh_walk.glsl"
 #include "sampling/sobol.glsl"
 
@@ -78,7 +79,7 @@ TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
         vec3 asked;
 #endif
         while (triangle < end) {
-            BvhTriangleBlock plane = bvh_triangles[triangle];
+            BvhTriangleBlock plane = triangle_at(triangle);
             vec3 met;
             bool is_met = triangle_hit(plane, origin, direction, hit.distance, met);
             if ((kind & RAY_CAMERA) != 0u) {

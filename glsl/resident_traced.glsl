@@ -45,6 +45,12 @@ struct TracedTangentsBlock {
     vec4 corners[3];
 };
 
+// Where a triangle's normals and tangents are turned to by the time the shutter closes.
+struct TracedClosingBlock {
+    vec4 normals[3];
+    vec4 tangents[3];
+};
+
 struct TracedExtendedBlock {
     vec4 colors[3];
     // uv_1 of the first two corners, and of the third.

@@ -7,10 +7,11 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
-use crate::scene::{AlphaMode, Bounds, Material, Scene};
+use crate::scene::{AlphaMode, Bounds, Draw, Material, Scene};
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
-use obvhs::bvh2::builder::build_bvh2_from_tris;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::{build_bvh2, build_bvh2_from_tris};
 use obvhs::triangle::Triangle;
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -25,6 +26,8 @@ const MOST_TRIANGLES: u64 = 1 << 26;
 pub struct Bvh {
     pub nodes: Vec<BvhNodeBlock>,
     pub triangles: Vec<BvhTriangleBlock>,
+    /// The same when the shutter closes; boxes hold both, and so all between. Empty where nothing moves.
+    pub closing: Vec<BvhTriangleBlock>,
     /// Where each of `triangles` comes from.
     pub sources: Vec<Source>,
 }
@@ -123,6 +126,7 @@ impl Bvh {
             .note("`--technique deferred --direct-shadow none` casts none"));
         }
         let mut corners = Vec::new();
+        let mut closing = Vec::new();
         let mut sources = Vec::new();
         for (draw_index, draw) in scene.draws.iter().enumerate() {
             let mesh = &scene.meshes[draw.mesh];
@@ -130,15 +134,23 @@ impl Bvh {
                 continue;
             }
             for triangle in 0..mesh.triangle_count() {
-                let [v0, v1, v2] = mesh.triangle(triangle).map(|v| draw.world_from_object.transform_point3(v));
-                corners.push(Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() });
+                corners.push(triangle_in_world(scene, draw, triangle));
                 sources.push(Source { draw: draw_index as u32, triangle: triangle as u32 });
+                if let Some(scene) = &scene.closing {
+                    closing.push(triangle_in_world(scene, &scene.draws[draw_index], triangle));
+                }
             }
         }
         if corners.is_empty() {
             return Ok(Self::empty());
         }
-        let tree = build_bvh2_from_tris(&corners, BvhBuildParams::medium_build(), &mut Duration::default());
+        let (settings, time) = (BvhBuildParams::medium_build(), &mut Duration::default());
+        let tree = if closing.is_empty() {
+            build_bvh2_from_tris(&corners, settings, time)
+        } else {
+            let boxes = corners.iter().zip(&closing).map(|(from, to)| from.aabb().union(&to.aabb()));
+            build_bvh2(&boxes.collect::<Vec<Aabb>>(), settings, time)
+        };
         // A walk holds at most one waiting node a level, and one more.
         let (nodes, order) = if tree.depth(0) < STACK {
             let blocks = tree.nodes.iter().map(|node| {
@@ -147,26 +159,26 @@ impl Bvh {
             });
             (blocks.collect(), tree.primitive_indices)
         } else {
-            halved(&corners)
+            halved(&corners, &closing)
         };
         let order: Vec<usize> = order.into_iter().map(|index| index as usize).collect();
-        let triangles = order
-            .iter()
-            .map(|index| {
-                let Triangle { v0, v1, v2 } = corners[*index];
-                let four = |v: glam::Vec3A, w: f32| [v.x, v.y, v.z, w];
-                let flags = f32::from_bits(flags_of(scene, &sources[*index]));
-                BvhTriangleBlock { corner: four(v0, flags), edge1: four(v1 - v0, 0.0), edge2: four(v2 - v0, 0.0) }
-            })
-            .collect();
-        Ok(Self { nodes, triangles, sources: order.iter().map(|index| sources[*index]).collect() })
+        let block = |index: &usize, from: &[Triangle]| {
+            let Triangle { v0, v1, v2 } = from[*index];
+            let four = |v: glam::Vec3A, w: f32| [v.x, v.y, v.z, w];
+            let flags = f32::from_bits(flags_of(scene, &sources[*index]));
+            BvhTriangleBlock { corner: four(v0, flags), edge1: four(v1 - v0, 0.0), edge2: four(v2 - v0, 0.0) }
+        };
+        let triangles = order.iter().map(|index| block(index, &corners)).collect();
+        let is_moving = !closing.is_empty();
+        let closing = order.iter().filter(|_| is_moving).map(|index| block(index, &closing)).collect();
+        Ok(Self { nodes, triangles, closing, sources: order.iter().map(|index| sources[*index]).collect() })
     }
 
     /// A tree that no ray meets: one leaf with a triangle of no area, which has no source.
     pub fn empty() -> Self {
         let node = BvhNodeBlock { min_count: [0.0, 0.0, 0.0, f32::from_bits(1)], max_first: [0.0; 4] };
         let triangle = BvhTriangleBlock { corner: [0.0; 4], edge1: [0.0; 4], edge2: [0.0; 4] };
-        Self { nodes: vec![node], triangles: vec![triangle], sources: Vec::new() }
+        Self { nodes: vec![node], triangles: vec![triangle], closing: Vec::new(), sources: Vec::new() }
     }
 
     /// The nearest triangle along a ray, both of its sides, nearer than `limit`; `accept` may let a ray pass.
@@ -182,6 +194,16 @@ impl Bvh {
             Some(distance)
         });
         best
+    }
+
+    /// Whether a ray of this direction meets the back of a single-sided surface, which is not drawn.
+    pub fn is_culled_back(&self, hit: &Hit, direction: Vec3) -> bool {
+        let triangle = &self.triangles[hit.triangle];
+        let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+        let flags = triangle.corner[3].to_bits();
+        let is_front = (three(triangle.edge1).cross(three(triangle.edge2)).dot(direction) < 0.0)
+            != (flags & TRIANGLE_MIRRORED != 0);
+        !is_front && flags & TRIANGLE_SINGLE_SIDED != 0
     }
 
     /// Whether anything lies on the ray before `limit`.
@@ -222,6 +244,13 @@ impl Bvh {
     }
 }
 
+/// Triangle `triangle` of a draw, in world space.
+fn triangle_in_world(scene: &Scene, draw: &Draw, triangle: usize) -> Triangle {
+    let corners = scene.meshes[draw.mesh].triangle(triangle);
+    let [v0, v1, v2] = corners.map(|corner| draw.world_from_object.transform_point3(corner).into());
+    Triangle { v0, v1, v2 }
+}
+
 /// TRIANGLE_ bits of a triangle.
 fn flags_of(scene: &Scene, source: &Source) -> u32 {
     let draw = &scene.draws[source.draw as usize];
@@ -240,20 +269,25 @@ fn block(bounds: &Bounds, count: u32, first: u32) -> BvhNodeBlock {
     }
 }
 
-/// Nodes and triangles in leaf order of a tree whose every node halves its triangles, whatever lies where.
+/// Nodes and triangles in leaf order of a tree whose every node halves its triangles, whatever lies where. `closing`: the
+/// same triangles where they move to, or none.
 ///
 /// Why this way: PLOC joins what lies in one place one after the other, so that coincident triangles make a tree as deep
 /// as they are many. This one is never deeper than the logarithm of their number.
-fn halved(corners: &[Triangle]) -> (Vec<BvhNodeBlock>, Vec<u32>) {
+fn halved(corners: &[Triangle], closing: &[Triangle]) -> (Vec<BvhNodeBlock>, Vec<u32>) {
     const LEAF: usize = 4;
-    let sides = |index: u32| [corners[index as usize].v0, corners[index as usize].v1, corners[index as usize].v2];
-    let middle = |index: u32| sides(index).into_iter().sum::<Vec3A>();
+    let sides = |triangle: &Triangle| [triangle.v0, triangle.v1, triangle.v2];
+    let swept = |index: u32| {
+        let closing = closing.get(index as usize).unwrap_or(&corners[index as usize]);
+        sides(&corners[index as usize]).into_iter().chain(sides(closing))
+    };
+    let middle = |index: u32| sides(&corners[index as usize]).into_iter().sum::<Vec3A>();
     let mut order: Vec<u32> = (0..corners.len() as u32).collect();
     let mut nodes = vec![BvhNodeBlock { min_count: [0.0; 4], max_first: [0.0; 4] }];
     let mut waiting = vec![(0, 0..corners.len())];
     while let Some((node, range)) = waiting.pop() {
         let mut bounds = Bounds::EMPTY;
-        order[range.clone()].iter().flat_map(|index| sides(*index)).for_each(|corner| bounds.include(corner.into()));
+        order[range.clone()].iter().flat_map(|index| swept(*index)).for_each(|corner| bounds.include(corner.into()));
         if range.len() <= LEAF {
             nodes[node] = block(&bounds, range.len() as u32, range.start as u32);
             continue;
@@ -303,7 +337,7 @@ fn intersect(triangle: &BvhTriangleBlock, origin: Vec3, direction: Vec3, limit: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Draw, Mesh};
+    use crate::scene::Mesh;
     use glam::Mat4;
     use proptest::prelude::*;
 
@@ -363,9 +397,9 @@ mod tests {
         let scene = field(3, 500);
         let bvh = Bvh::build(&scene).unwrap();
         let corners: Vec<Triangle> = bvh.triangles.iter().map(triangle_of).collect();
-        let (nodes, order) = halved(&corners);
+        let (nodes, order) = halved(&corners, &[]);
         let triangles = order.iter().map(|index| bvh.triangles[*index as usize]).collect();
-        let other = Bvh { nodes, triangles, sources: Vec::new() };
+        let other = Bvh { nodes, triangles, closing: Vec::new(), sources: Vec::new() };
         for ray in 0..200 {
             let number = |axis: u32| sobol_burley::sample(ray, axis, 9) * 2.0 - 1.0;
             let origin = 3.0 * Vec3::new(number(0), number(1), number(2));

@@ -20,7 +20,7 @@ use crate::report::whole_file::write_whole;
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
-use crate::settings::{COMMON, Setting, Values};
+use crate::settings::{COMMON, Setting, Values, exposure_s};
 use crate::techniques::Technique;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -215,11 +215,13 @@ impl Job {
         scene::open(&self.scene, self.values.integer("seed"), &choice)
     }
 
-    /// The scene that the request names, at its time.
+    /// The scene that the request names, at its time, or while its shutter is open.
     ///
-    /// Errors: no such scene or animation, or a broken file (exit code 2).
+    /// Errors: no such scene or animation, a broken file, or a shutter that closes before it opens (exit code 2).
     pub fn load_scene(&self) -> Result<Scene> {
-        self.open_model()?.into_pose(self.values.number("time"))
+        let [open_s, close_s] = exposure_s(&self.values)?;
+        let model = self.open_model()?;
+        if open_s == close_s { model.into_pose(open_s) } else { model.exposed([open_s, close_s]) }
     }
 
     /// `scene` with its textures as the request wants them on a device of `caps`.

@@ -47,6 +47,7 @@ pub mod frame;
 pub mod gpu;
 pub mod interrupt;
 pub mod job;
+pub mod lens;
 pub mod lights;
 pub mod memory;
 pub mod metrics;

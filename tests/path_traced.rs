@@ -67,6 +67,21 @@ fn a_point_light_over_a_floor_and_a_shadow_under_a_roof() {
     require_within(found, expected, 0.001, "without visibility");
 }
 
+/// A light of no intensity stands in the list and is never chosen; those after it shine.
+#[test]
+fn a_dark_light_takes_nothing_from_the_others() {
+    let changes = [("size", "8x8"), ("spp", "4"), ("brdf", "lambert"), ("transport", "direct")];
+    let lit = |intensities: &[f32]| {
+        let mut scene = floor(Vec3::ONE);
+        scene.lights.extend(intensities.iter().map(|candela| point_light(vec3(1.0, 3.0, 0.5), *candela)));
+        mean(&Watched::with_scene(scene).picture(NAME, &changes))
+    };
+    let expected = lit(&[100.0]);
+    assert!(expected.min_element() > 0.0);
+    require_within(lit(&[0.0, 100.0]), expected, 1e-5, "behind a dark one");
+    assert_eq!(lit(&[0.0, 0.0]), Vec3::ZERO);
+}
+
 /// Irradiance of a point with normal y from a polygon of radiance 1 that is all above it (Lambert's sum over its edges).
 fn polygon_irradiance(corners: &[Vec3]) -> f32 {
     let edge = |index: usize| {

@@ -1,12 +1,12 @@
 // The surface that a ray meets: attributes between a triangle's corners, and its material with its textures. The same as
 // the G-buffer pass makes of a fragment, but for textures, whose finest level is read: a pixel is many rays.
 //
-// The including shader declares bvh_triangles[], surfaces[], tangents[], extended[], traced_materials[] and what texel.glsl
+// The including shader declares bvh_triangles[], bvh_closing[], surfaces[], closings[], tangents[], extended[], traced_materials[] and what texel.glsl
 // wants.
 #ifndef SHADING_TRACED_GLSL
 #define SHADING_TRACED_GLSL
 
-#include "bvh.glsl"
+#include "bvh_moving.glsl"
 #include "shading/brdf.glsl"
 #include "shading/texel.glsl"
 
@@ -80,8 +80,14 @@ bool is_front_of(BvhTriangleBlock triangle, vec3 direction_ws) {
 }
 
 SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws) {
-    BvhTriangleBlock plane = bvh_triangles[index];
+    BvhTriangleBlock plane = triangle_at(index);
     TracedTriangleBlock triangle = surfaces[index];
+    if (MOVES != 0u) {
+        for (uint corner = 0u; corner < 3u; corner++) {
+            vec3 to = closings[index].normals[corner].xyz;
+            triangle.corners[corner].xyz = mix(triangle.corners[corner].xyz, to, shutter_part);
+        }
+    }
     Corners corners = corners_of(triangle, index, barycentric);
     TracedMaterialBlock traced = traced_materials[corners.material];
     MaterialBlock material = traced.material;
@@ -97,6 +103,12 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws) {
     vec3 normal = dot(sum, sum) > 0.0 ? normalize(sum) : front_ws;
     if (HAS_TANGENTS != 0u && (material.flags & MATERIAL_NORMAL_TEXTURE) != 0u) {
         TracedTangentsBlock tangent_of = tangents[index];
+        if (MOVES != 0u) {
+            for (uint corner = 0u; corner < 3u; corner++) {
+                vec3 to = closings[index].tangents[corner].xyz;
+                tangent_of.corners[corner].xyz = mix(tangent_of.corners[corner].xyz, to, shutter_part);
+            }
+        }
         vec4 tangent = tangent_of.corners[0] * corners.weights.x + tangent_of.corners[1] * corners.weights.y
             + tangent_of.corners[2] * corners.weights.z;
         if (tangent.xyz != vec3(0.0)) {
@@ -121,6 +133,12 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws) {
     point.emitted = textured(vec4(material.emissive.rgb, 1.0), traced.emissive, corners.uvs).rgb;
     point.emitted = point.is_unlit ? base_color : point.emitted;
     point.emitter_density = traced.emitter_density;
+    if (MOVES != 0u) {
+        // Chances are by the area when the shutter opens.
+        BvhTriangleBlock opening = bvh_triangles[index];
+        float area = length(cross(plane.edge1.xyz, plane.edge2.xyz));
+        point.emitter_density *= length(cross(opening.edge1.xyz, opening.edge2.xyz)) / max(area, 1e-30);
+    }
     return point;
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::job::{Job, settings_of};
-use crate::settings::{COMMON, Setting};
+use crate::settings::{COMMON, Kind, Setting};
 use crate::techniques::{self, Technique};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -73,14 +73,18 @@ fn flag(setting: &'static Setting) -> Arg {
     if !setting.paper.is_empty() {
         help = format!("{help} ({})", setting.paper);
     }
-    Arg::new(setting.key).long(setting.key).value_name(value_name(setting)).allow_negative_numbers(true).help(help)
+    let argument = Arg::new(setting.key).long(setting.key).value_name(value_name(setting)).help(help);
+    match setting.kind {
+        // A list that begins with a minus is no negative number, and is not to be taken for a flag.
+        Kind::PartsOrNone(_) => argument.allow_hyphen_values(true),
+        _ => argument.allow_negative_numbers(true),
+    }
 }
 
 fn value_name(setting: &Setting) -> &'static str {
-    use crate::settings::Kind;
     match setting.kind {
         Kind::Integer { .. } | Kind::Number { .. } => "N",
-        Kind::IntegerOrAuto { .. } => "auto|N",
+        Kind::IntegerOrAuto { .. } | Kind::NumberOrAuto { .. } => "auto|N",
         Kind::Choice(_) => "NAME",
         Kind::Pair { .. } => "NxM",
         Kind::PairOrAuto { .. } => "auto|NxM",
@@ -88,6 +92,7 @@ fn value_name(setting: &Setting) -> &'static str {
         Kind::Length => "LENGTH",
         Kind::Bytes => "BYTES",
         Kind::Color => "COLOR",
+        Kind::PartsOrNone(_) => "N,N|none",
         Kind::Text(word) => word,
     }
 }

@@ -8,8 +8,8 @@ use super::{limited, material_blocks};
 use crate::bvh::{Bvh, Source};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{
-    BvhNodeBlock, BvhTriangleBlock, TexelsBlock, TracedExtendedBlock, TracedMaterialBlock, TracedTangentsBlock,
-    TracedTriangleBlock,
+    BvhNodeBlock, BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock,
+    TracedTangentsBlock, TracedTriangleBlock,
 };
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Resources};
@@ -33,13 +33,15 @@ const ALPHA_BLEND: u32 = 2;
 const TEXEL_BUFFERS: usize = 4;
 
 /// Names of the buffers after the technique's, and of their blocks in GLSL.
-const BUFFERS: [(&str, &str); 6] = [
+const BUFFERS: [(&str, &str); 8] = [
     ("bvh.nodes", "BvhNodes"),
     ("bvh.triangles", "BvhTriangles"),
     ("traced.triangles", "TracedTriangles"),
     ("traced.tangents", "TracedTangents"),
     ("traced.extended", "TracedExtended"),
     ("traced.materials", "TracedMaterials"),
+    ("bvh.closing", "BvhClosing"),
+    ("traced.closing", "TracedClosing"),
 ];
 const TEXELS: [(&str, &str); TEXEL_BUFFERS] = [
     ("traced.texels.0", "Texels0"),
@@ -64,6 +66,8 @@ pub struct Layout {
     material_count: usize,
     has_tangents: bool,
     has_extended: bool,
+    /// Triangles move while the shutter is open.
+    is_moving: bool,
     /// Of each image of the scene; None where no traced material reads it.
     places: Vec<Option<Place>>,
     /// Texels of each buffer.
@@ -113,6 +117,7 @@ impl Layout {
             material_count: scene.materials.len(),
             has_tangents: scene.drawn_materials().any(|material| material.normal_texture.is_some()),
             has_extended: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty()),
+            is_moving: !bvh.closing.is_empty(),
             places,
             texel_counts,
         })
@@ -129,10 +134,11 @@ impl Layout {
             when(self.has_tangents, of(self.triangle_count, size_of::<TracedTangentsBlock>())),
             when(self.has_extended, of(self.triangle_count, size_of::<TracedExtendedBlock>())),
             of(self.material_count, size_of::<TracedMaterialBlock>()),
+            when(self.is_moving, of(self.triangle_count, size_of::<BvhTriangleBlock>())),
+            when(self.is_moving, of(self.triangle_count, size_of::<TracedClosingBlock>())),
         ];
-        for ((name, _), (bytes, group)) in
-            BUFFERS.iter().zip(bytes.into_iter().zip(["bvh", "bvh", "traced", "traced", "traced", "traced"]))
-        {
+        for ((name, _), bytes) in BUFFERS.iter().zip(bytes) {
+            let group = if name.starts_with("bvh.") { "bvh" } else { "traced" };
             plan.buffer(group, format!("{technique}.{name}"), bytes);
         }
         for (index, (name, _)) in TEXELS.iter().enumerate() {
@@ -141,13 +147,14 @@ impl Layout {
         }
     }
 
-    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS.
-    pub fn constants(&self) -> [(&'static str, u32); 4] {
+    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, MOVES.
+    pub fn constants(&self) -> [(&'static str, u32); 5] {
         [
             ("HAS_TEXTURES", u32::from(!self.texel_counts.is_empty())),
             ("HAS_TANGENTS", u32::from(self.has_tangents)),
             ("HAS_EXTENDED", u32::from(self.has_extended)),
             ("TEXEL_BUFFERS", self.texel_counts.len().max(1) as u32),
+            ("MOVES", u32::from(self.is_moving)),
         ]
     }
 
@@ -245,7 +252,7 @@ impl TracedGpu {
             buffers.push((block, buffer));
             Result::Ok(())
         };
-        let [nodes, planes, triangles, tangents, extended, materials] = BUFFERS;
+        let [nodes, planes, triangles, tangents, extended, materials, planes_closing, closing] = BUFFERS;
         fill(nodes, bytemuck::cast_slice(&bvh.nodes))?;
         fill(planes, bytemuck::cast_slice(&bvh.triangles))?;
         let of = |source: &Source| Corners::of(scene, source);
@@ -262,6 +269,10 @@ impl TracedGpu {
         };
         fill(extended, bytemuck::cast_slice(&all))?;
         fill(materials, bytemuck::cast_slice(&layout.materials(scene, emitter_density)))?;
+        fill(planes_closing, bytemuck::cast_slice(&bvh.closing))?;
+        let of = |scene: &Scene| bvh.sources.iter().map(|source| Corners::of(scene, source).closing()).collect();
+        let all: Vec<TracedClosingBlock> = scene.closing.as_deref().map(of).unwrap_or_default();
+        fill(closing, bytemuck::cast_slice(&all))?;
         let words = layout.words(scene);
         for (index, names) in TEXELS.into_iter().enumerate() {
             fill(names, words.get(index).map_or(&[], Vec::as_slice))?;
@@ -310,6 +321,10 @@ impl<'a> Corners<'a> {
             (turn * tangent.truncate()).extend(tangent.w).to_array()
         });
         TracedTangentsBlock { corners }
+    }
+
+    fn closing(&self) -> TracedClosingBlock {
+        TracedClosingBlock { normals: self.triangle().corners, tangents: self.tangents().corners }
     }
 
     fn extended(&self) -> TracedExtendedBlock {

@@ -1,5 +1,7 @@
 //! Two numbers at a time of the Sobol sequence, Owen-scrambled by a hash: the twin of glsl/sampling/sobol.glsl, to the bit.
 //!
+//! sobol.comp is the shader by which a test holds the two against each other.
+//!
 //! Burley 2020, Practical Hash-based Owen Scrambling: of a sequence that needs many dimensions the first two are used again
 //! and again, shuffled and scrambled by another seed each time. Any 2^k points from the start on are a (0, k, 2)-net.
 

@@ -59,6 +59,9 @@ pub struct Scene {
     /// The box around everything that is drawn while the animations play, looked at in a few moments of them; None where
     /// nothing moves.
     pub reach: Option<Bounds>,
+    /// The scene when the shutter closes, where it is open while things move: other places of the same meshes, lights and
+    /// cameras, without pictures. None: all stands as it stands here.
+    pub closing: Option<Box<Scene>>,
     /// What was ignored or replaced on import, one sentence each, for the user to read.
     pub warnings: Vec<String>,
 }
@@ -119,6 +122,17 @@ impl Model {
         }
     }
 
+    /// The scene while a shutter is open from the first of these moments to the second, seconds.
+    ///
+    /// Errors: as `pose`; what is drawn changes meanwhile, not only its place (exit code 2).
+    pub fn exposed(&self, [open_s, close_s]: [f64; 2]) -> Result<Scene> {
+        let scene = self.pose(open_s)?;
+        match self {
+            Self::File(_) if open_s < close_s => scene.closing_as(self.pose(close_s)?),
+            _ => Ok(scene),
+        }
+    }
+
     /// `pose` of a model that is not needed any more, without copies.
     ///
     /// Errors: as `pose`.
@@ -131,6 +145,33 @@ impl Model {
 }
 
 impl Scene {
+    /// This scene with a shutter that is open until it has become `closing`; where the two are one, it stands still.
+    ///
+    /// Errors: they have not the same triangles, lights and cameras (exit code 2).
+    pub fn closing_as(mut self, mut closing: Scene) -> Result<Self> {
+        if self.hash == closing.hash {
+            return Ok(self);
+        }
+        let shape = |scene: &Scene| {
+            let meshes = scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.material)).collect::<Vec<_>>();
+            let draws = scene.draws.iter().map(|draw| draw.mesh).collect::<Vec<_>>();
+            (meshes, draws, scene.lights.len(), scene.cameras.len())
+        };
+        let has_same_indices = || self.meshes.iter().zip(&closing.meshes).all(|(a, b)| a.indices == b.indices);
+        if shape(&self) != shape(&closing) || !has_same_indices() {
+            return Err(Error::request(format!(
+                "{}: what it draws changes while the shutter is open, not only its place",
+                self.name
+            ))
+            .note("--shutter none draws one moment"));
+        }
+        let both = format!("{} {}", self.hash, closing.hash);
+        self.hash = blake3::hash(both.as_bytes()).to_hex().to_string();
+        closing.images = Vec::new();
+        self.closing = Some(Box::new(closing));
+        Ok(self)
+    }
+
     /// What its vertices, indices, draws and pictures take in memory.
     pub fn size_bytes(&self) -> u64 {
         let meshes: usize = self.meshes.iter().map(Mesh::size_bytes).sum();
@@ -148,11 +189,16 @@ impl Scene {
         self.draws.iter().map(|draw| &self.materials[self.meshes[draw.mesh].material])
     }
 
-    /// The box around everything that is drawn, in world space; empty where nothing is drawn.
+    /// The box around everything that is drawn, while a shutter is open too, in world space; empty where nothing is drawn.
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for draw in &self.draws {
             draw.extend(&self.meshes[draw.mesh], &mut bounds);
+        }
+        if let Some(closing) = self.closing.as_ref().map(|closing| closing.bounds()).filter(|bounds| !bounds.is_empty())
+        {
+            bounds.include(closing.min);
+            bounds.include(closing.max);
         }
         bounds
     }

@@ -3,8 +3,10 @@
 //! A setting's key is its flag without the two leading dashes. A value is kept as the text that would repeat it, checked
 //! when it is set, so that what `Values` holds is possible.
 
+mod optics;
 mod tables;
 
+pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
 pub use tables::{BRDF, COMMON, EMISSIVE, SHADING, VPL_CLAMP, WORKGROUP};
 
 use crate::error::{Error, Result};
@@ -25,6 +27,11 @@ pub enum Kind {
         max: u64,
     },
     Number {
+        min: f64,
+        max: f64,
+    },
+    /// In the range, or `auto`.
+    NumberOrAuto {
         min: f64,
         max: f64,
     },
@@ -50,8 +57,18 @@ pub enum Kind {
     Bytes,
     /// Three numbers `R,G,B` of at least 0, or one for all three.
     Color,
+    /// One number for each part, with commas between, or `none`.
+    PartsOrNone(&'static [Part]),
     /// Free text, checked where it is used; the word shown in help.
     Text(&'static str),
+}
+
+/// One number of several: its word in help, and its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    pub word: &'static str,
+    pub min: f64,
+    pub max: f64,
 }
 
 /// One row of the table.
@@ -76,6 +93,7 @@ impl Setting {
             Kind::Integer { min, max } => format!("{min} to {max}"),
             Kind::IntegerOrAuto { min, max } => format!("auto or {min} to {max}"),
             Kind::Number { min, max } => format!("{min} to {max}"),
+            Kind::NumberOrAuto { min, max } => format!("auto or {min} to {max}"),
             Kind::Choice(choices) => choices.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
             Kind::PairOrAuto { min, max } => format!("auto or NxM, both {min} to {max}"),
@@ -85,6 +103,11 @@ impl Setting {
                 "512MiB, 2GiB and the like (B, KiB, MiB, GiB, TiB; without a unit: bytes), or none".to_owned()
             }
             Kind::Color => "R,G,B or one number, each at least 0".to_owned(),
+            Kind::PartsOrNone(parts) => {
+                let words: Vec<&str> = parts.iter().map(|part| part.word).collect();
+                let ranges = parts.iter().map(|part| format!(", {} {} to {}", part.word, part.min, part.max));
+                format!("{}{}, or none", words.join(","), ranges.collect::<String>())
+            }
             Kind::Text(word) => word.to_owned(),
         }
     }
@@ -102,6 +125,9 @@ impl Setting {
             Kind::Number { min, max } => {
                 text.parse::<f64>().is_ok_and(|value| value.is_finite() && (min..=max).contains(&value))
             }
+            Kind::NumberOrAuto { min, max } => {
+                parse_number_or_auto(text).is_some_and(|value| value.is_none_or(|value| (min..=max).contains(&value)))
+            }
             Kind::Choice(choices) => choices.contains(&text),
             Kind::Pair { min, max } => parse_pair(text).is_some_and(|pair| in_range(pair, min, max)),
             Kind::PairOrAuto { min, max } => {
@@ -111,6 +137,12 @@ impl Setting {
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Bytes => parse_bytes(text).is_some(),
             Kind::Color => parse_color(text).is_some(),
+            Kind::PartsOrNone(parts) => parse_numbers_or_none(text).is_some_and(|numbers| {
+                numbers.is_none_or(|numbers| {
+                    let mut pairs = numbers.iter().zip(parts);
+                    numbers.len() == parts.len() && pairs.all(|(number, part)| (part.min..=part.max).contains(number))
+                })
+            }),
             Kind::Text(_) => true,
         };
         if possible {
@@ -129,6 +161,14 @@ fn parse_pair(text: &str) -> Option<[u32; 2]> {
 
 /// Some(None) is `auto`.
 fn parse_integer_or_auto(text: &str) -> Option<Option<u64>> {
+    match text {
+        "auto" => Some(None),
+        text => text.parse().ok().map(Some),
+    }
+}
+
+/// Some(None) is `auto`.
+fn parse_number_or_auto(text: &str) -> Option<Option<f64>> {
     match text {
         "auto" => Some(None),
         text => text.parse().ok().map(Some),
@@ -163,6 +203,14 @@ fn parse_bytes(text: &str) -> Option<Option<u64>> {
     match text {
         "none" => Some(None),
         text => Bytes::parse(text).filter(|bytes| bytes.0 > 0).map(|bytes| Some(bytes.0)),
+    }
+}
+
+/// Some(None) is `none`; else any count of numbers.
+fn parse_numbers_or_none(text: &str) -> Option<Option<Vec<f64>>> {
+    match text {
+        "none" => Some(None),
+        text => text.split(',').map(|number| number.parse().ok()).collect::<Option<_>>().map(Some),
     }
 }
 
@@ -226,6 +274,11 @@ impl Values {
         self.parsed(key, |text| text.parse().ok())
     }
 
+    /// None: `auto`.
+    pub fn number_or_auto(&self, key: &str) -> Option<f64> {
+        self.parsed(key, parse_number_or_auto)
+    }
+
     pub fn pair(&self, key: &str) -> [u32; 2] {
         self.parsed(key, parse_pair)
     }
@@ -253,6 +306,12 @@ impl Values {
     /// None: `none`.
     pub fn bytes(&self, key: &str) -> Option<u64> {
         self.parsed(key, parse_bytes)
+    }
+
+    /// Of `Kind::PartsOrNone`, one for each part; None: `none`.
+    pub fn numbers_or_none<const COUNT: usize>(&self, key: &str) -> Option<[f64; COUNT]> {
+        let numbers = self.parsed(key, parse_numbers_or_none)?;
+        Some(numbers.try_into().unwrap_or_else(|_| panic!("--{key} was checked and has not {COUNT} parts")))
     }
 
     pub fn color(&self, key: &str) -> Vec3 {
@@ -303,9 +362,14 @@ mod tests {
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
             (Kind::IntegerOrAuto { min: 0, max: 9 }, &["", "AUTO", "none", "-1", "10", "1.5"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
+            (Kind::NumberOrAuto { min: 0.5, max: 9.0 }, &["", "AUTO", "nan", "inf", "0", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
             (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),
             (Kind::Bytes, &["", "0", "-1", "1.5", "64MB", "MiB", "64 M", "inf", "nanMiB", "99999999TiB", "None"]),
+            (
+                Kind::PartsOrNone(&[Part { word: "A", min: 0.0, max: 2.0 }, Part { word: "B", min: -1.0, max: 1.0 }]),
+                &["", "1", "1,", "1,1,1", "3,0", "0,-2", "nan,0", "None", "0 0"],
+            ),
             (Kind::Color, &["", "1,2", "1,2,3,4", "-1", "nan"]),
         ] {
             for text in wrong {

@@ -10,3 +10,4 @@
 pub mod brdf;
 pub mod light;
 pub mod material;
+pub mod medium;

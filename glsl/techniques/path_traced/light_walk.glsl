@@ -4,7 +4,7 @@
 #ifndef PATH_TRACED_LIGHT_WALK_GLSL
 #define PATH_TRACED_LIGHT_WALK_GLSL
 
-#include "techniques/path_traced/path.glsl"
+#include "techniques/path_traced/next_event.glsl"
 
 struct WalkStart {
     vec3 origin;
@@ -18,7 +18,7 @@ struct WalkStart {
 WalkStart start_on_emitter(float number, float chance) {
     SourceBlock source = source_of(0u, params.emitter_count, number);
     vec2 barycentric = barycentric_of(next_pair());
-    BvhTriangleBlock triangle = bvh_triangles[source.index];
+    BvhTriangleBlock triangle = triangle_at(source.index);
     vec3 twice = cross(triangle.edge1.xyz, triangle.edge2.xyz);
     uint flags = floatBitsToUint(triangle.corner.w);
     vec3 normal = normalize(twice);
@@ -30,7 +30,7 @@ WalkStart start_on_emitter(float number, float chance) {
         area *= 2.0;
         normal = numbers.x < 0.5 ? normal : -normal;
     }
-    vec3 at = triangle.corner.xyz + triangle.edge1.xyz * barycentric.x + triangle.edge2.xyz * barycentric.y;
+    vec3 at = place_of(source.index, barycentric);
     vec3 radiance = emitted_at(source.index, barycentric);
     WalkStart start;
     start.origin = at + normal * RAY_OFFSET;
@@ -42,7 +42,7 @@ WalkStart start_on_emitter(float number, float chance) {
 
 WalkStart start_on_punctual(float number, float chance) {
     SourceBlock source = source_of(params.emitter_count, params.punctual_count, number);
-    LightBlock light = lights[source.index];
+    LightBlock light = light_at(source.index);
     vec2 numbers = next_pair();
     float angle = 2.0 * PI * numbers.y;
     WalkStart start;

@@ -26,17 +26,17 @@ vec3 reflected_by(SurfacePoint point, vec3 to_light, vec3 to_eye) {
 // Chosen as strongly as each would light the point if nothing stood between.
 Waiting punctual_light(SurfacePoint point, vec3 to_eye) {
     Waiting chosen = NOTHING;
-    if (params.punctual_count == 0u) {
+    if (frame.light_count == 0u) {
         return chosen;
     }
     vec2 numbers = next_pair();
-    uint stride = (params.punctual_count + MOST_LOOKS - 1u) / MOST_LOOKS;
+    uint stride = (frame.light_count + MOST_LOOKS - 1u) / MOST_LOOKS;
     float sum = 0.0;
     float choice = numbers.x;
     float chosen_weight = 1.0;
     uint light = min(uint(numbers.y * float(stride)), stride - 1u);
-    for (; light < params.punctual_count; light += stride) {
-        Incident incident = incident_from(lights[light], point.position_ws);
+    for (; light < frame.light_count; light += stride) {
+        Incident incident = incident_from(light_at(light), point.position_ws);
         vec3 radiance = reflected_by(point, incident.direction_ws, to_eye) * incident.irradiance;
         float weight = largest(radiance);
         if (weight > 0.0) {
@@ -51,7 +51,7 @@ Waiting punctual_light(SurfacePoint point, vec3 to_eye) {
             }
         }
     }
-    expect_done(light >= params.punctual_count);
+    expect_done(light >= frame.light_count);
     chosen.radiance *= float(stride) * sum / chosen_weight;
     return chosen;
 }
@@ -63,17 +63,23 @@ float weight_of(float drawn, float other) {
     return 1.0 / (1.0 + ratio * ratio);
 }
 
-Waiting emitter(SurfacePoint point, vec3 to_eye) {
-    if (params.emitter_count == 0u) {
-        return NOTHING;
-    }
-    vec2 numbers = next_pair();
-    vec2 place = next_pair();
-    SourceBlock source = source_of(0u, params.emitter_count, numbers.x);
-    vec2 barycentric = barycentric_of(place);
-    BvhTriangleBlock triangle = bvh_triangles[source.index];
-    vec3 at = triangle.corner.xyz + triangle.edge1.xyz * barycentric.x + triangle.edge2.xyz * barycentric.y;
-    vec3 to_light = at - point.position_ws;
+vec3 place_of(uint triangle_index, vec2 barycentric) {
+    BvhTriangleBlock triangle = triangle_at(triangle_index);
+    return triangle.corner.xyz + triangle.edge1.xyz * barycentric.x + triangle.edge2.xyz * barycentric.y;
+}
+
+// A point of an emitter as another point sees it.
+struct Shining {
+    vec3 direction_ws;
+    float distance;
+    // Over solid angle, of the choice of that point; 0: it does not shine here.
+    float density;
+};
+
+// `at_ws`: of the triangle that `source` is.
+Shining shining_to(vec3 position_ws, SourceBlock source, vec3 at_ws) {
+    BvhTriangleBlock triangle = triangle_at(source.index);
+    vec3 to_light = at_ws - position_ws;
     float distance_squared = max(dot(to_light, to_light), 1e-12);
     float distance = sqrt(distance_squared);
     vec3 direction = to_light / distance;
@@ -82,18 +88,31 @@ Waiting emitter(SurfacePoint point, vec3 to_eye) {
     float cosine = abs(dot(twice, direction)) / max(2.0 * area, 1e-30);
     bool is_lit_side = is_front_of(triangle, direction)
         || (floatBitsToUint(triangle.corner.w) & TRIANGLE_SINGLE_SIDED) == 0u;
-    // Behind the plane of the triangle that the point lies on nothing arrives, as no ray that is scattered goes there.
-    if (!is_lit_side || cosine <= 0.0 || dot(point.plane_ws, direction) <= 0.0) {
+    bool shines = is_lit_side && cosine > 0.0;
+    return Shining(direction, distance, shines ? source.chance / area * distance_squared / cosine : 0.0);
+}
+
+Waiting emitter(SurfacePoint point, vec3 to_eye) {
+    if (params.emitter_count == 0u) {
         return NOTHING;
     }
-    float density = source.chance / area * distance_squared / cosine;
-    vec3 radiance = reflected_by(point, direction, to_eye) * emitted_at(source.index, barycentric) / density;
+    vec2 numbers = next_pair();
+    vec2 place = next_pair();
+    SourceBlock source = source_of(0u, params.emitter_count, numbers.x);
+    vec2 barycentric = barycentric_of(place);
+    Shining shining = shining_to(point.position_ws, source, place_of(source.index, barycentric));
+    vec3 direction = shining.direction_ws;
+    // Behind the plane of the triangle that the point lies on nothing arrives, as no ray that is scattered goes there.
+    if (shining.density <= 0.0 || dot(point.plane_ws, direction) <= 0.0) {
+        return NOTHING;
+    }
+    vec3 radiance = reflected_by(point, direction, to_eye) * emitted_at(source.index, barycentric) / shining.density;
     // Without shadows there is no ray that could find the emitter.
     if (LIGHT_VISIBILITY != 0u) {
         float scattered = scatter_density(BRDF_KIND, point.surface, point.normal_ws, direction, to_eye);
-        radiance *= weight_of(density, scattered);
+        radiance *= weight_of(shining.density, scattered);
     }
-    return Waiting(radiance, direction, distance);
+    return Waiting(radiance, direction, shining.distance);
 }
 
 #endif

@@ -22,10 +22,25 @@ layout(constant_id = 7) const uint LIGHT_VISIBILITY = 1;
 layout(constant_id = 8) const uint IS_WALKED = 0;
 // Surfaces that a light walk lands on at most.
 layout(constant_id = 9) const uint WALK_LANDINGS = 0;
+// MEDIUM_ (airlight.glsl).
+layout(constant_id = 10) const uint MEDIUM = 0;
+// 1: rays leave all over a lens.
+layout(constant_id = 11) const uint HAS_LENS = 0;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.
     vec4 sphere_ws;
+    // The medium's box.
+    vec4 medium_min_ws;
+    vec4 medium_max_ws;
+    // Of the medium, per metre: light that it scatters, and all that it stops.
+    float scattering;
+    float extinction;
+    // Mean cosine of the angle by which the medium turns light, -1 to 1.
+    float asymmetry;
+    // Of the lens, in metres, and how far before it the plane in focus lies.
+    float lens_radius;
+    float focus;
     // Square of --vpl-clamp, in square metres.
     float least_squared;
     // How likely a light walk starts on a punctual light and not on an emitter.
@@ -61,6 +76,9 @@ layout(std430, set = 0, binding = 10) readonly buffer Texels2 { uint texels_2[];
 layout(std430, set = 0, binding = 11) readonly buffer Texels3 { uint texels_3[]; };
 layout(std430, set = 0, binding = 12) readonly buffer Sources { SourceBlock sources[]; };
 layout(std430, set = 0, binding = 13) buffer Sums { vec4 sums[]; };
+layout(std430, set = 0, binding = 15) readonly buffer BvhClosing { BvhTriangleBlock bvh_closing[]; };
+layout(std430, set = 0, binding = 16) readonly buffer TracedClosing { TracedClosingBlock closings[]; };
+layout(std430, set = 0, binding = 17) readonly buffer FrameClosing { FrameBlock frame_closing; };
 layout(set = 0, binding = 14, rgba32f) writeonly uniform image2D color;
 
 #include "shading/traced.glsl"
@@ -84,6 +102,17 @@ uint next_seed() {
 // Off a surface, on the side of its plane that `plane_ws` points to.
 vec3 off_surface(SurfacePoint point) {
     return point.position_ws + point.plane_ws * RAY_OFFSET;
+}
+
+// A light of the list; those of the moment when the shutter closes lie behind those of the moment when it opens.
+LightBlock light_at(uint index) {
+    LightBlock light = lights[index];
+    if (MOVES != 0u) {
+        LightBlock closing = lights[frame.light_count + index];
+        light.position_ws = mix(light.position_ws, closing.position_ws, shutter_part);
+        light.direction_ws.xyz = normalize(mix(light.direction_ws.xyz, closing.direction_ws.xyz, shutter_part));
+    }
+    return light;
 }
 
 // The first of `count` sources from `first` on whose sum of chances is beyond `number`.

@@ -2,59 +2,171 @@
 // variants: ALPHA=opaque|tested
 #version 460
 #include "techniques/path_traced/path.glsl"
-#include "techniques/path_traced/next_event.glsl"
+#include "techniques/path_traced/airlight.glsl"
 #include "techniques/path_traced/light_walk.glsl"
 
 const float FAR = 1e30;
 // Paths end by chance from this surface on.
 const uint ROULETTE_FROM = 3u;
 
-// The ray through a place of the picture, from the near plane to the far one.
-void camera_ray(vec2 at_px, out vec3 origin, out vec3 direction, out float limit) {
-    vec2 ndc = at_px / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0;
-    vec4 near = frame.world_from_clip * vec4(ndc, 1.0, 1.0);
-    vec4 far = frame.world_from_clip * vec4(ndc, 0.0, 1.0);
-    bool is_perspective = frame.eye_ws.w > 0.0;
+// The path of a pixel's sample, and where it goes on.
+struct Path {
+    vec3 origin;
+    vec3 direction;
+    // How far the ray reaches, and how far before its origin it would begin if no near plane cut it.
+    float limit;
+    float behind;
+    vec3 throughput;
+    // Over solid angle, of the direction by which the path came here.
+    float density;
+    // Surfaces and places of the medium that have scattered it.
+    uint bounce;
+    bool goes_on;
+};
+
+// Moves a ray of `view` from the lens's middle to another point of the lens; both meet in the plane in focus. `near`: how
+// far before the lens its origin lies.
+void through_lens(FrameBlock view, inout Path path, vec2 numbers, float near) {
+    vec3 right = normalize(view.world_from_clip[0].xyz);
+    vec3 down = normalize(view.world_from_clip[1].xyz);
+    vec3 forward = view.forward_ws.xyz;
+    float angle = 2.0 * PI * numbers.y;
+    vec3 aside = (right * cos(angle) + down * sin(angle)) * (params.lens_radius * sqrt(numbers.x));
+    float steepness = dot(path.direction, forward);
+    // From the origin on: next to it floats are finer than next to the world's.
+    vec3 focused = path.direction * (params.focus / steepness);
+    vec3 direction = normalize(focused - aside);
+    float longer = steepness / dot(direction, forward);
+    path.origin += aside + (direction * longer - path.direction) * (near / steepness);
+    path.limit = path.limit < FAR ? path.limit * longer : FAR;
+    path.behind *= longer;
+    path.direction = direction;
+}
+
+// The ray of `view` through a place of the picture and, as `lens` says, of the lens, from the near plane to the far one.
+Path view_path(FrameBlock view, vec2 at_px, vec2 lens) {
+    vec2 ndc = at_px / vec2(view.width_px, view.height_px) * 2.0 - 1.0;
+    vec4 near = view.world_from_clip * vec4(ndc, 1.0, 1.0);
+    vec4 far = view.world_from_clip * vec4(ndc, 0.0, 1.0);
+    bool is_perspective = view.eye_ws.w > 0.0;
     // A far plane at infinity has w = 0: this is a direction all the same.
-    direction = is_perspective ? normalize(far.xyz - frame.eye_ws.xyz * far.w) : frame.forward_ws.xyz;
+    vec3 direction = is_perspective ? normalize(far.xyz - view.eye_ws.xyz * far.w) : view.forward_ws.xyz;
     vec3 start = near.xyz / near.w;
+    float behind = is_perspective ? distance(start, view.eye_ws.xyz) : 0.0;
     // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
-    origin = is_perspective ? frame.eye_ws.xyz + direction * distance(start, frame.eye_ws.xyz) : start;
-    limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
+    vec3 origin = is_perspective ? view.eye_ws.xyz + direction * behind : start;
+    float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
+    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true);
+    if (HAS_LENS != 0u) {
+        through_lens(view, path, lens, dot(start - view.eye_ws.xyz, view.forward_ws.xyz));
+    }
+    return path;
+}
+
+Path camera_path(vec2 at_px) {
+    vec2 lens = vec2(0.0);
+    if (HAS_LENS != 0u) {
+        lens = next_pair();
+    }
+    Path path = view_path(frame, at_px, lens);
+    if (MOVES != 0u) {
+        shutter_part = next_pair().x;
+        Path closing = view_path(frame_closing, at_px, lens);
+        path.origin = mix(path.origin, closing.origin, shutter_part);
+        path.direction = normalize(mix(path.direction, closing.direction, shutter_part));
+        path.behind = mix(path.behind, closing.behind, shutter_part);
+        path.limit = min(path.limit, closing.limit);
+    }
+    return path;
+}
+
+// What a path may still find by scattering once more: a last scattering leads to what shines by itself alone.
+bool finds_more(Path path) {
+    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u
+        || largest(frame.background.rgb + frame.ambient.rgb) > 0.0;
+}
+
+void turn(inout Path path, vec3 origin, vec3 direction, float survivor) {
+    if (ROULETTE != 0u && path.bounce >= ROULETTE_FROM) {
+        float survival = clamp(largest(path.throughput), 0.05, 0.95);
+        path.throughput = survivor < survival ? path.throughput / survival : vec3(0.0);
+    }
+    path.goes_on = largest(path.throughput) > 0.0;
+    path.origin = origin;
+    path.direction = direction;
+    path.limit = FAR;
+    path.behind = 0.0;
+    path.bounce++;
+}
+
+void scatter_in_medium(inout Path path, vec3 place_ws) {
+    vec2 numbers = next_pair();
+    vec2 choice = next_pair();
+    vec3 scattered = phase_direction(params.asymmetry, path.direction, numbers);
+    path.density = phase(params.asymmetry, dot(scattered, path.direction));
+    path.throughput *= params.scattering / params.extinction;
+    turn(path, place_ws, scattered, choice.y);
+}
+
+void scatter_at(inout Path path, SurfacePoint point) {
+    vec3 to_eye = -path.direction;
+    vec2 numbers = next_pair();
+    vec2 choice = next_pair();
+    vec3 scattered = scatter_direction(BRDF_KIND, point.surface, point.normal_ws, to_eye, choice.x, numbers);
+    path.density = scatter_density(BRDF_KIND, point.surface, point.normal_ws, scattered, to_eye);
+    vec3 reflected = reflected_by(point, scattered, to_eye);
+    bool leaves = dot(scattered, point.plane_ws) > 0.0 && path.density > 0.0;
+    path.throughput *= leaves ? reflected / max(path.density, 1e-20) : vec3(0.0);
+    turn(path, off_surface(point), scattered, choice.y);
+}
+
+// What a surface sends along the path by itself.
+vec3 emitted_along(Path path, SurfacePoint point, float distance) {
+    if (path.bounce == 0u) {
+        return path.throughput * point.emitted;
+    }
+    if (point.emitter_density > 0.0 && LIGHT_VISIBILITY != 0u && IS_WALKED == 0u) {
+        float cosine = max(abs(dot(point.plane_ws, path.direction)), 1e-12);
+        float other = point.emitter_density * distance * distance / cosine;
+        return path.throughput * point.emitted * weight_of(path.density, other);
+    }
+    return vec3(0.0);
 }
 
 // Radiance along the ray through a place of the picture.
 vec3 radiance_along(vec2 at_px) {
-    vec3 origin;
-    vec3 direction;
-    float limit;
-    camera_ray(at_px, origin, direction, limit);
+    Path path = camera_path(at_px);
     vec3 radiance = vec3(0.0);
-    vec3 throughput = vec3(1.0);
-    // Over solid angle, of the direction by which the path came here.
-    float density = 0.0;
     Waiting light = NOTHING;
     Waiting panel = NOTHING;
-    uint bounce = 0u;
-    bool goes_on = true;
+    // Scattered by the medium, and where.
+    Waiting air = NOTHING;
+    vec3 air_ws = path.origin;
     bool is_waiting = false;
-    while (goes_on || is_waiting) {
-        bool is_camera = bounce == 0u;
+    // Shadow rays of the place before, and the ray to the next one: in one loop, so that the walk is there once.
+    uint rays = 3u;
+    if (MEDIUM == MEDIUM_SCATTERS) {
+        rays = 4u;
+    }
+    while (path.goes_on || is_waiting) {
         TraceHit hit;
         uint ray = 0u;
-        // Shadow rays of the surface before, and the ray to the next one: in one loop, so that the walk is there once.
-        for (; ray < 3u; ray++) {
-            bool is_path = ray == 2u;
+        for (; ray < rays; ray++) {
+            bool is_path = ray == rays - 1u;
             Waiting waiting = panel;
+            vec3 origin = path.origin;
             if (ray == 0u) {
                 waiting = light;
+            } else if (MEDIUM == MEDIUM_SCATTERS && ray == 2u) {
+                waiting = air;
+                origin = air_ws;
             }
             float shadow_limit = LIGHT_VISIBILITY != 0u ? waiting.distance - 2.0 * RAY_OFFSET : 0.0;
             TraceHit met = trace(
-                origin,
-                is_path ? direction : waiting.direction_ws,
-                is_path ? (goes_on ? limit : 0.0) : shadow_limit,
-                is_path ? (is_camera ? RAY_CAMERA : 0u) : RAY_SHADOW,
+                is_path ? path.origin : origin,
+                is_path ? path.direction : waiting.direction_ws,
+                is_path ? (path.goes_on ? path.limit : 0.0) : shadow_limit,
+                is_path ? (path.bounce == 0u ? RAY_CAMERA : 0u) : RAY_SHADOW,
                 next_seed()
             );
             if (is_path) {
@@ -63,60 +175,62 @@ vec3 radiance_along(vec2 at_px) {
                 radiance += waiting.radiance;
             }
         }
-        expect_done(ray == 3u);
+        expect_done(ray == rays);
         light = NOTHING;
         panel = NOTHING;
+        air = NOTHING;
         is_waiting = false;
-        if (!goes_on) {
+        if (!path.goes_on) {
             break;
         }
-        if (!hit.is_hit) {
-            vec3 around_all = is_camera ? frame.background.rgb : frame.background.rgb + frame.ambient.rgb;
-            radiance += throughput * around_all;
-            break;
-        }
-        SurfacePoint point = surface_point(hit.triangle, hit.barycentric, direction);
-        vec3 to_eye = -direction;
-        if (point.is_back || (point.is_unlit && !is_camera)) {
-            break;
-        }
-        if (is_camera) {
-            radiance += throughput * point.emitted;
-        } else if (point.emitter_density > 0.0 && LIGHT_VISIBILITY != 0u && IS_WALKED == 0u) {
-            float cosine = max(abs(dot(point.plane_ws, direction)), 1e-12);
-            float other = point.emitter_density * hit.distance * hit.distance / cosine;
-            radiance += throughput * point.emitted * weight_of(density, other);
-        }
-        goes_on = !point.is_unlit && bounce < BOUNCES;
-        if (goes_on) {
-            light = punctual_light(point, to_eye);
-            panel = IS_WALKED != 0u ? NOTHING : emitter(point, to_eye);
-            light.radiance *= throughput;
-            panel.radiance *= throughput;
-            is_waiting = true;
-            if (IS_WALKED != 0u) {
-                radiance += throughput * albedo_of(point.surface) / PI * walked_irradiance(point);
+        bool is_in_medium = false;
+        vec3 place_ws = path.origin;
+        if (MEDIUM != MEDIUM_NONE) {
+            vec2 ends = in_medium(path.origin, path.direction, -path.behind, hit.distance);
+            bool scatters = MEDIUM == MEDIUM_SCATTERS && path.bounce < BOUNCES;
+            if (scatters) {
+                air = airlight(path.origin, path.direction, ends, air_ws);
+                air.radiance *= path.throughput;
+                is_waiting = air.distance > 0.0;
             }
-            vec2 numbers = next_pair();
-            vec2 choice = next_pair();
-            vec3 scattered =
-                scatter_direction(BRDF_KIND, point.surface, point.normal_ws, to_eye, choice.x, numbers);
-            density = scatter_density(BRDF_KIND, point.surface, point.normal_ws, scattered, to_eye);
-            vec3 reflected = reflected_by(point, scattered, to_eye);
-            bool leaves = dot(scattered, point.plane_ws) > 0.0 && density > 0.0;
-            throughput *= leaves ? reflected / max(density, 1e-20) : vec3(0.0);
-            if (ROULETTE != 0u && bounce >= ROULETTE_FROM) {
-                float survival = clamp(largest(throughput), 0.05, 0.95);
-                throughput = choice.y < survival ? throughput / survival : vec3(0.0);
+            if (scatters && finds_more(path)) {
+                float place = ends.x - log(1.0 - next_pair().x) / params.extinction;
+                is_in_medium = place < ends.y;
+                place_ws = path.origin + path.direction * place;
+            } else {
+                path.throughput *= passed_by(ends);
             }
-            goes_on = largest(throughput) > 0.0;
-            origin = off_surface(point);
-            direction = scattered;
-            limit = FAR;
-            bounce++;
+        }
+        if (is_in_medium) {
+            scatter_in_medium(path, place_ws);
+        } else if (!hit.is_hit) {
+            vec3 around_all = path.bounce == 0u ? frame.background.rgb : frame.background.rgb + frame.ambient.rgb;
+            radiance += path.throughput * around_all;
+            path.goes_on = false;
+        } else {
+            SurfacePoint point = surface_point(hit.triangle, hit.barycentric, path.direction);
+            path.goes_on = !point.is_back && (!point.is_unlit || path.bounce == 0u);
+            if (path.goes_on) {
+                radiance += emitted_along(path, point, hit.distance);
+                path.goes_on = !point.is_unlit && path.bounce < BOUNCES;
+            }
+            if (path.goes_on) {
+                vec3 to_eye = -path.direction;
+                light = punctual_light(point, to_eye);
+                panel = IS_WALKED != 0u ? NOTHING : emitter(point, to_eye);
+                light.radiance *= path.throughput;
+                panel.radiance *= path.throughput;
+                light = dimmed(light, point.position_ws);
+                panel = dimmed(panel, point.position_ws);
+                is_waiting = true;
+                if (IS_WALKED != 0u) {
+                    radiance += path.throughput * albedo_of(point.surface) / PI * walked_irradiance(point);
+                }
+                scatter_at(path, point);
+            }
         }
     }
-    expect_done(!is_waiting);
+    expect_done(!path.goes_on && !is_waiting);
     return radiance;
 }
 

@@ -19,18 +19,27 @@
 //!   shadow rays take the first for solid and the second for nothing)
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
+//! - `--aperture`: a thin lens, whose points rays leave evenly
+//! - `--shutter`: corners, normals, tangents, camera and lights on straight lines between their places when it opens and
+//!   when it closes, one moment a path; chances of emitters are those of the opening
+//! - `--medium`: a homogeneous medium in the box around all that is drawn, the eye and the lights. On each stretch of a path
+//!   one light, chosen by power, is looked for at one place, drawn by the angle under which the light sees the stretch or as
+//!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces
 //!
 //! Equal to others: `--transport direct` is `deferred --direct-shadow ray`; `--transport one-bounce --vpl-visibility off` is
 //! what `interleaved_deferred --split none` comes to with ever more virtual point lights.
 
+mod airlight;
+mod moving;
 pub mod sample;
 pub mod settings;
 
 use super::{Frame, Inputs, Prepared, Technique, left_out};
 use crate::bvh::Bvh;
 use crate::error::Result;
-use crate::gpu::shader::structs::{LightBlock, SampleParams, SourceBlock};
+use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::lights::emitters::{self, Emitters};
 use crate::passes::direct;
@@ -38,10 +47,12 @@ use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::resident::traced::Layout;
-use crate::scene::{AlphaMode, Material};
+use crate::scene::{AlphaMode, Light, Material};
 use crate::settings::{Setting, Values};
 use crate::shading::brdf::Brdf;
+use airlight::Air;
 use bytemuck::Zeroable;
+use moving::Closing;
 use sample::{Choices, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -87,14 +98,17 @@ impl Technique for PathTraced {
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        Air::new(inputs)?;
         let bvh = inputs.bvh.whole(inputs.scene)?;
-        let sources = Sources::new(inputs, bvh);
+        let sources = Sources::new(inputs, bvh)?;
         let mut plan = Plan::default();
         layout(inputs, bvh)?.plan(&mut plan, NAME);
         let of = |count: usize, size: usize| count as u64 * size as u64;
-        let light_count = sources.lights.lights.len();
+        let light_count = sources.all_lights().count();
         plan.buffer("lights", format!("{NAME}.lights"), of(light_count, size_of::<LightBlock>()));
         plan.buffer("lights", format!("{NAME}.sources"), of(sources.all().len(), size_of::<SourceBlock>()));
+        let frame_count = usize::from(sources.closing.is_some());
+        plan.buffer("frame", format!("{NAME}.frame.closing"), of(frame_count, size_of::<FrameBlock>()));
         plan.buffer("accumulation", SUMS, inputs.view.extent.pixel_count() * SUM_BYTES);
         plan.picture(COLOR, inputs.view.extent);
         plan.pass(format!("{NAME}.sample"), [(COLOR.to_owned(), Access::ComputeWrite)]);
@@ -102,8 +116,8 @@ impl Technique for PathTraced {
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?);
-        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources), sources }))
+        let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?)?;
+        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources)?, sources }))
     }
 }
 
@@ -114,6 +128,8 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
 /// Where light comes from.
 struct Sources {
     lights: LightSet,
+    /// None: nothing moves.
+    closing: Option<Closing>,
     /// None: emissive triangles light nothing.
     emitters: Option<Emitters>,
     punctual: Vec<SourceBlock>,
@@ -122,12 +138,14 @@ struct Sources {
 }
 
 impl Sources {
-    fn new(inputs: &Inputs<'_>, bvh: &Bvh) -> Self {
+    fn new(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Self> {
         let values = inputs.values;
-        let mut lights = inputs.lights.clone();
+        let (mut lights, mut closing) = (inputs.lights.clone(), Closing::new(inputs)?);
         if !values.is_on("punctual") {
-            lights.lights.clear();
-            lights.has_punctual = false;
+            for lights in [&mut lights].into_iter().chain(closing.as_mut().map(|closing| &mut closing.lights)) {
+                lights.lights.clear();
+                lights.has_punctual = false;
+            }
         }
         let is_emissive = match values.text("emissive") {
             "auto" => !lights.has_punctual,
@@ -137,7 +155,12 @@ impl Sources {
         let (punctual, power) = emitters::punctual(&lights.lights, 0.5 * inputs.scene.bounds().diagonal());
         let emitted = emitters.as_ref().map_or(0.0, Emitters::power);
         let punctual_part = if power + emitted > 0.0 { power / (power + emitted) } else { 0.0 };
-        Self { lights, emitters, punctual, punctual_part }
+        Ok(Self { lights, closing, emitters, punctual, punctual_part })
+    }
+
+    /// Those of the shutter's opening, then those of its closing.
+    fn all_lights(&self) -> impl Iterator<Item = &Light> {
+        self.lights.lights.iter().chain(self.closing.iter().flat_map(|closing| &closing.lights.lights))
     }
 
     fn emitter_count(&self) -> usize {
@@ -151,17 +174,35 @@ impl Sources {
     }
 }
 
-fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Choices {
+fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     let values = inputs.values;
     let bounds = inputs.scene.bounds();
     let bounces = match values.text("transport") {
-        "direct" => 1,
+        "direct" | "single-scatter" => 1,
         "one-bounce" => 2,
         _ => values.integer("bounces") as u32,
     };
     let is_walked = !values.is_on("vpl-visibility");
     let least = values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
-    Choices {
+    let (air, medium) = Air::new(inputs)?;
+    let mut params = SampleParams {
+        sphere_ws: bounds.center().extend(0.5 * bounds.diagonal()).to_array(),
+        least_squared: least * least,
+        punctual_part: sources.punctual_part as f32,
+        emitter_count: sources.emitter_count() as u32,
+        punctual_count: sources.punctual.len() as u32,
+        seed: values.integer("seed") as u32,
+        ..SampleParams::zeroed()
+    };
+    if let Some(medium) = medium {
+        airlight::write(&mut params, &medium, inputs, sources.all_lights());
+    }
+    let lens = Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?);
+    if let Some(lens) = lens {
+        params.lens_radius = lens.radius;
+        params.focus = lens.focus;
+    }
+    Ok(Choices {
         bounces: if is_walked { 1 } else { bounces },
         roulette: values.text("transport") == "full" && !is_walked,
         light_visibility: values.is_on("light-visibility"),
@@ -171,16 +212,10 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Choices {
         workgroup: values.pair("workgroup"),
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),
         is_tested: inputs.scene.drawn_materials().any(|material| material.alpha != AlphaMode::Opaque),
-        params: SampleParams {
-            sphere_ws: bounds.center().extend(0.5 * bounds.diagonal()).to_array(),
-            least_squared: least * least,
-            punctual_part: sources.punctual_part as f32,
-            emitter_count: sources.emitter_count() as u32,
-            punctual_count: sources.punctual.len() as u32,
-            seed: values.integer("seed") as u32,
-            ..SampleParams::zeroed()
-        },
-    }
+        air,
+        has_lens: lens.is_some(),
+        params,
+    })
 }
 
 struct PreparedPaths {
@@ -202,10 +237,14 @@ impl Prepared for PreparedPaths {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let emissive = if self.sources.emitters.is_some() { "on" } else { "off" };
-        BTreeMap::from([
+        let mut resolved = BTreeMap::from([
             ("emissive", emissive.to_owned()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
-        ])
+        ]);
+        if self.choices.has_lens {
+            resolved.insert("focus", format!("{}", self.choices.params.focus));
+        }
+        resolved
     }
 
     fn light_counts(&self) -> [u32; 2] {
@@ -220,11 +259,15 @@ impl Prepared for PreparedPaths {
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
         let bvh = inputs.bvh.whole(inputs.scene)?;
-        let lights = direct::light_blocks(&self.sources.lights, inputs.values);
+        let mut lights = direct::light_blocks(&self.sources.lights, inputs.values);
+        if let Some(closing) = &self.sources.closing {
+            lights.extend(direct::light_blocks(&closing.lights, inputs.values));
+        }
+        let closing: Vec<FrameBlock> = self.sources.closing.iter().map(|closing| closing.block(inputs)).collect();
         let density_of =
             |material: &Material| self.sources.emitters.as_ref().map_or(0.0, |emitters| emitters.density_of(material));
         let (sources, layout) = (self.sources.all(), layout(inputs, bvh)?);
-        let lit = (&lights[..], &sources[..]);
+        let lit = (&lights[..], &sources[..], &closing[..]);
         let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, &layout), density_of)?;
         Ok(Box::new(PathFrame {
             sample,

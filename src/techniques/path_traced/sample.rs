@@ -2,11 +2,12 @@
 //! reads  the whole tree, the traced scene, the lights      writes  path_traced.sums  buffer, four floats a pixel, kept
 //! from run to run, and path_traced.color  image, RGBA32F, frame extent: the mean so far
 
+use super::airlight::Air;
 use super::{COLOR, NAME, SUMS};
 use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::{LightBlock, SampleParams, SourceBlock};
+use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::shader::techniques::path_traced::sample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
@@ -34,6 +35,9 @@ pub struct Choices {
     pub ray_offset: f32,
     /// The scene has MASK or BLEND surfaces.
     pub is_tested: bool,
+    pub air: Air,
+    /// The camera has a lens that is open.
+    pub has_lens: bool,
     pub params: SampleParams,
 }
 
@@ -43,6 +47,8 @@ pub struct Sample {
     traced: TracedGpu,
     lights: Buffer,
     sources: Buffer,
+    /// Frame when the shutter closes.
+    closing: Buffer,
     sums: Buffer,
     pub color: Image,
 }
@@ -54,7 +60,7 @@ impl Sample {
         inputs: &Inputs<'_>,
         resources: &mut Resources,
         choices: &Choices,
-        (lights, sources): (&[LightBlock], &[SourceBlock]),
+        (lights, sources, closing): (&[LightBlock], &[SourceBlock], &[FrameBlock]),
         (bvh, layout): (&Bvh, &Layout),
         density_of: impl Fn(&crate::scene::Material) -> f32,
     ) -> Result<Self> {
@@ -70,6 +76,8 @@ impl Sample {
             ("LIGHT_VISIBILITY", u32::from(choices.light_visibility)),
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
             ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
+            ("MEDIUM", choices.air as u32),
+            ("HAS_LENS", u32::from(choices.has_lens)),
         ];
         let constants = [&own[..], &layout.constants()].concat();
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
@@ -84,6 +92,7 @@ impl Sample {
             traced,
             lights: filled("lights", bytemuck::cast_slice(lights))?,
             sources: filled("sources", bytemuck::cast_slice(sources))?,
+            closing: filled("frame.closing", bytemuck::cast_slice(closing))?,
             sums: resources.buffer(SUMS),
             color: resources.image(COLOR),
         })
@@ -106,6 +115,7 @@ impl Sample {
                 ("Frame", Bound::Buffer(frame)),
                 ("Lights", Bound::Buffer(&self.lights)),
                 ("Sources", Bound::Buffer(&self.sources)),
+                ("FrameClosing", Bound::Buffer(&self.closing)),
                 ("Sums", Bound::Buffer(&self.sums)),
                 ("color", Bound::Storage(&self.color)),
             ]);

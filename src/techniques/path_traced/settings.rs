@@ -1,6 +1,6 @@
 //! The settings of path tracing.
 
-use crate::settings::{BRDF, EMISSIVE, Kind, Setting, VPL_CLAMP, WORKGROUP};
+use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, Setting, VPL_CLAMP, WORKGROUP};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -16,11 +16,12 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "transport",
         symbol: "",
-        kind: Kind::Choice(&["direct", "one-bounce", "full"]),
+        kind: Kind::Choice(&["direct", "one-bounce", "single-scatter", "full"]),
         default: "full",
         unit: "",
         paper: "",
-        help: "light that is counted: straight from lights, or scattered by one surface more, or by as many as --bounces says",
+        help: "light that is counted: straight from lights, or scattered by one surface more; scattered once, by a surface or by \
+               --medium; or as often as --bounces says, by either. The first two are dimmed by --medium, and lose what it scatters",
     },
     Setting {
         key: "bounces",
@@ -29,7 +30,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "16",
         unit: "",
         paper: "",
-        help: "of --transport full: surfaces that scatter a path at most; from the fourth on it may end by chance, unbiased",
+        help: "of --transport full: surfaces, or places of --medium, that scatter a path at most; from the fourth on it may end by chance, unbiased",
     },
     Setting {
         key: "light-visibility",
@@ -59,6 +60,10 @@ pub const SETTINGS: &[Setting] = &[
         paper: "",
         help: "point, spot and directional lights; off: emissive triangles light the scene even where --emissive is auto",
     },
+    APERTURE,
+    FOCUS,
+    SHUTTER,
+    MEDIUM,
     EMISSIVE,
     VPL_CLAMP,
     BRDF,

@@ -37,6 +37,9 @@ fn read_back(values: &Values, setting: &Setting) {
             assert!(values.integer_or_auto(key).is_none_or(|value| (min..=max).contains(&value)));
         }
         Kind::Number { min, max } => assert!((min..=max).contains(&values.number(key))),
+        Kind::NumberOrAuto { min, max } => {
+            assert!(values.number_or_auto(key).is_none_or(|value| (min..=max).contains(&value)));
+        }
         Kind::Choice(choices) => assert!(choices.contains(&values.text(key))),
         Kind::Pair { min, max } => assert!(values.pair(key).iter().all(|side| (min..=max).contains(side))),
         Kind::PairOrAuto { min, max } => {
@@ -46,6 +49,8 @@ fn read_back(values: &Values, setting: &Setting) {
         Kind::Length => assert!(values.length(key, 1.0) >= 0.0),
         Kind::Bytes => assert!(values.bytes(key).is_none_or(|bytes| bytes > 0)),
         Kind::Color => assert!(values.color(key).is_finite()),
+        Kind::PartsOrNone(parts) if parts.len() == 2 => drop(values.numbers_or_none::<2>(key)),
+        Kind::PartsOrNone(_) => drop(values.numbers_or_none::<3>(key)),
         _ => {}
     }
 }

@@ -1,0 +1,73 @@
+//! The rows of what lies between a surface and the film, which several techniques read.
+
+use super::{Kind, Part, Setting, Values};
+use crate::error::{Error, Result};
+
+/// How wide the lens is.
+pub const APERTURE: Setting = Setting {
+    key: "aperture",
+    symbol: "",
+    kind: Kind::Number { min: 0.0, max: 1e6 },
+    default: "0",
+    unit: "m",
+    paper: "Clarberg 2014, table 3",
+    help: "diameter of the camera's thin lens: what is out of focus is blurred; 0: a pinhole, all is sharp",
+};
+
+/// Where the lens makes a sharp picture of.
+pub const FOCUS: Setting = Setting {
+    key: "focus",
+    symbol: "",
+    kind: Kind::NumberOrAuto { min: 1e-6, max: 1e9 },
+    default: "auto",
+    unit: "m",
+    paper: "",
+    help: "of --aperture: how far before the camera the plane in focus lies; auto: where the middle of the picture sees \
+           something, else through the middle of the scene",
+};
+
+/// How long the film is exposed.
+pub const SHUTTER: Setting = Setting {
+    key: "shutter",
+    symbol: "",
+    kind: Kind::PartsOrNone(&[Part { word: "OPEN", min: -1e9, max: 1e9 }, Part { word: "CLOSE", min: -1e9, max: 1e9 }]),
+    default: "none",
+    unit: "s",
+    paper: "Keller 2001, 3.2",
+    help: "when the shutter opens and closes, after --time: what animations move meanwhile is blurred, along straight lines \
+           from its place at the one to that at the other; none: one moment",
+};
+
+/// The moments of `--time` and `--shutter` at which the shutter opens and closes, seconds; the same one where there is no
+/// shutter, or the technique reads none.
+///
+/// Errors: it closes before it opens (exit code 2).
+pub fn exposure_s(values: &Values) -> Result<[f64; 2]> {
+    let time_s = values.number("time");
+    let has_shutter = values.iter().any(|(key, _)| key == SHUTTER.key);
+    let Some([open_s, close_s]) = has_shutter.then(|| values.numbers_or_none("shutter")).flatten() else {
+        return Ok([time_s; 2]);
+    };
+    if open_s > close_s {
+        let text = values.text("shutter");
+        return Err(Error::request(format!("--shutter {text}: it closes before it opens"))
+            .note(format!("--shutter {close_s},{open_s} is the same time in order")));
+    }
+    Ok([time_s + open_s, time_s + close_s])
+}
+
+/// A homogeneous medium that fills the scene.
+pub const MEDIUM: Setting = Setting {
+    key: "medium",
+    symbol: "",
+    kind: Kind::PartsOrNone(&[
+        Part { word: "S", min: 0.0, max: 1e6 },
+        Part { word: "A", min: 0.0, max: 1e6 },
+        Part { word: "G", min: -0.99, max: 0.99 },
+    ]),
+    default: "none",
+    unit: "1/m",
+    paper: "Dubla 2009, 3.4",
+    help: "light that a homogeneous medium scatters (S) and absorbs (A) a metre, and the mean cosine of the angle by which it \
+           turns it (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
+};
