@@ -29,14 +29,16 @@ impl Textures {
         let mut images = Vec::with_capacity(distinct.len() + 1);
         for (index, (image, color_space)) in distinct.iter().enumerate() {
             let target = resources.image(&format!("scene.textures.{index}"));
-            let levels = mipmaps::levels(&scene.images[*image], *color_space);
-            // A limit leaves the finest levels out: the others are the end of the list.
-            let first = levels.len() - target.description.bytes() as usize;
-            upload::image(gpu, &target, &levels[first..], Access::FragmentSample)?;
+            let image = &scene.images[*image];
+            // A limit leaves the finest levels out.
+            let all = mipmaps::level_count(image.width, image.height);
+            let levels = all - target.description.level_count..all;
+            let fill = |bytes: &mut [u8]| mipmaps::write(image, *color_space, levels, bytes);
+            upload::image(gpu, &target, Access::FragmentSample, fill)?;
             images.push(target);
         }
         let white = resources.image("scene.textures.white");
-        upload::image(gpu, &white, &[255; 4], Access::FragmentSample)?;
+        upload::image(gpu, &white, Access::FragmentSample, |bytes| bytes.fill(255))?;
         images.push(white);
         let mut samplers = Vec::new();
         let mut sampler_of = HashMap::new();
