@@ -10,6 +10,7 @@ use quincunx::scene::{
 };
 use quincunx::shading::material::{self, MeshPoint};
 use serde_json::{Value, json};
+use std::sync::Arc;
 use support::gltf_file::{GltfFile, U8, U16};
 use support::watched::{Changes, Watched, both};
 
@@ -48,7 +49,7 @@ fn matt(base_color: Vec4) -> Material {
 /// Adds an image of linear numbers, seen nearest and repeated; returns the texture's index.
 fn picture(scene: &mut Scene, width: u32, rgba8: &[[u8; 4]], color_space: ColorSpace) -> usize {
     let height = rgba8.len() as u32 / width;
-    scene.images.push(Image { name: String::new(), width, height, rgba8: rgba8.concat() });
+    scene.images.push(Image { name: String::new(), width, height, rgba8: rgba8.concat() }.into());
     let sampler =
         Sampler { wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat, mag_linear: false, min_linear: false, mip_linear: None };
     scene.textures.push(Texture { image: scene.images.len() - 1, sampler, color_space });
@@ -214,14 +215,15 @@ fn textures_are_read_where_they_are_placed() {
 /// The scene with each texel of its images 64 texels wide: filtered far from its edges it is the nearest one.
 fn nearest(scene: &Scene) -> Scene {
     const ZOOM: u32 = 64;
-    let zoom = |image: &Image| {
+    let zoom = |image: &Arc<Image>| {
         let (width, height) = (image.width * ZOOM, image.height * ZOOM);
         let texel = |at: u32| {
             let (x, y) = (at % width / ZOOM, at / width / ZOOM);
             let start = 4 * (y * image.width + x) as usize;
             image.rgba8[start..start + 4].to_vec()
         };
-        Image { name: String::new(), width, height, rgba8: (0..width * height).flat_map(texel).collect() }
+        let rgba8 = (0..width * height).flat_map(texel).collect();
+        Image { name: String::new(), width, height, rgba8 }.into()
     };
     Scene { images: scene.images.iter().map(zoom).collect(), textures: scene.textures.clone(), ..Scene::default() }
 }

@@ -165,8 +165,13 @@ pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Scene> {
 
 /// A picture of one colour.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
+    painted_png(width, height, |_, _| [1, 2, 3, 4])
+}
+
+/// A picture whose texel at x, y is `texel(x, y)`.
+pub fn painted_png(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image::RgbaImage::from_pixel(width, height, image::Rgba([1, 2, 3, 4]))
+    image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(texel(x, y)))
         .write_to(&mut bytes, image::ImageFormat::Png)
         .unwrap();
     bytes.into_inner()
