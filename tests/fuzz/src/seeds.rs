@@ -1,5 +1,6 @@
 //! The seeds of a target: files of the tests' own builders, and a few lines of text.
 
+// The tests' builder whole, of which seeds are made by a part: loading is the fuzz targets' own work.
 #[allow(dead_code)]
 #[path = "../../support/gltf_file.rs"]
 mod gltf_file;
