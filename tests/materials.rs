@@ -445,3 +445,42 @@ fn sides_are_told_through_mirrors_and_turns() {
         }
     }
 }
+
+/// The same of a skin, where the joints stand for the node: a mirrored joint keeps the front, a mirrored node does nothing.
+#[test]
+fn sides_are_told_through_mirrored_joints() {
+    let raster = both(AMBIENT, &[("ambient", "0"), ("direct-shadow", "none"), ("size", "8x8")]);
+    let rays: Changes<'_> = &[("size", "8x8"), ("rig", "none"), ("brdf", "lambert"), ("spp", "2")];
+    let mut watched = Watched::with_scene(square(matt(Vec4::ONE)));
+    // Scales of the joint with which the triangle covers the picture; the last two turn its front away.
+    for (scale, is_front) in [
+        ([8.0, 8.0, 1.0], true),
+        ([-8.0, 8.0, 1.0], true),
+        ([8.0, -8.0, 1.0], true),
+        ([-8.0, -8.0, 1.0], true),
+        ([8.0, 8.0, -1.0], false),
+        ([-8.0, 8.0, -1.0], false),
+    ] {
+        for (has_normals, node_scale) in [(true, 1.0), (false, 1.0), (true, -1.0)] {
+            let mut file = GltfFile::skinned_triangle();
+            file.json["nodes"][0]["scale"] = json!([node_scale, 1, 1]);
+            let [x, y, _] = scale.map(|side: f32| -2.0 * side.signum());
+            file.json["nodes"][2] = json!({"scale": scale, "translation": [x, y, 0]});
+            if has_normals {
+                let normals = file.floats("VEC3", &[0.0, 0.0, 1.0].repeat(3));
+                file.primitive()["attributes"]["NORMAL"] = json!(normals);
+            }
+            let mut scene = file.load().unwrap();
+            let Scene { cameras, .. } = square(matt(Vec4::ONE));
+            (scene.cameras, scene.lights) = (cameras, vec![headlight()]);
+            scene.materials[0] = matt(Vec3::splat(0.5).extend(1.0));
+            watched = watched.showing(scene);
+            let expected = Vec3::splat(if is_front { 0.5 } else { 0.0 });
+            for (technique, changes) in [("deferred", &raster[..]), ("path_traced", rays)] {
+                for found in pixels_of(&watched, technique, changes) {
+                    require_near(found, expected, 1e-3, &format!("{technique}: {scale:?} {has_normals} {node_scale}"));
+                }
+            }
+        }
+    }
+}
