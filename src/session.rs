@@ -13,7 +13,7 @@ use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::report::image_file::Aov;
 use crate::report::picture::Picture;
-use crate::resident::{self, SceneGpu, SceneStats};
+use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
 use crate::techniques::{Frame, Inputs, Technique, fitness};
@@ -62,7 +62,8 @@ impl Session {
         Self::on(Gpu::open(request)?, scene)
     }
 
-    /// The same device with another scene. One of the same hash and texture limit is there already.
+    /// The same device with another scene. One of the same hash and texture limit is there already; of one that shows the
+    /// same pictures, as other moments of a model do, the textures are.
     ///
     /// Errors: as `open`, but for the device.
     pub fn showing(self, scene: Scene) -> Result<Self> {
@@ -70,18 +71,22 @@ impl Session {
             return Ok(self);
         }
         require_triangle(&scene, &scene.name)?;
-        let gpu = self.gpu.clone();
+        let (gpu, textures) = (self.gpu.clone(), self.scene_gpu.textures());
         // The old scene goes first: the device need not have room for both.
         drop(self);
-        Self::on(gpu, scene)
+        Self::with_textures(gpu, scene, Some(textures))
     }
 
     /// Uploads the scene.
     ///
     /// Errors: memory (exit code 4).
     pub(crate) fn on(gpu: Arc<Gpu>, scene: Scene) -> Result<Self> {
+        Self::with_textures(gpu, scene, None)
+    }
+
+    fn with_textures(gpu: Arc<Gpu>, scene: Scene, kept: Option<Arc<Textures>>) -> Result<Self> {
         let stats = SceneStats::of(&scene);
-        let uploaded = SceneGpu::new(&gpu, &scene).map_err(|error| resident::advise(error, &gpu, &scene));
+        let uploaded = SceneGpu::new(&gpu, &scene, kept).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);
         Ok(Self { gpu, scene, stats, scene_gpu, bvh: LazyBvh::default() })
     }

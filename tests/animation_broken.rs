@@ -18,26 +18,10 @@ fn refused_moving(change: impl FnOnce(&mut GltfFile), words: &[&str]) {
     expect(&file.load().unwrap_err(), "scene.glb", words);
 }
 
-/// A skinned triangle: node 0 shows it, nodes 1 and 2 are its joints, all vertices at joint 1.
-fn skinned() -> GltfFile {
-    let mut file = GltfFile::triangle();
-    let joints = file.indices(U8, &[1, 0, 0, 0].repeat(3));
-    file.json["accessors"][joints]["type"] = json!("VEC4");
-    file.json["accessors"][joints]["count"] = json!(3);
-    let weights = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
-    file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
-    file.primitive()["attributes"]["WEIGHTS_0"] = json!(weights);
-    file.json["nodes"][0]["skin"] = json!(0);
-    file.root(json!({}));
-    file.root(json!({}));
-    file.push("skins", json!({"joints": [1, 2], "name": "bones"}));
-    assert!(file.load().is_ok());
-    file
-}
-
 #[track_caller]
 fn refused_skinned(change: impl FnOnce(&mut GltfFile), words: &[&str]) {
-    let mut file = skinned();
+    let mut file = GltfFile::skinned_triangle();
+    assert!(file.load().is_ok());
     change(&mut file);
     expect(&file.load().unwrap_err(), "scene.glb", words);
 }
@@ -178,7 +162,7 @@ fn joints_and_weights_that_do_not_fit() {
     refused_skinned(weights(vec![f32::INFINITY; 12]), &["WEIGHTS_0", "element 0", "finite"]);
     refused_skinned(weights(vec![1.0; 8]), &["WEIGHTS_0", "2 elements", "POSITION has 3"]);
     // No weight at all is repaired, and said.
-    let mut file = skinned();
+    let mut file = GltfFile::skinned_triangle();
     weights(vec![0.0; 12])(&mut file);
     let scene = file.load().unwrap();
     assert!(scene.warnings[0].starts_with("3 vertices without joint weights"), "{:?}", scene.warnings);
@@ -217,7 +201,7 @@ fn morph_targets_that_do_not_fit() {
 #[test]
 fn few_bytes_that_ask_for_much() {
     // 33 nodes that bend two million corners each.
-    let mut file = skinned();
+    let mut file = GltfFile::skinned_triangle();
     let indices = file.indices(U8, &[0; 1 << 21]);
     file.primitive()["indices"] = json!(indices);
     for _ in 0..32 {
@@ -258,7 +242,7 @@ proptest! {
     /// Whatever a few changed bytes make of a moving file, it loads or is refused; it does not panic.
     #[test]
     fn changed_bytes_never_panic(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
-        let mut file = skinned();
+        let mut file = GltfFile::skinned_triangle();
         file.primitive()["targets"] = json!([{"POSITION": 0, "NORMAL": 0}]);
         file.animate(2, "rotation", "CUBICSPLINE", &[0.0, 1.0], ("VEC4", &[1.0; 24]));
         file.animate(0, "weights", "STEP", &[0.0, 1.0], ("SCALAR", &[0.0, 1.0]));

@@ -10,6 +10,7 @@ use quincunx::scene::{
 };
 use quincunx::shading::material::{self, MeshPoint};
 use serde_json::{Value, json};
+use std::sync::Arc;
 use support::gltf_file::{GltfFile, U8, U16};
 use support::watched::{Changes, Watched, both};
 
@@ -48,7 +49,7 @@ fn matt(base_color: Vec4) -> Material {
 /// Adds an image of linear numbers, seen nearest and repeated; returns the texture's index.
 fn picture(scene: &mut Scene, width: u32, rgba8: &[[u8; 4]], color_space: ColorSpace) -> usize {
     let height = rgba8.len() as u32 / width;
-    scene.images.push(Image { name: String::new(), width, height, rgba8: rgba8.concat() });
+    scene.images.push(Image { name: String::new(), width, height, rgba8: rgba8.concat() }.into());
     let sampler =
         Sampler { wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat, mag_linear: false, min_linear: false, mip_linear: None };
     scene.textures.push(Texture { image: scene.images.len() - 1, sampler, color_space });
@@ -59,9 +60,11 @@ fn picture(scene: &mut Scene, width: u32, rgba8: &[[u8; 4]], color_space: ColorS
 const AMBIENT: Changes<'static> = &[("size", "32x32"), ("rig", "none"), ("ambient", "1"), ("brdf", "lambert")];
 
 fn pixels(scene: &Scene, changes: Changes<'_>) -> Vec<Vec3> {
-    let watched = Watched::with_scene(scene.clone());
-    let picture = watched.picture("deferred", &both(AMBIENT, changes));
-    picture.pixels.iter().map(|pixel| Vec3::from_array(*pixel)).collect()
+    pixels_of(&Watched::with_scene(scene.clone()), "deferred", &both(AMBIENT, changes))
+}
+
+fn pixels_of(watched: &Watched, technique: &str, changes: Changes<'_>) -> Vec<Vec3> {
+    watched.picture(technique, changes).pixels.iter().map(|pixel| Vec3::from_array(*pixel)).collect()
 }
 
 /// The point of the square under each pixel's middle.
@@ -214,14 +217,15 @@ fn textures_are_read_where_they_are_placed() {
 /// The scene with each texel of its images 64 texels wide: filtered far from its edges it is the nearest one.
 fn nearest(scene: &Scene) -> Scene {
     const ZOOM: u32 = 64;
-    let zoom = |image: &Image| {
+    let zoom = |image: &Arc<Image>| {
         let (width, height) = (image.width * ZOOM, image.height * ZOOM);
         let texel = |at: u32| {
             let (x, y) = (at % width / ZOOM, at / width / ZOOM);
             let start = 4 * (y * image.width + x) as usize;
             image.rgba8[start..start + 4].to_vec()
         };
-        Image { name: String::new(), width, height, rgba8: (0..width * height).flat_map(texel).collect() }
+        let rgba8 = (0..width * height).flat_map(texel).collect();
+        Image { name: String::new(), width, height, rgba8 }.into()
     };
     Scene { images: scene.images.iter().map(zoom).collect(), textures: scene.textures.clone(), ..Scene::default() }
 }
@@ -402,32 +406,79 @@ fn a_transform_in_a_file_is_read_for_every_texture() {
     }
 }
 
-/// A front is what runs counter-clockwise in object space, whatever the node does to it.
-#[test]
-fn sides_are_told_through_mirrors_and_turns() {
-    let sun = Light {
+/// Shines from the eye: a side that is seen is lit, by pi / pi of its colour.
+fn headlight() -> Light {
+    Light {
         name: String::new(),
         kind: LightKind::Directional,
         intensity: Vec3::splat(std::f32::consts::PI),
         position: Vec3::ZERO,
         direction: Vec3::NEG_Z,
         range: None,
-    };
+    }
+}
+
+/// A front is what runs counter-clockwise in object space, whatever the node does to it.
+#[test]
+fn sides_are_told_through_mirrors_and_turns() {
+    let changes =
+        both(AMBIENT, &[("ambient", "0"), ("background", "0.25"), ("direct-shadow", "none"), ("size", "8x8")]);
     let turned = Mat4::from_rotation_y(std::f32::consts::PI);
+    let mut watched = Watched::with_scene(square(matt(Vec4::ONE)));
     for scale in [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -2.0, 1.0), Vec3::new(-1.0, -1.0, 1.0)] {
         for (turn, is_front) in [(Mat4::IDENTITY, true), (turned, false)] {
             for double_sided in [false, true] {
                 for alpha in [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend] {
                     let mut scene = square(Material { double_sided, alpha, ..matt(Vec3::splat(0.5).extend(1.0)) });
                     scene.draws[0].world_from_object = turn * Mat4::from_scale(scale);
-                    scene.lights.push(sun.clone());
-                    // The sun shines from the eye: a side that is seen is lit, by pi / pi of its colour.
+                    scene.lights.push(headlight());
+                    let what = format!("{scale} {is_front} {double_sided} {alpha:?}");
+                    // Scenes of one hash are taken for the same.
+                    scene.hash.clone_from(&what);
+                    watched = watched.showing(scene);
                     let expected = if is_front || double_sided { 0.5 } else { 0.25 };
-                    let changes =
-                        [("ambient", "0"), ("background", "0.25"), ("direct-shadow", "none"), ("size", "8x8")];
-                    for found in pixels(&scene, &changes) {
-                        require_near(found, Vec3::splat(expected), 1e-3, &format!("{scale} {is_front} {double_sided}"));
+                    for found in pixels_of(&watched, "deferred", &changes) {
+                        require_near(found, Vec3::splat(expected), 1e-3, &what);
                     }
+                }
+            }
+        }
+    }
+}
+
+/// The same of a skin, where the joints stand for the node: a mirrored joint keeps the front, a mirrored node does nothing.
+#[test]
+fn sides_are_told_through_mirrored_joints() {
+    let raster = both(AMBIENT, &[("ambient", "0"), ("direct-shadow", "none"), ("size", "8x8")]);
+    let rays: Changes<'_> = &[("size", "8x8"), ("rig", "none"), ("brdf", "lambert"), ("spp", "2")];
+    let mut watched = Watched::with_scene(square(matt(Vec4::ONE)));
+    // Scales of the joint with which the triangle covers the picture; the last two turn its front away.
+    for (scale, is_front) in [
+        ([8.0, 8.0, 1.0], true),
+        ([-8.0, 8.0, 1.0], true),
+        ([8.0, -8.0, 1.0], true),
+        ([-8.0, -8.0, 1.0], true),
+        ([8.0, 8.0, -1.0], false),
+        ([-8.0, 8.0, -1.0], false),
+    ] {
+        for (has_normals, node_scale) in [(true, 1.0), (false, 1.0), (true, -1.0)] {
+            let mut file = GltfFile::skinned_triangle();
+            file.json["nodes"][0]["scale"] = json!([node_scale, 1, 1]);
+            let [x, y, _] = scale.map(|side: f32| -2.0 * side.signum());
+            file.json["nodes"][2] = json!({"scale": scale, "translation": [x, y, 0]});
+            if has_normals {
+                let normals = file.floats("VEC3", &[0.0, 0.0, 1.0].repeat(3));
+                file.primitive()["attributes"]["NORMAL"] = json!(normals);
+            }
+            let mut scene = file.load().unwrap();
+            let Scene { cameras, .. } = square(matt(Vec4::ONE));
+            (scene.cameras, scene.lights) = (cameras, vec![headlight()]);
+            scene.materials[0] = matt(Vec3::splat(0.5).extend(1.0));
+            watched = watched.showing(scene);
+            let expected = Vec3::splat(if is_front { 0.5 } else { 0.0 });
+            for (technique, changes) in [("deferred", &raster[..]), ("path_traced", rays)] {
+                for found in pixels_of(&watched, technique, changes) {
+                    require_near(found, expected, 1e-3, &format!("{technique}: {scale:?} {has_normals} {node_scale}"));
                 }
             }
         }

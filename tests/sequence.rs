@@ -5,17 +5,31 @@ mod support;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use quincunx::scene::{AnimationChoice, Scene};
 use serde_json::json;
-use support::gltf_file::GltfFile;
+use support::gltf_file::{GltfFile, painted_png};
 use support::program::Program;
+use support::watched::Watched;
 
-/// A triangle that crosses the frame within a second, in a folder of its own.
-fn moving() -> Program {
-    let program = Program::new();
+/// A triangle with a picture on it that crosses the frame within a second.
+fn moving_file() -> GltfFile {
     let mut file = GltfFile::triangle();
     file.animate(0, "translation", "LINEAR", &[0.0, 1.0], ("VEC3", &[0.0, 0.0, 0.0, 3.0, 0.0, 0.0]));
     file.json["animations"][0]["name"] = json!("cross");
-    std::fs::write(program.path("moving.glb"), file.glb()).unwrap();
+    let view = file.view(&painted_png(16, 8, |x, y| [16 * x as u8, 32 * y as u8, 255 - 16 * x as u8, 255]));
+    file.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
+    file.push("textures", json!({"source": 0}));
+    file.push("materials", json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+    let uvs = file.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+    file.primitive()["attributes"]["TEXCOORD_0"] = json!(uvs);
+    file.primitive()["material"] = json!(0);
+    file
+}
+
+/// The same, in a folder of its own.
+fn moving() -> Program {
+    let program = Program::new();
+    std::fs::write(program.path("moving.glb"), moving_file().glb()).unwrap();
     program
 }
 
@@ -56,6 +70,38 @@ fn a_frame_is_the_picture_at_its_time() {
     assert_ne!(frames[0]["image"]["hash"], frames[1]["image"]["hash"]);
     assert_eq!(frames[1]["image"]["hash"], frames[2]["image"]["hash"]);
     assert_eq!(program.files(), ["a.0002.png", "a.0003.png", "a.0004.png", "moving.glb", "r.json", "single.png"]);
+}
+
+/// The pictures of a model stay on the device from moment to moment, and nothing of that shows.
+#[test]
+fn textures_stay_between_the_moments_of_a_model() {
+    let file = moving_file();
+    let [model, other] = [file.model(&AnimationChoice::All).unwrap(), file.model(&AnimationChoice::All).unwrap()];
+    let moment = |time_s: f64| model.pose(time_s).unwrap();
+    let limited = |scene: Scene| Scene { texture_limit_px: 4, ..scene };
+    let hash = |watched: &Watched| watched.hash("deferred", &[("size", "32x18")]);
+    let mut watched = Watched::with_scene(moment(0.0));
+    let mut seen = vec![hash(&watched)];
+    for (scene, stays) in [
+        (moment(0.25), true),
+        (moment(0.5), true),
+        (limited(moment(0.75)), false),
+        (limited(moment(0.5)), true),
+        (moment(0.5), false),
+        // Equal, and read again.
+        (other.pose(0.75).unwrap(), false),
+    ] {
+        watched = watched.showing(scene.clone());
+        // Owners are listed in the order in which they came.
+        let owners = watched.session.gpu.memory.snapshot().resources;
+        let place = |name: &str| owners.iter().position(|entry| entry.name == name).unwrap();
+        assert_eq!(place("scene.textures.0") < place("scene.positions"), stays, "{} of {}", scene.hash, seen.len());
+        assert_eq!(owners.iter().filter(|entry| entry.name == "scene.textures.0").count(), 1);
+        seen.push(hash(&watched));
+        assert_eq!(seen.last(), Some(&hash(&Watched::with_scene(scene))));
+    }
+    assert_eq!(seen[2], seen[5]);
+    assert!(seen[2] != seen[4] && seen[0] != seen[1], "the limit shows, and so does time");
 }
 
 #[test]

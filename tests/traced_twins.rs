@@ -61,7 +61,7 @@ fn samples_lie_where_the_host_s_numbers_say() {
 fn textures_say_what_they_say_on_the_host() {
     let image = |width: u32, height: u32, step: u32| {
         let rgba8 = (0..4 * width * height).map(|at| (at * step % 251) as u8).collect();
-        Image { name: String::new(), width, height, rgba8 }
+        Image { name: String::new(), width, height, rgba8 }.into()
     };
     let wraps = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge];
     for (index, mag_linear) in [true, false].into_iter().cycle().take(6).enumerate() {

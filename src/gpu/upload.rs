@@ -19,19 +19,30 @@ pub fn staging_name(target: &str) -> String {
     format!("upload.{target}")
 }
 
-fn staging(gpu: &Arc<Gpu>, target: &str, bytes: &[u8]) -> Result<Buffer> {
-    let mut staging = Buffer::new(gpu, &staging_name(target), GROUP, bytes.len() as u64, STAGING, Use::Upload)?;
-    staging.mapped_mut()[..bytes.len()].copy_from_slice(bytes);
+fn staging(gpu: &Arc<Gpu>, target: &str, bytes: u64, fill: impl FnOnce(&mut [u8])) -> Result<Buffer> {
+    let mut staging = Buffer::new(gpu, &staging_name(target), GROUP, bytes, STAGING, Use::Upload)?;
+    fill(&mut staging.mapped_mut()[..bytes as usize]);
     Ok(staging)
 }
 
 /// Fills the start of `target` with `bytes` and leaves it readable by `readers`.
 pub fn buffer(gpu: &Arc<Gpu>, target: &Buffer, bytes: &[u8], readers: impl Into<AccessSet>) -> Result<()> {
-    assert!(bytes.len() as u64 <= target.bytes, "{}: {} bytes into {}", target.name, bytes.len(), target.bytes);
-    if bytes.is_empty() {
+    buffer_with(gpu, target, bytes.len() as u64, readers, |staging| staging.copy_from_slice(bytes))
+}
+
+/// The same with `bytes` bytes that `fill` writes in place, without a copy of them on the host.
+pub fn buffer_with(
+    gpu: &Arc<Gpu>,
+    target: &Buffer,
+    bytes: u64,
+    readers: impl Into<AccessSet>,
+    fill: impl FnOnce(&mut [u8]),
+) -> Result<()> {
+    assert!(bytes <= target.bytes, "{}: {bytes} bytes into {}", target.name, target.bytes);
+    if bytes == 0 {
         return Ok(());
     }
-    let staging = staging(gpu, &target.name, bytes)?;
+    let staging = staging(gpu, &target.name, bytes, fill)?;
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
     cmd.copy_buffer(&staging, target);
@@ -44,11 +55,11 @@ pub fn buffer(gpu: &Arc<Gpu>, target: &Buffer, bytes: &[u8], readers: impl Into<
     Ok(())
 }
 
-/// Fills the levels of `target`, finest first and one after the other in `bytes`, each with its layers, and leaves it readable as `access`.
-pub fn image(gpu: &Arc<Gpu>, target: &Image, bytes: &[u8], access: Access) -> Result<()> {
+/// Fills the levels of `target` with what `fill` writes: finest first and one after the other, each with its layers. Leaves
+/// it readable as `access`.
+pub fn image(gpu: &Arc<Gpu>, target: &Image, access: Access, fill: impl FnOnce(&mut [u8])) -> Result<()> {
     let description = &target.description;
-    assert_eq!(bytes.len() as u64, description.bytes(), "{}: its levels' bytes", target.name);
-    let staging = staging(gpu, &target.name, bytes)?;
+    let staging = staging(gpu, &target.name, description.bytes(), fill)?;
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
     let mut offset = 0;

@@ -8,8 +8,12 @@ use super::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
 use super::{Strategy, Tiling};
 use crate::gpu::Caps;
 
-/// Greatest size of a shared memory block. Resources of at least half of it get a memory block of their own.
+/// Greatest size of a shared memory block.
 pub const SHARED_BLOCK_BYTES: u64 = 16 << 20;
+/// Resources of at least this size get a memory block of their own. Of shared ones a resource may leave as much unused at
+/// the end as it is large: a texture of 1024 x 1024 with its levels is a little more than a third of a shared block, and
+/// two in each left a third of all that was allocated unused.
+const OWN_BLOCK_BYTES: u64 = SHARED_BLOCK_BYTES / 4;
 /// Size of the first shared memory block of its kind.
 const FIRST_BLOCK_BYTES: u64 = 1 << 20;
 
@@ -128,7 +132,7 @@ impl Pool {
         if ask.bytes > self.rules.max_allocation_bytes {
             return Err(Misfit::TooLarge { most_bytes: self.rules.max_allocation_bytes });
         }
-        let is_shared = !ask.alone && self.rules.strategy != Strategy::Dedicated && ask.bytes < SHARED_BLOCK_BYTES / 2;
+        let is_shared = !ask.alone && self.rules.strategy != Strategy::Dedicated && ask.bytes < OWN_BLOCK_BYTES;
         if is_shared && let Some(place) = self.join(ask) {
             return Ok(place);
         }
@@ -346,6 +350,25 @@ mod tests {
         // The first of its kind is small, the fifth is full-grown; a resource takes at most a quarter of a new one.
         assert_eq!([0, 1, 4, 9].map(|siblings| shared_block_bytes(siblings, 1, 1 << 40) / MIB), [1, 2, 16, 16]);
         assert_eq!(shared_block_bytes(0, 3 * MIB, 1 << 40), 16 * MIB);
+    }
+
+    /// Textures of any one size, many of them, leave little of what is allocated unused.
+    #[test]
+    fn many_resources_of_one_size_fill_their_memory_blocks() {
+        for strategy in [Strategy::Linear, Strategy::Tlsf] {
+            // Pictures of 2048, 1024, 512 and 64 texels a side with their levels, and sizes that divide a block badly.
+            for bytes in [22_369_664, 5_592_448, 1_398_144, 22_016, 9 * MIB, 4 * MIB, 4 * MIB - 256, 13 * MIB / 4] {
+                let mut pool = Pool::new(Rules::of_one_heap(strategy, 1 << 40));
+                for _ in 0..200 {
+                    pool.place(&Ask { tiling: Tiling::Optimal, ..ask(bytes) }).unwrap();
+                }
+                let (used, held) = (200 * bytes, pool.held_bytes(0));
+                assert!(
+                    held <= used / 4 * 5 + SHARED_BLOCK_BYTES,
+                    "{strategy:?}: {held} for {used} in parts of {bytes}"
+                );
+            }
+        }
     }
 
     #[test]

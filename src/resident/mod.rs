@@ -18,12 +18,13 @@ mod visible;
 pub use clusters::Cluster;
 pub use geometry::Geometry;
 pub use relief::advise;
+pub use textures::Textures;
 pub use visible::{DrawList, GeometryChoice};
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
-use crate::gpu::{Access, Buffer, Caps, Gpu, Image, ImageDescription, upload};
+use crate::gpu::{Access, Buffer, Caps, Gpu, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
 use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps};
 use crate::units::Extent;
@@ -33,7 +34,7 @@ use glam::{Mat3, Vec3};
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
-use textures::Textures;
+use textures::MaterialSets;
 
 /// What a vertex carries beside its position.
 #[repr(C)]
@@ -158,6 +159,13 @@ impl SceneStats {
 
     /// The scene's resources.
     pub fn plan(&self) -> Plan {
+        let mut plan = self.geometry_plan();
+        self.plan_textures(&mut plan);
+        plan
+    }
+
+    /// Those that a moment of the scene has for itself: all but its textures.
+    fn geometry_plan(&self) -> Plan {
         use vk::BufferUsageFlags as Flags;
         let mut plan = Plan::default();
         let geometry = |bytes: u64, flags: Flags| Shape::Buffer {
@@ -177,12 +185,15 @@ impl SceneStats {
         plan.push("scene.geometry", "scene.indices", geometry(4 * self.index_count, Flags::INDEX_BUFFER));
         plan.buffer("scene.geometry", "scene.draws", self.draw_count * size_of::<DrawBlock>() as u64);
         plan.buffer("scene.materials", "scene.materials", self.material_count * size_of::<MaterialBlock>() as u64);
+        plan
+    }
+
+    fn plan_textures(&self, plan: &mut Plan) {
         for (index, (extent, format)) in self.textures.iter().enumerate() {
             plan.push("scene.textures", format!("scene.textures.{index}"), texture_shape(*extent, *format));
         }
         let white = texture_shape(Extent::new(1, 1), vk::Format::R8G8B8A8_UNORM);
         plan.push("scene.textures", "scene.textures.white", white);
-        plan
     }
 }
 
@@ -229,17 +240,20 @@ pub struct SceneGpu {
     pub material_sets: Vec<vk::DescriptorSet>,
     material_pool: vk::DescriptorPool,
     // Alive as long as the sets that name them.
-    _textures: Vec<Image>,
+    textures: Arc<Textures>,
     _samplers: Vec<Sampler>,
 }
 
 impl SceneGpu {
-    /// Uploads the scene.
+    /// Uploads the scene; `kept`, the textures of another one, serves again where they are the same.
     ///
     /// Errors: memory is too small or a limit is passed (exit code 4).
-    pub fn new(gpu: &Arc<Gpu>, scene: &Scene) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, kept: Option<Arc<Textures>>) -> Result<Self> {
+        // What is not needed goes first: the device need not have room for both.
+        let kept = kept.filter(|textures| textures.are_of(scene));
         let stats = SceneStats::of(scene);
-        let mut resources = Resources::make(gpu, "scene", &stats.plan(), &Sharing::default())?;
+        let mut resources = Resources::make(gpu, "scene", &stats.geometry_plan(), &Sharing::default())?;
+        let textures = kept.map_or_else(|| Textures::new(gpu, scene, &stats).map(Arc::new), Ok)?;
         let geometry = Geometry::of(scene);
         let send = |buffer: &Buffer, bytes: &[u8], access| upload::buffer(gpu, buffer, bytes, access);
         let positions = resources.buffer("scene.positions");
@@ -263,10 +277,9 @@ impl SceneGpu {
         let materials = resources.buffer("scene.materials");
         let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_blocks::block).collect();
         send(&materials, bytemuck::cast_slice(&blocks), Access::GraphicsRead)?;
-        let textures = Textures::new(gpu, scene, &mut resources)?;
+        let MaterialSets { samplers, layout, pool, sets } = MaterialSets::new(gpu, scene, &textures)?;
         let mut calls = geometry.calls(scene);
         sort(&mut calls);
-        let Textures { images, samplers, layout, pool, sets } = textures;
         Ok(Self {
             gpu: gpu.clone(),
             positions,
@@ -283,9 +296,14 @@ impl SceneGpu {
             material_layout: layout,
             material_sets: sets,
             material_pool: pool,
-            _textures: images,
+            textures,
             _samplers: samplers,
         })
+    }
+
+    /// For a scene that shows the same pictures.
+    pub fn textures(&self) -> Arc<Textures> {
+        self.textures.clone()
     }
 }
 
@@ -343,23 +361,26 @@ fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
 mod tests {
     use super::*;
 
-    /// The levels that a limit leaves are the last ones of all, so an upload may send the end of the whole list.
+    /// The levels that a limit leaves are the last ones of all: an upload counts them from the end.
     #[test]
     fn a_limited_texture_is_the_end_of_the_whole_one() {
         for (width, height) in [(1024, 1024), (1000, 3), (7, 513), (1, 1), (641, 359)] {
-            let rgba8 = (0..4 * width * height).map(|at| (at * 7 % 251) as u8).collect();
-            let image = crate::scene::Image { name: String::new(), width, height, rgba8 };
-            let whole = mipmaps::levels(&image, ColorSpace::Srgb);
+            let image = crate::scene::Image { width, height, ..Default::default() };
+            let shape = |extent| match texture_shape(extent, vk::Format::R8G8B8A8_SRGB) {
+                Shape::Image(description) => description,
+                Shape::Buffer { .. } => unreachable!("a texture is an image"),
+            };
+            let whole = shape(Extent::new(width, height));
             for limit_px in [0, 1, 2, 5, 100, 512, 1024, 4096] {
                 let extent = limited(&image, limit_px);
                 assert!(limit_px == 0 || extent.width.max(extent.height) <= limit_px);
-                let Shape::Image(kept) = texture_shape(extent, vk::Format::R8G8B8A8_SRGB) else { unreachable!() };
-                let left_out = mipmaps::level_count(width, height) - kept.level_count;
+                let kept = shape(extent);
+                let left_out = whole.level_count - kept.level_count;
                 assert!(left_out == 0 || (width.max(height) >> (left_out - 1)) > limit_px, "no finer level is allowed");
                 let finer: u64 = (0..left_out)
                     .map(|level| 4 * u64::from((width >> level).max(1)) * u64::from((height >> level).max(1)))
                     .sum();
-                assert_eq!(finer + kept.bytes(), whole.len() as u64, "{width}x{height} within {limit_px}");
+                assert_eq!(finer + kept.bytes(), whole.bytes(), "{width}x{height} within {limit_px}");
             }
         }
     }

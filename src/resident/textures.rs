@@ -1,11 +1,14 @@
 //! The scene's textures in device memory, and set 1 of each material: a white pixel where one is missing.
+//!
+//! Textures stand apart from the rest of the scene because they outlive it: the frames of a sequence move and bend meshes
+//! and show the same pictures.
 
-use super::distinct_images;
+use super::{SceneStats, distinct_images};
 use crate::error::{Error, Result};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, Gpu, Image, upload};
-use crate::plan::Resources;
-use crate::scene::{Scene, Texture, TextureSlot, Wrap, mipmaps};
+use crate::plan::{Plan, Resources, Sharing};
+use crate::scene::{self, ColorSpace, Scene, Texture, TextureSlot, Wrap, mipmaps};
 use ash::vk;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -14,30 +17,70 @@ use std::sync::Arc;
 /// Textures of a material, in the order of set 1's bindings.
 const TEXTURES_PER_MATERIAL: usize = TextureSlot::ALL.len();
 
-/// Images, samplers, and a set for each material.
+/// Pictures in their colour spaces, with all levels.
 pub struct Textures {
-    pub images: Vec<Image>,
+    /// In the order of `distinct_images`.
+    sources: Vec<(Arc<scene::Image>, ColorSpace)>,
+    texture_limit_px: u32,
+    /// As `sources`, and a white pixel.
+    images: Vec<Image>,
+}
+
+impl Textures {
+    /// Makes the textures that `stats`, the scene's, tells of, and fills them.
+    ///
+    /// Errors: memory is too small (exit code 4).
+    pub(super) fn new(gpu: &Arc<Gpu>, scene: &Scene, stats: &SceneStats) -> Result<Self> {
+        let mut plan = Plan::default();
+        stats.plan_textures(&mut plan);
+        let mut resources = Resources::make(gpu, "scene", &plan, &Sharing::default())?;
+        let sources = sources(scene);
+        let mut images = Vec::with_capacity(sources.len() + 1);
+        for (index, (image, color_space)) in sources.iter().enumerate() {
+            let target = resources.image(&format!("scene.textures.{index}"));
+            // A limit leaves the finest levels out.
+            let all = mipmaps::level_count(image.width, image.height);
+            let levels = all - target.description.level_count..all;
+            let fill = |bytes: &mut [u8]| mipmaps::write(image, *color_space, levels, bytes);
+            upload::image(gpu, &target, Access::FragmentSample, fill)?;
+            images.push(target);
+        }
+        let white = resources.image("scene.textures.white");
+        upload::image(gpu, &white, Access::FragmentSample, |bytes| bytes.fill(255))?;
+        images.push(white);
+        Ok(Self { sources, texture_limit_px: scene.texture_limit_px, images })
+    }
+
+    /// Whether they are what `new` would make of `scene`: the same pictures, not only equal ones.
+    pub(super) fn are_of(&self, scene: &Scene) -> bool {
+        let same = |one: &(Arc<scene::Image>, ColorSpace), other: &(Arc<scene::Image>, ColorSpace)| {
+            Arc::ptr_eq(&one.0, &other.0) && one.1 == other.1
+        };
+        let others = sources(scene);
+        self.texture_limit_px == scene.texture_limit_px
+            && self.sources.len() == others.len()
+            && self.sources.iter().zip(&others).all(|(one, other)| same(one, other))
+    }
+}
+
+fn sources(scene: &Scene) -> Vec<(Arc<scene::Image>, ColorSpace)> {
+    let of = |(image, color_space): (usize, ColorSpace)| (scene.images[image].clone(), color_space);
+    distinct_images(scene).into_iter().map(of).collect()
+}
+
+/// Samplers, and a set for each material.
+pub struct MaterialSets {
     pub samplers: Vec<Sampler>,
     pub layout: vk::DescriptorSetLayout,
     pub pool: vk::DescriptorPool,
     pub sets: Vec<vk::DescriptorSet>,
 }
 
-impl Textures {
-    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, resources: &mut Resources) -> Result<Self> {
-        let distinct = distinct_images(scene);
-        let mut images = Vec::with_capacity(distinct.len() + 1);
-        for (index, (image, color_space)) in distinct.iter().enumerate() {
-            let target = resources.image(&format!("scene.textures.{index}"));
-            let levels = mipmaps::levels(&scene.images[*image], *color_space);
-            // A limit leaves the finest levels out: the others are the end of the list.
-            let first = levels.len() - target.description.bytes() as usize;
-            upload::image(gpu, &target, &levels[first..], Access::FragmentSample)?;
-            images.push(target);
-        }
-        let white = resources.image("scene.textures.white");
-        upload::image(gpu, &white, &[255; 4], Access::FragmentSample)?;
-        images.push(white);
+impl MaterialSets {
+    /// `textures`: the scene's.
+    ///
+    /// Errors: the driver refuses (exit code 4).
+    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, textures: &Textures) -> Result<Self> {
         let mut samplers = Vec::new();
         let mut sampler_of = HashMap::new();
         for texture in &scene.textures {
@@ -50,14 +93,15 @@ impl Textures {
         if samplers.is_empty() {
             samplers.push(Sampler::clamped(gpu, vk::Filter::NEAREST)?);
         }
-        let white_index = images.len() - 1;
+        let images = &textures.images;
+        let image_of: HashMap<(usize, ColorSpace), usize> =
+            distinct_images(scene).into_iter().enumerate().map(|(index, source)| (source, index)).collect();
         let view_of = |texture: Option<usize>| match texture {
-            None => (images[white_index].view, samplers[0].handle),
+            None => (images[images.len() - 1].view, samplers[0].handle),
             Some(index) => {
                 let texture = &scene.textures[index];
-                let image = distinct.iter().position(|entry| *entry == (texture.image, texture.color_space));
-                let sampler = sampler_of[&texture.sampler];
-                (images[image.expect("`distinct_images` lists it")].view, samplers[sampler].handle)
+                let image = image_of[&(texture.image, texture.color_space)];
+                (images[image].view, samplers[sampler_of[&texture.sampler]].handle)
             }
         };
         let infos: Vec<[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]> = scene
@@ -72,7 +116,7 @@ impl Textures {
             })
             .collect();
         let (layout, pool, sets) = material_sets(gpu, &infos)?;
-        Ok(Self { images, samplers, layout, pool, sets })
+        Ok(Self { samplers, layout, pool, sets })
     }
 }
 
@@ -100,9 +144,9 @@ fn sampler_info(texture: &Texture) -> vk::SamplerCreateInfo<'static> {
         .max_lod(if sampler.mip_linear.is_some() { vk::LOD_CLAMP_NONE } else { 0.25 })
 }
 
-type MaterialSets = (vk::DescriptorSetLayout, vk::DescriptorPool, Vec<vk::DescriptorSet>);
+type Sets = (vk::DescriptorSetLayout, vk::DescriptorPool, Vec<vk::DescriptorSet>);
 
-fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]]) -> Result<MaterialSets> {
+fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]]) -> Result<Sets> {
     let kind = vk::DescriptorType::COMBINED_IMAGE_SAMPLER;
     let bindings: Vec<_> = (0..TEXTURES_PER_MATERIAL as u32)
         .map(|binding| {

@@ -203,27 +203,23 @@ impl Layout {
         scene.materials.iter().map(block).collect()
     }
 
-    /// The words of each texel buffer. An image in both colour spaces lies there once: its words are as the file has them.
-    fn words(&self, scene: &Scene) -> Vec<Vec<u8>> {
-        let mut buffers: Vec<Vec<u8>> = self.texel_counts.iter().map(|count| vec![0; 4 * *count as usize]).collect();
+    /// Writes the words of a texel buffer. An image in both colour spaces lies there once: its words are as the file has
+    /// them.
+    fn write_words(&self, scene: &Scene, buffer: usize, words: &mut [u8]) {
         for (image, place) in scene.images.iter().zip(&self.places) {
-            let Some(place) = place else { continue };
+            let Some(place) = place.filter(|place| place.buffer as usize == buffer) else { continue };
             let start = 4 * place.first as usize;
-            let bytes = 4 * place.width_px as usize * place.height_px as usize;
-            let target = &mut buffers[place.buffer as usize][start..start + bytes];
-            if (place.width_px, place.height_px) == (image.width, image.height) {
-                target.copy_from_slice(&image.rgba8);
-                continue;
-            }
+            let target = &mut words[start..start + 4 * place.width_px as usize * place.height_px as usize];
             let color_space = scene
                 .textures
                 .iter()
                 .find(|texture| std::ptr::eq(&scene.images[texture.image], image))
                 .map_or(ColorSpace::Linear, |texture| texture.color_space);
-            let finer = mipmaps::bytes_before(image, [place.width_px, place.height_px]);
-            target.copy_from_slice(&mipmaps::levels(image, color_space)[finer..finer + bytes]);
+            let levels = [(image.width, image.height), (place.width_px, place.height_px)]
+                .map(|(width, height)| mipmaps::level_count(width, height));
+            let level = levels[0] - levels[1];
+            mipmaps::write(image, color_space, level..level + 1, target);
         }
-        buffers
     }
 }
 
@@ -273,9 +269,12 @@ impl TracedGpu {
         let of = |scene: &Scene| bvh.sources.iter().map(|source| Corners::of(scene, source).closing()).collect();
         let all: Vec<TracedClosingBlock> = scene.closing.as_deref().map(of).unwrap_or_default();
         fill(closing, bytemuck::cast_slice(&all))?;
-        let words = layout.words(scene);
-        for (index, names) in TEXELS.into_iter().enumerate() {
-            fill(names, words.get(index).map_or(&[], Vec::as_slice))?;
+        for (index, (name, block)) in TEXELS.into_iter().enumerate() {
+            let buffer = resources.buffer(&format!("{technique}.{name}"));
+            let bytes = 4 * layout.texel_counts.get(index).copied().unwrap_or(0);
+            let fill = |words: &mut [u8]| layout.write_words(scene, index, words);
+            upload::buffer_with(gpu, &buffer, bytes, Access::ComputeRead, fill)?;
+            buffers.push((block, buffer));
         }
         Ok(Self { buffers })
     }

@@ -2,54 +2,86 @@
 
 use super::{ColorSpace, Image};
 use crate::report::tonemap::linear_from_srgb;
+use std::ops::Range;
 
 /// How many levels a picture of this size has, down to one texel.
 pub fn level_count(width: u32, height: u32) -> u32 {
     32 - width.max(height).max(1).leading_zeros()
 }
 
-/// All levels, finest first, one after the other: RGBA8, each a box filter of the one before. Colour is averaged as
-/// light, not as code values.
-pub fn levels(image: &Image, color_space: ColorSpace) -> Vec<u8> {
-    let codec = Codec::new(color_space);
-    let mut all = image.rgba8.clone();
-    let (mut width, mut height) = (image.width as usize, image.height as usize);
-    let mut finer: Vec<[f32; 4]> = image.rgba8.chunks_exact(4).map(|texel| codec.decode(texel)).collect();
-    while width > 1 || height > 1 {
-        let (coarse_width, coarse_height) = ((width / 2).max(1), (height / 2).max(1));
-        let mut coarser = Vec::with_capacity(coarse_width * coarse_height);
-        for y in 0..coarse_height {
-            let rows = [(2 * y).min(height - 1), (2 * y + 1).min(height - 1)];
-            for x in 0..coarse_width {
-                let columns = [(2 * x).min(width - 1), (2 * x + 1).min(width - 1)];
-                let mut sum = [0.0f32; 4];
-                for row in rows {
-                    for column in columns {
-                        let texel = finer[row * width + column];
-                        for channel in 0..4 {
-                            sum[channel] += 0.25 * texel[channel];
-                        }
-                    }
-                }
-                all.extend_from_slice(&codec.encode(sum));
-                coarser.push(sum);
-            }
-        }
-        (finer, width, height) = (coarser, coarse_width, coarse_height);
-    }
-    all
+/// Width and height of a level, 0 the finest.
+fn size_of_level(image: &Image, level: u32) -> [usize; 2] {
+    [image.width, image.height].map(|side| (side >> level).max(1) as usize)
 }
 
-/// Bytes of `levels` before the level of `size_px`, which must be one of the image's.
-pub fn bytes_before(image: &Image, size_px: [u32; 2]) -> usize {
-    let mut size = [image.width, image.height];
-    let mut bytes = 0;
-    while size != size_px {
-        assert!(size != [1, 1], "{}: no level has {size_px:?} texels", image.name);
-        bytes += 4 * size[0] as usize * size[1] as usize;
-        size = size.map(|side| (side / 2).max(1));
+/// Bytes of these levels, 0 the finest.
+fn bytes_of(image: &Image, levels: Range<u32>) -> usize {
+    levels.map(|level| size_of_level(image, level)).map(|[width, height]| 4 * width * height).sum()
+}
+
+/// Writes these levels, 0 the finest, one after the other: RGBA8, each a box filter of the one before. Colour is averaged
+/// as light, not as code values. `target` has as many bytes as they need.
+///
+/// Row by row: beside `target` it holds a few rows of numbers and no level, because the numbers of a whole picture would
+/// be four times as large as the picture.
+pub fn write(image: &Image, color_space: ColorSpace, levels: Range<u32>, target: &mut [u8]) {
+    assert!(levels.end <= level_count(image.width, image.height), "{}: it has no level {levels:?}", image.name);
+    assert_eq!(target.len(), bytes_of(image, levels.clone()), "{}: bytes of its levels {levels:?}", image.name);
+    let codec = Codec::new(color_space);
+    let mut rest = target;
+    let mut rows: Vec<_> = (0..levels.end)
+        .map(|level| {
+            let [width, _] = size_of_level(image, level);
+            let bytes = if levels.contains(&level) { bytes_of(image, level..level + 1) } else { 0 };
+            rest.split_off_mut(..bytes).expect("the target is as long as its levels").chunks_exact_mut(4 * width)
+        })
+        .collect();
+    // The even row of each level that waits for the odd one.
+    let mut waiting: Vec<Vec<[f32; 4]>> = vec![Vec::new(); levels.end as usize];
+    for (y, texels) in image.rgba8.chunks_exact(4 * image.width as usize).enumerate() {
+        if let Some(Some(written)) = rows.first_mut().map(Iterator::next) {
+            written.copy_from_slice(texels);
+        }
+        if levels.end == 1 {
+            continue;
+        }
+        let (mut y, mut finer) = (y, texels.chunks_exact(4).map(|texel| codec.decode(texel)).collect());
+        for level in 1..levels.end {
+            let (of_finer, at) = (size_of_level(image, level - 1), level as usize);
+            let is_alone = of_finer[1] == 1;
+            if !is_alone && y % 2 == 0 {
+                // An odd last row waits for ever: the coarser level ends before it.
+                waiting[at] = finer;
+                break;
+            }
+            let first = if is_alone { finer.clone() } else { std::mem::take(&mut waiting[at]) };
+            let coarser = halved([&first, &finer], size_of_level(image, level)[0]);
+            if let Some(written) = rows[at].next() {
+                written
+                    .chunks_exact_mut(4)
+                    .zip(&coarser)
+                    .for_each(|(to, from)| to.copy_from_slice(&codec.encode(*from)));
+            }
+            (y, finer) = (y / 2, coarser);
+        }
     }
-    bytes
+}
+
+/// The row of `width` texels that two rows of the finer level become.
+fn halved(rows: [&[[f32; 4]]; 2], width: usize) -> Vec<[f32; 4]> {
+    let last = rows[0].len() - 1;
+    let texel = |x: usize| {
+        let mut sum = [0.0f32; 4];
+        for row in rows {
+            for column in [2 * x, (2 * x + 1).min(last)] {
+                for (sum, channel) in sum.iter_mut().zip(row[column]) {
+                    *sum += 0.25 * channel;
+                }
+            }
+        }
+        sum
+    };
+    (0..width).map(texel).collect()
 }
 
 /// Code values to numbers and back, by table where it is a curve.
@@ -97,6 +129,58 @@ impl Codec {
 mod tests {
     use super::*;
     use crate::report::tonemap::srgb_from_linear;
+
+    fn levels(image: &Image, color_space: ColorSpace) -> Vec<u8> {
+        let all = 0..level_count(image.width, image.height);
+        let mut bytes = vec![0; bytes_of(image, all.clone())];
+        write(image, color_space, all, &mut bytes);
+        bytes
+    }
+
+    #[test]
+    fn some_levels_are_a_part_of_all() {
+        for (width, height) in [(1024, 1024), (1000, 3), (7, 513), (1, 1), (641, 359), (1, 9), (9, 1)] {
+            let rgba8 = (0..4 * width * height).map(|at| (at * 7 % 251) as u8).collect();
+            let image = Image { name: String::new(), width, height, rgba8 };
+            let count = level_count(width, height);
+            let all = levels(&image, ColorSpace::Srgb);
+            for some in (0..count).flat_map(|first| [first..first + 1, first..count]) {
+                let mut found = vec![0; bytes_of(&image, some.clone())];
+                write(&image, ColorSpace::Srgb, some.clone(), &mut found);
+                let start = bytes_of(&image, 0..some.start);
+                assert!(found == all[start..start + found.len()], "{width}x{height}: {some:?}");
+            }
+        }
+    }
+
+    /// Level by level and texel by texel, as the definition has it.
+    #[test]
+    fn a_level_is_the_box_filter_of_the_one_before() {
+        for (width, height) in [(8u32, 8u32), (13, 7), (5, 1), (1, 6), (3, 3)] {
+            let rgba8: Vec<u8> = (0..4 * width * height).map(|at| (at * 37 % 256) as u8).collect();
+            let image = Image { name: String::new(), width, height, rgba8: rgba8.clone() };
+            let all = levels(&image, ColorSpace::Linear);
+            let mut finer: Vec<f32> = rgba8.iter().map(|code| f32::from(*code) / 255.0).collect();
+            let mut expected = rgba8;
+            for level in 1..level_count(width, height) {
+                let [from_width, from_height] = size_of_level(&image, level - 1);
+                let [to_width, to_height] = size_of_level(&image, level);
+                let mut coarser = Vec::new();
+                for at in 0..4 * to_width * to_height {
+                    let (channel, x, y) = (at % 4, at / 4 % to_width, at / 4 / to_width);
+                    let rows = [2 * y, (2 * y + 1).min(from_height - 1)];
+                    let columns = [2 * x, (2 * x + 1).min(from_width - 1)];
+                    let value = |row, column| finer[4 * (row * from_width + column) + channel];
+                    let of_row = |row| columns.map(|column| value(row, column));
+                    let sum: f32 = rows.map(of_row).iter().flatten().fold(0.0, |sum, value| sum + 0.25 * value);
+                    coarser.push(sum);
+                    expected.push((sum * 255.0 + 0.5) as u8);
+                }
+                finer = coarser;
+            }
+            assert_eq!(all, expected, "{width}x{height}");
+        }
+    }
 
     #[test]
     fn levels_go_down_to_one_texel_and_average_light() {

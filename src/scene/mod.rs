@@ -16,6 +16,7 @@ pub mod texture;
 
 use crate::error::{Error, Result};
 use std::path::Path;
+use std::sync::Arc;
 
 pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
@@ -47,8 +48,9 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// An image seen through a sampler in a colour space; materials point here.
     pub textures: Vec<Texture>,
-    /// Decoded pictures; textures point here.
-    pub images: Vec<Image>,
+    /// Decoded pictures; textures point here. Shared by the moments of a model: what is the same picture at two of them
+    /// need not be looked at twice.
+    pub images: Vec<Arc<Image>>,
     /// Greatest side that a texture has in device memory: larger ones begin at a coarser level. 0: no limit. What the
     /// host looks up (`shading::material`) stays as fine as the file.
     pub texture_limit_px: u32,

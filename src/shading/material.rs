@@ -135,7 +135,7 @@ mod tests {
             Image { name: String::new(), width: 2, height: 1, rgba8: vec![255, 255, 255, 255, 255, 255, 255, 0] };
         let sampler = Sampler { wrap_u: Wrap::ClampToEdge, ..Sampler::default() };
         let texture = Texture { image: 0, sampler, color_space: ColorSpace::Srgb };
-        let scene = Scene { images: vec![image], textures: vec![texture], ..Scene::default() };
+        let scene = Scene { images: vec![image.into()], textures: vec![texture], ..Scene::default() };
         let alpha = AlphaMode::Mask { cutoff: 0.5 };
         let material = Material { base_color_texture: Some(0), alpha, ..Material::default() };
         let at = |x: f32| MeshPoint { uvs: [Vec2::new(x, 0.5), Vec2::ZERO], color: Vec4::ONE };
@@ -151,7 +151,7 @@ mod tests {
     fn a_placement_turns_scales_and_moves_and_chooses_its_set() {
         let image = Image { name: String::new(), width: 2, height: 1, rgba8: [[255; 4], [0, 0, 0, 255]].concat() };
         let texture = Texture { image: 0, sampler: Sampler::default(), color_space: ColorSpace::Linear };
-        let scene = Scene { images: vec![image], textures: vec![texture], ..Scene::default() };
+        let scene = Scene { images: vec![image.into()], textures: vec![texture], ..Scene::default() };
         let mut material = Material { base_color_texture: Some(0), metallic: 0.0, ..Material::default() };
         // u of the picture runs along v of the second set, from 0.25 on, at half the pace.
         let quarter = std::f32::consts::FRAC_PI_2;

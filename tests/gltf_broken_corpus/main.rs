@@ -1,7 +1,7 @@
 //! Broken and hostile files, each given to the program as a stranger would: it ends with exit code 2 and one message that
 //! names file, element and fault, or draws a picture without NaN, soon and in little memory.
 //!
-//! `cargo test --test gltf_broken_corpus -- --nocapture` prints the table: what is broken, and what is said.
+//! `cargo test --test gltf_broken_corpus -- --nocapture` prints the table: what is broken, what is said, and what it took.
 
 mod containers;
 mod images;
@@ -16,10 +16,9 @@ use std::time::Duration;
 use support::gltf_file::GltfFile;
 use support::program::Program;
 
-/// Of a processor, over all threads: a clock would count what else the machine does.
+/// Of a processor, over all threads: a clock would count what else the machine does. Of a picture also what the driver
+/// takes to compile shaders.
 const MOST_CPU: Duration = Duration::from_secs(2);
-/// A picture also loads the driver and compiles shaders there.
-const MOST_CPU_OF_PICTURE: Duration = Duration::from_secs(4);
 const MOST_BYTES: u64 = 1 << 30;
 
 /// One broken file.
@@ -92,8 +91,9 @@ impl Case {
         let measured = program.measure(&arguments);
         let err = &measured.ran.err;
         let first = err.lines().next().unwrap_or("a picture");
-        println!("| {} | {first} |", self.name);
-        let took = format!("{}: {:?}, {} MiB: {err}", self.name, measured.cpu, measured.peak_bytes >> 20);
+        let (cpu, mib) = (measured.cpu.as_secs_f64(), measured.peak_bytes >> 20);
+        println!("| {} | {first} | {cpu:.2} s | {mib} MiB |", self.name);
+        let took = format!("{}: {cpu:.2} s, {mib} MiB: {err}", self.name);
         let ends_well = match self.end {
             End::Refused(_) => measured.ran.code == 2,
             // A pixel that is NaN would be exit code 1.
@@ -101,19 +101,16 @@ impl Case {
             End::Either => [0, 2].contains(&measured.ran.code),
         };
         assert!(ends_well, "exit code {}: {took}", measured.ran.code);
-        match &self.end {
-            End::Refused(words) => {
-                assert!(err.starts_with("error: ") && err.contains("scene.glb"), "{took}");
-                for word in words {
-                    assert!(err.contains(word.as_str()), "{word:?} is missing: {took}");
-                }
-                assert!(err.len() < 2000, "{}: a message of {} bytes", self.name, err.len());
-                assert!(err.chars().all(|c| c == '\n' || !c.is_control()), "{}: {err:?}", self.name);
-                assert!(measured.cpu < MOST_CPU, "{took}");
-                assert_eq!(program.files(), before, "{took}");
+        if let End::Refused(words) = &self.end {
+            assert!(err.starts_with("error: ") && err.contains("scene.glb"), "{took}");
+            for word in words {
+                assert!(err.contains(word.as_str()), "{word:?} is missing: {took}");
             }
-            End::Picture | End::Either => assert!(measured.cpu < MOST_CPU_OF_PICTURE, "{took}"),
+            assert!(err.len() < 2000, "{}: a message of {} bytes", self.name, err.len());
+            assert!(err.chars().all(|c| c == '\n' || !c.is_control()), "{}: {err:?}", self.name);
+            assert_eq!(program.files(), before, "{took}");
         }
+        assert!(measured.cpu < MOST_CPU, "{took}");
         assert!(measured.peak_bytes < MOST_BYTES, "{took}");
     }
 }

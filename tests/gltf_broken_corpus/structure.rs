@@ -91,15 +91,7 @@ fn moving() -> Vec<Case> {
 fn bent() -> Vec<Case> {
     let skinned = |name: &str, words: &[&str], change: &dyn Fn(&mut GltfFile)| {
         Case::changed(name, words, |file| {
-            let joints = file.indices(U8, &[0; 12]);
-            file.json["accessors"][joints]["type"] = json!("VEC4");
-            file.json["accessors"][joints]["count"] = json!(3);
-            let weights = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
-            file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
-            file.primitive()["attributes"]["WEIGHTS_0"] = json!(weights);
-            file.json["nodes"][0]["skin"] = json!(0);
-            file.root(json!({}));
-            file.push("skins", json!({"joints": [1]}));
+            *file = GltfFile::skinned_triangle();
             change(file);
         })
     };
@@ -111,7 +103,7 @@ fn bent() -> Vec<Case> {
     };
     let matrices = |number: f32| {
         move |file: &mut GltfFile| {
-            let matrices = file.floats("MAT4", &[number; 16]);
+            let matrices = file.floats("MAT4", &[number; 32]);
             file.json["skins"][0]["inverseBindMatrices"] = json!(matrices);
         }
     };
@@ -123,10 +115,7 @@ fn bent() -> Vec<Case> {
     };
     vec![
         skinned("a joint beyond the skin", &["skin 0"], &|file| {
-            let joints = file.indices(U8, &[7; 12]);
-            file.json["accessors"][joints]["type"] = json!("VEC4");
-            file.json["accessors"][joints]["count"] = json!(3);
-            file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+            file.bind(U8, [7, 0, 0, 0], [1.0, 0.0, 0.0, 0.0]);
         }),
         skinned("a skin without joints", &["skin"], &|file| file.json["skins"][0]["joints"] = json!([])),
         skinned("a joint that is no node", &["joints"], &|file| file.json["skins"][0]["joints"] = json!([99])),
@@ -177,12 +166,7 @@ pub fn amplified() -> Vec<Case> {
     targets.primitive()["targets"] = json!(vec![json!({"POSITION": 0}); 400]);
 
     let mut skins = strip(100_000);
-    let joints = skins.indices(U16, &[0; 12]);
-    skins.json["accessors"][joints]["type"] = json!("VEC4");
-    skins.json["accessors"][joints]["count"] = json!(3);
-    let weights = skins.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
-    skins.primitive()["attributes"]["JOINTS_0"] = json!(joints);
-    skins.primitive()["attributes"]["WEIGHTS_0"] = json!(weights);
+    skins.bind(U16, [0; 4], [1.0, 0.0, 0.0, 0.0]);
     skins.push("skins", json!({"joints": [0]}));
     skins.json["nodes"][0]["skin"] = json!(0);
     for _ in 0..200 {

@@ -40,6 +40,27 @@ impl GltfFile {
         file
     }
 
+    /// The triangle, skinned: nodes 1 and 2 are the joints of skin 0, "bones", and all vertices are at joint 1, node 2.
+    pub fn skinned_triangle() -> Self {
+        let mut file = Self::triangle();
+        file.bind(U8, [1, 0, 0, 0], [1.0, 0.0, 0.0, 0.0]);
+        file.json["nodes"][0]["skin"] = json!(0);
+        file.root(json!({}));
+        file.root(json!({}));
+        file.push("skins", json!({"joints": [1, 2], "name": "bones"}));
+        file
+    }
+
+    /// Binds each of the triangle's three vertices to these joints, numbers of `component_type`, with these weights.
+    pub fn bind(&mut self, component_type: u32, joints: [u32; 4], weights: [f32; 4]) {
+        let joints = self.indices(component_type, &joints.repeat(3));
+        self.json["accessors"][joints]["type"] = json!("VEC4");
+        self.json["accessors"][joints]["count"] = json!(3);
+        let weights = self.floats("VEC4", &weights.repeat(3));
+        let attributes = &mut self.primitive()["attributes"];
+        (attributes["JOINTS_0"], attributes["WEIGHTS_0"]) = (json!(joints), json!(weights));
+    }
+
     /// Appends to one of the document's arrays; returns the index.
     pub fn push(&mut self, array: &str, value: Value) -> usize {
         let array =
@@ -165,8 +186,13 @@ pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Scene> {
 
 /// A picture of one colour.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
+    painted_png(width, height, |_, _| [1, 2, 3, 4])
+}
+
+/// A picture whose texel at x, y is `texel(x, y)`.
+pub fn painted_png(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image::RgbaImage::from_pixel(width, height, image::Rgba([1, 2, 3, 4]))
+    image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(texel(x, y)))
         .write_to(&mut bytes, image::ImageFormat::Png)
         .unwrap();
     bytes.into_inner()

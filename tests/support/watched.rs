@@ -11,6 +11,7 @@ use quincunx::scene::{self, Scene};
 use quincunx::session::{Renderer, Session};
 use quincunx::settings::Values;
 use quincunx::techniques;
+use std::sync::Arc;
 
 /// Settings that differ from their defaults.
 pub type Changes<'a> = &'a [(&'a str, &'a str)];
@@ -30,7 +31,12 @@ pub fn require_silence(gpu: &Gpu, what: &str) {
 /// A scene on a watched device.
 pub struct Watched {
     pub session: Session,
+    // Dropped last: what the scene's end brings up is heard too.
+    silence: Silence,
 }
+
+/// A device that must have been silent to its end.
+struct Silence(Arc<Gpu>);
 
 impl Watched {
     /// The scene that `spec` names, as on the command line.
@@ -50,7 +56,16 @@ impl Watched {
         assert!(request.validate, "a test watches its device");
         let session = Session::open(request, scene).unwrap();
         require_silence(&session.gpu, "opening the session");
-        Self { session }
+        let silence = Silence(session.gpu.clone());
+        Self { session, silence }
+    }
+
+    /// Another scene on the same device; one of the same hash and texture limit is taken for the same.
+    pub fn showing(self, scene: Scene) -> Self {
+        let Self { session, silence } = self;
+        let session = session.showing(scene).unwrap();
+        require_silence(&session.gpu, "showing another scene");
+        Self { session, silence }
     }
 
     /// One technique with its settings, after one frame in one submit.
@@ -116,11 +131,11 @@ impl Watched {
     }
 }
 
-impl Drop for Watched {
+impl Drop for Silence {
     fn drop(&mut self) {
         // A panic on its way out says more than what it left behind.
         if !std::thread::panicking() {
-            require_silence(&self.session.gpu, "the whole test");
+            require_silence(&self.0, "the whole test");
         }
     }
 }

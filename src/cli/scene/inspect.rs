@@ -54,7 +54,7 @@ fn document(scene: &Scene, facts: Option<&Facts>) -> Value {
         "vertices": vertex_count(scene),
         "materials": { "opaque": opaque, "mask": mask, "blend": blend },
         "textures": scene.textures.len(),
-        "images": scene.images.iter().map(image_document).collect::<Vec<_>>(),
+        "images": scene.images.iter().map(|image| image_document(image)).collect::<Vec<_>>(),
         "lights": { "directional": directional, "point": point, "spot": spot },
         "emissive_materials": scene.materials.iter().filter(|material| material.is_emissive()).count(),
         "cameras": cameras,

@@ -1,6 +1,7 @@
 //! PNG and JPEG images, decoded in parallel under limits: a few bytes can claim gigabytes of pixels.
 
 use std::io::Cursor;
+use std::sync::Arc;
 
 use gltf::Document;
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -52,7 +53,7 @@ pub fn read(
     source: &Source,
     buffers: &Buffers<'_>,
     hasher: &mut blake3::Hasher,
-) -> Result<Vec<Image>> {
+) -> Result<Vec<Arc<Image>>> {
     let mut encoded = Vec::with_capacity(image_indices.len());
     let mut total_bytes = 0u64;
     for image_index in image_indices {
@@ -76,7 +77,7 @@ pub fn read(
     }
     // Collected before the first error is taken: always the same image is reported.
     let decoded: Vec<Result<Image>> = encoded.par_iter().map(decode).collect();
-    decoded.into_iter().collect()
+    decoded.into_iter().map(|image| image.map(Arc::new)).collect()
 }
 
 /// What the images of a file of this size may take as 8-bit RGBA.

@@ -5,8 +5,9 @@
 //!
 //! **What all moments share.** The meshes, their vertices, their triangles and the draws are the same in number and
 //! order at any two moments, so that vertex `i` of mesh `m` of one moment is where that of the other went. For that a
-//! draw that moves stays in the scene where its transform flattens it: it shrinks to nothing there. Cameras and lights
-//! stand in the order of their nodes, but one that has no direction at a moment is left out there.
+//! draw that moves stays in the scene where its transform flattens it: it shrinks to nothing there. Only the corners of a
+//! triangle stand in another order where joints mirror it. Cameras and lights stand in the order of their nodes, but one
+//! that has no direction at a moment is left out there.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +26,7 @@ use crate::scene::animation::AnimationChoice;
 use crate::scene::{Bounds, Camera, Light, Scene};
 
 /// Stands in the hash for how a file becomes a scene; a change that alters scenes alters this line.
-const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 3: posed, COLOR_0, two UV sets, flat normals, MikkTSpace at rest";
+const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 4: posed, COLOR_0, two UV sets, flat normals, MikkTSpace at rest";
 
 /// In how many equal parts the animations' duration is looked at for where the scene reaches.
 const REACH_PARTS: u32 = 16;

@@ -172,7 +172,13 @@ impl Influences {
 
     /// Takes the vertices of `mesh` along with the joints. Normals follow the inverse transpose of the blended matrix,
     /// tangents the matrix.
+    ///
+    /// A triangle that the joints mirror runs the other way round afterwards, so that its front stays its front. glTF 2.0
+    /// has the determinant of a node's transform say which way fronts run (section 3.7.2.1), and has the node's transform
+    /// ignored where a skin is (3.7.3.3): what stands for it there, the joints, says it here, for each triangle as most of
+    /// its corners have it.
     pub fn apply(&self, mesh: &mut Mesh, world_from_mesh: &[Mat4]) {
+        let mut is_mirrored = vec![false; mesh.positions.len()];
         for vertex in 0..mesh.positions.len() {
             let of_vertex = self.sets.iter().flat_map(|set| &set[vertex]).filter(|influence| influence.weight > 0.0);
             let blended = of_vertex.fold(Mat4::ZERO, |sum, influence| {
@@ -181,11 +187,17 @@ impl Influences {
             // Weights round, so the last row is 1 only about; transform_point3 leaves it out.
             mesh.positions[vertex] = blended.transform_point3(mesh.positions[vertex]);
             let linear = Mat3::from_mat4(blended);
+            is_mirrored[vertex] = linear.determinant() < 0.0;
             if let Some(normal) = mesh.normals.get_mut(vertex) {
                 *normal = turned_normal(linear, *normal);
             }
             if let Some(tangent) = mesh.tangents.get_mut(vertex) {
                 *tangent = (linear * tangent.truncate()).extend(tangent.w);
+            }
+        }
+        for corners in mesh.indices.chunks_exact_mut(3) {
+            if corners.iter().filter(|vertex| is_mirrored[**vertex as usize]).count() >= 2 {
+                corners.swap(1, 2);
             }
         }
     }
@@ -218,6 +230,25 @@ mod tests {
         }
         assert_eq!(turned_normal(Mat3::ZERO, Vec3::Y), Vec3::Y);
         assert_eq!(turned_normal(Mat3::from_diagonal(Vec3::new(1.0, 0.0, 1.0)), Vec3::Y), Vec3::Y);
+    }
+
+    #[test]
+    fn a_triangle_turns_round_where_joints_mirror_most_of_it() {
+        let joints = [Mat4::IDENTITY, Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0))];
+        for (of_vertices, expected) in
+            [([0, 0, 0], [0, 1, 2]), ([1, 0, 0], [0, 1, 2]), ([1, 0, 1], [0, 2, 1]), ([1, 1, 1], [0, 2, 1])]
+        {
+            let set = of_vertices.map(|joint| {
+                let mut influences = [Influence::default(); 4];
+                influences[0] = Influence { joint, weight: 1.0 };
+                influences
+            });
+            let influences = Influences { sets: vec![set.to_vec()], ..Influences::default() };
+            let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+            let mut mesh = Mesh { positions, indices: vec![0, 1, 2], ..Mesh::default() };
+            influences.apply(&mut mesh, &joints);
+            assert_eq!(mesh.indices, expected, "{of_vertices:?}");
+        }
     }
 
     #[test]

@@ -53,7 +53,7 @@ impl Assembly {
 
     /// Adds an image seen trilinearly and repeated, and returns the texture's index.
     pub fn texture(&mut self, image: Image, color_space: ColorSpace) -> usize {
-        self.scene.images.push(image);
+        self.scene.images.push(image.into());
         let image = self.scene.images.len() - 1;
         self.scene.textures.push(Texture { image, sampler: Sampler::default(), color_space });
         self.scene.textures.len() - 1

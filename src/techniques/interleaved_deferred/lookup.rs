@@ -41,7 +41,8 @@ impl Lookup {
             .flat_map(|y| (0..width).map(move |x| [x, y]))
             .map(|at| source_of(at).map_or(NOWHERE, |source| source.map(|side| side as u16)))
             .collect();
-        upload::image(gpu, &image, bytemuck::cast_slice(&texels), Access::FragmentSample)?;
+        let fill = |bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::cast_slice(&texels));
+        upload::image(gpu, &image, Access::FragmentSample, fill)?;
         Ok(Self { image, nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)? })
     }
 
