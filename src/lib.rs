@@ -52,6 +52,7 @@ pub mod memory;
 pub mod metrics;
 pub mod passes;
 pub mod plan;
+pub mod progress;
 pub mod reference;
 pub mod report;
 pub mod resident;

@@ -11,6 +11,7 @@ use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
 use crate::interrupt;
 use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
+use crate::progress::Stage;
 use crate::report::image_file::Aov;
 use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats};
@@ -80,6 +81,7 @@ impl Session {
     ///
     /// Errors: memory (exit code 4).
     pub(crate) fn on(gpu: Arc<Gpu>, scene: Scene) -> Result<Self> {
+        let _stage = Stage::begin("uploading the scene");
         let stats = SceneStats::of(&scene);
         let uploaded = SceneGpu::new(&gpu, &scene).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);
@@ -132,6 +134,7 @@ impl Session {
         let mut counters = prepared.counters();
         let blended = self.scene_gpu.calls.iter().filter(|call| call.alpha == AlphaMode::Blend);
         counters.insert("blended_draws", blended.count() as f64);
+        let _stage = Stage::begin("compiling pipelines");
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         counters.extend(frame.drawn());
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
@@ -196,12 +199,17 @@ impl Renderer {
     ///
     /// Errors: the device fails (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
+        let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
         let mut total = self.run(0)?;
-        for index in 1..self.frame.run_count() {
+        for index in 1..all {
+            stage.reach(index.into(), all.into());
             if interrupt::check().is_err() {
                 break;
             }
             total.add(&self.run(index)?);
+        }
+        if all > 1 {
+            stage.reach(self.runs.get().into(), all.into());
         }
         Ok(total)
     }

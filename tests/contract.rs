@@ -6,7 +6,7 @@ mod support;
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use support::program::Program;
+use support::program::{Program, without_progress};
 
 const NOWHERE: [(&str, &str); 2] = [("VK_DRIVER_FILES", "/nowhere.json"), ("VK_ICD_FILENAMES", "/nowhere.json")];
 const SMALL: [&str; 5] = ["cornell", "--size", "32x18", "--vpls", "16"];
@@ -125,7 +125,7 @@ fn interrupted(program: &Program, arguments: &[&str], is_time: impl Fn() -> bool
     }
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    (output.status.code(), without_progress(&String::from_utf8(output.stderr).unwrap()).1)
 }
 
 #[cfg(target_os = "linux")]

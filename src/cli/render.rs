@@ -1,8 +1,9 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
-use super::{job_args, reference_args};
+use super::{job_args, progress, reference_args};
 use crate::error::{Error, Result};
 use crate::job::Job;
+use crate::progress::say;
 use crate::sequence::Frames;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
@@ -56,6 +57,7 @@ pub fn command() -> Command {
 
 /// Renders and prints.
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
+    progress::install(matches.get_flag("quiet"));
     let mut job = job_args::job(matches, argv)?;
     job.output = matches.get_one::<PathBuf>("output").cloned();
     job.report = matches.get_one::<PathBuf>("report").cloned();
@@ -81,9 +83,7 @@ fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> 
     let mut done = 0;
     let sequence = job.run_sequence(frames, &mut |frame, outcome| {
         done += 1;
-        if !quiet {
-            eprintln!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display());
-        }
+        say(format!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display()));
     })?;
     if json {
         super::print(&format!("{:#}\n", sequence.json()))?;

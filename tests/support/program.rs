@@ -12,7 +12,10 @@ pub struct Program {
 pub struct Ran {
     pub code: i32,
     pub out: String,
+    /// Without `progress`.
     pub err: String,
+    /// Lines of what took over a second: there on a busy machine, and not on a quiet one.
+    pub progress: Vec<String>,
 }
 
 impl Program {
@@ -57,15 +60,25 @@ impl Program {
     }
 }
 
+/// The lines that tell of progress, and all others.
+pub fn without_progress(said: &str) -> (Vec<String>, String) {
+    let (progress, other): (Vec<&str>, Vec<&str>) =
+        said.split_inclusive('\n').partition(|line| line.starts_with("progress: "));
+    (progress.into_iter().map(str::to_owned).collect(), other.concat())
+}
+
 impl Ran {
     fn of(mut command: Command) -> Self {
         let output = command.output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Self {
-            code: output.status.code().expect("it ended by itself"),
-            out: text(output.stdout),
-            err: text(output.stderr),
-        }
+        let code = output.status.code().expect("it ended by itself");
+        Self::new(code, text(output.stdout), &text(output.stderr))
+    }
+
+    /// `said`: on standard error.
+    pub fn new(code: i32, out: String, said: &str) -> Self {
+        let (progress, err) = without_progress(said);
+        Self { code, out, err, progress }
     }
 
     /// It succeeded and had nothing to complain about.
