@@ -158,9 +158,12 @@ impl Job {
         interrupt::check()?;
         let times = self.frames(&renderer)?;
         let (runs, all) = renderer.runs();
-        let ended_after = (runs < all && unfinished == Unfinished::Kept).then_some((runs, all));
+        // Fewer than all may also be enough, by --until-error.
+        let asked_to_stop = interrupt::check();
+        let is_kept = all > 1 && unfinished == Unfinished::Kept && asked_to_stop.is_err();
+        let ended_after = is_kept.then_some((runs, all));
         if ended_after.is_none() {
-            interrupt::check()?;
+            asked_to_stop?;
         }
         let picture = renderer.picture()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;

@@ -7,9 +7,10 @@ use crate::gpu::commands::{RecordedPass, Submits};
 use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
-use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
+use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu};
 use crate::interrupt;
 use crate::lights::LightSet;
+use crate::metrics::noise;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::progress::Stage;
 use crate::report::image_file::Aov;
@@ -17,7 +18,7 @@ use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Technique, fitness};
+use crate::techniques::{Frame, Inputs, Sums, Technique, fitness};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -194,22 +195,30 @@ fn block_name(technique: &dyn Technique) -> String {
 }
 
 impl Renderer {
-    /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes. Ctrl-C
-    /// ends it after a run: `runs` tells which.
+    /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes, or fewer
+    /// where its error is small enough before. Ctrl-C ends it after a run: `runs` tells which.
     ///
-    /// Errors: the device fails (exit code 4).
+    /// Errors: the device fails, memory for reading the sums back (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
         let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
+        let until_error = self.frame.sums().and_then(|sums| sums.until_error);
+        let mut expected = all;
         let mut total = self.run(0)?;
-        for index in 1..all {
-            stage.reach(index.into(), all.into());
-            if interrupt::check().is_err() {
-                break;
+        while self.runs.get() < all && interrupt::check().is_ok() {
+            let count = self.runs.get();
+            if let Some(most) = until_error.filter(|_| noise::is_checked(count.into())) {
+                let error = self.estimated_error()?.unwrap_or_default();
+                // NaN and infinity stay: reading the picture says where.
+                if error <= most || !error.is_finite() {
+                    break;
+                }
+                expected = noise::samples_for(most, count.into(), error).min(all.into()) as u32;
             }
-            total.add(&self.run(index)?);
+            stage.reach(count.into(), expected.into());
+            total.add(&self.run(count)?);
         }
         if all > 1 {
-            stage.reach(self.runs.get().into(), all.into());
+            stage.reach(self.runs.get().into(), expected.into());
         }
         Ok(total)
     }
@@ -223,7 +232,26 @@ impl Renderer {
         Ok(time)
     }
 
-    /// Runs that the last frame's picture is made of, and those that it takes.
+    /// What was summed up so far (`Sums`), row-major; None where the technique sums nothing up.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn sums(&self) -> Result<Option<Vec<[f32; 4]>>> {
+        let Some(Sums { buffer, .. }) = self.frame.sums() else { return Ok(None) };
+        let bytes = self.view.extent.pixel_count() * size_of::<[f32; 4]>() as u64;
+        let bytes = readback::buffer(&self.gpu, buffer, bytes, Access::ComputeWrite)?;
+        Ok(Some(bytemuck::pod_collect_to_vec(&bytes)))
+    }
+
+    /// The relative error (`metrics::noise`) of the last frame's picture; None where it is no sum of two samples or more.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn estimated_error(&self) -> Result<Option<f64>> {
+        let count = self.runs.get();
+        let sums = if count > 1 { self.sums()? } else { None };
+        Ok(sums.map(|sums| noise::relative_error(&sums, count.into())))
+    }
+
+    /// Runs that the last frame's picture is made of, and those that it takes at most.
     pub fn runs(&self) -> (u32, u32) {
         (self.runs.get(), self.frame.run_count())
     }
@@ -283,6 +311,9 @@ impl Renderer {
         counters.extend(self.frame.counters(&self.gpu)?);
         if let (runs, 2..) = self.runs() {
             counters.insert("samples", f64::from(runs));
+        }
+        if let Some(error) = self.estimated_error()? {
+            counters.insert("estimated_error", error);
         }
         Ok(counters)
     }

@@ -261,7 +261,15 @@ impl Report {
             ));
         }
         if let Some(samples) = counter("samples") {
-            line(format!("{samples} samples a pixel"));
+            let error = counter("estimated_error");
+            line(format!(
+                "{samples} samples a pixel{}",
+                error.map_or(String::new(), |e| format!(", estimated error {e:.5}"))
+            ));
+            let most = document["settings"].get("until-error").and_then(Value::as_f64).filter(|most| *most > 0.0);
+            if let Some(most) = most.filter(|most| error.is_some_and(|error| error > *most)) {
+                line(format!("  note: --until-error {most} is not reached: more --spp would"));
+            }
         }
         if let (Some(evaluated), Some(left_out)) = (counter("light_evaluations"), counter("light_evaluations_culled"))
             && evaluated + left_out > 0.0

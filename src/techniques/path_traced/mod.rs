@@ -26,7 +26,7 @@
 pub mod sample;
 pub mod settings;
 
-use super::{Frame, Inputs, Prepared, Technique, left_out};
+use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, SampleParams, SourceBlock};
@@ -103,7 +103,8 @@ impl Technique for PathTraced {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?);
-        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources), sources }))
+        let sample_count = settings::sample_count(inputs.values);
+        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources), sources, sample_count }))
     }
 }
 
@@ -186,6 +187,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Choices {
 struct PreparedPaths {
     choices: Choices,
     sources: Sources,
+    sample_count: u32,
 }
 
 impl Prepared for PreparedPaths {
@@ -204,6 +206,7 @@ impl Prepared for PreparedPaths {
         let emissive = if self.sources.emitters.is_some() { "on" } else { "off" };
         BTreeMap::from([
             ("emissive", emissive.to_owned()),
+            ("spp", self.sample_count.to_string()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
         ])
     }
@@ -228,7 +231,8 @@ impl Prepared for PreparedPaths {
         let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, &layout), density_of)?;
         Ok(Box::new(PathFrame {
             sample,
-            sample_count: inputs.values.integer("spp") as u32,
+            sample_count: self.sample_count,
+            until_error: settings::until_error(inputs.values),
             triangle_count: bvh.sources.len(),
         }))
     }
@@ -237,6 +241,7 @@ impl Prepared for PreparedPaths {
 struct PathFrame {
     sample: Sample,
     sample_count: u32,
+    until_error: Option<f64>,
     triangle_count: usize,
 }
 
@@ -247,6 +252,10 @@ impl Frame for PathFrame {
 
     fn run_count(&self) -> u32 {
         self.sample_count
+    }
+
+    fn sums(&self) -> Option<Sums<'_>> {
+        Some(Sums { buffer: &self.sample.sums, until_error: self.until_error })
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

@@ -44,7 +44,7 @@ pub struct Sample {
     traced: TracedGpu,
     lights: Buffer,
     sources: Buffer,
-    sums: Buffer,
+    pub sums: Buffer,
     pub color: Image,
 }
 
