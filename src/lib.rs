@@ -42,6 +42,7 @@
 pub mod bench;
 pub mod bvh;
 pub mod cli;
+pub mod earlier;
 pub mod error;
 pub mod frame;
 pub mod gpu;

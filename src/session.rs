@@ -7,7 +7,7 @@ use crate::gpu::commands::{RecordedPass, Submits};
 use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
-use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu};
+use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
 use crate::metrics::noise;
@@ -41,6 +41,8 @@ pub struct Renderer {
     block: RefCell<Buffer>,
     numbers: FrameBlock,
     runs: Cell<u32>,
+    /// What a picture begins with: sums, and how many samples a pixel they are of.
+    earlier: Option<(Vec<[f32; 4]>, u32)>,
     _scene: Arc<SceneGpu>,
     gpu: Arc<Gpu>,
     pub view: View,
@@ -151,6 +153,7 @@ impl Session {
             block: RefCell::new(block),
             numbers,
             runs: Cell::new(0),
+            earlier: None,
             _scene: self.scene_gpu.clone(),
             gpu: self.gpu.clone(),
             view,
@@ -203,7 +206,7 @@ impl Renderer {
         let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
         let until_error = self.frame.sums().and_then(|sums| sums.until_error);
         let mut expected = all;
-        let mut total = self.run(0)?;
+        let mut total = self.run(self.begin()?)?;
         while self.runs.get() < all && interrupt::check().is_ok() {
             let count = self.runs.get();
             if let Some(most) = until_error.filter(|_| noise::is_checked(count.into())) {
@@ -221,6 +224,30 @@ impl Renderer {
             stage.reach(self.runs.get().into(), expected.into());
         }
         Ok(total)
+    }
+
+    /// Lets frames begin with these sums (`Sums`, row-major) of `count` samples a pixel, instead of none.
+    ///
+    /// Errors: the technique sums nothing up, or its picture has no more samples than that (exit code 2).
+    pub fn begin_with(&mut self, sums: Vec<[f32; 4]>, count: u32) -> Result<()> {
+        assert_eq!(sums.len() as u64, self.view.extent.pixel_count(), "the sums are of another picture");
+        let all = self.frame.run_count();
+        if self.frame.sums().is_none() {
+            return Err(Error::request("the technique sums no samples up: there is nothing to go on with"));
+        }
+        if count >= all {
+            let why = format!("there are {count} samples a pixel already, and --spp asks for {all} in all");
+            return Err(Error::request(why));
+        }
+        self.earlier = Some((sums, count));
+        Ok(())
+    }
+
+    /// Puts what a picture begins with in place: the index of the first run.
+    fn begin(&self) -> Result<u32> {
+        let Some(((sums, count), target)) = self.earlier.as_ref().zip(self.frame.sums()) else { return Ok(0) };
+        upload::buffer(&self.gpu, target.buffer, bytemuck::cast_slice(sums), Access::ComputeRead)?;
+        Ok(*count)
     }
 
     fn run(&self, index: u32) -> Result<FrameTime> {
@@ -309,8 +336,8 @@ impl Renderer {
     pub fn measured_counters(&self) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.counters.clone();
         counters.extend(self.frame.counters(&self.gpu)?);
-        if let (runs, 2..) = self.runs() {
-            counters.insert("samples", f64::from(runs));
+        if self.frame.sums().is_some() {
+            counters.insert("samples", self.runs.get().into());
         }
         if let Some(error) = self.estimated_error()? {
             counters.insert("estimated_error", error);

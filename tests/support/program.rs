@@ -2,6 +2,8 @@
 
 use assert_cmd::Command;
 use serde_json::Value;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 /// The program in an empty folder.
 pub struct Program {
@@ -37,6 +39,31 @@ impl Program {
         Ran::of(command)
     }
 
+    /// Starts the program, and interrupts it as soon as it handles that and `is_time`. Returns its code and what it said,
+    /// progress left out.
+    #[cfg(target_os = "linux")]
+    pub fn interrupted(&self, arguments: &[&str], is_time: impl Fn() -> bool) -> (Option<i32>, String) {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_quincunx"))
+            .current_dir(self.folder.path())
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let started = Instant::now();
+        while !handles_interrupts(child.id()) || !is_time() {
+            assert!(
+                started.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(),
+                "{arguments:?}"
+            );
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        // SAFETY: a child that has not been waited for: the number is its own.
+        assert_eq!(unsafe { libc::kill(child.id() as i32, libc::SIGINT) }, 0);
+        let output = child.wait_with_output().unwrap();
+        (output.status.code(), without_progress(&String::from_utf8(output.stderr).unwrap()).1)
+    }
+
     /// Names in the folder, sorted.
     pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap();
@@ -58,6 +85,14 @@ impl Program {
         assert_eq!(ran.out, "", "{arguments:?}");
         assert_eq!(self.files(), before, "{arguments:?} left something");
     }
+}
+
+/// Whether a process handles SIGINT itself, as the kernel says.
+#[cfg(target_os = "linux")]
+fn handles_interrupts(id: u32) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 1 != 0)
 }
 
 /// The lines that tell of progress, and all others.
