@@ -7,6 +7,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
+use crate::progress::Stage;
 use crate::scene::{AlphaMode, Bounds, Draw, Material, Scene};
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
@@ -125,6 +126,7 @@ impl Bvh {
             ))
             .note("`--technique deferred --direct-shadow none` casts none"));
         }
+        let _stage = Stage::begin("building the tree of triangles");
         let mut corners = Vec::new();
         let mut closing = Vec::new();
         let mut sources = Vec::new();

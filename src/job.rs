@@ -1,5 +1,6 @@
 //! Job: a checked request for one picture; `Job::run` is the whole road on one screen.
 
+use crate::earlier::{self, Earlier};
 use crate::error::{Error, Result};
 use crate::gpu::commands::Submits;
 use crate::gpu::recorded::FrameTime;
@@ -11,6 +12,7 @@ use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
 use crate::plan::Requirements;
 use crate::reference::Asked;
+use crate::report;
 use crate::report::image_file::{Aov, AovChannels, ExrPrecision, WriteOptions, write};
 use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
@@ -22,6 +24,7 @@ use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::{COMMON, Setting, Values, exposure_s};
 use crate::techniques::Technique;
+use serde_json::Value;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -36,6 +39,8 @@ pub struct Job {
     /// None: into `SCENE-TECHNIQUE.png` in the current folder.
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
+    /// A picture to go on with, instead of beginning anew.
+    pub earlier: Option<Earlier>,
     /// What the picture is judged against.
     pub reference: Option<Asked>,
     /// An index or a part of a name, as `devices` lists them.
@@ -84,6 +89,7 @@ impl Job {
             aovs: Vec::new(),
             output: None,
             report: None,
+            earlier: None,
             reference: None,
             device: None,
             profile: false,
@@ -123,6 +129,7 @@ impl Job {
     pub fn run_on(&self, request: &DeviceRequest) -> Result<Outcome> {
         self.check()?;
         let scene = self.load_scene()?;
+        self.earlier.as_ref().map_or(Ok(()), |earlier| earlier.require(self.technique, &self.values, &scene))?;
         let path = self.output_path(&scene);
         let session = self.open_session(request, scene)?;
         let outcome = self.picture(&session, &self.values, &path, Unfinished::Kept)?;
@@ -153,19 +160,27 @@ impl Job {
         unfinished: Unfinished,
     ) -> Result<Outcome> {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
-        let renderer = session.renderer(self.technique, values, &self.aovs, submits)?;
+        let mut renderer = session.renderer(self.technique, values, &self.aovs, submits)?;
+        let settings = settings(session, &renderer, values);
+        if let Some(earlier) = &self.earlier {
+            earlier.begin(&mut renderer, &settings)?;
+        }
         let memory = session.gpu.memory.snapshot();
         interrupt::check()?;
         let times = self.frames(&renderer)?;
         let (runs, all) = renderer.runs();
-        let ended_after = (runs < all && unfinished == Unfinished::Kept).then_some((runs, all));
+        // Fewer than all may also be enough, by --until-error.
+        let asked_to_stop = interrupt::check();
+        let is_kept = all > 1 && unfinished == Unfinished::Kept && asked_to_stop.is_err();
+        let ended_after = is_kept.then_some((runs, all));
         if ended_after.is_none() {
-            interrupt::check()?;
+            asked_to_stop?;
         }
         let picture = renderer.picture()?;
+        let sums = renderer.sums()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let mut report = self.report(session, &renderer, values, &memory, &times, &picture, &aovs, path)?;
-        self.write(path, &picture, &aovs, &report)?;
+        let mut report = self.report(session, &renderer, settings, &memory, &times, &picture, &aovs, path)?;
+        self.write(path, &picture, &aovs, sums.as_deref(), &report)?;
         // A reference that is made needs the memory.
         drop(renderer);
         let mut gates = Ok(());
@@ -270,18 +285,16 @@ impl Job {
         &self,
         session: &Session,
         renderer: &Renderer,
-        values: &Values,
+        settings: Value,
         memory: &Snapshot,
         times: &[FrameTime],
         picture: &Picture,
         aovs: &[Aov],
         path: &Path,
     ) -> Result<Report> {
-        let mut report = Report::new(self.technique.name(), &self.command, &session.gpu.caps.identity);
+        let mut report = Report::new(self.technique, &self.command, &session.gpu.caps.identity);
         report.scene(session, renderer);
-        let mut resolved = renderer.resolved.clone();
-        resolved.insert("texture-limit", session.scene.texture_limit_px.to_string());
-        report.settings(values, &resolved);
+        report.settings(settings);
         report.image(picture, path)?;
         report.aovs(aovs, picture.extent);
         report.times(renderer, times, self.profile);
@@ -294,29 +307,47 @@ impl Job {
         Ok(report)
     }
 
-    fn write(&self, path: &Path, picture: &Picture, aovs: &[Aov], report: &Report) -> Result<()> {
+    /// `sums`: kept in an EXR of 32-bit floats, so that `--continue` can go on with it.
+    fn write(
+        &self,
+        path: &Path,
+        picture: &Picture,
+        aovs: &[Aov],
+        sums: Option<&[[f32; 4]]>,
+        report: &Report,
+    ) -> Result<()> {
         let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
         let mut options = WriteOptions {
             exposure_ev: self.values.number("exposure"),
             tone_map: ToneMap::parse(self.values.text("tonemap"))?,
             exr_precision: if self.values.text("exr") == "half" { ExrPrecision::Half } else { ExrPrecision::Float },
             aovs: &[],
-            attributes: Vec::new(),
+            attributes: report.attributes(),
         };
+        let mut layers = aovs.to_vec();
+        if options.exr_precision == ExrPrecision::Float {
+            layers.extend(sums.into_iter().flat_map(earlier::layers));
+        }
         if is_exr {
-            options.aovs = aovs;
-            options.attributes = report.attributes();
+            options.aovs = &layers;
         }
         write(path, picture, &options)?;
         if !is_exr {
             // A PNG has no layers: each stage becomes a picture beside it.
             for aov in aovs {
                 let file = path.with_extension(format!("{}.png", aov.name));
-                write(&file, &visible(aov, picture), &WriteOptions { aovs: &[], attributes: Vec::new(), ..options })?;
+                write(&file, &visible(aov, picture), &WriteOptions { aovs: &[], ..options.clone() })?;
             }
         }
         Ok(())
     }
+}
+
+/// As the report has them: with what `auto` and percentages came to.
+fn settings(session: &Session, renderer: &Renderer, values: &Values) -> Value {
+    let mut resolved = renderer.resolved.clone();
+    resolved.insert("texture-limit", session.scene.texture_limit_px.to_string());
+    report::run::settings(values, &resolved)
 }
 
 /// Errors: the validation layer has said something (exit code 1).

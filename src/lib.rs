@@ -42,6 +42,7 @@
 pub mod bench;
 pub mod bvh;
 pub mod cli;
+pub mod earlier;
 pub mod error;
 pub mod frame;
 pub mod gpu;
@@ -53,6 +54,7 @@ pub mod memory;
 pub mod metrics;
 pub mod passes;
 pub mod plan;
+pub mod progress;
 pub mod reference;
 pub mod report;
 pub mod resident;

@@ -7,16 +7,18 @@ use crate::gpu::commands::{RecordedPass, Submits};
 use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
-use crate::gpu::{Buffer, Commands, DeviceRequest, Gpu};
+use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
+use crate::metrics::noise;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
+use crate::progress::Stage;
 use crate::report::image_file::Aov;
 use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Technique, fitness};
+use crate::techniques::{Frame, Inputs, Sums, Technique, fitness};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -39,6 +41,8 @@ pub struct Renderer {
     block: RefCell<Buffer>,
     numbers: FrameBlock,
     runs: Cell<u32>,
+    /// What a picture begins with: sums, and how many samples a pixel they are of.
+    earlier: Option<(Vec<[f32; 4]>, u32)>,
     _scene: Arc<SceneGpu>,
     gpu: Arc<Gpu>,
     pub view: View,
@@ -85,6 +89,7 @@ impl Session {
     }
 
     fn with_textures(gpu: Arc<Gpu>, scene: Scene, kept: Option<Arc<Textures>>) -> Result<Self> {
+        let _stage = Stage::begin("uploading the scene");
         let stats = SceneStats::of(&scene);
         let uploaded = SceneGpu::new(&gpu, &scene, kept).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);
@@ -137,6 +142,7 @@ impl Session {
         let mut counters = prepared.counters();
         let blended = self.scene_gpu.calls.iter().filter(|call| call.alpha == AlphaMode::Blend);
         counters.insert("blended_draws", blended.count() as f64);
+        let _stage = Stage::begin("compiling pipelines");
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         counters.extend(frame.drawn());
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
@@ -152,6 +158,7 @@ impl Session {
             block: RefCell::new(block),
             numbers,
             runs: Cell::new(0),
+            earlier: None,
             _scene: self.scene_gpu.clone(),
             gpu: self.gpu.clone(),
             view,
@@ -196,19 +203,56 @@ fn block_name(technique: &dyn Technique) -> String {
 }
 
 impl Renderer {
-    /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes. Ctrl-C
-    /// ends it after a run: `runs` tells which.
+    /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes, or fewer
+    /// where its error is small enough before. Ctrl-C ends it after a run: `runs` tells which.
     ///
-    /// Errors: the device fails (exit code 4).
+    /// Errors: the device fails, memory for reading the sums back (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
-        let mut total = self.run(0)?;
-        for index in 1..self.frame.run_count() {
-            if interrupt::check().is_err() {
-                break;
+        let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
+        let until_error = self.frame.sums().and_then(|sums| sums.until_error);
+        let mut expected = all;
+        let mut total = self.run(self.begin()?)?;
+        while self.runs.get() < all && interrupt::check().is_ok() {
+            let count = self.runs.get();
+            if let Some(most) = until_error.filter(|_| noise::is_checked(count.into())) {
+                let error = self.estimated_error()?.unwrap_or_default();
+                // NaN and infinity stay: reading the picture says where.
+                if error <= most || !error.is_finite() {
+                    break;
+                }
+                expected = noise::samples_for(most, count.into(), error).min(all.into()) as u32;
             }
-            total.add(&self.run(index)?);
+            stage.reach(count.into(), expected.into());
+            total.add(&self.run(count)?);
+        }
+        if all > 1 {
+            stage.reach(self.runs.get().into(), expected.into());
         }
         Ok(total)
+    }
+
+    /// Lets frames begin with these sums (`Sums`, row-major) of `count` samples a pixel, instead of none.
+    ///
+    /// Errors: the technique sums nothing up, or its picture has no more samples than that (exit code 2).
+    pub fn begin_with(&mut self, sums: Vec<[f32; 4]>, count: u32) -> Result<()> {
+        assert_eq!(sums.len() as u64, self.view.extent.pixel_count(), "the sums are of another picture");
+        let all = self.frame.run_count();
+        if self.frame.sums().is_none() {
+            return Err(Error::request("the technique sums no samples up: there is nothing to go on with"));
+        }
+        if count >= all {
+            let why = format!("there are {count} samples a pixel already, and --spp asks for {all} in all");
+            return Err(Error::request(why));
+        }
+        self.earlier = Some((sums, count));
+        Ok(())
+    }
+
+    /// Puts what a picture begins with in place: the index of the first run.
+    fn begin(&self) -> Result<u32> {
+        let Some(((sums, count), target)) = self.earlier.as_ref().zip(self.frame.sums()) else { return Ok(0) };
+        upload::buffer(&self.gpu, target.buffer, bytemuck::cast_slice(sums), Access::ComputeRead)?;
+        Ok(*count)
     }
 
     fn run(&self, index: u32) -> Result<FrameTime> {
@@ -220,7 +264,26 @@ impl Renderer {
         Ok(time)
     }
 
-    /// Runs that the last frame's picture is made of, and those that it takes.
+    /// What was summed up so far (`Sums`), row-major; None where the technique sums nothing up.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn sums(&self) -> Result<Option<Vec<[f32; 4]>>> {
+        let Some(Sums { buffer, .. }) = self.frame.sums() else { return Ok(None) };
+        let bytes = self.view.extent.pixel_count() * size_of::<[f32; 4]>() as u64;
+        let bytes = readback::buffer(&self.gpu, buffer, bytes, Access::ComputeWrite)?;
+        Ok(Some(bytemuck::pod_collect_to_vec(&bytes)))
+    }
+
+    /// The relative error (`metrics::noise`) of the last frame's picture; None where it is no sum of two samples or more.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn estimated_error(&self) -> Result<Option<f64>> {
+        let count = self.runs.get();
+        let sums = if count > 1 { self.sums()? } else { None };
+        Ok(sums.map(|sums| noise::relative_error(&sums, count.into())))
+    }
+
+    /// Runs that the last frame's picture is made of, and those that it takes at most.
     pub fn runs(&self) -> (u32, u32) {
         (self.runs.get(), self.frame.run_count())
     }
@@ -278,8 +341,11 @@ impl Renderer {
     pub fn measured_counters(&self) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.counters.clone();
         counters.extend(self.frame.counters(&self.gpu)?);
-        if let (runs, 2..) = self.runs() {
-            counters.insert("samples", f64::from(runs));
+        if self.frame.sums().is_some() {
+            counters.insert("samples", self.runs.get().into());
+        }
+        if let Some(error) = self.estimated_error()? {
+            counters.insert("estimated_error", error);
         }
         Ok(counters)
     }

@@ -4,8 +4,6 @@
 mod support;
 
 use serde_json::Value;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 use support::program::Program;
 
 const NOWHERE: [(&str, &str); 2] = [("VK_DRIVER_FILES", "/nowhere.json"), ("VK_ICD_FILENAMES", "/nowhere.json")];
@@ -100,34 +98,6 @@ fn memory_that_is_too_small_ends_with_4() {
     assert_eq!(program.files(), [] as [&str; 0]);
 }
 
-/// Whether a process handles SIGINT itself, as the kernel says.
-#[cfg(target_os = "linux")]
-fn handles_interrupts(id: u32) -> bool {
-    let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
-    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
-    caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 1 != 0)
-}
-
-/// Starts the program, and interrupts it as soon as it handles that and `is_time`. Returns its code and what it said.
-#[cfg(target_os = "linux")]
-fn interrupted(program: &Program, arguments: &[&str], is_time: impl Fn() -> bool) -> (Option<i32>, String) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_quincunx"))
-        .current_dir(program.folder.path())
-        .args(arguments)
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let started = Instant::now();
-    while !handles_interrupts(child.id()) || !is_time() {
-        assert!(started.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(), "{arguments:?}");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_render_ends_with_130_and_writes_nothing() {
@@ -135,33 +105,11 @@ fn an_interrupted_render_ends_with_130_and_writes_nothing() {
     for more in [&[][..], &["--profile"]] {
         // It reads its scene for longer than the signal takes.
         let arguments = [&["render", "hall", "--size", "64x36", "-o", "a.png", "--report", "a.json"], more].concat();
-        let (code, said) = interrupted(&program, &arguments, || true);
+        let (code, said) = program.interrupted(&arguments, || true);
         assert_eq!(code, Some(130), "{arguments:?}: {said}");
         assert!(said.starts_with("error: interrupted"), "{said}");
         assert_eq!(program.files(), [] as [&str; 0], "{arguments:?}");
     }
-}
-
-/// A sum of samples is a picture at any time.
-#[cfg(target_os = "linux")]
-#[test]
-fn an_interrupted_path_tracing_leaves_the_samples_that_it_has() {
-    let program = Program::new();
-    let mut arguments = vec!["render", "cornell", "--technique", "path_traced", "--size", "64x64", "--spp", "65536"];
-    arguments.extend(["-o", "a.exr", "--report", "a.json"]);
-    let started = Instant::now();
-    let (code, said) = interrupted(&program, &arguments, || started.elapsed() > Duration::from_secs(8));
-    assert_eq!(code, Some(130), "{said}");
-    assert!(said.starts_with("error: interrupted after ") && said.contains(" of 65536 samples a pixel"), "{said}");
-    let report: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(program.path("a.json")).unwrap()).expect("a report");
-    let samples = report["counters"]["samples"].as_u64().or(report["counters"]["samples"].as_f64().map(|n| n as u64));
-    assert!(samples.is_some_and(|samples| (1..65_536).contains(&samples)), "{}", report["counters"]);
-    let header = std::fs::read(program.path("a.exr")).unwrap();
-    assert!(
-        header.windows(16).any(|bytes| bytes == b"quincunx.samples"),
-        "the header tells how many samples there are"
-    );
 }
 
 /// A key and the kind of what it holds. `a.b` goes into an object, `a[]` into each entry of a list that has some, `a.*`

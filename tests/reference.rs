@@ -38,8 +38,6 @@ impl Watch for Heard {
     fn begins(&self, _: &Recipe, _: Option<Duration>) {
         *self.renders.borrow_mut() += 1;
     }
-
-    fn ends(&self) {}
 }
 
 fn recipe(watched: &Watched, changes: Changes<'_>) -> Recipe {

@@ -1,18 +1,17 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
-use super::{job_args, reference_args};
+use super::{job_args, progress, reference_args};
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
 use crate::bench::summary::Summary;
 use crate::bench::sweep;
 use crate::bench::what::What;
 use crate::error::{Error, Result};
+use crate::progress::{Pace, Stage, say};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
-use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// The verb with its arguments.
 pub fn command() -> Command {
@@ -77,6 +76,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let folder = matches.get_one::<PathBuf>("output");
     let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
     let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
+    progress::install(quiet);
     let request = Request {
         job: &job,
         what,
@@ -84,9 +84,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         baseline: matches.get_one::<String>("baseline").map(String::as_str),
         repeat: *matches.get_one::<u32>("repeat").expect("it has a default") as usize,
     };
-    let mut progress = Progress::new(quiet, json);
-    let found = run::run(&request, file.as_mut(), &mut progress)?;
-    progress.bar.finish_and_clear();
+    let found = run::run(&request, file.as_mut(), &mut Rounds { json, stage: None, pace: Pace::default() })?;
     if !found.rows.is_empty() {
         let summary = Summary::new(what, &axes, found.rows, argv);
         if let Some(folder) = folder {
@@ -113,54 +111,30 @@ fn rows_file(folder: &PathBuf, matches: &ArgMatches) -> Result<RowsFile> {
     RowsFile::open(folder, existing)
 }
 
-/// A bar on a terminal, a line a group elsewhere; rows where --json asks for them.
-struct Progress {
-    bar: ProgressBar,
-    lines: bool,
+/// Rows where --json asks for them, rounds as a bar, and a line a group where there is no bar.
+struct Rounds {
     json: bool,
-    started: Instant,
-    /// Steps done, of how many.
-    steps: (usize, usize),
-    /// Steps that were done when the first was told: kept rows took no time.
-    kept_steps: Option<usize>,
+    /// The rounds of a group.
+    stage: Option<Stage>,
+    pace: Pace,
 }
 
-impl Progress {
-    fn new(quiet: bool, json: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal();
-        let bar = if quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new(0) };
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} rounds of a variant, {eta} left") {
-            bar.set_style(style);
-        }
-        Self { bar, lines: !quiet && !terminal, json, started: Instant::now(), steps: (0, 0), kept_steps: None }
-    }
-
-    /// None before anything was measured, and when nothing is left.
-    fn left(&self, known: usize, all: usize) -> Option<Duration> {
-        let (steps, all_steps) = self.steps;
-        let done = steps.checked_sub(self.kept_steps?)?;
-        let left = all_steps * (all - known) / all;
-        (done > 0 && left > 0).then(|| self.started.elapsed().mul_f64(left as f64 / done as f64))
-    }
-}
-
-impl Observer for Progress {
+impl Observer for Rounds {
     fn row(&mut self, row: &Value) -> Result<()> {
         if self.json { super::print(&format!("{row}\n")) } else { Ok(()) }
     }
 
     fn step(&mut self, done: usize, all: usize) {
-        self.steps = (done, all);
-        self.kept_steps.get_or_insert(done);
-        self.bar.set_length(all as u64);
-        self.bar.set_position(done as u64);
+        let stage = self.stage.get_or_insert_with(|| Stage::counted("measuring", "rounds of a variant"));
+        stage.reach(done as u64, all as u64);
+        self.pace.reach(done as u64, all as u64, Instant::now());
     }
 
     fn group(&mut self, known: usize, all: usize) {
-        if self.lines {
-            let left = self.left(known, all);
-            let estimate = left.map_or_else(String::new, |left| format!(", about {} s left", left.as_secs() + 1));
-            eprintln!("{known} of {all} rows{estimate}");
+        self.stage = None;
+        if !progress::is_bar() {
+            let left = progress::left_words(self.pace.left(Instant::now()));
+            say(format!("{known} of {all} rows{left}"));
         }
     }
 }

@@ -6,6 +6,7 @@ pub mod devices;
 mod gate_args;
 mod job_args;
 pub mod memory;
+mod progress;
 mod reference_args;
 pub mod render;
 pub mod scene;

@@ -2,17 +2,12 @@
 
 use super::gate_args;
 use crate::error::Result;
+use crate::progress::say;
 use crate::reference::made::Watch;
 use crate::reference::recipe::Recipe;
 use crate::reference::{Asked, DEFAULT_SPP};
 use clap::{Arg, ArgMatches, Command, value_parser};
-use indicatif::{ProgressBar, ProgressState, ProgressStyle};
-use std::cell::RefCell;
-use std::io::IsTerminal;
 use std::time::Duration;
-
-/// How often the bar moves.
-const TICK: Duration = Duration::from_millis(200);
 
 /// Adds --reference, --reference-spp and the gates.
 pub fn with_reference_args(command: Command) -> Command {
@@ -42,49 +37,20 @@ pub fn asked(matches: &ArgMatches) -> Result<Option<Asked>> {
     let Some(text) = matches.get_one::<String>("reference") else { return Ok(None) };
     let spp = matches.get_one::<u64>("reference-spp").copied().unwrap_or(DEFAULT_SPP);
     let (gates, threshold) = (gate_args::gates(matches)?, gate_args::threshold(matches)?);
-    let watch = Shown { quiet: matches.get_flag("quiet"), bar: RefCell::default() };
-    Asked::new(text, spp, threshold, gates, Box::new(watch)).map(Some)
+    Asked::new(text, spp, threshold, gates, Box::new(Said)).map(Some)
 }
 
-/// A bar on a terminal, by the clock; a line elsewhere.
-struct Shown {
-    quiet: bool,
-    bar: RefCell<Option<ProgressBar>>,
-}
+/// Lines beside the progress of the rendering itself; none with --quiet, where nobody looks on.
+struct Said;
 
-impl Watch for Shown {
+impl Watch for Said {
     fn note(&self, text: &str) {
-        if !self.quiet {
-            eprintln!("note: {text}");
-        }
+        say(format!("note: {text}"));
     }
 
     fn begins(&self, recipe: &Recipe, estimate: Option<Duration>) {
-        if self.quiet {
-            return;
-        }
         let samples = recipe.samples().map_or_else(String::new, |samples| format!(", {samples} samples a pixel"));
         let time = estimate.map_or_else(String::new, |time| format!(", about {:.0} s", time.as_secs_f64().ceil()));
-        eprintln!("making the reference: {}{samples}{time}", recipe.technique.name());
-        if let Some(estimate) = estimate.filter(|_| std::io::stderr().is_terminal()) {
-            let part = move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-                // An estimate that is passed is no end.
-                let part = (state.elapsed().as_secs_f64() / estimate.as_secs_f64().max(1e-3)).min(0.99);
-                let filled = (30.0 * part) as usize;
-                let _ = write!(out, "{}{} {:>2.0} %", "█".repeat(filled), "░".repeat(30 - filled), 100.0 * part);
-            };
-            let bar = ProgressBar::new_spinner();
-            if let Ok(style) = ProgressStyle::with_template("{part} of the estimated time, {elapsed}") {
-                bar.set_style(style.with_key("part", part));
-            }
-            bar.enable_steady_tick(TICK);
-            *self.bar.borrow_mut() = Some(bar);
-        }
-    }
-
-    fn ends(&self) {
-        if let Some(bar) = self.bar.borrow_mut().take() {
-            bar.finish_and_clear();
-        }
+        say(format!("making the reference: {}{samples}{time}", recipe.technique.name()));
     }
 }

@@ -1,8 +1,10 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
-use super::{job_args, reference_args};
+use super::{job_args, progress, reference_args};
+use crate::earlier::Earlier;
 use crate::error::{Error, Result};
 use crate::job::Job;
+use crate::progress::say;
 use crate::sequence::Frames;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
@@ -32,6 +34,10 @@ pub fn command() -> Command {
                     .action(ArgAction::Append)
                     .help("Stages of the technique: layers of an EXR, pictures FILE.NAME.png beside a PNG"),
             )
+            .arg(path("continue", "FILE.exr").conflicts_with("frames").help(
+                "Go on with the samples of an earlier picture of path_traced, of the same scene, size and settings, up to \
+                 --spp or --until-error: the picture of one run",
+            ))
             .arg(Arg::new("frames").long("frames").value_name("A..B").allow_hyphen_values(true).help(
                 "Frames A to B, both included, into FILE.0001.png and so on; frame n is drawn n / fps seconds after \
                      --time",
@@ -56,10 +62,13 @@ pub fn command() -> Command {
 
 /// Renders and prints.
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
+    progress::install(matches.get_flag("quiet"));
     let mut job = job_args::job(matches, argv)?;
     job.output = matches.get_one::<PathBuf>("output").cloned();
     job.report = matches.get_one::<PathBuf>("report").cloned();
     job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
+    let earlier = matches.get_one::<PathBuf>("continue");
+    job.earlier = earlier.map(|path| Earlier::read(path, job.values.extent("size"))).transpose()?;
     job.reference = reference_args::asked(matches)?;
     job.profile = matches.get_flag("profile");
     if let Some(range) = matches.get_one::<String>("frames") {
@@ -81,9 +90,7 @@ fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> 
     let mut done = 0;
     let sequence = job.run_sequence(frames, &mut |frame, outcome| {
         done += 1;
-        if !quiet {
-            eprintln!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display());
-        }
+        say(format!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display()));
     })?;
     if json {
         super::print(&format!("{:#}\n", sequence.json()))?;

@@ -4,7 +4,7 @@ use crate::report::picture::Picture;
 
 /// Keeps relMSE finite on black, and sets how dark a pixel may be before its error stops counting more: radiance 0.1, whose
 /// square this is, as papers on rendering noise choose it (Rousselle et al. 2011).
-const RELMSE_EPSILON: f64 = 0.01;
+pub(super) const RELMSE_EPSILON: f64 = 0.01;
 
 /// Root of the mean over pixels and channels of (a - b)^2. The extents are equal.
 pub(super) fn rmse(a: &Picture, b: &Picture) -> f64 {

@@ -7,6 +7,7 @@
 mod flip;
 pub mod gate;
 mod linear;
+pub mod noise;
 mod psnr;
 mod ssim;
 

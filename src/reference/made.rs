@@ -5,6 +5,7 @@ use super::recipe::Recipe;
 use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::interrupt;
+use crate::progress::Stage;
 use crate::report::picture::Picture;
 use crate::session::Session;
 use std::time::Duration;
@@ -21,9 +22,6 @@ pub trait Watch {
 
     /// Rendering begins; `estimate` by the trial, None where there was none.
     fn begins(&self, recipe: &Recipe, estimate: Option<Duration>);
-
-    /// Rendering has ended, well or not.
-    fn ends(&self);
 }
 
 /// A reference that is there.
@@ -46,9 +44,7 @@ pub fn reference_picture(recipe: &Recipe, session: &Session, cache: &Cache, watc
     }
     let estimate = trial(recipe, session)?;
     watch.begins(recipe, estimate);
-    let picture = render(recipe, session);
-    watch.ends();
-    let picture = picture?;
+    let picture = render(recipe, session)?;
     if let Err(error) = cache.keep(recipe, &picture) {
         watch.note(&format!("the reference is used and not kept: {}", error.message()));
     }
@@ -60,6 +56,7 @@ fn trial(recipe: &Recipe, session: &Session) -> Result<Option<Duration>> {
     let Some(samples) = recipe.samples().filter(|samples| *samples >= WORTH_A_TRIAL * TRIAL_SAMPLES) else {
         return Ok(None);
     };
+    let _stage = Stage::begin("trying how long the reference takes");
     let few = recipe.with_samples(TRIAL_SAMPLES)?;
     let renderer = session.renderer(recipe.technique, &few, &[], Submits::One)?;
     // The first frame also pays for what drivers compile.
@@ -71,6 +68,7 @@ fn trial(recipe: &Recipe, session: &Session) -> Result<Option<Duration>> {
 }
 
 fn render(recipe: &Recipe, session: &Session) -> Result<Picture> {
+    let _stage = Stage::begin("making the reference");
     let renderer = session.renderer(recipe.technique, &recipe.values, &[], Submits::One)?;
     renderer.frame()?;
     // Ctrl-C may have left samples out.

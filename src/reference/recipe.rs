@@ -13,10 +13,22 @@ use serde_json::{Map, Value, json};
 /// Goes into every key; raised whenever the kept files, or what goes into a key, change.
 const FORMAT: u32 = 1;
 
-/// Settings that both techniques read and that are none of the picture's: they stay at their defaults, so that one
-/// reference serves all of them.
-const NOT_OF_THE_PICTURE: &[&str] =
-    &["exposure", "tonemap", "exr", "allocation", "alias", "memory-budget", "workgroup", "texels", "geometry", "cull"];
+/// Settings that both techniques read and that are none of the picture's, or that say how many samples it has: they stay at
+/// their defaults, so that one reference serves all of them.
+pub(crate) const NOT_OF_THE_PICTURE: &[&str] = &[
+    "exposure",
+    "tonemap",
+    "exr",
+    "allocation",
+    "alias",
+    "memory-budget",
+    "workgroup",
+    "texels",
+    "geometry",
+    "cull",
+    SAMPLES,
+    "until-error",
+];
 
 /// The seed of references: not the default one, so that a path-traced picture is not judged by its own samples.
 const SEED: &str = "2654435769";
@@ -103,10 +115,10 @@ impl Recipe {
         Ok(job.values)
     }
 
-    /// Samples a pixel; None where the technique counts none.
+    /// Samples a pixel; None where the technique counts none, or the settings say `auto`.
     pub fn samples(&self) -> Option<u64> {
         let has = settings_of(self.technique).iter().any(|setting| setting.key == SAMPLES);
-        has.then(|| self.values.integer(SAMPLES))
+        has.then(|| self.values.integer_or_auto(SAMPLES)).flatten()
     }
 
     /// BLAKE3, in hexadecimal, of all that its picture hangs on: scene, camera, size, lights, settings, estimator.

@@ -10,11 +10,23 @@ use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
+use crate::techniques::Technique;
 use crate::units::{Bytes, Extent};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
+
+/// Names of texts in the header of a picture.
+pub mod header {
+    pub const VERSION: &str = "quincunx.version";
+    pub const TECHNIQUE: &str = "quincunx.technique";
+    pub const ESTIMATOR: &str = "quincunx.estimator";
+    pub const SCENE: &str = "quincunx.scene";
+    pub const SCENE_HASH: &str = "quincunx.scene_hash";
+    pub const SETTINGS: &str = "quincunx.settings";
+    pub const SAMPLES: &str = "quincunx.samples";
+}
 
 /// Number of the set of keys.
 const SCHEMA: u32 = 1;
@@ -45,19 +57,29 @@ pub fn median(sorted: &[f64]) -> f64 {
     if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
 }
 
+/// Every setting by its key, a number where it is one. `resolved`: what `auto` and percentages came to.
+pub fn settings(values: &Values, resolved: &BTreeMap<&'static str, String>) -> Value {
+    let value = |key: &str, text: &str| {
+        let text = resolved.get(key).map_or(text, String::as_str);
+        text.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number)
+    };
+    Value::Object(values.iter().map(|(key, text)| (key.to_owned(), value(key, text))).collect())
+}
+
 fn milliseconds(ns: u64) -> f64 {
     ns as f64 / 1e6
 }
 
 impl Report {
-    pub fn new(technique: &str, command: &[String], device: &Identity) -> Self {
+    pub fn new(technique: &dyn Technique, command: &[String], device: &Identity) -> Self {
         let mut document = Map::new();
         document.insert("schema".into(), json!(SCHEMA));
         let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("QUINCUNX_COMMIT"));
         document.insert("quincunx".into(), json!({ "version": version, "commit": commit }));
         document.insert("command".into(), json!(command));
         document.insert("device".into(), json!(device));
-        document.insert("technique".into(), json!(technique));
+        document.insert("technique".into(), json!(technique.name()));
+        document.insert("estimator".into(), json!(technique.estimator_version()));
         Self { document, is_software: device.is_software() }
     }
 
@@ -84,15 +106,9 @@ impl Report {
         self.document.insert("scene".into(), entry);
     }
 
-    /// `resolved`: what `auto` and percentages came to.
-    pub fn settings(&mut self, values: &Values, resolved: &BTreeMap<&'static str, String>) {
-        let mut settings = Map::new();
-        for (key, text) in values.iter() {
-            let text = resolved.get(key).map_or(text, String::as_str);
-            let value = text.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number);
-            settings.insert(key.to_owned(), value);
-        }
-        self.document.insert("settings".into(), Value::Object(settings));
+    /// As `settings` makes them.
+    pub fn settings(&mut self, settings: Value) {
+        self.document.insert("settings".into(), settings);
     }
 
     /// Errors: the picture holds NaN or infinity (exit code 1).
@@ -198,20 +214,21 @@ impl Report {
         Value::Object(self.document.clone())
     }
 
-    /// What an EXR's header carries.
+    /// What the header of a picture carries.
     pub fn attributes(&self) -> Vec<(String, String)> {
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let samples = self.document["counters"].get("samples").and_then(Value::as_f64).map(|count| json!(count as u64));
         let mut attributes = [
-            ("quincunx.version", &self.document["quincunx"]["version"]),
-            ("quincunx.technique", &self.document["technique"]),
-            ("quincunx.scene", &self.document["scene"]["name"]),
-            ("quincunx.scene_hash", &self.document["scene"]["hash"]),
-            ("quincunx.settings", &self.document["settings"]),
+            (header::VERSION, &self.document["quincunx"]["version"]),
+            (header::TECHNIQUE, &self.document["technique"]),
+            (header::ESTIMATOR, &self.document["estimator"]),
+            (header::SCENE, &self.document["scene"]["name"]),
+            (header::SCENE_HASH, &self.document["scene"]["hash"]),
+            (header::SETTINGS, &self.document["settings"]),
         ]
         .map(|(name, value)| (name.to_owned(), text(value)))
         .to_vec();
-        attributes.extend(samples.map(|count| ("quincunx.samples".to_owned(), count.to_string())));
+        attributes.extend(samples.map(|count| (header::SAMPLES.to_owned(), count.to_string())));
         attributes
     }
 
@@ -261,7 +278,13 @@ impl Report {
             ));
         }
         if let Some(samples) = counter("samples") {
-            line(format!("{samples} samples a pixel"));
+            let (error, plural) = (counter("estimated_error"), if samples == 1.0 { "" } else { "s" });
+            let words = error.map_or(String::new(), |error| format!(", estimated error {error:.5}"));
+            line(format!("{samples} sample{plural} a pixel{words}"));
+            let most = document["settings"].get("until-error").and_then(Value::as_f64).filter(|most| *most > 0.0);
+            if let Some(most) = most.filter(|most| error.is_some_and(|error| error > *most)) {
+                line(format!("  note: --until-error {most} is not reached: more --spp would"));
+            }
         }
         if let (Some(evaluated), Some(left_out)) = (counter("light_evaluations"), counter("light_evaluations_culled"))
             && evaluated + left_out > 0.0

@@ -15,6 +15,7 @@ pub mod procedural;
 pub mod texture;
 
 use crate::error::{Error, Result};
+use crate::progress::Stage;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -72,7 +73,7 @@ pub struct Scene {
 ///
 /// Errors: no such scene, impossible parameters, a broken file, no such animation (exit code 2).
 pub fn open(spec: &str, seed: u64, choice: &AnimationChoice) -> Result<Model> {
-    if let Some(scene) = procedural::build(spec, seed) {
+    if let Some(scene) = Stage::begin("making the scene").over(|| procedural::build(spec, seed)) {
         return match choice {
             AnimationChoice::One(name) => Err(gltf::no_such_animation(name, [].into_iter())),
             AnimationChoice::All | AnimationChoice::None => Ok(Model::BuiltIn(Box::new(scene?))),

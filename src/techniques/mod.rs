@@ -113,6 +113,15 @@ pub trait Prepared {
     ) -> Result<Box<dyn Frame>>;
 }
 
+/// Samples that a technique sums up from run to run, one a pixel each run.
+pub struct Sums<'a> {
+    /// Four floats a pixel, row-major: red, green, blue, and the squared lengths of the three. A run adds to them, but the
+    /// first (`sample_index` 0) begins anew. Touched last, and next, by a compute shader.
+    pub buffer: &'a Buffer,
+    /// The relative error (`metrics::noise`) at which runs end before `Frame::run_count`.
+    pub until_error: Option<f64>,
+}
+
 /// A technique on the device.
 pub trait Frame {
     /// Records one frame. `frame`: the block of glsl/frame.glsl.
@@ -121,6 +130,11 @@ pub trait Frame {
     /// How often what was recorded runs for a picture; the frame's block counts the runs (`sample_index`).
     fn run_count(&self) -> u32 {
         1
+    }
+
+    /// What it sums up from run to run; None where a picture is one run.
+    fn sums(&self) -> Option<Sums<'_>> {
+        None
     }
 
     /// What is drawn of the scene, for the report's `counters`.

@@ -53,7 +53,7 @@ impl Program {
         let time =
             |time: libc::timeval| Duration::from_secs(time.tv_sec as u64) + Duration::from_micros(time.tv_usec as u64);
         Measured {
-            ran: Ran { code, out, err },
+            ran: Ran::new(code, out, &err),
             cpu: time(usage.ru_utime) + time(usage.ru_stime),
             // Linux counts in KiB.
             peak_bytes: usage.ru_maxrss as u64 * 1024,

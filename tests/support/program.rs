@@ -2,6 +2,8 @@
 
 use assert_cmd::Command;
 use serde_json::Value;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 /// The program in an empty folder.
 pub struct Program {
@@ -12,7 +14,10 @@ pub struct Program {
 pub struct Ran {
     pub code: i32,
     pub out: String,
+    /// Without `progress`.
     pub err: String,
+    /// Lines of what took over a second: there on a busy machine, and not on a quiet one.
+    pub progress: Vec<String>,
 }
 
 impl Program {
@@ -32,6 +37,31 @@ impl Program {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
         command.current_dir(self.folder.path()).args(arguments).envs(variables.iter().copied());
         Ran::of(command)
+    }
+
+    /// Starts the program, and interrupts it as soon as it handles that and `is_time`. Returns its code and what it said,
+    /// progress left out.
+    #[cfg(target_os = "linux")]
+    pub fn interrupted(&self, arguments: &[&str], is_time: impl Fn() -> bool) -> (Option<i32>, String) {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_quincunx"))
+            .current_dir(self.folder.path())
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let started = Instant::now();
+        while !handles_interrupts(child.id()) || !is_time() {
+            assert!(
+                started.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(),
+                "{arguments:?}"
+            );
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        // SAFETY: a child that has not been waited for: the number is its own.
+        assert_eq!(unsafe { libc::kill(child.id() as i32, libc::SIGINT) }, 0);
+        let output = child.wait_with_output().unwrap();
+        (output.status.code(), without_progress(&String::from_utf8(output.stderr).unwrap()).1)
     }
 
     /// Names in the folder, sorted.
@@ -57,15 +87,33 @@ impl Program {
     }
 }
 
+/// Whether a process handles SIGINT itself, as the kernel says.
+#[cfg(target_os = "linux")]
+fn handles_interrupts(id: u32) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 1 != 0)
+}
+
+/// The lines that tell of progress, and all others.
+pub fn without_progress(said: &str) -> (Vec<String>, String) {
+    let (progress, other): (Vec<&str>, Vec<&str>) =
+        said.split_inclusive('\n').partition(|line| line.starts_with("progress: "));
+    (progress.into_iter().map(str::to_owned).collect(), other.concat())
+}
+
 impl Ran {
     fn of(mut command: Command) -> Self {
         let output = command.output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Self {
-            code: output.status.code().expect("it ended by itself"),
-            out: text(output.stdout),
-            err: text(output.stderr),
-        }
+        let code = output.status.code().expect("it ended by itself");
+        Self::new(code, text(output.stdout), &text(output.stderr))
+    }
+
+    /// `said`: on standard error.
+    pub fn new(code: i32, out: String, said: &str) -> Self {
+        let (progress, err) = without_progress(said);
+        Self { code, out, err, progress }
     }
 
     /// It succeeded and had nothing to complain about.

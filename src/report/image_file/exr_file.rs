@@ -3,7 +3,6 @@
 //! Why this way: OpenEXR knows parts (each a picture of its own) and layers (channels with a dotted name). Viewers such as
 //! tev show both, but many programs read only the first part, so the AOVs are layers of the one part.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
@@ -19,7 +18,7 @@ use exr::meta::attribute::{AttributeValue, Chromaticities, SampleType, Text};
 use exr::meta::header::{Header, LayerAttributes};
 use half::f16;
 
-use super::{Aov, AovChannels, DECODED_LIMIT, ExrPrecision, WriteOptions, require_within_limits, unreadable};
+use super::{Aov, AovChannels, DECODED_LIMIT, ExrPrecision, Texts, WriteOptions, require_within_limits, unreadable};
 use crate::error::Result;
 use crate::report::picture::Picture;
 use crate::report::whole_file::write_whole;
@@ -98,25 +97,43 @@ pub(super) fn read(path: &Path) -> Result<Picture> {
 }
 
 /// The picture, and the texts of its part's header by name.
-pub(super) fn read_with_texts(path: &Path) -> Result<(Picture, BTreeMap<String, String>)> {
+pub(super) fn read_with_texts(path: &Path) -> Result<(Picture, Texts)> {
+    let (extent, pixels, texts) = read_channels(path, None, RGB)?;
+    Ok((Picture { extent, pixels }, texts))
+}
+
+/// What `read_channels` finds: the extent, the pixels, and the texts of the part's header by name.
+type Channels<const N: usize> = (Extent, Vec<[f32; N]>, Texts);
+
+/// These channels of the first part that has all of them. `expected`: another extent is refused before a pixel is decoded.
+pub(super) fn read_channels<const N: usize>(
+    path: &Path,
+    expected: Option<Extent>,
+    names: [&str; N],
+) -> Result<Channels<N>> {
     let broken = |error: ExrError| match error {
         ExrError::Io(error) => unreadable(path, &error),
         other => unreadable(path, &format!("it is no EXR, or a broken one ({other})")),
     };
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
     let reader = Reader::read_from_buffered(BufReader::new(file), false).map_err(broken)?;
-    let part_index = require_readable(path, reader.headers())?;
+    let part_index = require_readable(path, reader.headers(), &names)?;
+    let Vec2(width, height) = reader.headers()[part_index].layer_size;
+    let extent = Extent::new(width as u32, height as u32);
+    if let Some(expected) = expected.filter(|expected| *expected != extent) {
+        return Err(unreadable(path, &format!("it is {extent}, where --size is {expected}")));
+    }
     let others = reader.headers()[part_index].own_attributes.other.iter();
     let texts = others.filter_map(|(name, value)| match value {
         AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
         _ => None,
     });
     let texts = texts.collect();
-    Ok((decode(reader, part_index).map_err(broken)?, texts))
+    Ok((extent, decode(reader, part_index, names).map_err(broken)?, texts))
 }
 
-/// The index of the part that is the picture, when all that decoding makes by the headers' word is within the limits.
-fn require_readable(path: &Path, headers: &[Header]) -> Result<usize> {
+/// The index of the part that has these channels, when all that decoding makes by the headers' word is within the limits.
+fn require_readable(path: &Path, headers: &[Header], wanted: &[&str]) -> Result<usize> {
     // The offset tables of all parts are read, so every part's claim counts.
     for header in headers {
         let Vec2(width, height) = header.layer_size;
@@ -127,11 +144,12 @@ fn require_readable(path: &Path, headers: &[Header]) -> Result<usize> {
         }
     }
     let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));
-    let is_picture = |header: &Header| !header.deep && RGB.iter().all(|name| has(header, name));
+    let is_picture = |header: &Header| !header.deep && wanted.iter().all(|name| has(header, name));
     let Some(part_index) = headers.iter().position(is_picture) else {
         let all_channels = headers.iter().flat_map(|header| &header.channels.list);
         let names: Vec<String> = all_channels.take(8).map(|channel| channel.name.to_string()).collect();
-        return Err(unreadable(path, &format!("no flat part has the channels R, G, B (found {})", names.join(", "))));
+        let (wanted, found) = (wanted.join(", "), names.join(", "));
+        return Err(unreadable(path, &format!("no flat part has the channels {wanted} (found {found})")));
     };
     let part = &headers[part_index];
     if part.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
@@ -154,10 +172,14 @@ fn require_readable(path: &Path, headers: &[Header]) -> Result<usize> {
     Ok(part_index)
 }
 
-/// R, G, B of one part at full resolution.
-fn decode(reader: Reader<impl Read + Seek>, part_index: usize) -> exr::error::Result<Picture> {
+/// Channels of one part at full resolution.
+fn decode<const N: usize>(
+    reader: Reader<impl Read + Seek>,
+    part_index: usize,
+    names: [&str; N],
+) -> exr::error::Result<Vec<[f32; N]>> {
     let Vec2(width, height) = reader.headers()[part_index].layer_size;
-    let mut picture = Picture::filled(Extent::new(width as u32, height as u32), [0.0; 3]);
+    let mut pixels = vec![[0.0; N]; width * height];
     let mut chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == part_index && tile.is_largest_resolution_level())?;
     while let Some(chunk) = chunks.read_next_chunk() {
@@ -173,9 +195,9 @@ fn decode(reader: Reader<impl Read + Seek>, part_index: usize) -> exr::error::Re
         let channels = &chunks.headers()[part_index].channels;
         for line in block.lines(channels) {
             let channel = &channels.list[line.location.channel];
-            let Some(place) = RGB.iter().position(|name| channel.name.eq(name)) else { continue };
+            let Some(place) = names.iter().position(|name| channel.name.eq(name)) else { continue };
             let Vec2(x, y) = line.location.position;
-            let row = &mut picture.pixels[y * width + x..][..line.location.sample_count];
+            let row = &mut pixels[y * width + x..][..line.location.sample_count];
             match channel.sample_type {
                 SampleType::F16 => fill(row, place, line.read_samples::<f16>(), f16::to_f32),
                 SampleType::F32 => fill(row, place, line.read_samples::<f32>(), |sample| sample),
@@ -183,12 +205,12 @@ fn decode(reader: Reader<impl Read + Seek>, part_index: usize) -> exr::error::Re
             }?;
         }
     }
-    Ok(picture)
+    Ok(pixels)
 }
 
 /// One channel of a piece of a row.
-fn fill<T>(
-    row: &mut [[f32; 3]],
+fn fill<const N: usize, T>(
+    row: &mut [[f32; N]],
     place: usize,
     samples: impl Iterator<Item = exr::error::Result<T>>,
     to_float: impl Fn(T) -> f32,

@@ -12,7 +12,7 @@ use crate::report::picture::Picture;
 use crate::report::tonemap::{Srgb8, ToneMap};
 use crate::units::{Bytes, Extent};
 
-/// How a picture is written. A PNG heeds `exposure_ev` and `tone_map`, an EXR the others.
+/// How a picture is written. A PNG heeds `exposure_ev`, `tone_map` and `attributes`, an EXR all but the first two.
 #[derive(Clone, Debug, Default)]
 pub struct WriteOptions<'a> {
     /// PNG: stops; 0 makes radiance 1 white.
@@ -23,8 +23,8 @@ pub struct WriteOptions<'a> {
     pub exr_precision: ExrPrecision,
     /// EXR: layers beside the picture, with different names. A PNG has no room for them: writing one fails.
     pub aovs: &'a [Aov],
-    /// EXR: text attributes, as (name, text): the command line, the technique, the scene's hash. Names are different, of 1
-    /// to 255 bytes, and none of OpenEXR's own. A PNG leaves them out.
+    /// Text attributes of an EXR, text chunks (iTXt) of a PNG, as (name, text): the technique, the scene's hash. Names are
+    /// different, ASCII, of 1 to 79 bytes, and none of OpenEXR's own.
     pub attributes: Vec<(String, String)>,
 }
 
@@ -37,6 +37,9 @@ pub enum ExrPrecision {
     /// 16 bits, rounded to nearest, ties to even. A finite value past 65504, the largest half, becomes 65504.
     Half,
 }
+
+/// The texts of a header, by name.
+pub type Texts = BTreeMap<String, String>;
 
 /// A layer beside the picture (an arbitrary output variable): `name.R`, `name.G`, `name.B` or `name.Y` in the EXR.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +81,10 @@ pub fn write(path: &Path, picture: &Picture, options: &WriteOptions) -> Result<(
             path.display(),
             options.aovs[0].name
         ))),
-        Format::Png => png_file::write(path, &Srgb8::from_picture(picture, options.exposure_ev, options.tone_map)),
+        Format::Png => {
+            let codes = Srgb8::from_picture(picture, options.exposure_ev, options.tone_map);
+            png_file::write(path, &codes, &options.attributes)
+        }
         Format::Exr => exr_file::write(path, picture, options),
     }
 }
@@ -86,7 +92,7 @@ pub fn write(path: &Path, picture: &Picture, options: &WriteOptions) -> Result<(
 /// Writes codes as they are, as a PNG; otherwise like [`write()`]. `path` must end in `.png`.
 pub fn write_srgb8(path: &Path, codes: &Srgb8) -> Result<()> {
     require_png(path)?;
-    png_file::write(path, codes)
+    png_file::write(path, codes, &[])
 }
 
 /// Fails as a bad request unless `path` ends in `.png`: lets a command refuse before the work is done.
@@ -121,8 +127,19 @@ pub fn read(path: &Path) -> Result<Picture> {
 /// Reads an EXR and the texts in its header, by name: what `WriteOptions::attributes` wrote.
 ///
 /// Fails as [`read`] does, whatever the name's ending.
-pub fn read_exr_with_texts(path: &Path) -> Result<(Picture, BTreeMap<String, String>)> {
+pub fn read_exr_with_texts(path: &Path) -> Result<(Picture, Texts)> {
     exr_file::read_with_texts(path)
+}
+
+/// Reads these channels of an EXR of `extent`, row-major, and the texts in its header, by name.
+///
+/// Fails as [`read_exr_with_texts`] does, and where the extent is another or a channel is missing.
+pub fn read_exr_channels<const N: usize>(
+    path: &Path,
+    extent: Extent,
+    names: [&str; N],
+) -> Result<(Vec<[f32; N]>, Texts)> {
+    exr_file::read_channels(path, Some(extent), names).map(|(_, pixels, texts)| (pixels, texts))
 }
 
 #[derive(Clone, Copy)]

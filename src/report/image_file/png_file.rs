@@ -4,8 +4,9 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
-use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, Limits};
+use image::codecs::png::PngDecoder;
+use image::{DynamicImage, ImageDecoder, ImageError, Limits};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
 use super::{DECODED_LIMIT, SIDE_LIMIT_PX, require_within_limits, unreadable};
 use crate::error::Result;
@@ -13,15 +14,21 @@ use crate::report::picture::Picture;
 use crate::report::tonemap::{Srgb8, linear_from_srgb};
 use crate::report::whole_file::write_whole;
 
-pub(super) fn write(path: &Path, codes: &Srgb8) -> Result<()> {
-    write_whole(path, |file| {
-        // The default level rather than the crate's default, which is its fastest: goldens live in the repository.
-        PngEncoder::new_with_quality(file, CompressionType::Default, FilterType::Adaptive).write_image(
-            codes.as_bytes(),
-            codes.extent.width,
-            codes.extent.height,
-            ExtendedColorType::Rgb8,
-        )
+/// `texts`: by name, chunks before the pixels.
+pub(super) fn write(path: &Path, codes: &Srgb8, texts: &[(String, String)]) -> Result<()> {
+    write_whole(path, |file| -> Result<(), EncodingError> {
+        let mut encoder = Encoder::new(file, codes.extent.width, codes.extent.height);
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        // Rather small than fast: goldens live in the repository.
+        encoder.set_compression(Compression::Balanced);
+        encoder.set_filter(Filter::Adaptive);
+        for (name, text) in texts {
+            encoder.add_itxt_chunk(name.clone(), text.clone())?;
+        }
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(codes.as_bytes())?;
+        writer.finish()
     })
 }
 
@@ -96,7 +103,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let codes = Srgb8 { extent: Extent::new(40, 30), pixels: vec![[9, 99, 199]; 1200] };
-        write(&path, &codes).unwrap();
+        write(&path, &codes, &[]).unwrap();
         let whole = std::fs::read(&path).unwrap();
         for length in [0, 7, 20, 40, whole.len() / 2, whole.len() - 20] {
             std::fs::write(&path, &whole[..length]).unwrap();

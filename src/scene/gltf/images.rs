@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use gltf::Document;
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -12,6 +13,7 @@ use super::facts::ImageFacts;
 use super::label;
 use super::source::{Data, Source};
 use crate::error::{Error, Result};
+use crate::progress::Stage;
 use crate::scene::Image;
 use crate::units::{Bytes, Extent};
 
@@ -75,6 +77,12 @@ pub fn read(
         }
         encoded.push(opened);
     }
+    let (stage, done) = (Stage::counted("decoding pictures", "pictures"), AtomicU64::new(0));
+    let decode = |encoded: &Encoded<'_>| {
+        let decoded = decode(encoded);
+        stage.reach(done.fetch_add(1, Ordering::Relaxed) + 1, image_indices.len() as u64);
+        decoded
+    };
     // Collected before the first error is taken: always the same image is reported.
     let decoded: Vec<Result<Image>> = encoded.par_iter().map(decode).collect();
     decoded.into_iter().map(|image| image.map(Arc::new)).collect()

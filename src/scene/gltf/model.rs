@@ -22,6 +22,7 @@ use super::nodes::Hierarchy;
 use super::source::Source;
 use super::{cameras, deform, document, images, label, lights, primitives};
 use crate::error::{Error, Result};
+use crate::progress::Stage;
 use crate::scene::animation::AnimationChoice;
 use crate::scene::{Bounds, Camera, Light, Scene};
 
@@ -64,6 +65,7 @@ impl Model {
     }
 
     fn read(path: &Path, choice: &AnimationChoice) -> Result<Self> {
+        let stage = Stage::begin("reading the file");
         let source = Source::open(path)?;
         let Parsed { document, mut warnings } = document::parse(source.json())?;
 
@@ -73,7 +75,9 @@ impl Model {
         let Materials { mut materials, textures, image_indices } = materials::read(&document, &mut warnings)?;
         let images = images::read(&document, &image_indices, &source, &buffers, &mut hasher)?;
         hasher.update(IMPORT_SETTINGS);
+        drop(stage);
 
+        let _stage = Stage::begin("reading meshes");
         let hierarchy = Hierarchy::read(&document)?;
         let channels = animations::read(&document, &hierarchy, &buffers, choice, &mut warnings)?;
         if !channels.is_empty() {

@@ -34,7 +34,7 @@ mod moving;
 pub mod sample;
 pub mod settings;
 
-use super::{Frame, Inputs, Prepared, Technique, left_out};
+use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
@@ -117,7 +117,8 @@ impl Technique for PathTraced {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?)?;
-        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources)?, sources }))
+        let sample_count = settings::sample_count(inputs.values);
+        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources)?, sources, sample_count }))
     }
 }
 
@@ -221,6 +222,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
 struct PreparedPaths {
     choices: Choices,
     sources: Sources,
+    sample_count: u32,
 }
 
 impl Prepared for PreparedPaths {
@@ -239,6 +241,7 @@ impl Prepared for PreparedPaths {
         let emissive = if self.sources.emitters.is_some() { "on" } else { "off" };
         let mut resolved = BTreeMap::from([
             ("emissive", emissive.to_owned()),
+            ("spp", self.sample_count.to_string()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
         ]);
         if self.choices.has_lens {
@@ -271,7 +274,8 @@ impl Prepared for PreparedPaths {
         let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, &layout), density_of)?;
         Ok(Box::new(PathFrame {
             sample,
-            sample_count: inputs.values.integer("spp") as u32,
+            sample_count: self.sample_count,
+            until_error: settings::until_error(inputs.values),
             triangle_count: bvh.sources.len(),
         }))
     }
@@ -280,6 +284,7 @@ impl Prepared for PreparedPaths {
 struct PathFrame {
     sample: Sample,
     sample_count: u32,
+    until_error: Option<f64>,
     triangle_count: usize,
 }
 
@@ -290,6 +295,10 @@ impl Frame for PathFrame {
 
     fn run_count(&self) -> u32 {
         self.sample_count
+    }
+
+    fn sums(&self) -> Option<Sums<'_>> {
+        Some(Sums { buffer: &self.sample.sums, until_error: self.until_error })
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

@@ -12,6 +12,7 @@ use crate::gpu::shader::techniques::path_traced::sample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
 use crate::plan::Resources;
+use crate::progress::Stage;
 use crate::resident::traced::{Layout, TracedGpu};
 use crate::techniques::Inputs;
 use bytemuck::bytes_of;
@@ -49,7 +50,7 @@ pub struct Sample {
     sources: Buffer,
     /// Frame when the shutter closes.
     closing: Buffer,
-    sums: Buffer,
+    pub sums: Buffer,
     pub color: Image,
 }
 
@@ -80,7 +81,9 @@ impl Sample {
             ("HAS_LENS", u32::from(choices.has_lens)),
         ];
         let constants = [&own[..], &layout.constants()].concat();
+        let stage = Stage::begin("uploading what rays meet");
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
+        drop(stage);
         let mut filled = |what: &str, bytes: &[u8]| {
             let buffer = resources.buffer(&format!("{NAME}.{what}"));
             upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;

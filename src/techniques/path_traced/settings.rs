@@ -1,17 +1,42 @@
 //! The settings of path tracing.
 
-use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, Setting, VPL_CLAMP, WORKGROUP};
+use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, Setting, VPL_CLAMP, Values, WORKGROUP};
+
+/// Paths a pixel, at most: float sums of more lose what a path adds.
+pub const MOST_SAMPLES: u32 = 1 << 16;
+const DEFAULT_SAMPLES: u32 = 64;
+
+/// What --until-error asks for; None: nothing.
+pub fn until_error(values: &Values) -> Option<f64> {
+    Some(values.number("until-error")).filter(|error| *error > 0.0)
+}
+
+/// Paths a pixel, at most where `until_error` ends them.
+pub fn sample_count(values: &Values) -> u32 {
+    let auto = if until_error(values).is_some() { MOST_SAMPLES } else { DEFAULT_SAMPLES };
+    values.integer_or_auto("spp").map_or(auto, |count| count as u32)
+}
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "spp",
         symbol: "",
-        kind: Kind::Integer { min: 1, max: 65_536 },
-        default: "64",
+        kind: Kind::IntegerOrAuto { min: 1, max: MOST_SAMPLES as u64 },
+        default: "auto",
         unit: "",
         paper: "",
-        help: "paths a pixel, one a run of the frame",
+        help: "paths a pixel, one a run of the frame, at most where --until-error ends them; auto: 64, with --until-error 65536",
+    },
+    Setting {
+        key: "until-error",
+        symbol: "",
+        kind: Kind::Number { min: 0.0, max: 1.0 },
+        default: "0",
+        unit: "",
+        paper: "",
+        help: "paths go on until the estimated relative standard error of the pixels, root of the mean square, is at most this, \
+               or --spp is reached; 0: all of --spp",
     },
     Setting {
         key: "transport",
