@@ -1,8 +1,8 @@
 // The surface that a ray meets: attributes between a triangle's corners, and its material with its textures. The same as
 // the G-buffer pass makes of a fragment, but for textures, whose finest level is read: a pixel is many rays.
 //
-// The including shader declares bvh_triangles[], bvh_closing[], surfaces[], closings[], tangents[], extended[], traced_materials[] and what texel.glsl
-// wants.
+// The including shader declares bvh_triangles[], bvh_closing[], surfaces[], closings[], tangents[], extended[],
+// traced_materials[] and what texel.glsl wants.
 #ifndef SHADING_TRACED_GLSL
 #define SHADING_TRACED_GLSL
 
