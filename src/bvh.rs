@@ -187,15 +187,20 @@ impl Bvh {
     pub fn closest_hit(&self, origin: Vec3, direction: Vec3, limit: f32, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         self.walk(origin, direction, limit, |triangle, limit| {
-            let (distance, barycentric) = intersect(&self.triangles[triangle], origin, direction, limit)?;
-            let hit = Hit { distance, triangle, barycentric };
+            let hit = self.hit_of(triangle, origin, direction, limit)?;
             if !accept(&hit) {
                 return None;
             }
             best = Some(hit);
-            Some(distance)
+            Some(hit.distance)
         });
         best
+    }
+
+    /// Where a ray meets one of `triangles`, nearer than `limit`.
+    pub fn hit_of(&self, triangle: usize, origin: Vec3, direction: Vec3, limit: f32) -> Option<Hit> {
+        let (distance, barycentric) = intersect(self.triangles.get(triangle)?, origin, direction, limit)?;
+        Some(Hit { distance, triangle, barycentric })
     }
 
     /// Whether a ray of this direction meets the back of a single-sided surface, which is not drawn.

@@ -9,6 +9,7 @@ pub mod candidate;
 pub mod copy;
 pub mod group;
 pub mod pareto;
+pub mod rays;
 pub mod reference;
 pub mod rounds;
 pub mod row;

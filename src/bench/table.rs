@@ -8,10 +8,10 @@ use serde_json::Value;
 /// Mark of the Pareto set.
 pub const MARK: &str = "*";
 
-/// One column: a title, and what it says of a row.
 /// How much of a variant's name a table shows: kept rows come from a file, and a column is padded to 65,535 at most.
 const MOST_NAME_CHARS: usize = 1000;
 
+/// One column: a title, and what it says of a row.
 struct Column {
     title: &'static str,
     cell: fn(&Value) -> Option<String>,
@@ -26,7 +26,8 @@ fn fixed(value: &Value, digits: usize) -> Option<String> {
     value.as_f64().map(|value| format!("{value:.digits$}"))
 }
 
-fn ratio(entry: &Value) -> Option<String> {
+/// A paired ratio with its interval.
+pub fn ratio(entry: &Value) -> Option<String> {
     let mean = fixed(&entry["mean"], 3)?;
     let side = |index: usize| fixed(&entry["interval_95"][index], 3);
     Some(match (side(0), side(1)) {
@@ -93,6 +94,11 @@ impl Table {
             let cells = columns.iter().map(|column| (column.cell)(row).unwrap_or_else(|| "-".to_owned()));
             lines.push(std::iter::once(name).chain(cells).collect());
         }
+        Self { lines }
+    }
+
+    /// Of titles and cells, at least one line, all of one length.
+    pub fn of_lines(lines: Vec<Vec<String>>) -> Self {
         Self { lines }
     }
 

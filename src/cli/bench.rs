@@ -1,6 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
-use super::{job_args, progress, reference_args};
+use super::{job_args, progress, rays, reference_args};
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
 use crate::bench::summary::Summary;
@@ -26,6 +26,7 @@ pub fn command() -> Command {
         .subcommands(
             What::ALL.map(|what| reference_args::with_reference_args(job_args::with_job_args(sub_command(what)))),
         )
+        .subcommand(rays::command())
 }
 
 fn sub_command(what: What) -> Command {
@@ -68,6 +69,9 @@ fn sub_command(what: What) -> Command {
 /// Measures and prints.
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let (name, matches) = matches.subcommand().expect("clap requires a sub-verb");
+    if name == rays::NAME {
+        return rays::run(matches);
+    }
     let what = What::ALL.into_iter().find(|what| what.name() == name).expect("clap knows these only");
     let mut job = job_args::job(matches, argv)?;
     job.reference = reference_args::asked(matches)?;

@@ -7,6 +7,7 @@ mod gate_args;
 mod job_args;
 pub mod memory;
 mod progress;
+mod rays;
 mod reference_args;
 pub mod render;
 pub mod scene;

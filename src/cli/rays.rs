@@ -1,0 +1,65 @@
+//! `quincunx bench rays`: what the walks of the tree do on a device, beside the host.
+
+use super::progress;
+use crate::bench::rays::{self, Request, report};
+use crate::error::Result;
+use crate::gpu::{DeviceRequest, Gpu};
+use crate::job::judge;
+use crate::progress::Stage;
+use crate::scene;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+
+pub const NAME: &str = "rays";
+
+/// The sub-verb with its arguments.
+pub fn command() -> Command {
+    let number = |name: &'static str, default: &'static str, most: u64| {
+        let least = if name == "seed" { 0 } else { 1 };
+        let parser = value_parser!(u64).range(least..=most);
+        Arg::new(name).long(name).value_name("N").value_parser(parser).default_value(default)
+    };
+    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    Command::new(NAME)
+        .about("Millions of rays a second of each walk of the tree, beside the same tree walked on the host's threads")
+        .arg(
+            Arg::new("scene")
+                .value_name("SCENE")
+                .default_value("hall:triangles=80000")
+                .help("A built-in scene or a .gltf or .glb file"),
+        )
+        .arg(number("rays", "262144", 1 << 24).help("Rays of a set"))
+        .arg(number("repeat", "5", 10_000).help("Rounds: each measures every walk once"))
+        .arg(number("seed", "1", u64::from(u32::MAX)).help("Of the rays and of a built-in scene"))
+        .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("As `quincunx devices` lists them"))
+        .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
+        .arg(flag("quiet").help("Print nothing but errors"))
+        .arg(flag("json").help("Print a JSON line a walk on standard output"))
+}
+
+/// Measures and prints; hits that differ from the host's by more than edges explain fail it.
+pub fn run(matches: &ArgMatches) -> Result<()> {
+    let number = |name: &str| *matches.get_one::<u64>(name).expect("it has a default");
+    let request = Request { ray_count: number("rays") as u32, seed: number("seed"), repeat: number("repeat") as usize };
+    progress::install(matches.get_flag("quiet"));
+    let spec = matches.get_one::<String>("scene").expect("it has a default");
+    let scene = scene::load(spec, request.seed)?;
+    let device = DeviceRequest {
+        selector: matches.get_one::<String>("device").cloned(),
+        validate: matches.get_flag("validate"),
+        ..DeviceRequest::default()
+    };
+    let gpu = Gpu::open(&device)?;
+    let stage = Stage::counted("measuring", "walks");
+    let measured = rays::run(&gpu, &scene, &request, &mut |done, all| stage.reach(done as u64, all as u64))?;
+    drop(stage);
+    let rows = report::rows(&measured, &gpu, &scene, &request);
+    if matches.get_flag("json") {
+        super::print(&rows.iter().map(|row| format!("{row}\n")).collect::<String>())?;
+    } else if !matches.get_flag("quiet") {
+        super::print(&report::text(&rows))?;
+    }
+    report::judge(&measured, &request)?;
+    let log = gpu.validation_log();
+    drop(gpu);
+    judge(log.as_deref())
+}

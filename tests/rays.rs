@@ -1,0 +1,57 @@
+//! `bench rays`: every walk of the tree meets what the host meets, and its rows say how fast.
+
+mod support;
+
+use serde_json::Value;
+use support::program::Program;
+
+const HALL: [&str; 5] = ["bench", "rays", "hall:triangles=8000", "--rays", "20000"];
+
+#[test]
+fn every_walk_meets_what_the_host_meets() {
+    let program = Program::new();
+    let ran = program.run(&[&HALL[..], &["--repeat", "2", "--json", "--quiet", "--validate"]].concat()).fine();
+    let rows: Vec<Value> = ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let walks: Vec<[&str; 3]> =
+        rows.iter().map(|row| ["rays", "query", "walk"].map(|key| row[key].as_str().unwrap())).collect();
+    let of_a_set = [["any", "plain"], ["any", "ordered"], ["nearest", "ordered"]];
+    let expected: Vec<[&str; 3]> = ["incoherent", "coherent"]
+        .into_iter()
+        .flat_map(|rays| of_a_set.map(|[query, walk]| [rays, query, walk]))
+        .collect();
+    assert_eq!(walks, expected);
+    for row in &rows {
+        let number = |key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key}: {row:#}"));
+        assert!(number("hits") > 10_000.0 && number("hits") <= 20_000.0, "{row:#}");
+        assert!(number("differing") <= 20.0, "{row:#}");
+        assert!(number("mrays_per_s") > 0.0 && number("host_mrays_per_s") > 0.0, "{row:#}");
+        for ratio in ["speed_to_plain", "speed_to_host"] {
+            assert!(row[ratio]["mean"].as_f64().unwrap() > 0.0 && row[ratio]["pairs"] == 2, "{row:#}");
+        }
+        assert_eq!(row["ms"]["samples"].as_array().unwrap().len(), 2);
+        assert_eq!(row["scene"]["name"], "hall:triangles=8000");
+    }
+    // The three walks of a set meet as much: what is nearest is something.
+    for set in rows.chunks(3) {
+        assert_eq!(set[0]["hits"], set[1]["hits"]);
+        let [any, nearest] = [0, 2].map(|index| set[index]["hits"].as_f64().unwrap());
+        assert!((any - nearest).abs() <= 20.0, "{any} and {nearest}");
+    }
+}
+
+#[test]
+fn a_person_reads_a_table() {
+    let program = Program::new();
+    let out = program.run(&[&HALL[..], &["--repeat", "1", "--seed", "7"]].concat()).fine().out;
+    for words in ["incoherent any plain", "coherent nearest ordered", "Mrays/s", "speed to host"] {
+        assert!(out.contains(words), "{out}");
+    }
+}
+
+#[test]
+fn what_cannot_be_cast_is_refused() {
+    let program = Program::new();
+    program.fails(&["bench", "rays", "--rays", "0"], 2, &["--rays"]);
+    program.fails(&["bench", "rays", "missing.glb"], 2, &["missing.glb"]);
+    program.fails(&["bench", "rays", "hall:triangles=8000", "--device", "no such thing"], 3, &["no such thing"]);
+}
