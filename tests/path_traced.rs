@@ -7,6 +7,7 @@ use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AlphaMode, Material, Scene};
 use quincunx::shading::brdf::{self, Brdf, Surface};
 use std::f32::consts::PI;
+use support::Feature;
 use support::boxes::{camera, closed_box, panel, point_light, rectangle};
 use support::watched::{Changes, Watched, both};
 
@@ -225,6 +226,11 @@ fn reduced(picture: &Picture, factor: u32) -> Picture {
 
 #[test]
 fn direct_light_is_deferred_shading_s() {
+    // A hand's breadth from a lamp light is hundreds of times as strong: where vertices move by a 32nd of a pixel, so does
+    // the mean.
+    if !support::has(&support::driver(), Feature::ExactPositions) {
+        return;
+    }
     for (scene, bound) in [("cornell", 0.02), ("lamps:objects=30,lights=20", 0.05), ("hall:triangles=8000", 0.2)] {
         let watched = Watched::with_scene(plain(scene));
         let changes: Changes<'_> = &[("size", "512x288"), ("direct-shadow", "ray"), ("position", "float")];
