@@ -8,12 +8,13 @@ use std::os::fd::{AsRawFd, FromRawFd};
 use std::process::{Command, Stdio};
 use support::program::{Program, Ran};
 
-/// Some seconds of samples on a software driver.
-const LONG: [&str; 9] =
-    ["render", "cornell", "--technique", "path_traced", "--size", "64x64", "--spp", "60", "--report"];
+const PATHS: [&str; 6] = ["render", "cornell", "--technique", "path_traced", "--size", "64x64"];
+/// Far enough above the second from which on something is said.
+const LONG_S: f64 = 3.0;
+const REPORT: [&str; 4] = ["--report", "a.json", "-o", "a.png"];
 
-fn long(program: &Program, more: &[&str]) -> Ran {
-    program.run(&[&LONG[..], &["a.json", "-o", "a.png"], more].concat())
+fn long(program: &Program, samples: u32, more: &[&str]) -> Ran {
+    program.run(&[&PATHS[..], &REPORT, &["--spp", &samples.to_string()], more].concat())
 }
 
 /// What rendering took by the report, in seconds.
@@ -22,16 +23,25 @@ fn rendering_s(program: &Program) -> f64 {
     serde_json::from_str::<serde_json::Value>(&text).unwrap()["total_ms"]["median"].as_f64().unwrap() / 1000.0
 }
 
+/// Samples that take this machine and its driver about `LONG_S`.
+fn long_samples(program: &Program) -> u32 {
+    const TRIED: u32 = 24;
+    assert_eq!(long(program, TRIED, &["--quiet"]).code, 0);
+    (LONG_S / rendering_s(program) * f64::from(TRIED)).clamp(8.0, 65_536.0) as u32
+}
+
 #[test]
 fn without_a_terminal_what_took_over_a_second_has_a_line_with_its_time() {
     let program = Program::new();
-    let ran = long(&program, &[]);
+    let samples = long_samples(&program);
+    let ran = long(&program, samples, &[]);
     assert_eq!((ran.code, ran.err.as_str()), (0, ""));
     let seconds = rendering_s(&program);
     let lines: Vec<&String> = ran.progress.iter().filter(|line| line.contains("rendering")).collect();
     assert!(seconds > 1.05, "the test asks for too few samples: {seconds} s");
     assert_eq!(lines.len(), 1, "{:?}", ran.progress);
-    let said = lines[0].strip_prefix("progress: rendering 60 samples took ").unwrap_or_else(|| panic!("{lines:?}"));
+    let said = lines[0].strip_prefix(&format!("progress: rendering {samples} samples took "));
+    let said = said.unwrap_or_else(|| panic!("{lines:?}"));
     let said: f64 = said.trim_end().strip_suffix(" s").unwrap().parse().unwrap();
     // The stage is around the runs that the report sums up, and begins before the first.
     assert!(said > seconds - 0.06 && said < 1.5 * seconds + 1.0, "{said} s said, {seconds} s reported");
@@ -43,12 +53,13 @@ fn without_a_terminal_what_took_over_a_second_has_a_line_with_its_time() {
 #[test]
 fn quiet_is_silent_and_json_stands_alone_on_standard_output() {
     let program = Program::new();
-    let quiet = long(&program, &["--quiet"]);
+    let samples = long_samples(&program);
+    let quiet = long(&program, samples, &["--quiet"]);
     assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (0, "", ""));
     assert_eq!(quiet.progress, [] as [&str; 0]);
-    let json = long(&program, &["--json"]);
+    let json = long(&program, samples, &["--json"]);
     assert_eq!(json.code, 0);
-    assert_eq!(json.json()["counters"]["samples"], 60.0);
+    assert_eq!(json.json()["counters"]["samples"], f64::from(samples));
 }
 
 /// A terminal: what a program writes into the second file is read from the first.
@@ -65,6 +76,7 @@ fn terminal() -> (File, File) {
 #[test]
 fn a_terminal_gets_a_bar_with_its_count_and_what_is_left() {
     let program = Program::new();
+    let samples = long_samples(&program).to_string();
     let (mut ours, theirs) = terminal();
     let size = libc::winsize { ws_row: 24, ws_col: 160, ws_xpixel: 0, ws_ypixel: 0 };
     // SAFETY: a live descriptor of a terminal, and the struct that the request takes.
@@ -72,8 +84,8 @@ fn a_terminal_gets_a_bar_with_its_count_and_what_is_left() {
     let child = Command::new(env!("CARGO_BIN_EXE_quincunx"))
         .current_dir(program.folder.path())
         .env("TERM", "xterm")
-        .args(LONG)
-        .args(["a.json", "-o", "a.png", "--json"])
+        .args(PATHS)
+        .args(["--spp", &samples, "-o", "b.png", "--json"])
         .stdout(Stdio::piped())
         .stderr(theirs)
         .spawn()
@@ -91,7 +103,7 @@ fn a_terminal_gets_a_bar_with_its_count_and_what_is_left() {
     assert!(output.status.success());
     serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("only the report on standard output");
     let said = reader.join().unwrap();
-    for word in ["█", "rendering, ", " of 60 samples, about ", " s left"] {
+    for word in ["█", "rendering, ", &format!(" of {samples} samples, about "), " s left"] {
         assert!(said.contains(word), "no {word:?} in {said:?}");
     }
     assert!(!said.contains("progress: "), "{said:?}");
