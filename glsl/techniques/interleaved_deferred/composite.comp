@@ -13,7 +13,9 @@ struct CompositeParams {
     uint row_pitch;
     // 1: --direct full. 0: the punctual lights are in the irradiance, or left out.
     uint direct_full;
-    uint _unused[2];
+    // 0, which compilers do not know: one that sees halves packed and unpacked at once rounds them its own way (Mesa 25).
+    uint nothing;
+    uint _unused;
 };
 
 layout(push_constant) uniform Push { CompositeParams params; };
@@ -33,7 +35,7 @@ void read_column(uvec2 first) {
 
 uvec2 received_at(uint i, uvec2 pixel) {
 #ifdef FILTER_COLUMNS
-    return walked(params.walk, i);
+    return walked(params.walk, i) ^ params.nothing;
 #else
     return irradiance[pixel.y * params.row_pitch + pixel.x];
 #endif

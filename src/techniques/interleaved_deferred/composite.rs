@@ -38,7 +38,8 @@ impl Composite {
             walk: kernel.walk(false),
             row_pitch: mapping.row_pitch(),
             direct_full: u32::from(choices.direct_full),
-            _unused: [0; 2],
+            nothing: 0,
+            _unused: 0,
         };
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }
