@@ -24,8 +24,10 @@ pub struct LightSet {
     pub lights: Vec<Light>,
     /// Radiance.
     pub ambient: Vec3,
-    /// The scene had no light of its own, and got the rig.
+    /// The scene had no light of its own, and got the rig; or `--rig always`.
     pub has_rig: bool,
+    /// Nothing but emissive surfaces lights the scene.
+    pub is_emissive_alone: bool,
     /// The scene, or `--lights`, has punctual lights that are not the rig's.
     pub has_punctual: bool,
 }
@@ -41,7 +43,10 @@ impl LightSet {
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
         let emissive = scene.drawn_materials().any(Material::is_emissive);
-        let has_rig = !has_punctual && !emissive && values.text("rig") == "default";
+        let has_rig = match values.text("rig") {
+            "default" => !has_punctual && !emissive,
+            rig => rig == "always",
+        };
         if has_rig {
             lights.push(rig_key(view));
         }
@@ -52,7 +57,8 @@ impl LightSet {
                 Error::request(format!("--ambient {text}: it must be R,G,B or one number, each at least 0, or auto"))
             })?,
         };
-        Ok(Self { lights, ambient, has_rig, has_punctual })
+        let is_emissive_alone = emissive && lights.is_empty() && ambient == Vec3::ZERO;
+        Ok(Self { lights, ambient, has_rig, is_emissive_alone, has_punctual })
     }
 
     /// Directional lights.
@@ -113,4 +119,38 @@ fn scattered(scene: &Scene, values: &Values) -> Result<Vec<Light>> {
             }
         })
         .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+    use crate::settings::COMMON;
+    use crate::units::Extent;
+
+    /// Count of lights, ambient radiance, whether there is a rig, whether only surfaces shine.
+    fn lit(scene: &Scene, changes: &[(&str, &str)]) -> (usize, f32, bool, bool) {
+        let mut values = Values::defaults(COMMON);
+        for (key, text) in changes {
+            values.set(COMMON.iter().find(|setting| setting.key == *key).unwrap(), text).unwrap();
+        }
+        let view = View::new(scene, "0", Extent::new(8, 8)).unwrap();
+        let set = LightSet::new(scene, &view, &values).unwrap();
+        (set.lights.len(), set.ambient.x, set.has_rig, set.is_emissive_alone)
+    }
+
+    #[test]
+    fn a_rig_is_for_what_does_not_shine_and_for_who_asks() {
+        let mut shining = scene::load("cornell", 1).unwrap();
+        shining.lights.clear();
+        let mut dark = shining.clone();
+        dark.materials.iter_mut().for_each(|material| material.emissive = Vec3::ZERO);
+        assert_eq!(lit(&dark, &[]), (1, RIG_AMBIENT, true, false));
+        assert_eq!(lit(&dark, &[("rig", "none")]), (0, 0.0, false, false));
+        assert_eq!(lit(&shining, &[]), (0, 0.0, false, true));
+        assert_eq!(lit(&shining, &[("rig", "always")]), (1, RIG_AMBIENT, true, false));
+        assert_eq!(lit(&shining, &[("ambient", "0.1")]), (0, 0.1, false, false));
+        assert_eq!(lit(&shining, &[("lights", "3"), ("rig", "always")]).0, 4);
+        assert_eq!(lit(&shining, &[("lights", "3")]), (3, 0.0, false, false));
+    }
 }

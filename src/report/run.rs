@@ -100,8 +100,13 @@ impl Report {
         if renderer.view.made_up {
             entry["camera"] = json!("framing");
         }
-        if !scene.warnings.is_empty() {
-            entry["warnings"] = json!(scene.warnings);
+        let mut warnings = scene.warnings.clone();
+        // A small glow counts as light: who sees a black picture should know why.
+        if renderer.lights.is_emissive_alone {
+            warnings.push("only its emissive surfaces light it; --rig always adds the default rig".to_owned());
+        }
+        if !warnings.is_empty() {
+            entry["warnings"] = json!(warnings);
         }
         self.document.insert("scene".into(), entry);
     }

@@ -106,11 +106,12 @@ pub const COMMON: &[Setting] = &[
     Setting {
         key: "rig",
         symbol: "",
-        kind: Kind::Choice(&["default", "none"]),
+        kind: Kind::Choice(&["default", "always", "none"]),
         default: "default",
         unit: "",
         paper: "",
-        help: "light for a scene that has none: a key of 3 lux from the camera's upper left and an ambient of 0.3",
+        help: "a key light of 3 lux from the camera's upper left and an ambient of 0.3: default, for a scene that has no light, neither \
+               punctual nor emissive; always, beside what it has",
     },
     Setting {
         key: "sun",
