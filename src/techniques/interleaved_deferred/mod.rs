@@ -7,7 +7,8 @@
 //! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend.
 //! With `--split two-pass`, and `fragment` in two passes, split is split.blocks and split.translate, and gather is
 //! gather.translate and gather.blocks. Roads that copy nothing have neither; before the shading of `stencil` and `depth`
-//! stands mask.
+//! stands mask. With `--fuse on` gather walks the filter's rows (behind discontinuity, which then comes before split) and
+//! composite its columns: no pass filter where one compute shader pulls each pixel.
 //!
 //! Differs from the paper
 //! - by default compute shaders copy, where the paper drew; `--split fragment` draws, with the paper's look-up textures
