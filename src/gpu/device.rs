@@ -35,6 +35,8 @@ pub struct Gpu {
     pub queue: vk::Queue,
     pub queue_family: u32,
     pub memory: Arc<Memory>,
+    /// Pipelines that were made before: a second renderer of the same settings compiles nothing on drivers that keep them.
+    pub(super) pipelines: vk::PipelineCache,
     names: Option<ash::ext::debug_utils::Device>,
     validation: Option<Validation>,
     instance: ash::Instance,
@@ -298,6 +300,9 @@ impl Gpu {
         };
         // SAFETY: the family and index were asked for above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
+        // SAFETY: the device is alive. Without one, pipelines are only made more slowly: no reason to fail.
+        let pipelines = unsafe { device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None) };
+        let pipelines = pipelines.unwrap_or_default();
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
         let memory =
             Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
@@ -307,6 +312,7 @@ impl Gpu {
             queue,
             queue_family,
             memory,
+            pipelines,
             names,
             validation,
             instance,
@@ -371,6 +377,7 @@ impl Drop for Gpu {
             // A lost device cannot be waited for, and need not be.
             let _ = self.device.device_wait_idle();
             self.memory.close();
+            self.device.destroy_pipeline_cache(self.pipelines, None);
             self.device.destroy_device(None);
             if let Some(validation) = &self.validation {
                 validation.functions.destroy_debug_utils_messenger(validation.messenger, None);

@@ -204,7 +204,7 @@ impl ComputePipeline {
             .specialization_info(&specialization_info);
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(interface.layout);
         // SAFETY: every handle is alive and every pointer outlives the call.
-        let made = unsafe { gpu.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
+        let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipelines, &[info], None) };
         let handle =
             made.map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", shader.label())))?[0];
         gpu.name(handle, &shader.label());
@@ -369,7 +369,7 @@ impl GraphicsPipeline {
             .layout(interface.layout)
             .push_next(&mut rendering);
         // SAFETY: every handle is alive and every pointer outlives the call.
-        let made = unsafe { gpu.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
+        let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipelines, &[info], None) };
         let handle =
             made.map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", interface.label)))?[0];
         gpu.name(handle, &interface.label);
