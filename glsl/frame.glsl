@@ -9,8 +9,10 @@ struct FrameBlock {
     mat4 world_from_clip;
     // xyz: the eye in world space; w: 1 for perspective, 0 for orthographic.
     vec4 eye_ws;
-    // xyz: the direction in which an orthographic camera looks, world space.
+    // xyz: the camera's axes as unit vectors, world space: where it looks, its right, its up.
     vec4 forward_ws;
+    vec4 right_ws;
+    vec4 up_ws;
     // The scene's box: positions of unorm16 are fractions of it.
     vec4 box_min_ws;
     vec4 box_size_ws;

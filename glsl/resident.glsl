@@ -9,8 +9,16 @@ struct DrawBlock {
     vec4 normal_y;
     vec4 normal_z;
     uint material;
-    uint _unused[3];
+    // 0 to 255.
+    uint object_id;
+    uint _unused[2];
 };
+
+// The id, 0 to 255, of the part of a mesh with continuous normals, which travels in its tangents' fourth component: that
+// is the side of the bitangent times one more than the id (Kircher 2009, section 3.1).
+uint normal_group(vec4 tangent) {
+    return uint(max(abs(tangent.w) - 1.0, 0.0) + 0.5);
+}
 
 const uint MATERIAL_BASE_COLOR_TEXTURE = 1u;
 const uint MATERIAL_METALLIC_ROUGHNESS_TEXTURE = 2u;

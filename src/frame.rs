@@ -49,6 +49,30 @@ impl View {
         self.camera.world_from_view.w_axis.truncate()
     }
 
+    /// The camera's right, up and back: unit vectors, world space.
+    fn axes(&self) -> [Vec3; 3] {
+        let [right, up, back, _] =
+            self.camera.world_from_view.to_cols_array_2d().map(|[x, y, z, _]| Vec3::new(x, y, z));
+        [right, up, back]
+    }
+
+    /// Least and greatest distance from the eye's plane, along the direction in which the camera looks, of what can be
+    /// seen of `bounds`, in metres; both differ.
+    pub fn depth_range(&self, bounds: &Bounds) -> [f32; 2] {
+        let [_, _, back] = self.axes();
+        let (near, far) = match self.camera.projection {
+            Projection::Perspective { z_near, z_far, .. } => (z_near, z_far.unwrap_or(f32::INFINITY)),
+            Projection::Orthographic { z_near, z_far, .. } => (z_near, z_far),
+        };
+        let (center, half) = (bounds.center(), (bounds.max - bounds.min) * 0.5);
+        let (middle, reach) =
+            if bounds.is_empty() { (0.0, 0.0) } else { (back.dot(self.eye() - center), back.abs().dot(half)) };
+        let least = (middle - reach).max(near);
+        // A flat scene still needs a range with an inside.
+        let greatest = (middle + reach).min(far).max(least + 1e-3 * least.abs().max(1e-6));
+        [least, greatest]
+    }
+
     /// Clip space from world space: y down as in Vulkan, depth reversed.
     pub fn clip_from_world(&self) -> Mat4 {
         let aspect = self.extent.width as f32 / self.extent.height as f32;
@@ -100,7 +124,7 @@ impl View {
         // Double precision: the inverse is what `--position depth` reads positions back with.
         let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
         let perspective = matches!(self.camera.projection, Projection::Perspective { .. });
-        let forward = -self.camera.world_from_view.z_axis.truncate();
+        let [right, up, back] = self.axes();
         let (box_min, box_size) = if bounds.is_empty() {
             (Vec3::ZERO, Vec3::ONE)
         } else {
@@ -111,7 +135,9 @@ impl View {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             world_from_clip: world_from_clip.to_cols_array_2d(),
             eye_ws: self.eye().extend(if perspective { 1.0 } else { 0.0 }).to_array(),
-            forward_ws: forward.extend(0.0).to_array(),
+            forward_ws: (-back).extend(0.0).to_array(),
+            right_ws: right.extend(0.0).to_array(),
+            up_ws: up.extend(0.0).to_array(),
             box_min_ws: box_min.extend(0.0).to_array(),
             box_size_ws: box_size.extend(0.0).to_array(),
             background: background.extend(0.0).to_array(),

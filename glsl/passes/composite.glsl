@@ -30,7 +30,6 @@ layout(set = 0, binding = 43) uniform usampler2D gbuffer_emissive;
 
 #include "bvh_walk.glsl"
 #include "shading/shade_lights.glsl"
-#include "lights/cull.glsl"
 
 // What few materials say (shading/extras.glsl).
 uint extras_at(uvec2 pixel) {
@@ -111,33 +110,15 @@ void add_light(LightBlock light) {
     expect_done(i == TEXELS);
 }
 
+#include "shading/each_light.glsl"
+
 // All punctual lights, in the order of the list.
 void shade_points() {
     for (uint i = 0u; i < TEXELS; i++) {
         point_direct[i] = vec3(0.0);
     }
-#ifdef CULL_TILED
-    uint word_count = (frame.light_count + 31u) / 32u;
     uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
-    uint base = tile_of(min(pixel_of_point(0u), last), frame.width_px) * word_count;
-    uint bits = 0u;
-    uint word = 0u;
-    for (; word < word_count; word++) {
-        bits = light_masks[base + word];
-        while (bits != 0u) {
-            uint light = word * 32u + uint(findLSB(bits));
-            bits &= bits - 1u;
-            add_light(lights[light]);
-        }
-    }
-    expect_done(bits == 0u && word == word_count);
-#else
-    uint light = 0u;
-    for (; light < frame.light_count; light++) {
-        add_light(lights[light]);
-    }
-    expect_done(light == frame.light_count);
-#endif
+    add_each_light(frame, min(pixel_of_point(0u), last));
     for (uint i = 0u; i < TEXELS; i++) {
         point_direct[i] = nan_if_cut(point_direct[i]);
     }

@@ -11,7 +11,7 @@
 #ifndef PASSES_GBUFFER_GLSL
 #define PASSES_GBUFFER_GLSL
 
-#include "frame.glsl"
+#include "passes/depth.glsl"
 
 // The greatest half float: what is brighter is held there instead of becoming infinite.
 const float HALF_MAX = 65504.0;
@@ -57,13 +57,6 @@ uvec2 pack_unorm16(FrameBlock frame, vec3 position_ws) {
 vec3 unpack_unorm16(FrameBlock frame, uvec2 words) {
     vec3 steps = vec3(words.x & 0xffffu, words.x >> 16, words.y & 0xffffu);
     precise vec3 position_ws = frame.box_min_ws.xyz + frame.box_size_ws.xyz * (steps / 65535.0);
-    return position_ws;
-}
-
-vec3 position_from_depth(FrameBlock frame, uvec2 pixel, float depth) {
-    vec2 ndc = (vec2(pixel) + 0.5) / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0;
-    precise vec4 position = frame.world_from_clip * vec4(ndc, depth, 1.0);
-    precise vec3 position_ws = position.xyz / position.w;
     return position_ws;
 }
 

@@ -21,7 +21,8 @@ layout(location = 0) out vec3 out_position_ws;
 layout(location = 1) out vec3 out_normal_ws;
 layout(location = 2) out vec4 out_tangent_ws;
 layout(location = 3) out vec2 out_uv;
-layout(location = 4) flat out uint out_material;
+// x: material; y: object id times 256 plus normal group (Kircher 2009, section 3.1).
+layout(location = 4) flat out uvec2 out_ids;
 #ifdef VERTEX_EXTENDED
 layout(location = 5) out vec4 out_color;
 layout(location = 6) out vec2 out_uv_1;
@@ -36,9 +37,9 @@ void main() {
     vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
     out_position_ws = position_ws.xyz;
     out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
-    out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, tangent.w);
+    out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, sign(tangent.w));
     out_uv = uv;
-    out_material = draw.material;
+    out_ids = uvec2(draw.material, draw.object_id << 8 | normal_group(tangent));
 #ifdef VERTEX_EXTENDED
     out_color = color;
     out_uv_1 = uv_1;

@@ -41,6 +41,25 @@ vec3 ambient_reflectance(uint kind, Surface surface) {
     return (1.0 - f0) * albedo_of(surface) + f0;
 }
 
+// The mirror part of Blinn-Phong or GGX in 1/sr, without Fresnel's factor and the cosine. `half_vector`: between the light
+// and the eye. All vectors are unit length; `to_light` is above the surface.
+float specular_lobe(uint kind, float roughness, vec3 normal, vec3 to_light, vec3 to_eye, vec3 half_vector) {
+    float n_dot_h = clamp(dot(normal, half_vector), 0.0, 1.0);
+    float n_dot_l = clamp(dot(normal, to_light), 0.0, 1.0);
+    float n_dot_v = max(dot(normal, to_eye), 1e-4);
+    float alpha = max(roughness * roughness, 1e-3);
+    float alpha_squared = alpha * alpha;
+    if (kind == BRDF_BLINN_PHONG) {
+        float exponent = max(2.0 / alpha_squared - 2.0, 1.0);
+        return (exponent + 2.0) / (8.0 * PI) * pow(max(n_dot_h, 1e-6), exponent);
+    }
+    float denominator = n_dot_h * n_dot_h * (alpha_squared - 1.0) + 1.0;
+    float distribution = alpha_squared / (PI * denominator * denominator);
+    float masking = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared);
+    float shadowing = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - alpha_squared) + alpha_squared);
+    return distribution * 0.5 / max(masking + shadowing, 1e-6);
+}
+
 // The BRDF in 1/sr, without the cosine. All vectors are unit length; `n_dot_l` is positive.
 //
 // GGX: Smith's height-correlated visibility, Schlick's Fresnel with F0 = mix(0.04 or the index of refraction's, base colour, metallic), diffuse
@@ -52,27 +71,12 @@ vec3 brdf(uint kind, Surface surface, vec3 normal, vec3 to_light, vec3 to_eye) {
         return diffuse;
     }
     vec3 half_vector = normalize(to_light + to_eye);
-    float n_dot_h = clamp(dot(normal, half_vector), 0.0, 1.0);
     float v_dot_h = clamp(dot(to_eye, half_vector), 0.0, 1.0);
-    float n_dot_l = clamp(dot(normal, to_light), 0.0, 1.0);
-    float n_dot_v = max(dot(normal, to_eye), 1e-4);
-    float alpha = max(surface.roughness * surface.roughness, 1e-3);
-    float alpha_squared = alpha * alpha;
     vec3 f0 = f0_of(surface);
     float grazing = 1.0 - v_dot_h;
     float grazing_squared = grazing * grazing;
     vec3 fresnel = f0 + (f90_of(surface) - f0) * (grazing_squared * grazing_squared * grazing);
-    float specular;
-    if (kind == BRDF_BLINN_PHONG) {
-        float exponent = max(2.0 / alpha_squared - 2.0, 1.0);
-        specular = (exponent + 2.0) / (8.0 * PI) * pow(max(n_dot_h, 1e-6), exponent);
-    } else {
-        float denominator = n_dot_h * n_dot_h * (alpha_squared - 1.0) + 1.0;
-        float distribution = alpha_squared / (PI * denominator * denominator);
-        float masking = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared);
-        float shadowing = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - alpha_squared) + alpha_squared);
-        specular = distribution * 0.5 / max(masking + shadowing, 1e-6);
-    }
+    float specular = specular_lobe(kind, surface.roughness, normal, to_light, to_eye, half_vector);
     return (1.0 - fresnel) * diffuse + fresnel * specular;
 }
 

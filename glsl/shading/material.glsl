@@ -19,11 +19,13 @@ layout(location = 0) in vec3 in_position_ws;
 layout(location = 1) in vec3 in_normal_ws;
 layout(location = 2) in vec4 in_tangent_ws;
 layout(location = 3) in vec2 in_uv;
-layout(location = 4) flat in uint in_material;
+layout(location = 4) flat in uvec2 in_ids;
 #ifdef VERTEX_EXTENDED
 layout(location = 5) in vec4 in_color;
 layout(location = 6) in vec2 in_uv_1;
 #endif
+
+#define in_material in_ids.x
 
 // Where on its picture a texture (TEXTURE_) is read.
 vec2 uv_of(uint which) {

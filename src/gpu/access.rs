@@ -21,6 +21,8 @@ pub enum Access {
     GraphicsRead,
     /// Read through an image descriptor by a fragment shader.
     FragmentSample,
+    /// Written (and perhaps read) as a storage buffer by a fragment shader.
+    FragmentWrite,
     /// Written as a colour attachment, blending included.
     ColorWrite,
     /// Tested and written as the depth attachment.
@@ -34,12 +36,13 @@ pub enum Access {
 }
 
 impl Access {
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 12] = [
         Self::ComputeRead,
         Self::ComputeWrite,
         Self::ComputeSample,
         Self::GraphicsRead,
         Self::FragmentSample,
+        Self::FragmentWrite,
         Self::ColorWrite,
         Self::DepthWrite,
         Self::DepthTest,
@@ -53,7 +56,7 @@ impl Access {
         match self {
             Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample => Stage::COMPUTE_SHADER,
             Self::GraphicsRead => Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER,
-            Self::FragmentSample => Stage::FRAGMENT_SHADER,
+            Self::FragmentSample | Self::FragmentWrite => Stage::FRAGMENT_SHADER,
             Self::ColorWrite => Stage::COLOR_ATTACHMENT_OUTPUT,
             Self::DepthWrite | Self::DepthTest => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,
             Self::TransferRead | Self::TransferWrite => Stage::ALL_TRANSFER,
@@ -65,7 +68,7 @@ impl Access {
         use vk::AccessFlags2 as Flags;
         match self {
             Self::ComputeRead => Flags::SHADER_STORAGE_READ | Flags::UNIFORM_READ,
-            Self::ComputeWrite => Flags::SHADER_STORAGE_READ | Flags::SHADER_STORAGE_WRITE,
+            Self::ComputeWrite | Self::FragmentWrite => Flags::SHADER_STORAGE_READ | Flags::SHADER_STORAGE_WRITE,
             Self::ComputeSample | Self::FragmentSample => Flags::SHADER_SAMPLED_READ,
             Self::GraphicsRead => Flags::SHADER_STORAGE_READ | Flags::UNIFORM_READ,
             Self::ColorWrite => Flags::COLOR_ATTACHMENT_READ | Flags::COLOR_ATTACHMENT_WRITE,
@@ -87,12 +90,15 @@ impl Access {
             Self::DepthTest => vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
             Self::TransferRead => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             Self::TransferWrite => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-            Self::GraphicsRead | Self::VertexRead => vk::ImageLayout::UNDEFINED,
+            Self::GraphicsRead | Self::FragmentWrite | Self::VertexRead => vk::ImageLayout::UNDEFINED,
         }
     }
 
     pub fn writes(self) -> bool {
-        matches!(self, Self::ComputeWrite | Self::ColorWrite | Self::DepthWrite | Self::TransferWrite)
+        matches!(
+            self,
+            Self::ComputeWrite | Self::FragmentWrite | Self::ColorWrite | Self::DepthWrite | Self::TransferWrite
+        )
     }
 
     fn bit(self) -> u16 {

@@ -312,6 +312,22 @@ impl Commands {
         }
     }
 
+    /// Sets all of a buffer to 0; its next access follows `TransferWrite`.
+    pub fn clear(&mut self, target: &Buffer) {
+        // SAFETY: the buffer is being recorded outside rendering; the caller stated the barriers.
+        unsafe { self.gpu.device.cmd_fill_buffer(self.buffer(), target.handle, 0, vk::WHOLE_SIZE, 0) };
+    }
+
+    /// Which texels draws may touch, until the next rendering begins: `offset` and `extent`, in the attachments.
+    pub fn set_scissor(&mut self, [x, y]: [u32; 2], extent: Extent) {
+        let area = vk::Rect2D {
+            offset: vk::Offset2D { x: x as i32, y: y as i32 },
+            extent: vk::Extent2D { width: extent.width, height: extent.height },
+        };
+        // SAFETY: the buffer is being recorded.
+        unsafe { self.gpu.device.cmd_set_scissor(self.buffer(), 0, &[area]) };
+    }
+
     /// Copies level 0 of an image into a buffer whose rows are `row_pitch` texels apart; what lies between rows stays.
     pub fn copy_to_rows(&mut self, source: &Image, target: &Buffer, row_pitch: u32) {
         let extent = source.description.extent;

@@ -15,6 +15,8 @@ pub enum Ability {
     BlendFloats,
     /// Shaders store two words a texel into an image.
     StoreWordPairs,
+    /// Fragment shaders count in storage buffers.
+    FragmentAtomics,
 }
 
 impl Ability {
@@ -25,6 +27,7 @@ impl Ability {
             Self::DepthWithStencil => caps.formats.float_depth_with_stencil,
             Self::BlendFloats => caps.formats.float_color_blend,
             Self::StoreWordPairs => caps.features.storage_image_extended_formats,
+            Self::FragmentAtomics => caps.features.fragment_stores_and_atomics,
         }
     }
 
@@ -35,6 +38,7 @@ impl Ability {
             Self::DepthWithStencil => "D32_SFLOAT_S8_UINT as depth and stencil attachment",
             Self::BlendFloats => "R32G32B32A32_SFLOAT as blended colour attachment",
             Self::StoreWordPairs => "shaderStorageImageExtendedFormats",
+            Self::FragmentAtomics => "fragmentStoresAndAtomics",
         }
     }
 }

@@ -233,8 +233,7 @@ pub struct GraphicsDescription<'a> {
     /// One vertex buffer each: its stride and its attributes (location, format, offset).
     pub vertex_buffers: &'a [VertexBuffer],
     pub color_formats: &'a [vk::Format],
-    /// Blend source over destination by alpha (premultiplied), on every colour attachment.
-    pub blend_over: bool,
+    pub blending: Blending,
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,
     pub depth_compare: vk::CompareOp,
@@ -242,6 +241,32 @@ pub struct GraphicsDescription<'a> {
     pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
     pub foreign_sets: &'a [vk::DescriptorSetLayout],
+}
+
+/// How fragments meet what is in the colour attachments, all of them alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blending {
+    Replace,
+    /// Source over destination by alpha (premultiplied).
+    Over,
+    /// Sums, in the order of the draws.
+    Add,
+}
+
+impl Blending {
+    fn state(self) -> vk::PipelineColorBlendAttachmentState {
+        let target = match self {
+            Self::Replace | Self::Over => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+            Self::Add => vk::BlendFactor::ONE,
+        };
+        vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA)
+            .blend_enable(self != Self::Replace)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(target)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(target)
+    }
 }
 
 /// What draws do with the stencil, all eight bits of it.
@@ -330,14 +355,7 @@ impl GraphicsPipeline {
             .depth_test_enable(description.depth_format.is_some())
             .depth_write_enable(description.depth_write)
             .depth_compare_op(description.depth_compare);
-        let attachment = vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA)
-            .blend_enable(description.blend_over)
-            .src_color_blend_factor(vk::BlendFactor::ONE)
-            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
-            .src_alpha_blend_factor(vk::BlendFactor::ONE)
-            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA);
-        let attachments = vec![attachment; description.color_formats.len()];
+        let attachments = vec![description.blending.state(); description.color_formats.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let mut dynamic_states = vec![
             vk::DynamicState::VIEWPORT,

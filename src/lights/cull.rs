@@ -8,7 +8,7 @@ use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::lights::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic, readback};
+use crate::gpu::{Access, Barrier, Buffer, Commands, Edge, Gpu, Traffic, readback};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::Plan;
 use crate::units::Extent;
@@ -54,6 +54,49 @@ pub fn evaluations(gpu: &Arc<Gpu>, masks: &Buffer, extent: Extent, light_count: 
     Ok([evaluated, extent.pixel_count() * u64::from(light_count) - evaluated])
 }
 
+/// The surface whose tiles get masks.
+pub struct CullSurface<'a> {
+    pub extent: Extent,
+    /// What the pipeline reads of a pixel.
+    pub texel_bytes: u64,
+    /// What makes it readable by compute shaders.
+    pub barriers: Vec<Barrier>,
+    pub bound: Vec<(&'static str, Bound<'a>)>,
+}
+
+/// Records the pass `TECHNIQUE.cull` with a pipeline of lights/tile_masks.glsl. `frame`: of the surface's extent. `lights`:
+/// the punctual lights, and how many.
+pub fn record(
+    cmd: &mut Commands,
+    technique: &str,
+    pipeline: &ComputePipeline,
+    surface: CullSurface<'_>,
+    frame: &Buffer,
+    lights: (&Buffer, u32),
+    masks: &Buffer,
+) -> Result<()> {
+    let CullSurface { extent, texel_bytes, barriers, mut bound } = surface;
+    let (lights, light_count) = lights;
+    let traffic = Traffic {
+        read_bytes: extent.pixel_count() * texel_bytes
+            + tile_count(extent) * u64::from(light_count) * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
+        written_bytes: mask_bytes(extent, light_count),
+        invocations: Some(tile_count(extent)),
+    };
+    cmd.pass(&format!("{technique}.cull"), traffic, |cmd| {
+        cmd.barriers(barriers);
+        cmd.barriers([masks.discard(Access::ComputeWrite)]);
+        bound.extend([
+            ("Frame", Bound::Buffer(frame)),
+            ("Lights", Bound::Buffer(lights)),
+            ("LightMasks", Bound::Buffer(masks)),
+        ]);
+        let groups = pipeline.groups([tile_count(extent) as u32, 1, 1]);
+        cmd.dispatch(pipeline, &[], &bound, groups)
+    })
+}
+
+/// Of a G-buffer.
 pub struct Cull {
     pipeline: ComputePipeline,
 }
@@ -64,7 +107,7 @@ impl Cull {
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &[])? })
     }
 
-    /// `lights`: the punctual lights, `light_count` of them.
+    /// `lights`: the punctual lights, and how many.
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -74,27 +117,12 @@ impl Cull {
         lights: (&Buffer, u32),
         masks: &Buffer,
     ) -> Result<()> {
-        let extent = gbuffer.resource.extent();
-        let (lights, light_count) = lights;
-        let traffic = Traffic {
-            read_bytes: extent.pixel_count() * gbuffer.resource.surface_bytes()
-                + tile_count(extent)
-                    * u64::from(light_count)
-                    * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
-            written_bytes: mask_bytes(extent, light_count),
-            invocations: Some(tile_count(extent)),
+        let surface = CullSurface {
+            extent: gbuffer.resource.extent(),
+            texel_bytes: gbuffer.resource.surface_bytes(),
+            barriers: gbuffer.surface_to_sampled(),
+            bound: gbuffer.resource.bound_surface(),
         };
-        cmd.pass(&format!("{technique}.cull"), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to_sampled());
-            cmd.barriers([masks.discard(Access::ComputeWrite)]);
-            let mut bound = gbuffer.resource.bound_surface();
-            bound.extend([
-                ("Frame", Bound::Buffer(frame)),
-                ("Lights", Bound::Buffer(lights)),
-                ("LightMasks", Bound::Buffer(masks)),
-            ]);
-            let groups = self.pipeline.groups([tile_count(extent) as u32, 1, 1]);
-            cmd.dispatch(&self.pipeline, &[], &bound, groups)
-        })
+        record(cmd, technique, &self.pipeline, surface, frame, lights, masks)
     }
 }

@@ -11,7 +11,7 @@ use super::{gbuffer, mesh};
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::Bound;
-use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::BlendParams;
 use crate::gpu::shader::variant;
@@ -42,6 +42,17 @@ pub fn all_lights(least_squared: f32) -> BlendParams {
     BlendParams { least_squared, weight: 1.0, pattern_x: 0, pattern_y: 0 }
 }
 
+/// The BLEND draws, farthest first, by the middles of their boxes.
+pub fn back_to_front(scene: &SceneGpu, view: &View) -> Vec<DrawCall> {
+    let eye = view.eye();
+    let mut calls: Vec<DrawCall> = scene.calls.iter().filter(|call| call.alpha == AlphaMode::Blend).copied().collect();
+    calls.sort_by(|a, b| {
+        let distance = |call: &DrawCall| call.center_ws.distance_squared(eye);
+        distance(b).total_cmp(&distance(a))
+    });
+    calls
+}
+
 pub struct Blend {
     pipeline: GraphicsPipeline,
     /// Farthest first.
@@ -58,16 +69,10 @@ impl Blend {
         params: BlendParams,
         constants: &[(&str, u32)],
     ) -> Result<Option<Self>> {
-        let eye = view.eye();
-        let mut calls: Vec<DrawCall> =
-            scene.calls.iter().filter(|call| call.alpha == AlphaMode::Blend).copied().collect();
+        let calls = back_to_front(scene, view);
         if calls.is_empty() {
             return Ok(None);
         }
-        calls.sort_by(|a, b| {
-            let distance = |call: &DrawCall| call.center_ws.distance_squared(eye);
-            distance(b).total_cmp(&distance(a))
-        });
         let pipeline = GraphicsPipeline::new(
             gpu,
             &GraphicsDescription {
@@ -76,7 +81,7 @@ impl Blend {
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[PICTURE_FORMAT],
-                blend_over: true,
+                blending: Blending::Over,
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,

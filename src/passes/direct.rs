@@ -61,10 +61,23 @@ const RAY_OFFSET: f32 = 1e-4;
 
 impl ShadingSettings {
     pub fn new(values: &Values, lights: &LightSet, scene: &Scene, caps: &Caps) -> Self {
+        let position = PositionStorage::from_setting(values.text("position"));
+        Self::with(values, lights, scene, caps, position, values.text("cull") == "tiled")
+    }
+
+    /// The same, of a technique whose settings say otherwise where positions are and whether there are lists for tiles.
+    pub fn with(
+        values: &Values,
+        lights: &LightSet,
+        scene: &Scene,
+        caps: &Caps,
+        position: PositionStorage,
+        cull: bool,
+    ) -> Self {
         Self {
             brdf: Brdf::from_setting(values.text("brdf")),
-            position: PositionStorage::from_setting(values.text("position")),
-            cull: values.text("cull") == "tiled",
+            position,
+            cull,
             shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
             sun_count: lights.sun_count() as u64,
             workgroup: values.pair("workgroup"),

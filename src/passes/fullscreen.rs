@@ -2,7 +2,7 @@
 //! Shader: fullscreen.vert.
 
 use crate::gpu::Commands;
-use crate::gpu::pipeline::GraphicsDescription;
+use crate::gpu::pipeline::{Blending, GraphicsDescription};
 use crate::gpu::shader::Shader;
 use ash::vk;
 
@@ -14,7 +14,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         constants: &[],
         vertex_buffers: &[],
         color_formats,
-        blend_over: false,
+        blending: Blending::Replace,
         depth_format: None,
         depth_write: false,
         depth_compare: vk::CompareOp::ALWAYS,

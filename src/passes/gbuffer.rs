@@ -13,7 +13,7 @@
 use super::{decode, mesh};
 use crate::error::Result;
 use crate::gpu::Bound;
-use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::structs::GBufferParams;
@@ -317,7 +317,7 @@ impl GBufferPass {
                     constants: if has_emissive { &constants } else { &[] },
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
-                    blend_over: false,
+                    blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,

@@ -25,7 +25,9 @@ pub fn block(material: &Material) -> MaterialBlock {
         roughness: material.roughness,
         alpha_cutoff: match material.alpha {
             AlphaMode::Mask { cutoff } => cutoff,
-            AlphaMode::Opaque | AlphaMode::Blend => 0.0,
+            AlphaMode::Opaque => 0.0,
+            // Where it is drawn as solid: inferred_lighting's --alpha test.
+            AlphaMode::Blend => 0.5,
         },
         flags: bit(material.base_color_texture.is_some(), BASE_COLOR_TEXTURE)
             | bit(material.metallic_roughness_texture.is_some(), METALLIC_ROUGHNESS_TEXTURE)

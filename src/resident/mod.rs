@@ -342,7 +342,8 @@ fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
     scene
         .draws
         .iter()
-        .map(|draw| {
+        .enumerate()
+        .map(|(index, draw)| {
             let normals = normals_from(draw);
             let column = |v: Vec3| v.extend(0.0).to_array();
             DrawBlock {
@@ -351,6 +352,8 @@ fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
                 normal_y: column(normals.y_axis),
                 normal_z: column(normals.z_axis),
                 material: scene.meshes[draw.mesh].material as u32,
+                // Eight bits: beyond 256 objects some share one (Kircher 2009, section 3.1).
+                object_id: index as u32 % 256,
                 ..DrawBlock::zeroed()
             }
         })

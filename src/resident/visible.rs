@@ -14,6 +14,7 @@
 use super::{Cluster, DrawCall, SceneGpu};
 use crate::frame::View;
 use crate::scene::{AlphaMode, Bounds, Projection, Scene};
+use crate::units::Extent;
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 
 /// What is drawn of the solid draws, front to back (`--geometry`).
@@ -52,20 +53,22 @@ pub struct DrawList {
 }
 
 impl DrawList {
-    pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, choice: GeometryChoice) -> Self {
-        Self::of(scene, (&resident.calls, &resident.clusters, &resident.host_indices), view, choice)
+    /// `raster`: the extent of the images that are drawn into, which need not be the picture's.
+    pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, raster: Extent, choice: GeometryChoice) -> Self {
+        Self::of(scene, (&resident.calls, &resident.clusters, &resident.host_indices), view, raster, choice)
     }
 
     fn of(
         scene: &Scene,
         (calls, clusters, indices): (&[DrawCall], &[Cluster], &[u32]),
         view: &View,
+        raster: Extent,
         choice: GeometryChoice,
     ) -> Self {
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
-            let lens = Lens::new(scene, call, view);
+            let lens = Lens::new(scene, call, view, raster);
             for cluster in &clusters[call.clusters()] {
                 if choice == GeometryChoice::Culled && lens.sees_nothing_of(cluster, &indices[cluster.indices()]) {
                     clusters_culled += 1;
@@ -139,7 +142,7 @@ impl Clipped {
 }
 
 impl<'a> Lens<'a> {
-    fn new(scene: &'a Scene, call: &DrawCall, view: &View) -> Self {
+    fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Extent) -> Self {
         let draw = &scene.draws[call.draw as usize];
         let (clip_from_world, world_from_object) =
             (view.clip_from_world().as_dmat4(), draw.world_from_object.as_dmat4());
@@ -152,7 +155,7 @@ impl<'a> Lens<'a> {
             positions: &scene.meshes[draw.mesh].positions,
             double_sided: call.double_sided,
             mirrored: call.mirrored,
-            extent_px: DVec2::new(f64::from(view.extent.width), f64::from(view.extent.height)),
+            extent_px: DVec2::new(f64::from(raster.width), f64::from(raster.height)),
             clip_from_object: clip_from_world * world_from_object,
             magnitude_from_object: magnitudes(clip_from_world) * magnitudes(world_from_object),
             world_from_object,
@@ -276,7 +279,7 @@ mod tests {
 
     fn list(scene: &Scene, view: &View, choice: GeometryChoice) -> DrawList {
         let geometry = Geometry::of(scene);
-        DrawList::of(scene, (&geometry.calls(scene), &geometry.clusters, &geometry.indices), view, choice)
+        DrawList::of(scene, (&geometry.calls(scene), &geometry.clusters, &geometry.indices), view, view.extent, choice)
     }
 
     fn view(eye: Vec3, at: Vec3, projection: Projection) -> View {

@@ -216,6 +216,42 @@ pub const EMISSIVE: Setting = Setting {
     help: "emissive triangles light other surfaces; auto: off where the scene has punctual lights, because maps carry both",
 };
 
+/// What is drawn of solid surfaces.
+pub const GEOMETRY: Setting = Setting {
+    key: "geometry",
+    symbol: "",
+    kind: Kind::Choice(&["culled", "all"]),
+    default: "culled",
+    unit: "",
+    paper: "",
+    help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
+           plain way to the same bits)",
+};
+
+/// Which punctual lights cast shadow rays.
+pub const DIRECT_SHADOW: Setting = Setting {
+    key: "direct-shadow",
+    symbol: "",
+    kind: Kind::Choice(&["none", "sun", "ray"]),
+    default: "sun",
+    unit: "",
+    paper: "",
+    help: "shadow rays to no light, to directional lights, or to every punctual light",
+};
+
+/// How many pixels a thread works on.
+pub const TEXELS: Setting = Setting {
+    key: "texels",
+    symbol: "",
+    kind: Kind::Choice(&["auto", "1", "2", "4", "8", "16", "32"]),
+    default: "auto",
+    unit: "px",
+    paper: "",
+    help: "pixels that a thread shades, compares or filters one after the other at most, reading once what they share; 1 \
+           is the plain way to the same bits; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
+           22, 16 on other software drivers, else 1",
+};
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
     BRDF,
@@ -229,16 +265,7 @@ pub const SHADING: &[Setting] = &[
         help: "how the G-buffer holds positions: half floats (the paper's), 16-bit fractions of the scene's box, the depth \
                buffer, or 32-bit floats (the oracle)",
     },
-    Setting {
-        key: "geometry",
-        symbol: "",
-        kind: Kind::Choice(&["culled", "all"]),
-        default: "culled",
-        unit: "",
-        paper: "",
-        help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
-               plain way to the same bits)",
-    },
+    GEOMETRY,
     Setting {
         key: "cull",
         symbol: "",
@@ -248,25 +275,7 @@ pub const SHADING: &[Setting] = &[
         paper: "",
         help: "of direct light: every light on every pixel, or a list of lights for each tile of 16x16; the same picture",
     },
-    Setting {
-        key: "direct-shadow",
-        symbol: "",
-        kind: Kind::Choice(&["none", "sun", "ray"]),
-        default: "sun",
-        unit: "",
-        paper: "",
-        help: "shadow rays to no light, to directional lights, or to every punctual light",
-    },
-    Setting {
-        key: "texels",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "1", "2", "4", "8", "16", "32"]),
-        default: "auto",
-        unit: "px",
-        paper: "",
-        help: "pixels that a thread shades, compares or filters one after the other at most, reading once what they share; 1 \
-               is the plain way to the same bits; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
-               22, 16 on other software drivers, else 1",
-    },
+    DIRECT_SHADOW,
+    TEXELS,
     WORKGROUP,
 ];
