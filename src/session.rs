@@ -191,8 +191,14 @@ pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String
     let mut plan = technique.plan(inputs)?;
     plan.host_buffer("frame", block_name(technique), size_of::<FrameBlock>() as u64);
     for aov in aovs {
-        // An AOV that is no resource of this plan is refused when it is read, with the reason.
-        plan.read_back(&format!("{}.{aov}", technique.name()));
+        // A resource, or a part of one such as `light.l_buffer.irradiance`. An AOV that is neither in this plan is refused when
+        // it is read, with the reason.
+        let name = format!("{}.{aov}", technique.name());
+        if !plan.read_back(&name)
+            && let Some((whole, _)) = name.rsplit_once('.')
+        {
+            plan.read_back(whole);
+        }
     }
     plan.check(inputs.caps.limits.max_storage_buffer_range_bytes)?;
     Ok(plan)

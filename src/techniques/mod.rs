@@ -6,6 +6,7 @@
 
 pub mod deferred;
 pub mod fitness;
+pub mod inferred_lighting;
 pub mod interleaved_deferred;
 pub mod path_traced;
 
@@ -19,6 +20,7 @@ use crate::report::image_file::Aov;
 use crate::resident::{DrawList, GeometryChoice, SceneGpu, SceneStats};
 use crate::scene::Scene;
 use crate::settings::{Setting, Values};
+use crate::units::Extent;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -36,7 +38,13 @@ pub struct Inputs<'a> {
 impl Inputs<'_> {
     /// What the G-buffer pass draws of the scene.
     fn draw_list(&self, scene: &SceneGpu) -> DrawList {
-        DrawList::new(self.scene, scene, self.view, GeometryChoice::from_setting(self.values.text("geometry")))
+        self.draw_list_into(scene, self.view.extent)
+    }
+
+    /// The same, drawn into images of another extent than the picture's.
+    fn draw_list_into(&self, scene: &SceneGpu, raster: Extent) -> DrawList {
+        let choice = GeometryChoice::from_setting(self.values.text("geometry"));
+        DrawList::new(self.scene, scene, self.view, raster, choice)
     }
 }
 
@@ -155,8 +163,12 @@ pub trait Frame {
 }
 
 /// Every technique.
-pub const ALL: &[&dyn Technique] =
-    &[&interleaved_deferred::InterleavedDeferred, &deferred::Deferred, &path_traced::PathTraced];
+pub const ALL: &[&dyn Technique] = &[
+    &interleaved_deferred::InterleavedDeferred,
+    &inferred_lighting::InferredLighting,
+    &deferred::Deferred,
+    &path_traced::PathTraced,
+];
 
 /// The technique of this name.
 ///

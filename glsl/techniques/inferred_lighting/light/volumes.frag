@@ -1,0 +1,35 @@
+// The light pass with a draw a light: what it adds to the texels that it may reach. Kircher 2009, section 2.2.
+// Pass: src/techniques/inferred_lighting/light/volumes.rs.
+// variants: EXTRAS=off|on
+#version 460
+#include "frame.glsl"
+#include "bvh.glsl"
+#include "loops.glsl"
+
+struct VolumesParams {
+    // Index of the light.
+    uint light;
+};
+
+layout(push_constant) uniform Push { VolumesParams params; };
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+
+#include "techniques/inferred_lighting/surface.glsl"
+
+layout(std430, set = 0, binding = 1) readonly buffer Lights { LightBlock lights[]; };
+layout(std430, set = 0, binding = 2) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
+layout(std430, set = 0, binding = 3) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
+
+#include "bvh_walk.glsl"
+#include "techniques/inferred_lighting/lighting.glsl"
+
+layout(location = 0) out vec4 out_lighting;
+
+void main() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    out_lighting = vec4(0.0);
+    if (has_surface_at(pixel)) {
+        vec4 lighting = lighting_by(lights[params.light], surface_at(pixel));
+        out_lighting = vec4(nan_if_cut(lighting.rgb), lighting.a);
+    }
+}

@@ -1,0 +1,86 @@
+//! The buffers of the paper's figure 2, read back after a frame. They have the light buffer's size: a pixel of the frame
+//! shows the texel that it lies in.
+
+use super::frame::InferredFrame;
+use super::{NAME, encoding};
+use crate::error::Result;
+use crate::gpu::{Access, Gpu, Image, readback};
+use crate::report::image_file::{Aov, AovChannels};
+use crate::techniques::{Frame, left_out};
+use crate::units::Extent;
+use half::f16;
+use std::sync::Arc;
+
+/// Names that `--aov` takes.
+pub const AOVS: &[&str] = &[
+    "geometry.normal",
+    "geometry.dsf.id",
+    "geometry.dsf.depth",
+    "light.l_buffer.irradiance",
+    "light.l_buffer.highlight",
+];
+
+/// Reads `name` back.
+///
+/// Errors: the settings leave its pass out (exit code 2).
+pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+    let geometry = &frame.geometry;
+    let last = Access::FragmentSample;
+    let channels = match name {
+        "geometry.normal" => {
+            let bytes = readback::image(gpu, &geometry.normal, frame.surface_access())?;
+            AovChannels::Rgb(spread(frame, &words(&bytes).map(normal).collect::<Vec<_>>()))
+        }
+        // Object and normal group as a number, as figure 2 shows them.
+        "geometry.dsf.id" => {
+            let bytes = readback::image(gpu, &geometry.dsf, last)?;
+            AovChannels::YU32(spread(frame, &words(&bytes).map(encoding::id).collect::<Vec<_>>()))
+        }
+        // Metres from the eye's plane, 0 where no surface is.
+        "geometry.dsf.depth" => {
+            let bytes = readback::image(gpu, &geometry.dsf, last)?;
+            let depth = |word| encoding::depth_m(word, frame.depth_range_m).unwrap_or(0.0);
+            AovChannels::Y(spread(frame, &words(&bytes).map(depth).collect::<Vec<_>>()))
+        }
+        "light.l_buffer.irradiance" => {
+            let texels = l_buffer(gpu, &frame.l_buffer)?;
+            AovChannels::Rgb(spread(frame, &texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>()))
+        }
+        "light.l_buffer.highlight" => {
+            let texels = l_buffer(gpu, &frame.l_buffer)?;
+            AovChannels::Y(spread(frame, &texels.iter().map(|[.., a]| *a).collect::<Vec<_>>()))
+        }
+        _ => return Err(left_out(NAME, name, "no pass of it has that name")),
+    };
+    Ok(Aov { name: name.to_owned(), channels })
+}
+
+fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+}
+
+/// In view space; 0 where no surface is.
+fn normal(word: u32) -> [f32; 3] {
+    if word == u32::MAX { [0.0; 3] } else { encoding::view_normal(word).to_array() }
+}
+
+fn l_buffer(gpu: &Arc<Gpu>, image: &Image) -> Result<Vec<[f32; 4]>> {
+    let bytes = readback::image(gpu, image, Access::FragmentSample)?;
+    let half = |texel: &[u8], at: usize| f16::from_le_bytes([texel[2 * at], texel[2 * at + 1]]).to_f32();
+    Ok(bytes.chunks_exact(8).map(|texel| [0, 1, 2, 3].map(|at| half(texel, at))).collect())
+}
+
+/// The texel of each pixel.
+fn spread<T: Copy>(frame: &InferredFrame, texels: &[T]) -> Vec<T> {
+    let (low, extent): (Extent, Extent) = (frame.geometry.extent(), frame.picture().0.description.extent);
+    let along = |at: u32, from: u32, to: u32| {
+        ((2 * u64::from(at) + 1) * u64::from(to) / (2 * u64::from(from))).min(u64::from(to) - 1) as usize
+    };
+    (0..extent.height)
+        .flat_map(|y| (0..extent.width).map(move |x| (x, y)))
+        .map(|(x, y)| {
+            let (x, y) = (along(x, extent.width, low.width), along(y, extent.height, low.height));
+            texels[y * low.width as usize + x]
+        })
+        .collect()
+}

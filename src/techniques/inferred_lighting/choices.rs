@@ -1,0 +1,105 @@
+//! What the settings come to, before there is a device: sizes, roads, the constants of the shaders.
+
+use super::light::Volumes;
+use super::stipple::Assignment;
+use crate::error::{Error, Result};
+use crate::passes::direct::ShadingSettings;
+use crate::passes::gbuffer::PositionStorage;
+use crate::shading::brdf::Brdf;
+use crate::techniques::Inputs;
+use crate::units::Extent;
+
+/// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
+const LIGHT_SCALE: f64 = 0.625;
+
+/// The settings, checked against each other.
+#[derive(Clone, Debug)]
+pub struct Choices {
+    pub shading: ShadingSettings,
+    pub light_extent: Extent,
+    pub has_extras: bool,
+    light_roughness: f32,
+    pub volumes: Volumes,
+    /// The L-buffer is blended in half floats.
+    pub in_halves: bool,
+    pub filters: bool,
+    pub depth_threshold: f32,
+    pub tests_alpha: bool,
+    pub stipple_side: u32,
+    pub assignment: Assignment,
+    /// In texels; 0: bilinear.
+    cone_radius: f32,
+}
+
+impl Choices {
+    /// Errors: settings that contradict each other (exit code 2).
+    pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
+        let values = inputs.values;
+        let volumes = Volumes::from_setting(values.text("volumes"));
+        let in_halves = values.text("l-buffer") == "half";
+        if in_halves && volumes == Volumes::Tiled {
+            return Err(Error::request("--l-buffer half with --volumes tiled: sums of one dispatch are not blended")
+                .note("--volumes scissor blends in half floats; --volumes tiled takes --l-buffer float"));
+        }
+        let stipple_side = if values.text("stipple") == "4x4" { 4 } else { 2 };
+        let cone_radius = match values.text("alpha-filter") {
+            "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
+            _ => 0.0,
+        };
+        let (position, cull) = (PositionStorage::Depth, volumes == Volumes::Tiled);
+        Ok(Self {
+            shading: ShadingSettings::with(values, inputs.lights, inputs.scene, inputs.caps, position, cull),
+            light_extent: light_extent(values.text("light-size"), inputs.view.extent),
+            has_extras: values.is_on("extras") && values.text("brdf") != "lambert",
+            light_roughness: values.number("light-roughness") as f32,
+            volumes,
+            in_halves,
+            filters: values.is_on("dsf"),
+            depth_threshold: values.number("depth-threshold") as f32,
+            tests_alpha: values.text("alpha") == "test",
+            stipple_side,
+            assignment: Assignment::from_setting(values.text("assignment")),
+            cone_radius,
+        })
+    }
+
+    /// Constants of the light pass: those of lights that are not of materials, and ROUGHNESS without extras.
+    pub fn light_constants(&self) -> Vec<(&'static str, u32)> {
+        let mut constants = vec![("BRDF_KIND", self.shading.brdf as u32)];
+        constants.extend(self.shading.shadow_constants());
+        if !self.has_extras && self.shading.brdf != Brdf::Lambert {
+            constants.push(("ROUGHNESS", self.light_roughness.to_bits()));
+        }
+        constants
+    }
+
+    /// Constants of the material pass.
+    pub fn material_constants(&self) -> [(&'static str, u32); 4] {
+        [
+            ("BRDF_KIND", self.shading.brdf as u32),
+            ("SURFACE_EXTRAS", u32::from(self.shading.extras)),
+            ("DSF", u32::from(self.filters)),
+            ("CONE_RADIUS", self.cone_radius.to_bits()),
+        ]
+    }
+}
+
+fn light_extent(text: &str, frame: Extent) -> Extent {
+    let scaled = |side: u32| ((f64::from(side) * LIGHT_SCALE).round() as u32).max(1);
+    match text.split_once('x').map(|(width, height)| (width.parse(), height.parse())) {
+        Some((Ok(width), Ok(height))) => Extent::new(width, height),
+        _ => Extent::new(scaled(frame.width), scaled(frame.height)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_size_is_the_paper_s() {
+        assert_eq!(light_extent("auto", Extent::new(1280, 720)), Extent::new(800, 450));
+        assert_eq!(light_extent("auto", Extent::new(1, 3)), Extent::new(1, 2));
+        assert_eq!(light_extent("320x200", Extent::new(1, 3)), Extent::new(320, 200));
+    }
+}

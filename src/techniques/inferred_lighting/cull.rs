@@ -1,0 +1,39 @@
+//! Cull: a list of lights for each tile of the light buffer, for `--volumes tiled`. Shader: cull.comp.
+//! reads  geometry.depth, the lights      writes  cull.masks  buffer, one bit a light, tiles in row order
+
+use super::NAME;
+use super::geometry::LowGeometry;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::inferred_lighting::cull::COMP;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
+use crate::lights::cull::{self, CullSurface};
+use std::sync::Arc;
+
+pub struct Cull {
+    pipeline: ComputePipeline,
+}
+
+impl Cull {
+    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    }
+
+    /// `frame`: the block of the light buffer's extent. `lights`: the punctual lights, and how many.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        geometry: Edge<'_, LowGeometry>,
+        frame: &Buffer,
+        lights: (&Buffer, u32),
+        masks: &Buffer,
+    ) -> Result<()> {
+        let surface = CullSurface {
+            extent: geometry.resource.extent(),
+            texel_bytes: 4,
+            barriers: vec![geometry.depth_to(Access::ComputeSample)],
+            bound: vec![geometry.resource.bound_depth(Access::ComputeSample)],
+        };
+        cull::record(cmd, NAME, &self.pipeline, surface, frame, lights, masks)
+    }
+}

@@ -1,0 +1,201 @@
+//! A frame of inferred lighting on the device: the passes in the order of figure 2.
+
+use super::choices::Choices;
+use super::cull::Cull;
+use super::geometry::{Geometry, LowGeometry};
+use super::light::pack::Pack;
+use super::light::tiled::Tiled;
+use super::light::volumes::LightVolumes;
+use super::light::{self, Volumes};
+use super::material::{FilterSettings, Material};
+use super::stipple::{self, Shares};
+use super::{NAME, aov, light_frame};
+use crate::error::Result;
+use crate::gpu::shader::structs::{FrameBlock, LightBlock};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image, upload};
+use crate::passes::blend;
+use crate::passes::direct::DirectGpu;
+use crate::plan::{PICTURE_FORMAT, Resources};
+use crate::report::image_file::Aov;
+use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::{Frame, Inputs};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How lights reach the L-buffer.
+enum Road {
+    Tiled(Tiled),
+    /// Blended in half floats.
+    Halves(LightVolumes),
+    Sums {
+        volumes: LightVolumes,
+        pack: Pack,
+        sums: Image,
+    },
+}
+
+pub struct InferredFrame {
+    geometry_pass: Geometry,
+    cull: Option<Cull>,
+    road: Road,
+    material: Material,
+    pub(super) geometry: LowGeometry,
+    pub(super) l_buffer: Image,
+    pub(super) depth_range_m: [f32; 2],
+    lights: DirectGpu,
+    /// The frame's block at the light buffer's extent.
+    light_frame: Buffer,
+    shares: Shares,
+    in_halves: bool,
+}
+
+impl InferredFrame {
+    /// Makes the pipelines and takes the planned resources out.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        lights: &[LightBlock],
+    ) -> Result<Self> {
+        let light_extent = choices.light_extent;
+        let bounds = inputs.scene.bounds();
+        let ambient = inputs.lights.ambient;
+        let background = inputs.values.color("background");
+        let numbers = FrameBlock {
+            width_px: light_extent.width,
+            height_px: light_extent.height,
+            ..inputs.view.block(&bounds, background, ambient, lights.len() as u32, 0)
+        };
+        let light_frame = resources.buffer(&light_frame());
+        upload::buffer(gpu, &light_frame, bytemuck::bytes_of(&numbers), Access::ComputeRead | Access::GraphicsRead)?;
+        let tree = choices.shading.tree(inputs.bvh, inputs.scene)?;
+        let direct = DirectGpu::new(gpu, resources, NAME, lights, &choices.shading, tree)?;
+        let [first_m, last_m] = inputs.view.depth_range(&bounds);
+        let depth_range_m = [first_m, last_m - first_m];
+        let mut lists = [inputs.draw_list_into(scene, light_extent), inputs.draw_list(scene)];
+        let blended = blend::back_to_front(scene, inputs.view);
+        let (stippled, shares) = if choices.tests_alpha {
+            lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));
+            (Vec::new(), Shares::default())
+        } else {
+            stipple::assign(inputs.scene, inputs.view, blended, choices.stipple_side, choices.assignment)
+        };
+        let [low_list, list]: [DrawList; 2] = lists;
+        let constants = choices.light_constants();
+        let volumes = |format| {
+            LightVolumes::new(
+                gpu,
+                &constants,
+                choices.has_extras,
+                choices.volumes,
+                lights,
+                inputs.view,
+                light_extent,
+                format,
+                ambient,
+            )
+        };
+        let road = match (choices.volumes, choices.in_halves) {
+            (Volumes::Tiled, _) => {
+                Road::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
+            }
+            (_, true) => Road::Halves(volumes(light::L_BUFFER_FORMAT)?),
+            (_, false) => Road::Sums {
+                volumes: volumes(PICTURE_FORMAT)?,
+                pack: Pack::new(gpu, &choices.shading.workgroup_constants())?,
+                sums: resources.image(&light::sums()),
+            },
+        };
+        let filter = FilterSettings {
+            depth_range_m,
+            depth_threshold: choices.depth_threshold,
+            light_extent,
+            stipple_side: choices.stipple_side,
+        };
+        let material_constants = choices.material_constants();
+        Ok(Self {
+            cull: direct.masks.as_ref().map(|_| Cull::new(gpu)).transpose()?,
+            road,
+            geometry: LowGeometry::new(gpu, resources, choices.has_extras)?,
+            geometry_pass: Geometry::new(
+                gpu,
+                scene,
+                low_list,
+                stippled.clone(),
+                choices.stipple_side,
+                depth_range_m,
+                choices.has_extras,
+            )?,
+            material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
+            l_buffer: resources.image(&light::l_buffer()),
+            depth_range_m,
+            lights: direct,
+            light_frame,
+            shares,
+            in_halves: choices.in_halves,
+        })
+    }
+}
+
+impl InferredFrame {
+    /// How the light pass left what it read.
+    pub(super) fn surface_access(&self) -> Access {
+        if matches!(self.road, Road::Tiled(_)) { Access::ComputeSample } else { Access::FragmentSample }
+    }
+}
+
+impl Frame for InferredFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let geometry = &self.geometry;
+        self.geometry_pass.record(cmd, &self.light_frame, scene, geometry)?;
+        let mut written = Access::DepthWrite;
+        if let (Some(cull), Some(masks)) = (&self.cull, &self.lights.masks) {
+            let lights = (&self.lights.lights, self.lights.light_count);
+            cull.record(cmd, geometry.from(written), &self.light_frame, lights, masks)?;
+            written = Access::ComputeSample;
+        }
+        let from = geometry.from(written);
+        match &self.road {
+            Road::Tiled(tiled) => tiled.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
+            Road::Halves(volumes) => volumes.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
+            Road::Sums { volumes, pack, sums } => {
+                volumes.record(cmd, &self.light_frame, &self.lights, from, sums)?;
+                pack.record(cmd, &self.light_frame, sums, &self.l_buffer)?;
+            }
+        }
+        let last = light::last_access(self.in_halves);
+        self.material.record(cmd, frame, scene, geometry, &self.l_buffer, last)
+    }
+
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        BTreeMap::from([
+            ("triangles_drawn", self.geometry_pass.triangles_drawn() as f64),
+            ("stipple_layers_used", self.shares.layers_used as f64),
+            ("stipple_draws_sharing", self.shares.draws_sharing as f64),
+        ])
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.material.color, Access::ColorWrite)
+    }
+
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        let mut counters = self.material.counters(gpu)?;
+        match &self.road {
+            Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
+            Road::Halves(volumes) | Road::Sums { volumes, .. } => {
+                let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
+                let evaluated = volumes.evaluations();
+                counters.insert("light_evaluations", evaluated as f64);
+                counters.insert("light_evaluations_culled", (all - evaluated) as f64);
+            }
+        }
+        Ok(counters)
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        aov::read(self, gpu, name)
+    }
+}

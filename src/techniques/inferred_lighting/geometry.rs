@@ -1,0 +1,259 @@
+//! Geometry: what the light pass needs of the surfaces, at the light buffer's size. Kircher 2009, sections 2.1, 3.1, 4.
+//! Shaders: mesh.vert, geometry.frag; encoding: encoding.glsl.
+//! reads   the scene
+//! writes  geometry.normal   image, 4 B a texel: view-space normal through the map of the sphere to the hemisphere
+//!         geometry.dsf      image, 4 B a texel: linear depth, ids of object and normal group
+//!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id
+//!         geometry.depth    image, 4 B a texel, reversed
+//!
+//! BLEND surfaces are drawn last, each into its own texels of the stipple.
+
+use super::NAME;
+use super::stipple::Stippled;
+use crate::error::Result;
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::structs::GeometryParams;
+use crate::gpu::shader::techniques::inferred_lighting::geometry::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::passes::mesh;
+use crate::plan::{Plan, Resources};
+use crate::resident::{DrawList, SceneGpu};
+use crate::units::Extent;
+use ash::vk;
+use bytemuck::Zeroable;
+use std::sync::Arc;
+
+const WORD: vk::Format = vk::Format::R32_UINT;
+const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// What a pass touches.
+pub type Touches = Vec<(String, Access)>;
+
+fn full(what: &str) -> String {
+    format!("{NAME}.geometry.{what}")
+}
+
+fn color_images(has_extras: bool) -> Vec<&'static str> {
+    ["normal", "dsf"].into_iter().chain(has_extras.then_some("extras")).collect()
+}
+
+/// Plans its images.
+pub fn plan(plan: &mut Plan, extent: Extent, has_extras: bool) {
+    use vk::ImageUsageFlags as Usage;
+    let read = Usage::SAMPLED | Usage::TRANSFER_SRC;
+    for what in color_images(has_extras) {
+        plan.image("g-buffer", full(what), extent, WORD, Usage::COLOR_ATTACHMENT | read);
+    }
+    plan.image("g-buffer", full("depth"), extent, DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT | read);
+}
+
+/// What the pass that fills them touches.
+pub fn written(has_extras: bool) -> Touches {
+    let images = color_images(has_extras).into_iter().map(|what| (full(what), Access::ColorWrite));
+    images.chain([(full("depth"), Access::DepthWrite)]).collect()
+}
+
+/// What a pass touches that lights its surfaces.
+pub fn lit(has_extras: bool, access: Access) -> Touches {
+    let read = ["normal", "depth"].into_iter().chain(has_extras.then_some("extras"));
+    read.map(|what| (full(what), access)).collect()
+}
+
+/// What a pass touches that looks where its surfaces are.
+pub fn placed(access: Access) -> Touches {
+    vec![(full("depth"), access)]
+}
+
+/// What a pass touches that filters by its DSF data.
+pub fn filtered() -> (String, Access) {
+    (full("dsf"), Access::FragmentSample)
+}
+
+/// The value of the shaders' axis EXTRAS.
+pub fn extras_name(has_extras: bool) -> &'static str {
+    if has_extras { "on" } else { "off" }
+}
+
+/// The images of the geometry pass.
+pub struct LowGeometry {
+    pub normal: Image,
+    pub dsf: Image,
+    pub extras: Option<Image>,
+    pub depth: Image,
+    nearest: Sampler,
+}
+
+impl LowGeometry {
+    /// Takes the images out that `plan` put in.
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, has_extras: bool) -> Result<Self> {
+        Ok(Self {
+            normal: resources.image(&full("normal")),
+            dsf: resources.image(&full("dsf")),
+            extras: has_extras.then(|| resources.image(&full("extras"))),
+            depth: resources.image(&full("depth")),
+            nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+        })
+    }
+
+    pub fn extent(&self) -> Extent {
+        self.normal.description.extent
+    }
+
+    /// Bytes a texel that lighting reads.
+    pub fn lit_bytes(&self) -> u64 {
+        8 + if self.extras.is_some() { 4 } else { 0 }
+    }
+
+    /// States who touched the depth last. Nothing reads the rest before the lights do.
+    pub fn from(&self, access: Access) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
+    pub fn sampled<'a>(&'a self, image: &'a Image, access: Access) -> Bound<'a> {
+        Bound::Sampled(image, self.nearest.handle, access)
+    }
+
+    /// What surface.glsl binds.
+    pub fn bound(&self, access: Access) -> Vec<(&'static str, Bound<'_>)> {
+        let mut bound = vec![("geometry_normal", self.sampled(&self.normal, access)), self.bound_depth(access)];
+        bound.extend(self.extras.as_ref().map(|extras| ("geometry_extras", self.sampled(extras, access))));
+        bound
+    }
+
+    /// The same, where no light is evaluated.
+    pub fn bound_depth(&self, access: Access) -> (&'static str, Bound<'_>) {
+        ("geometry_depth", self.sampled(&self.depth, access))
+    }
+
+    /// Colour attachments in the order of geometry.frag's locations.
+    fn attachments(&self) -> Vec<&Image> {
+        [Some(&self.normal), Some(&self.dsf), self.extras.as_ref()].into_iter().flatten().collect()
+    }
+}
+
+impl Edge<'_, LowGeometry> {
+    /// The depth becomes readable as `access` says.
+    pub fn depth_to(self, access: Access) -> Barrier {
+        self.resource.depth.from(self.from).to(access)
+    }
+
+    /// What `lit` names becomes readable as `access` says.
+    pub fn lit_to(self, access: Access) -> Vec<Barrier> {
+        let written = [Some(&self.resource.normal), self.resource.extras.as_ref()].into_iter().flatten();
+        let mut barriers = vec![self.depth_to(access)];
+        barriers.extend(written.map(|image| image.from(Access::ColorWrite).to(access)));
+        barriers
+    }
+}
+
+/// The pass that fills them.
+pub struct Geometry {
+    opaque: GraphicsPipeline,
+    mask: GraphicsPipeline,
+    blend: GraphicsPipeline,
+    list: DrawList,
+    stippled: Vec<Stippled>,
+    stipple_side: u32,
+    /// Linear depth of the first step, and of all of them, metres.
+    pub depth_range_m: [f32; 2],
+}
+
+impl Geometry {
+    /// `list`: the solid surfaces that it draws. `stippled`: the others.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        list: DrawList,
+        stippled: Vec<Stippled>,
+        stipple_side: u32,
+        depth_range_m: [f32; 2],
+        has_extras: bool,
+    ) -> Result<Self> {
+        let formats = vec![WORD; color_images(has_extras).len()];
+        let pipeline = |alpha: &str| {
+            let names = [alpha, extras_name(has_extras), mesh::vertex_name(scene)];
+            GraphicsPipeline::new(
+                gpu,
+                &GraphicsDescription {
+                    vertex: mesh::vertex_shader(scene),
+                    fragment: Some(variant(FRAG_VARIANTS, &names)),
+                    constants: &[],
+                    vertex_buffers: mesh::vertex_buffers(scene),
+                    color_formats: &formats,
+                    blending: Blending::Replace,
+                    depth_format: Some(DEPTH_FORMAT),
+                    depth_write: true,
+                    depth_compare: vk::CompareOp::GREATER,
+                    stencil: None,
+                    foreign_sets: &[scene.material_layout],
+                },
+            )
+        };
+        Ok(Self {
+            opaque: pipeline("opaque")?,
+            mask: pipeline("mask")?,
+            blend: pipeline("blend")?,
+            list,
+            stippled,
+            stipple_side,
+            depth_range_m,
+        })
+    }
+
+    pub fn triangles_drawn(&self) -> u64 {
+        self.list.triangles_drawn()
+    }
+
+    fn params(&self, scene: &SceneGpu, material: u32) -> GeometryParams {
+        GeometryParams {
+            material: scene.material_blocks[material as usize],
+            first_depth_m: self.depth_range_m[0],
+            depth_range_m: self.depth_range_m[1],
+            ..GeometryParams::zeroed()
+        }
+    }
+
+    /// `frame`: the block of the light buffer's extent.
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, scene: &SceneGpu, geometry: &LowGeometry) -> Result<()> {
+        let attachments = geometry.attachments();
+        let stippled = self.stippled.iter().map(|stippled| &stippled.call);
+        let traffic = Traffic {
+            read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)),
+            // Each texel once: overdraw depends on the view.
+            written_bytes: geometry.extent().pixel_count() * 4 * (attachments.len() as u64 + 1),
+            invocations: None,
+        };
+        cmd.pass(&format!("{NAME}.geometry"), traffic, |cmd| {
+            cmd.barriers(attachments.iter().map(|image| image.discard(Access::ColorWrite)));
+            cmd.barriers([geometry.depth.discard(Access::DepthWrite)]);
+            // encoding.glsl's NO_SURFACE.
+            let clear = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
+            let colors: Vec<_> = attachments.iter().map(|image| (*image, clear)).collect();
+            cmd.begin_rendering(geometry.extent(), &colors, Some((&geometry.depth, Some(0.0), Access::DepthWrite)));
+            mesh::bind_streams(cmd, scene);
+            for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
+                let Some(first) = calls.first() else { continue };
+                let first = self.params(scene, first.material);
+                cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &mesh::bound(frame, scene))?;
+                let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
+                mesh::draw_with(cmd, pipeline, scene, calls, push);
+            }
+            for (index, Stippled { call, layer }) in self.stippled.iter().enumerate() {
+                let params = GeometryParams {
+                    stipple_side: self.stipple_side,
+                    stipple_layer: *layer,
+                    ..self.params(scene, call.material)
+                };
+                match index {
+                    0 => cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params), &mesh::bound(frame, scene))?,
+                    _ => cmd.push(&self.blend.interface, bytemuck::bytes_of(&params)),
+                }
+                mesh::draw(cmd, &self.blend, scene, [call]);
+            }
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,68 @@
+//! Light: every light into the L-buffer, at its own size. Kircher 2009, section 2.2.
+//!
+//! The L-buffer holds irradiance in three channels and the intensity of the highlight in the fourth, as half floats. Sums
+//! are float and in the order of the lights on every road, so all roads leave the same bits; `--l-buffer half` blends in
+//! half floats as the paper did, which loses light (drivers round towards zero).
+//!
+//! roads  tiled      one dispatch, a list of lights a tile
+//!        volumes    a draw a light, into float sums that `pack` rounds once, or into the L-buffer itself
+
+pub mod pack;
+pub mod reach;
+pub mod tiled;
+pub mod volumes;
+
+use super::NAME;
+use crate::gpu::Access;
+use crate::plan::Plan;
+use crate::units::Extent;
+use ash::vk;
+
+/// How texels meet their lights (`--volumes`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Volumes {
+    Tiled,
+    Quad,
+    Scissor,
+}
+
+impl Volumes {
+    /// The value of `--volumes`.
+    pub fn from_setting(text: &str) -> Self {
+        match text {
+            "tiled" => Self::Tiled,
+            "quad" => Self::Quad,
+            "scissor" => Self::Scissor,
+            other => panic!("--volumes {other} was checked"),
+        }
+    }
+}
+
+pub const L_BUFFER_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+const SUMS_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Full name of the L-buffer.
+pub fn l_buffer() -> String {
+    format!("{NAME}.light.l_buffer")
+}
+
+/// Full name of the float sums that draws leave.
+pub fn sums() -> String {
+    format!("{NAME}.light.sums")
+}
+
+/// Plans the L-buffer, and the sums where lights are drawn and not blended in halves.
+pub fn plan(plan: &mut Plan, extent: Extent, volumes: Volumes, in_halves: bool) {
+    use vk::ImageUsageFlags as Usage;
+    let written = if in_halves { Usage::COLOR_ATTACHMENT } else { Usage::STORAGE };
+    let usage = written | Usage::SAMPLED | Usage::TRANSFER_SRC;
+    plan.image("l-buffer", l_buffer(), extent, L_BUFFER_FORMAT, usage);
+    if volumes != Volumes::Tiled && !in_halves {
+        plan.image("l-buffer", sums(), extent, SUMS_FORMAT, Usage::COLOR_ATTACHMENT | Usage::SAMPLED);
+    }
+}
+
+/// How the last pass of the road left the L-buffer.
+pub fn last_access(in_halves: bool) -> Access {
+    if in_halves { Access::ColorWrite } else { Access::ComputeWrite }
+}

@@ -1,0 +1,43 @@
+//! Pack: float sums to the L-buffer's halves, each rounded once. Shader: pack.comp.
+//! reads  light.sums      writes  light.l_buffer
+
+use super::super::NAME;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::sampler::Sampler;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic};
+use ash::vk;
+use std::sync::Arc;
+
+pub struct Pack {
+    pipeline: ComputePipeline,
+    nearest: Sampler,
+}
+
+impl Pack {
+    pub fn new(gpu: &Arc<Gpu>, workgroup: &[(&str, u32)]) -> Result<Self> {
+        let shader = &crate::gpu::shader::techniques::inferred_lighting::light::pack::COMP;
+        let pipeline = ComputePipeline::new(gpu, shader, workgroup)?;
+        Ok(Self { pipeline, nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)? })
+    }
+
+    /// `frame`: the block of the light buffer's extent.
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, sums: &Image, l_buffer: &Image) -> Result<()> {
+        let extent = l_buffer.description.extent;
+        let pixels = extent.pixel_count();
+        let traffic = Traffic { read_bytes: pixels * 16, written_bytes: pixels * 8, invocations: Some(pixels) };
+        cmd.pass(&format!("{NAME}.pack"), traffic, |cmd| {
+            cmd.barriers([
+                sums.from(Access::ColorWrite).to(Access::ComputeSample),
+                l_buffer.discard(Access::ComputeWrite),
+            ]);
+            let bound = [
+                ("Frame", Bound::Buffer(frame)),
+                ("sums", Bound::Sampled(sums, self.nearest.handle, Access::ComputeSample)),
+                ("l_buffer", Bound::Storage(l_buffer)),
+            ];
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, &[], &bound, groups)
+        })
+    }
+}

@@ -1,0 +1,63 @@
+//! Light, tiled: one dispatch, each thread sums the lights of its tile's list up. Shader: tiled.comp.
+//! reads  geometry.normal, geometry.depth, geometry.extras, cull.masks      writes  light.l_buffer
+
+use super::super::NAME;
+use super::super::geometry::{LowGeometry, extras_name};
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::inferred_lighting::light::tiled::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::passes::direct::{DirectGpu, ShadingSettings};
+use std::sync::Arc;
+
+pub struct Tiled {
+    pipeline: ComputePipeline,
+    /// Pixels of a column that a thread lights.
+    texels: u32,
+}
+
+impl Tiled {
+    /// `constants`: BRDF_KIND and those that `surface.glsl` has beside it.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &ShadingSettings,
+        constants: &[(&str, u32)],
+        has_extras: bool,
+        light_count: usize,
+    ) -> Result<Self> {
+        let cull = if settings.culls(light_count) { "tiled" } else { "none" };
+        let shader = variant(COMP_VARIANTS, &[extras_name(has_extras), cull]);
+        let texels = settings.texels.of_column(settings.load(light_count));
+        let constants = [constants, &settings.workgroup_constants(), &[("TEXELS", texels)]].concat();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, texels })
+    }
+
+    /// `frame`: the block of the light buffer's extent.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        lights: &DirectGpu,
+        geometry: Edge<'_, LowGeometry>,
+        l_buffer: &Image,
+    ) -> Result<()> {
+        let extent = geometry.resource.extent();
+        let columns = extent.height.div_ceil(self.texels);
+        let traffic = Traffic {
+            read_bytes: extent.pixel_count() * geometry.resource.lit_bytes(),
+            written_bytes: extent.pixel_count() * 8,
+            invocations: Some(u64::from(extent.width) * u64::from(columns)),
+        };
+        cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {
+            cmd.barriers(geometry.lit_to(Access::ComputeSample));
+            cmd.barriers([l_buffer.discard(Access::ComputeWrite)]);
+            cmd.barriers(lights.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            let mut bound = geometry.resource.bound(Access::ComputeSample);
+            bound.extend(lights.bound());
+            bound.extend([("Frame", Bound::Buffer(frame)), ("l_buffer", Bound::Storage(l_buffer))]);
+            let groups = self.pipeline.groups([extent.width, columns, 1]);
+            cmd.dispatch(&self.pipeline, &[], &bound, groups)
+        })
+    }
+}

@@ -1,0 +1,210 @@
+//! Material: the scene at full size with full materials, lit by the L-buffer through the discontinuity sensitive filter.
+//! Kircher 2009, sections 2.3, 3, 4. Shaders: mesh.vert, material.frag; the filter: dsf.glsl.
+//! reads   the scene, light.l_buffer, geometry.dsf
+//! writes  material.color       image, RGBA32F, frame extent
+//!         material.depth       image, 4 B a pixel, reversed
+//!         material.rejections  buffer: fragments, solid and BLEND, that none of the four samples belonged to
+
+use super::NAME;
+use super::geometry::LowGeometry;
+use super::light;
+use super::stipple::Stippled;
+use crate::error::Result;
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::structs::MaterialParams;
+use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, readback};
+use crate::passes::mesh;
+use crate::plan::{PICTURE_FORMAT, Plan, Resources};
+use crate::resident::{DrawList, SceneGpu};
+use crate::units::Extent;
+use ash::vk;
+use bytemuck::Zeroable;
+use glam::Vec3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+/// Bytes of the two counters.
+const REJECTIONS_BYTES: u64 = 8;
+
+fn full(what: &str) -> String {
+    format!("{NAME}.material.{what}")
+}
+
+/// Plans its images and its counters.
+pub fn plan(plan: &mut Plan, extent: Extent) {
+    plan.picture(full("color"), extent);
+    plan.image("picture", full("depth"), extent, DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
+    plan.buffer("counters", full("rejections"), REJECTIONS_BYTES);
+    plan.read_back(&full("rejections"));
+}
+
+/// What the pass touches.
+pub fn touches() -> Vec<(String, Access)> {
+    vec![
+        (light::l_buffer(), Access::FragmentSample),
+        super::geometry::filtered(),
+        (full("color"), Access::ColorWrite),
+        (full("depth"), Access::DepthWrite),
+        (full("rejections"), Access::TransferWrite),
+        (full("rejections"), Access::FragmentWrite),
+    ]
+}
+
+/// What the filter is told of every surface.
+#[derive(Clone, Copy, Debug)]
+pub struct FilterSettings {
+    /// Linear depth of the first step, and of all of them, metres.
+    pub depth_range_m: [f32; 2],
+    /// Part of its depth by which a sample's may be off.
+    pub depth_threshold: f32,
+    pub light_extent: Extent,
+    pub stipple_side: u32,
+}
+
+pub struct Material {
+    opaque: GraphicsPipeline,
+    mask: GraphicsPipeline,
+    blend: GraphicsPipeline,
+    list: DrawList,
+    stippled: Vec<Stippled>,
+    filter: FilterSettings,
+    background: Vec3,
+    pub color: Image,
+    depth: Image,
+    rejections: Buffer,
+}
+
+impl Material {
+    /// `list`: the solid surfaces. `stippled`: the others, farthest first. `constants`: BRDF_KIND, SURFACE_EXTRAS, DSF and
+    /// CONE_RADIUS.
+    #[allow(clippy::too_many_arguments)]
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        scene: &SceneGpu,
+        list: DrawList,
+        stippled: Vec<Stippled>,
+        filter: FilterSettings,
+        constants: &[(&str, u32)],
+        background: Vec3,
+    ) -> Result<Self> {
+        let pipeline = |alpha: &str| {
+            GraphicsPipeline::new(
+                gpu,
+                &GraphicsDescription {
+                    vertex: mesh::vertex_shader(scene),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene)])),
+                    constants,
+                    vertex_buffers: mesh::vertex_buffers(scene),
+                    color_formats: &[PICTURE_FORMAT],
+                    blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
+                    depth_format: Some(DEPTH_FORMAT),
+                    depth_write: alpha != "blend",
+                    depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                    stencil: None,
+                    foreign_sets: &[scene.material_layout],
+                },
+            )
+        };
+        Ok(Self {
+            opaque: pipeline("opaque")?,
+            mask: pipeline("mask")?,
+            blend: pipeline("blend")?,
+            list,
+            stippled,
+            filter,
+            background,
+            color: resources.image(&full("color")),
+            depth: resources.image(&full("depth")),
+            rejections: resources.buffer(&full("rejections")),
+        })
+    }
+
+    fn params(&self, scene: &SceneGpu, material: u32) -> MaterialParams {
+        let (frame, light) = (self.color.description.extent, self.filter.light_extent);
+        MaterialParams {
+            material: scene.material_blocks[material as usize],
+            first_depth_m: self.filter.depth_range_m[0],
+            depth_range_m: self.filter.depth_range_m[1],
+            depth_threshold: self.filter.depth_threshold,
+            light_scale_x: light.width as f32 / frame.width as f32,
+            light_scale_y: light.height as f32 / frame.height as f32,
+            stipple_side: 1,
+            ..MaterialParams::zeroed()
+        }
+    }
+
+    /// `l_buffer_from`: who wrote it last.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        scene: &SceneGpu,
+        geometry: &LowGeometry,
+        l_buffer: &Image,
+        l_buffer_from: Access,
+    ) -> Result<()> {
+        let extent = self.color.description.extent;
+        let stippled = self.stippled.iter().map(|stippled| &stippled.call);
+        let traffic = Traffic {
+            // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
+            read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
+            written_bytes: extent.pixel_count() * 20,
+            invocations: None,
+        };
+        cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
+            cmd.barriers([self.rejections.discard(Access::TransferWrite)]);
+            cmd.clear(&self.rejections);
+            cmd.barriers([
+                self.rejections.from(Access::TransferWrite).to(Access::FragmentWrite),
+                l_buffer.from(l_buffer_from).to(Access::FragmentSample),
+                geometry.dsf.from(Access::ColorWrite).to(Access::FragmentSample),
+                self.color.discard(Access::ColorWrite),
+                self.depth.discard(Access::DepthWrite),
+            ]);
+            let [r, g, b] = self.background.to_array();
+            let colors = [(&self.color, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))];
+            cmd.begin_rendering(extent, &colors, Some((&self.depth, Some(0.0), Access::DepthWrite)));
+            mesh::bind_streams(cmd, scene);
+            let mut bound = mesh::bound(frame, scene);
+            bound.extend([
+                ("Rejections", Bound::Buffer(&self.rejections)),
+                ("l_buffer", geometry.sampled(l_buffer, Access::FragmentSample)),
+                ("geometry_dsf", geometry.sampled(&geometry.dsf, Access::FragmentSample)),
+            ]);
+            for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
+                let Some(first) = calls.first() else { continue };
+                let first = self.params(scene, first.material);
+                cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &bound)?;
+                let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
+                mesh::draw_with(cmd, pipeline, scene, calls, push);
+            }
+            for (index, Stippled { call, layer }) in self.stippled.iter().enumerate() {
+                let params = MaterialParams {
+                    stipple_side: self.filter.stipple_side,
+                    stipple_layer: *layer,
+                    ..self.params(scene, call.material)
+                };
+                match index {
+                    0 => cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params), &bound)?,
+                    _ => cmd.push(&self.blend.interface, bytemuck::bytes_of(&params)),
+                }
+                mesh::draw(cmd, &self.blend, scene, [call]);
+            }
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+
+    /// Fragments of solid and of BLEND surfaces that none of the four samples belonged to.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        let bytes = readback::buffer(gpu, &self.rejections, REJECTIONS_BYTES, Access::FragmentWrite)?;
+        let count = |at: usize| f64::from(u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
+        Ok(BTreeMap::from([("rejected_fragments", count(0)), ("rejected_alpha_fragments", count(4))]))
+    }
+}

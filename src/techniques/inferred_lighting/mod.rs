@@ -1,0 +1,173 @@
+//! Inferred lighting: Kircher and Lawrance 2009, "Inferred Lighting: Fast dynamic lighting and shadows for opaque and
+//! translucent objects". Light small, shade large.
+//!
+//! Passes: geometry (at the light buffer's size), cull (with `--volumes tiled`), light, pack (with draws and float sums),
+//! material (at the frame's size).
+//!
+//! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
+//! default road is one dispatch with light lists for tiles (`--volumes quad` and `scissor` are draws); depth is reversed and
+//! a float; specular power travels in a third target by default (`--extras`), because materials of glTF have a roughness
+//! each; a highlight's Fresnel factor is that of normal incidence, because the L-buffer keeps no directions.
+//!
+//! Equals `deferred` within the rounding of normals, depth and L-buffer with `--light-size` at the frame's size, without
+//! BLEND surfaces, with `--brdf lambert` (tests/inferred.rs has the bound).
+
+mod aov;
+mod choices;
+mod cull;
+pub mod encoding;
+mod frame;
+mod geometry;
+mod light;
+mod material;
+mod settings;
+mod stipple;
+
+use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::error::Result;
+use crate::gpu::shader::structs::{FrameBlock, LightBlock};
+use crate::gpu::{Ability, Access, Caps, Gpu, Need};
+use crate::lights::{LightSet, cull as light_masks};
+use crate::passes::{direct, gbuffer};
+use crate::plan::{Plan, Resources};
+use crate::resident::SceneGpu;
+use crate::settings::{Setting, Values};
+use choices::Choices;
+use frame::InferredFrame;
+use light::Volumes;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const NAME: &str = "inferred_lighting";
+
+/// Full name of the frame's block at the light buffer's extent.
+fn light_frame() -> String {
+    format!("{NAME}.light.frame")
+}
+
+pub struct InferredLighting;
+
+impl Technique for InferredLighting {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "inferred lighting (Kircher 2009): punctual lights at a fraction of the pixels, found again by the surface they belong to"
+    }
+
+    fn scene(&self) -> &'static str {
+        "lamps"
+    }
+
+    fn settings(&self) -> &'static [&'static [Setting]] {
+        &[settings::SETTINGS]
+    }
+
+    fn aovs(&self) -> &'static [&'static str] {
+        aov::AOVS
+    }
+
+    fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        let mut needs = gbuffer::needs(has_blend);
+        let of = "the material pass".to_owned();
+        needs.push(Need { of, ability: Ability::FragmentAtomics, instead: "" });
+        if values.text("volumes") != "tiled" {
+            let of = format!("--volumes {}", values.text("volumes"));
+            needs.push(Need { of, ability: Ability::BlendFloats, instead: "--volumes tiled works without it" });
+        } else {
+            let of = "--volumes tiled".to_owned();
+            needs.push(Need { of, ability: Ability::StoreWordPairs, instead: "" });
+        }
+        needs
+    }
+
+    fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)> {
+        vec![("--light-size", format!("{} px a side", caps.limits.max_image_side_px))]
+    }
+
+    /// Punctual lights, straight.
+    fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        Ok(vec![
+            ("transport", "direct".to_owned()),
+            ("light-visibility", light_visibility(values, lights)?),
+            ("emissive", "off".to_owned()),
+        ])
+    }
+
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        let choices = Choices::new(inputs)?;
+        let light_count = inputs.lights.lights.len();
+        let mut plan = Plan::default();
+        geometry::plan(&mut plan, choices.light_extent, choices.has_extras);
+        let tree = choices.shading.tree(inputs.bvh, inputs.scene)?;
+        direct::plan(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
+        plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
+        light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves);
+        material::plan(&mut plan, inputs.view.extent);
+        plan.pass(format!("{NAME}.geometry"), geometry::written(choices.has_extras));
+        let masks = choices.shading.culls(light_count);
+        if masks {
+            let written = light_masks::masks(NAME, Access::ComputeWrite);
+            let placed = geometry::placed(Access::ComputeSample);
+            plan.pass(format!("{NAME}.cull"), placed.into_iter().chain([written]));
+        }
+        if choices.volumes == Volumes::Tiled {
+            let mut touches = geometry::lit(choices.has_extras, Access::ComputeSample);
+            touches.extend(masks.then(|| light_masks::masks(NAME, Access::ComputeRead)));
+            touches.push((light::l_buffer(), Access::ComputeWrite));
+            plan.pass(format!("{NAME}.light"), touches);
+        } else {
+            let mut touches = geometry::lit(choices.has_extras, Access::FragmentSample);
+            let target = if choices.in_halves { light::l_buffer() } else { light::sums() };
+            touches.push((target, Access::ColorWrite));
+            plan.pass(format!("{NAME}.light"), touches);
+            if !choices.in_halves {
+                let touches = [(light::sums(), Access::ComputeSample), (light::l_buffer(), Access::ComputeWrite)];
+                plan.pass(format!("{NAME}.pack"), touches);
+            }
+        }
+        plan.pass(format!("{NAME}.material"), material::touches());
+        Ok(plan)
+    }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let choices = Choices::new(inputs)?;
+        Ok(Box::new(PreparedInferred { choices, lights: direct::light_blocks(inputs.lights, inputs.values) }))
+    }
+}
+
+struct PreparedInferred {
+    choices: Choices,
+    lights: Vec<LightBlock>,
+}
+
+impl Prepared for PreparedInferred {
+    fn host_passes(&self) -> Vec<(String, u64)> {
+        Vec::new()
+    }
+
+    fn counters(&self) -> BTreeMap<&'static str, f64> {
+        BTreeMap::from([("lights", self.lights.len() as f64)])
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let shading = &self.choices.shading;
+        let texels = shading.texels.of_column(shading.load(self.lights.len()));
+        BTreeMap::from([("light-size", self.choices.light_extent.to_string()), ("texels", texels.to_string())])
+    }
+
+    fn light_counts(&self) -> [u32; 2] {
+        [self.lights.len() as u32, 0]
+    }
+
+    fn build(
+        self: Box<Self>,
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+    ) -> Result<Box<dyn Frame>> {
+        Ok(Box::new(InferredFrame::new(gpu, inputs, scene, resources, &self.choices, &self.lights)?))
+    }
+}

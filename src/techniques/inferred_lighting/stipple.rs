@@ -1,0 +1,219 @@
+//! Which texels of the stipple each BLEND surface is lit at. Kircher 2009, sections 4 and 7.1.
+//!
+//! A stipple of side s has s * s layers; layer 0 is the solid surfaces' alone, the others are the BLEND surfaces'. Two that
+//! share a layer and overlap on screen fight for its texels: the nearer one gets them, the farther one is filtered from
+//! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
+//! a greedy colouring, nearest first, of the graph of draws whose boxes overlap on screen.
+
+use crate::frame::View;
+use crate::resident::DrawCall;
+use crate::scene::{Bounds, Scene};
+use glam::{Vec2, Vec3};
+
+/// How layers are given out (`--assignment`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Assignment {
+    /// By turns, in the order of the file.
+    Static,
+    /// By turns, from the nearest on.
+    Depth,
+    /// Overlapping draws get different ones, nearest first.
+    Overlap,
+}
+
+impl Assignment {
+    /// The value of `--assignment`.
+    pub fn from_setting(text: &str) -> Self {
+        match text {
+            "static" => Self::Static,
+            "depth" => Self::Depth,
+            "overlap" => Self::Overlap,
+            other => panic!("--assignment {other} was checked"),
+        }
+    }
+}
+
+/// A BLEND draw and its layer.
+#[derive(Clone, Copy, Debug)]
+pub struct Stippled {
+    pub call: DrawCall,
+    /// 1 to side * side - 1: which texel of each cell of the stipple is its, row-major.
+    pub layer: u32,
+}
+
+/// What an assignment came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shares {
+    /// Layers that some draw has.
+    pub layers_used: usize,
+    /// Draws that overlap another of their layer on screen.
+    pub draws_sharing: usize,
+}
+
+/// A rectangle of the screen, in parts of it from -1 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Footprint {
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Footprint {
+    const WHOLE: Self = Self { low: Vec2::NEG_ONE, high: Vec2::ONE };
+
+    /// Of a box in object space; None where it lies outside of the screen.
+    fn of(bounds: &Bounds, view: &View, world_from_object: glam::Mat4) -> Option<Self> {
+        let clip = view.clip_from_world() * world_from_object;
+        let mut footprint = Self { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY };
+        let mut is_crossing = false;
+        for corner in 0..8u32 {
+            let pick = |bit: u32, low: f32, high: f32| if corner & bit == 0 { low } else { high };
+            let [min, max] = [bounds.min, bounds.max];
+            let point = Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z));
+            let at = clip * point.extend(1.0);
+            // What crosses the eye's plane may be anywhere.
+            if at.w <= 1e-6 {
+                is_crossing = true;
+                continue;
+            }
+            let place = Vec2::new(at.x, at.y) / at.w;
+            footprint = Self { low: footprint.low.min(place), high: footprint.high.max(place) };
+        }
+        if is_crossing {
+            return Some(Self::WHOLE);
+        }
+        let inside = Self { low: footprint.low.max(Vec2::NEG_ONE), high: footprint.high.min(Vec2::ONE) };
+        inside.low.cmple(inside.high).all().then_some(inside)
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+}
+
+/// Layers for `calls`, which are sorted farthest first, as they are drawn. `side`: 2 or 4.
+pub fn assign(
+    scene: &Scene,
+    view: &View,
+    calls: Vec<DrawCall>,
+    side: u32,
+    assignment: Assignment,
+) -> (Vec<Stippled>, Shares) {
+    let footprints: Vec<Option<Footprint>> = calls
+        .iter()
+        .map(|call| {
+            let draw = &scene.draws[call.draw as usize];
+            let mut bounds = Bounds::EMPTY;
+            let mesh = &scene.meshes[draw.mesh];
+            mesh.positions.iter().for_each(|position| bounds.include(*position));
+            Footprint::of(&bounds, view, draw.world_from_object)
+        })
+        .collect();
+    let places: Vec<u32> = match assignment {
+        Assignment::Static => calls.iter().map(|call| call.draw).collect(),
+        _ => Vec::new(),
+    };
+    let layers = layers(&footprints, &places, side * side - 1, assignment);
+    let shares = shares(&footprints, &layers);
+    let stippled = calls.into_iter().zip(layers).map(|(call, layer)| Stippled { call, layer }).collect();
+    (stippled, shares)
+}
+
+/// A layer, 1 to `count`, for each footprint, farthest first. `places`: in the file, of `Assignment::Static`.
+fn layers(footprints: &[Option<Footprint>], places: &[u32], count: u32, assignment: Assignment) -> Vec<u32> {
+    let mut layers = vec![0; footprints.len()];
+    match assignment {
+        Assignment::Static => {
+            let mut order: Vec<usize> = (0..places.len()).collect();
+            order.sort_by_key(|index| places[*index]);
+            order.into_iter().enumerate().for_each(|(turn, index)| layers[index] = 1 + turn as u32 % count);
+        }
+        Assignment::Depth => {
+            layers.iter_mut().rev().enumerate().for_each(|(turn, layer)| *layer = 1 + turn as u32 % count);
+        }
+        Assignment::Overlap => {
+            for index in (0..footprints.len()).rev() {
+                let mut neighbours = vec![0u32; count as usize];
+                let nearer = index + 1..footprints.len();
+                for other in nearer.filter(|other| overlap(footprints[index], footprints[*other])) {
+                    neighbours[layers[other] as usize - 1] += 1;
+                }
+                let least = neighbours.iter().min().copied().unwrap_or_default();
+                let first = neighbours.iter().position(|neighbours| *neighbours == least);
+                layers[index] = 1 + first.expect("a stipple has a layer for alpha") as u32;
+            }
+        }
+    }
+    layers
+}
+
+fn overlap(a: Option<Footprint>, b: Option<Footprint>) -> bool {
+    matches!((a, b), (Some(a), Some(b)) if a.overlaps(&b))
+}
+
+fn shares(footprints: &[Option<Footprint>], layers: &[u32]) -> Shares {
+    let mut used: Vec<u32> = layers.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let shares_layer = |index: &usize| {
+        (0..layers.len()).any(|other| {
+            other != *index && layers[other] == layers[*index] && overlap(footprints[*index], footprints[other])
+        })
+    };
+    Shares { layers_used: used.len(), draws_sharing: (0..layers.len()).filter(shares_layer).count() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn footprint(x: f32, y: f32, side: f32) -> Option<Footprint> {
+        Some(Footprint { low: Vec2::new(x, y), high: Vec2::new(x + side, y + side) })
+    }
+
+    #[test]
+    fn turns_run_from_the_nearest_or_in_the_order_of_the_file() {
+        let four = [footprint(0.0, 0.0, 0.5); 4];
+        assert_eq!(layers(&four, &[], 3, Assignment::Depth), [1, 3, 2, 1]);
+        assert_eq!(layers(&four, &[7, 2, 9, 4], 3, Assignment::Static), [3, 1, 1, 2]);
+    }
+
+    /// Two piles side by side: turns by depth make neighbours share where colouring needs two layers.
+    #[test]
+    fn what_does_not_overlap_shares_a_layer_and_what_does_does_not() {
+        let piles =
+            [footprint(-0.9, 0.0, 0.2), footprint(0.5, 0.0, 0.2), footprint(0.6, 0.1, 0.2), footprint(-0.8, 0.1, 0.2)];
+        let found = layers(&piles, &[], 3, Assignment::Overlap);
+        assert_eq!(found, [2, 2, 1, 1]);
+        assert_eq!(shares(&piles, &found), Shares { layers_used: 2, draws_sharing: 0 });
+        let five = [footprint(0.0, 0.0, 0.5); 5];
+        let found = layers(&five, &[], 3, Assignment::Overlap);
+        assert_eq!(shares(&five, &found), Shares { layers_used: 3, draws_sharing: 4 });
+    }
+
+    #[test]
+    fn what_lies_outside_of_the_screen_shares_with_nothing() {
+        let all = [None, footprint(0.0, 0.0, 0.1), None];
+        let found = layers(&all, &[], 3, Assignment::Overlap);
+        assert_eq!(shares(&all, &found), Shares { layers_used: 1, draws_sharing: 0 });
+    }
+
+    proptest! {
+        /// No draw shares where it overlaps fewer than all layers.
+        #[test]
+        fn colouring_shares_only_where_it_must(
+            places in proptest::collection::vec((-1f32..0.8, -1f32..0.8, 0.01f32..0.4), 0..24),
+            count in prop::sample::select(vec![3u32, 15]),
+        ) {
+            let all: Vec<_> = places.iter().map(|(x, y, side)| footprint(*x, *y, *side)).collect();
+            let found = layers(&all, &[], count, Assignment::Overlap);
+            for (index, layer) in found.iter().enumerate() {
+                prop_assert!((1..=count).contains(layer));
+                let neighbours = |other: &usize| *other != index && overlap(all[index], all[*other]);
+                let sharing = (0..all.len()).filter(neighbours).any(|other| found[other] == *layer);
+                let degree = (0..all.len()).filter(neighbours).count();
+                prop_assert!(!sharing || degree >= count as usize);
+            }
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Inferred lighting (Kircher 2009): where it must equal plain deferred shading, what its roads must share, what its filter
+//! keeps apart.
+
+mod support;
+
+use glam::{Vec3, vec3};
+use quincunx::report::picture::Picture;
+use quincunx::scene::{self, AlphaMode, Light, Material, Scene};
+use support::boxes::{camera, point_light, rectangle};
+use support::watched::{Changes, Watched, both};
+
+const NAME: &str = "inferred_lighting";
+
+/// Greatest difference of two pictures, as a part of the brighter pixel's greatest channel and a hundredth of the picture's.
+fn greatest_part(a: &Picture, b: &Picture) -> f32 {
+    let brightest = |pixel: &[f32; 3]| pixel.iter().fold(0f32, |most, channel| most.max(*channel));
+    let all = b.pixels.iter().map(brightest).fold(0f32, f32::max);
+    let part = |(a, b): (&[f32; 3], &[f32; 3])| {
+        let difference = (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0f32, f32::max);
+        difference / (brightest(a).max(brightest(b)) + 0.01 * all)
+    };
+    a.pixels.iter().zip(&b.pixels).map(part).fold(0f32, f32::max)
+}
+
+/// A light buffer of the frame's size is deferred shading with rounded normals and rounded light. A half float is off by at
+/// most 2^-12 of itself, 2.5e-4. A normal's two 16-bit numbers are off by at most 2^-16 each, and twice that after the map back
+/// from the hemisphere, some 5e-5 in all: cosines near 0 feel it most, where a light that grazes the surface is all there is.
+/// Both are inside 2e-3 of a pixel, or of a hundredth of the brightest one.
+#[test]
+fn at_the_frame_s_size_it_is_deferred_shading() {
+    const BOUND: f32 = 2e-3;
+    for spec in ["hall:triangles=8000", "lamps:objects=30,lights=30", "cornell"] {
+        let mut scene = scene::load(spec, 1).unwrap();
+        let Scene { draws, meshes, materials, .. } = &mut scene;
+        draws.retain(|draw| materials[meshes[draw.mesh].material].alpha != AlphaMode::Blend);
+        let watched = Watched::with_scene(scene);
+        for size in ["160x90", "161x91"] {
+            let common = [("size", size), ("brdf", "lambert"), ("direct-shadow", "none")];
+            let inferred = watched.picture(NAME, &both(&common, &[("light-size", size)]));
+            let deferred = watched.picture("deferred", &both(&common, &[("position", "depth")]));
+            let found = greatest_part(&inferred, &deferred);
+            println!("{spec} at {size}: {found:e}");
+            assert!(found <= BOUND, "{spec} at {size}: {found}");
+        }
+    }
+}
+
+#[test]
+fn every_road_of_the_lights_leaves_the_same_l_buffer() {
+    let roads: [Changes<'_>; 4] = [
+        &[("volumes", "tiled")],
+        &[("volumes", "tiled"), ("texels", "1"), ("workgroup", "8x8")],
+        &[("volumes", "quad")],
+        &[("volumes", "scissor")],
+    ];
+    for (spec, more) in [
+        ("lamps:objects=30,lights=30", &[("brdf", "lambert")][..]),
+        ("lamps:objects=30,lights=30", &[("ambient", "0.1,0.2,0.3"), ("brdf", "blinn-phong"), ("extras", "off")]),
+        ("hall:triangles=8000", &[("direct-shadow", "ray")]),
+        ("cornell", &[("lights", "20"), ("light-cutoff", "0.5")]),
+    ] {
+        let watched = Watched::open(spec);
+        for size in [("160x90", "100x56"), ("97x53", "40x91")] {
+            let common = both(&[("size", size.0), ("light-size", size.1)], more);
+            let of = |road: Changes<'_>| {
+                let names = ["light.l_buffer.irradiance", "light.l_buffer.highlight"];
+                let renderer = watched.render_stages(NAME, &both(&common, road), &names);
+                (names.map(|name| renderer.aov(name).unwrap().channels), renderer.picture().unwrap())
+            };
+            let first = of(roads[0]);
+            for road in &roads[1..] {
+                let found = of(road);
+                assert!(found.0 == first.0, "{spec}, {size:?}, {road:?}: another L-buffer");
+                assert!(found.1.pixels == first.1.pixels, "{spec}, {size:?}, {road:?}: another picture");
+            }
+        }
+    }
+}
+
+/// A square that stands before a wall, from the paper's figure 4: between both runs an edge that no texel of the light
+/// buffer follows. `wall_light`: candela of a light that reaches the wall and not the square.
+fn edge(wall_light: f32) -> Scene {
+    let mut scene =
+        Scene { name: format!("edge {wall_light}"), hash: format!("edge {wall_light}"), ..Scene::default() };
+    let gray = Material::diffuse("gray", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.0, 0.0, -6.0), 6.0 * Vec3::X, 6.0 * Vec3::Y, gray.clone());
+    let (u, v) = (vec3(0.9, 0.3, 0.0), vec3(-0.3, 0.9, 0.0));
+    rectangle(&mut scene, vec3(-0.5, -0.4, -3.0), u, v, gray);
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    let of_wall = Light { range: Some(2.0), ..point_light(vec3(0.3, 0.2, -5.0), wall_light) };
+    scene.lights.push(point_light(Vec3::ZERO, 5.0));
+    scene.lights.push(of_wall);
+    scene
+}
+
+/// Samples of the wall are thrown out where the square is shaded, however bright they are; plain filtering lets them in.
+#[test]
+fn the_filter_keeps_another_surface_s_light_out() {
+    let dark = Watched::with_scene(edge(0.0));
+    let bright = Watched::with_scene(edge(500.0));
+    let common = [("size", "160x120"), ("light-size", "50x38"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    // The square's own pixels, by a light buffer of the frame's size.
+    let marked = both(&common, &[("light-size", "160x120")]);
+    let renderer = dark.render_stages(NAME, &marked, &["geometry.dsf.id"]);
+    let ids = dark.integers(&renderer, "geometry.dsf.id");
+    let is_square = |index: &usize| ids[*index] >> 8 == 1;
+    assert!((0..ids.len()).filter(is_square).count() > 1000);
+    for (dsf, leaks) in [("on", false), ("off", true)] {
+        let changes = both(&common, &[("dsf", dsf)]);
+        let [a, b] = [&dark, &bright].map(|watched| watched.picture(NAME, &changes).pixels);
+        let changed = (0..ids.len()).filter(is_square).filter(|index| a[*index] != b[*index]).count();
+        assert_eq!(changed > 0, leaks, "--dsf {dsf}: {changed} pixels of the square changed");
+        let wall = (0..ids.len()).filter(|index| !is_square(index)).filter(|index| a[*index] != b[*index]).count();
+        assert!(wall > 1000, "the light reaches the wall");
+    }
+}
+
+/// A sheet of glass whose texels all survive is lit as a forward renderer lights it, however many sheets lie over each other.
+#[test]
+fn glass_is_lit_as_forward_lights_it() {
+    for count in 1..=3 {
+        let mut scene = Scene { name: format!("glass {count}"), ..Scene::default() };
+        rectangle(
+            &mut scene,
+            vec3(0.0, 0.0, -6.0),
+            6.0 * Vec3::X,
+            6.0 * Vec3::Y,
+            Material::diffuse("wall", Vec3::splat(0.5)),
+        );
+        for sheet in 0..count {
+            let color = vec3(0.9, 0.5, 0.3).lerp(vec3(0.2, 0.4, 0.9), sheet as f32 / 2.0);
+            let glass = Material {
+                base_color: color.extend(0.4),
+                alpha: AlphaMode::Blend,
+                double_sided: true,
+                ..Material::diffuse("glass", color)
+            };
+            let z = -3.0 - 0.5 * sheet as f32;
+            rectangle(&mut scene, vec3(0.3 * sheet as f32 - 0.3, 0.0, z), Vec3::X, 0.8 * Vec3::Y, glass);
+        }
+        scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+        // Far enough that light changes little from sample to sample.
+        scene.lights.push(point_light(vec3(2.0, 3.0, 2.0), 100.0));
+        let watched = Watched::with_scene(scene);
+        let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
+        let forward = watched.picture("deferred", &common);
+        for stipple in ["2x2", "4x4"] {
+            for filter in ["cone", "bilinear"] {
+                for assignment in ["overlap", "depth", "static"] {
+                    let changes = [
+                        ("light-size", "160x120"),
+                        ("stipple", stipple),
+                        ("alpha-filter", filter),
+                        ("assignment", assignment),
+                    ];
+                    let renderer = watched.render(NAME, &both(&common, &changes));
+                    let found = greatest_part(&renderer.picture().unwrap(), &forward);
+                    println!("{count} sheets, {changes:?}: {found}");
+                    assert!(found < 0.03, "{count} sheets, {changes:?}: {found}");
+                }
+            }
+        }
+    }
+}
+
+/// Kircher 2009 blended in half floats; lavapipe rounds towards zero there, so light is lost, and more with more lights.
+#[test]
+fn blending_in_halves_is_near_the_float_sum() {
+    let watched = Watched::open("lamps:objects=30,lights=81");
+    let common = [("size", "160x90"), ("brdf", "lambert"), ("volumes", "scissor")];
+    let mean = |picture: &Picture| picture.pixels.iter().flatten().map(|value| f64::from(*value)).sum::<f64>();
+    let sums = watched.picture(NAME, &common);
+    let halves = watched.picture(NAME, &both(&common, &[("l-buffer", "half")]));
+    let bias = mean(&halves) / mean(&sums) - 1.0;
+    println!("half against float: {bias:e}");
+    assert!(bias.abs() < 0.1 && bias != 0.0, "{bias}");
+    let error = watched.try_renderer(NAME, &[("l-buffer", "half")], &[], quincunx::gpu::commands::Submits::One);
+    assert_eq!(error.err().unwrap().exit_code(), 2);
+}
+
+#[test]
+fn no_light_one_and_many() {
+    for (lights, is_dark) in [("0", true), ("1", false), ("2000", false)] {
+        let mut scene = scene::load("lamps:objects=9,lights=1", 1).unwrap();
+        scene.lights.clear();
+        let watched = Watched::with_scene(scene);
+        let changes = [("size", "64x36"), ("lights", lights), ("rig", "none")];
+        for volumes in ["tiled", "scissor"] {
+            let picture = watched.picture(NAME, &both(&changes, &[("volumes", volumes)]));
+            let lit = picture.pixels.iter().filter(|pixel| pixel.iter().any(|channel| *channel > 0.0)).count();
+            assert_eq!(lit == 0, is_dark, "{lights} lights, {volumes}: {lit} pixels are lit");
+        }
+    }
+}
