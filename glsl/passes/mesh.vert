@@ -36,7 +36,8 @@ void main() {
     vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
     out_position_ws = position_ws.xyz;
     out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
-    out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, tangent.w);
+    // w also carries the normal group's id: its magnitude is 1 + that.
+    out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, sign(tangent.w));
     out_uv = uv;
     out_material = draw.material;
 #ifdef VERTEX_EXTENDED
