@@ -37,6 +37,7 @@ void main() {
     vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
     out_position_ws = position_ws.xyz;
     out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
+    // w carries the normal group's id too.
     out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, sign(tangent.w));
     out_uv = uv;
     out_ids = uvec2(draw.material, draw.object_id << 8 | normal_group(tangent));

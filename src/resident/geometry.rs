@@ -4,6 +4,7 @@
 use super::clusters::{Cluster, grouped};
 use super::{DrawCall, ExtendedAttributes, VertexAttributes};
 use crate::scene::{AlphaMode, Bounds, Mesh, Scene};
+use glam::Vec4;
 use std::ops::Range;
 
 /// All meshes one after the other.
@@ -38,7 +39,7 @@ impl Geometry {
                 all.positions.push(mesh.positions[vertex].to_array());
                 all.attributes.push(VertexAttributes {
                     normal: mesh.normals[vertex].to_array(),
-                    tangent: mesh.tangents.get(vertex).map_or([0.0; 4], |tangent| tangent.to_array()),
+                    tangent: tangent(mesh, vertex),
                     uv: mesh.uvs.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
                 });
             }
@@ -97,6 +98,15 @@ impl Geometry {
     }
 }
 
+/// A tangent as the second stream has it: w is the handedness, +1 or -1, times 1 + the id of the normal group, where the
+/// paper has it too (Kircher & Lawrance 2009, section 3.1).
+fn tangent(mesh: &Mesh, vertex: usize) -> [f32; 4] {
+    let tangent = mesh.tangents.get(vertex).copied().unwrap_or(Vec4::ZERO);
+    let group = mesh.normal_groups.get(vertex).copied().unwrap_or_default();
+    let handedness = if tangent.w < 0.0 { -1.0 } else { 1.0 };
+    tangent.truncate().extend(handedness * (1.0 + f32::from(group))).to_array()
+}
+
 /// The third stream, vertex by vertex as `Geometry` has them.
 pub fn extended(scene: &Scene) -> Vec<ExtendedAttributes> {
     let of = |mesh: &Mesh, vertex: usize| ExtendedAttributes {
@@ -110,6 +120,16 @@ pub fn extended(scene: &Scene) -> Vec<ExtendedAttributes> {
 mod tests {
     use super::*;
     use crate::scene::procedural;
+
+    #[test]
+    fn a_tangents_fourth_number_holds_handedness_and_normal_group() {
+        let tangents = vec![Vec4::ZERO, Vec4::new(1.0, 0.0, 0.0, -1.0), Vec4::new(0.0, 1.0, 0.0, 1.0)];
+        let mesh = Mesh { tangents, normal_groups: vec![3, 255, 0], ..Mesh::default() };
+        assert_eq!(tangent(&mesh, 0), [0.0, 0.0, 0.0, 4.0]);
+        assert_eq!(tangent(&mesh, 1), [1.0, 0.0, 0.0, -256.0]);
+        assert_eq!(tangent(&mesh, 2), [0.0, 1.0, 0.0, 1.0]);
+        assert_eq!(tangent(&Mesh::default(), 0), [0.0, 0.0, 0.0, 1.0], "neither has been made");
+    }
 
     #[test]
     fn clusters_hold_their_meshes_triangles_inside_their_boxes() {

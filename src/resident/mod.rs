@@ -41,6 +41,7 @@ use textures::MaterialSets;
 #[derive(Clone, Copy, Pod, Zeroable)]
 pub struct VertexAttributes {
     pub normal: [f32; 3],
+    /// xyz as `Mesh::tangents` has it; w: the handedness, +1 or -1, times 1 + the id of the vertex's normal group.
     pub tangent: [f32; 4],
     pub uv: [f32; 2],
 }

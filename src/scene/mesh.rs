@@ -21,6 +21,8 @@ pub struct Mesh {
     pub uvs_1: Vec<Vec2>,
     /// Linear RGB and alpha, 0 to 1, that multiply the material's base colour; empty where all are white.
     pub colors: Vec<Vec4>,
+    /// The id of the normal group that each vertex is of (`scene::normal_groups`); empty before they are found.
+    pub normal_groups: Vec<u8>,
     pub indices: Vec<u32>,
     /// Index into `Scene::materials`.
     pub material: usize,
@@ -36,7 +38,23 @@ impl Mesh {
         let vectors = size_of_val(self.positions.as_slice()) + size_of_val(self.normals.as_slice());
         let coordinates = size_of_val(self.uvs.as_slice()) + size_of_val(self.uvs_1.as_slice());
         let others = size_of_val(self.tangents.as_slice()) + size_of_val(self.colors.as_slice());
-        vectors + coordinates + others + size_of_val(self.indices.as_slice())
+        vectors + coordinates + others + self.normal_groups.len() + size_of_val(self.indices.as_slice())
+    }
+
+    /// Adds a vertex that equals `vertex`, and returns its index.
+    pub fn repeat_vertex(&mut self, vertex: usize) -> u32 {
+        fn repeat<T: Copy>(attribute: &mut Vec<T>, vertex: usize) {
+            let value = attribute.get(vertex).copied();
+            attribute.extend(value);
+        }
+        repeat(&mut self.positions, vertex);
+        repeat(&mut self.normals, vertex);
+        repeat(&mut self.tangents, vertex);
+        repeat(&mut self.uvs, vertex);
+        repeat(&mut self.uvs_1, vertex);
+        repeat(&mut self.colors, vertex);
+        repeat(&mut self.normal_groups, vertex);
+        self.positions.len() as u32 - 1
     }
 
     /// The vertices of triangle `triangle`.

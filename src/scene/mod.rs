@@ -11,6 +11,9 @@ pub mod light;
 pub mod material;
 pub mod mesh;
 pub mod mipmaps;
+pub mod normal_groups;
+pub mod palette;
+pub mod places;
 pub mod procedural;
 pub mod texture;
 

@@ -3,9 +3,10 @@
 use crate::cli;
 use crate::error::Result;
 use crate::scene::gltf::Facts;
-use crate::scene::{self, AlphaMode, Camera, Image, LightKind, Material, Projection, Scene};
+use crate::scene::{self, AlphaMode, Camera, Image, LightKind, Material, Projection, Scene, normal_groups};
 use crate::units::{Bytes, Extent};
 use clap::{Arg, ArgAction, ArgMatches, Command};
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -52,6 +53,8 @@ fn document(scene: &Scene, facts: Option<&Facts>) -> Value {
         "draws": scene.draws.len(),
         "triangles": scene.triangle_count(),
         "vertices": vertex_count(scene),
+        "meshes": scene.meshes.len(),
+        "normal_groups": normal_group_count(scene),
         "materials": { "opaque": opaque, "mask": mask, "blend": blend },
         "textures": scene.textures.len(),
         "images": scene.images.iter().map(|image| image_document(image)).collect::<Vec<_>>(),
@@ -108,6 +111,8 @@ fn describe(text: &mut String, scene: &Scene, facts: Option<&Facts>) -> std::fmt
     }
     let (triangles, draws) = (scene.triangle_count(), scene.draws.len());
     writeln!(text, "   drawn: {triangles} triangles in {draws} draws, {} vertices", vertex_count(scene))?;
+    let (meshes, groups) = (scene.meshes.len(), normal_group_count(scene));
+    writeln!(text, "   shapes: {meshes} meshes, {groups} normal groups")?;
     let bounds = scene.bounds();
     if !bounds.is_empty() {
         writeln!(text, "   from {} to {}, in metres", bounds.min, bounds.max)?;
@@ -163,6 +168,11 @@ fn describe_file(text: &mut String, facts: &Facts) -> std::fmt::Result {
 
 fn vertex_count(scene: &Scene) -> usize {
     scene.meshes.iter().map(|mesh| mesh.positions.len()).sum()
+}
+
+/// Those of all meshes together.
+fn normal_group_count(scene: &Scene) -> usize {
+    scene.meshes.par_iter().map(normal_groups::count).sum()
 }
 
 /// OPAQUE, MASK, BLEND.

@@ -12,7 +12,7 @@ use super::deform::Deform;
 use super::limits::Allowance;
 use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
-use crate::scene::{Material, Mesh, TextureSlot};
+use crate::scene::{Material, Mesh, TextureSlot, normal_groups};
 
 /// How many indices the drawn meshes may have together beside one for each byte of the file: 1.4 million triangles,
 /// 210 MiB where no two share a vertex.
@@ -228,6 +228,7 @@ fn read_primitive(
         (true, false) => tangents::normalize(&mut mesh),
         (false, _) => mesh.tangents = vec![Vec4::ZERO; mesh.positions.len()],
     }
+    normal_groups::assign(&mut mesh);
     let deform = shown
         .is_bent
         .then(|| Deform::read(document, buffers, primitive, mesh_index, shown.is_skinned, (&mesh, &corners)));

@@ -83,7 +83,8 @@ fn split_vertices(mesh: &mut Mesh, corner_tangents: &[Vec4]) {
     let mut first: Vec<Option<Vec4>> = vec![None; mesh.positions.len()];
     let mut further: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
     mesh.tangents = vec![Vec4::ZERO; mesh.positions.len()];
-    for (index, tangent) in mesh.indices.iter_mut().zip(corner_tangents) {
+    let mut indices = std::mem::take(&mut mesh.indices);
+    for (index, tangent) in indices.iter_mut().zip(corner_tangents) {
         let vertex = *index as usize;
         match first[vertex] {
             None => {
@@ -94,17 +95,14 @@ fn split_vertices(mesh: &mut Mesh, corner_tangents: &[Vec4]) {
             Some(_) => {
                 let key = (*index, tangent.to_array().map(f32::to_bits));
                 *index = *further.entry(key).or_insert_with(|| {
-                    mesh.positions.push(mesh.positions[vertex]);
-                    mesh.normals.push(mesh.normals[vertex]);
-                    mesh.uvs.push(mesh.uvs[vertex]);
-                    mesh.uvs_1.extend(mesh.uvs_1.get(vertex).copied());
-                    mesh.colors.extend(mesh.colors.get(vertex).copied());
-                    mesh.tangents.push(*tangent);
-                    mesh.positions.len() as u32 - 1
+                    let repeated = mesh.repeat_vertex(vertex);
+                    mesh.tangents[repeated as usize] = *tangent;
+                    repeated
                 });
             }
         }
     }
+    mesh.indices = indices;
 }
 
 #[cfg(test)]

@@ -87,6 +87,7 @@ fn gather_vertices(mesh: &mut Mesh, vertices: &[u32]) {
     gather(&mut mesh.uvs, vertices);
     gather(&mut mesh.uvs_1, vertices);
     gather(&mut mesh.colors, vertices);
+    gather(&mut mesh.normal_groups, vertices);
 }
 
 #[cfg(test)]

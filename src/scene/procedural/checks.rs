@@ -10,6 +10,7 @@ pub fn assert_mesh_is_sound(mesh: &Mesh) {
     let count = mesh.positions.len();
     assert!(mesh.triangle_count() > 0 && mesh.indices.len().is_multiple_of(3), "{name}");
     assert!(mesh.normals.len() == count && mesh.tangents.len() == count && mesh.uvs.len() == count, "{name}");
+    assert!(mesh.normal_groups.is_empty() || mesh.normal_groups.len() == count, "{name}");
     assert!(mesh.indices.iter().all(|index| (*index as usize) < count), "{name}");
     assert!(mesh.positions.iter().all(|position| position.is_finite()), "{name}");
     assert!(mesh.uvs.iter().all(|uv| uv.is_finite()), "{name}");

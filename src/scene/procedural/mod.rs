@@ -13,7 +13,8 @@ mod shapes;
 mod checks;
 
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{Scene, normal_groups};
+use rayon::prelude::*;
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
@@ -120,6 +121,7 @@ pub fn build(spec: &str, seed: u64) -> Option<Result<Scene>> {
     let built_in = ALL.iter().find(|built_in| built_in.name == name)?;
     Some(built_in.values(arguments).map(|values| {
         let mut scene = (built_in.make)(&values, seed);
+        scene.meshes.par_iter_mut().for_each(normal_groups::assign);
         let settings: Vec<_> = values.0.iter().map(|(key, value)| format!("{key}={value}")).collect();
         let settings = settings.join(",");
         scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };

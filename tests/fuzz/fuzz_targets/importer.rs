@@ -44,6 +44,7 @@ fn use_scene(scene: &Scene) {
         let count = mesh.positions.len();
         assert!(mesh.indices.len() % 3 == 0 && mesh.indices.iter().all(|index| (*index as usize) < count));
         assert!(mesh.normals.len() == count && mesh.tangents.len() == count && mesh.uvs.len() == count);
+        assert_eq!(mesh.normal_groups.len(), count);
         assert!([0, count].contains(&mesh.uvs_1.len()) && [0, count].contains(&mesh.colors.len()));
         assert!(mesh.positions.iter().all(|position| position.is_finite()));
         assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-3));
