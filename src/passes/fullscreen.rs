@@ -14,6 +14,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         constants: &[],
         vertex_buffers: &[],
         color_formats,
+        samples: 1,
         blend_over: false,
         depth_format: None,
         depth_write: false,

@@ -216,6 +216,17 @@ pub const EMISSIVE: Setting = Setting {
     help: "emissive triangles light other surfaces; auto: off where the scene has punctual lights, because maps carry both",
 };
 
+/// Settings of what is drawn with several samples a pixel (`passes::resolve`).
+pub const MULTISAMPLE: &[Setting] = &[Setting {
+    key: "msaa",
+    symbol: "",
+    kind: Kind::Choice(&["1", "4", "8"]),
+    default: "1",
+    unit: "",
+    paper: "Kircher 2009, 3",
+    help: "places of a pixel that are tested for coverage and depth and averaged; a surface is shaded once a pixel",
+}];
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
     BRDF,
