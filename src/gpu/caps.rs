@@ -103,6 +103,10 @@ pub struct Limits {
     pub framebuffer_sample_counts: Vec<u32>,
 }
 
+fn one_sample() -> Vec<u32> {
+    vec![1]
+}
+
 fn least_image_layers() -> u32 {
     256
 }
@@ -140,6 +144,15 @@ pub struct Formats {
     pub float_depth_with_stencil: bool,
     /// R32G32B32A32_SFLOAT blends as colour attachment.
     pub float_color_blend: bool,
+    /// Samples a pixel of R32G32B32A32_SFLOAT as colour attachment. Data from before it was looked up has none but 1.
+    #[serde(default = "one_sample")]
+    pub float_color_sample_counts: Vec<u32>,
+    /// The same of R16G16B16A16_SFLOAT.
+    #[serde(default = "one_sample")]
+    pub half_color_sample_counts: Vec<u32>,
+    /// The same of D32_SFLOAT as depth attachment.
+    #[serde(default = "one_sample")]
+    pub float_depth_sample_counts: Vec<u32>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -60,7 +60,7 @@ pub struct Commands {
     descriptors: Descriptors,
     pub(super) passes: Vec<RecordedPass>,
     pub(super) timestamps: Option<Timestamps>,
-    truth: HashMap<Target, AccessSet>,
+    pub(super) truth: HashMap<Target, AccessSet>,
     touched: Vec<Touched>,
     heirs: Heirs,
 }
@@ -341,67 +341,6 @@ impl Commands {
         unsafe {
             self.gpu.device.cmd_copy_image_to_buffer(self.buffer(), source.handle, layout, target.handle, &[region]);
         }
-    }
-
-    /// Opens rendering into whole images of `extent`. A clear value of None loads what is there; a depth image that has
-    /// a stencil too is attached as both, and both are cleared.
-    pub fn begin_rendering(
-        &mut self,
-        extent: Extent,
-        colors: &[(&Image, Option<vk::ClearColorValue>)],
-        depth: Option<(&Image, Option<f32>, Access)>,
-    ) {
-        let load = |clears: bool| if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
-        let color_infos: Vec<_> = colors
-            .iter()
-            .map(|(image, clear)| {
-                vk::RenderingAttachmentInfo::default()
-                    .image_view(image.view)
-                    .image_layout(Access::ColorWrite.layout())
-                    .load_op(load(clear.is_some()))
-                    .store_op(vk::AttachmentStoreOp::STORE)
-                    .clear_value(vk::ClearValue { color: clear.unwrap_or_default() })
-            })
-            .collect();
-        let depth_info = depth.map(|(image, clear, access)| {
-            let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
-            vk::RenderingAttachmentInfo::default()
-                .image_view(image.view)
-                .image_layout(access.layout())
-                .load_op(load(clear.is_some()))
-                .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
-                .clear_value(vk::ClearValue { depth_stencil: value })
-        });
-        let area = vk::Rect2D {
-            offset: vk::Offset2D::default(),
-            extent: vk::Extent2D { width: extent.width, height: extent.height },
-        };
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
-        if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
-            info = info.depth_attachment(depth_info);
-            if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {
-                info = info.stencil_attachment(depth_info);
-            }
-        }
-        let viewport = vk::Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: extent.width as f32,
-            height: extent.height as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
-        };
-        // SAFETY: the buffer is being recorded; the images are alive and in the layouts that the caller's barriers left.
-        unsafe {
-            self.gpu.device.cmd_begin_rendering(self.buffer(), &info);
-            self.gpu.device.cmd_set_viewport(self.buffer(), 0, &[viewport]);
-            self.gpu.device.cmd_set_scissor(self.buffer(), 0, &[area]);
-        }
-    }
-
-    pub fn end_rendering(&mut self) {
-        // SAFETY: opened by `begin_rendering`.
-        unsafe { self.gpu.device.cmd_end_rendering(self.buffer()) };
     }
 
     /// Ends recording.

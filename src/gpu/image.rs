@@ -10,7 +10,7 @@ use ash::vk;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
-/// A two-dimensional image, or an array of them, with one sample.
+/// A two-dimensional image, or an array of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageDescription {
     pub extent: Extent,
@@ -18,6 +18,8 @@ pub struct ImageDescription {
     pub level_count: u32,
     /// None: a plain image. Some: an array of so many layers, whose views are arrays, of one layer too.
     pub layer_count: Option<u32>,
+    /// Samples a pixel: 1, or another power of two where the image has one level and is only drawn into and resolved.
+    pub samples: u32,
     pub usage: vk::ImageUsageFlags,
 }
 
@@ -27,7 +29,7 @@ impl ImageDescription {
         self.layer_count.unwrap_or(1)
     }
 
-    /// Bytes by arithmetic, all levels and layers; what the driver requires may be more.
+    /// Bytes by arithmetic, all levels, layers and samples; what the driver requires may be more.
     pub fn bytes(&self) -> u64 {
         let layer_bytes: u64 = (0..self.level_count)
             .map(|level| {
@@ -36,11 +38,11 @@ impl ImageDescription {
                 width * height * u64::from(texel_bytes(self.format))
             })
             .sum();
-        layer_bytes * u64::from(self.layers())
+        layer_bytes * u64::from(self.layers()) * u64::from(self.samples)
     }
 
     fn create_info(&self) -> vk::ImageCreateInfo<'static> {
-        let Self { extent, format, level_count, usage, .. } = *self;
+        let Self { extent, format, level_count, samples, usage, .. } = *self;
         let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
         vk::ImageCreateInfo::default()
             .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
@@ -49,7 +51,7 @@ impl ImageDescription {
             .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
             .mip_levels(level_count)
             .array_layers(self.layers())
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(vk::SampleCountFlags::from_raw(samples))
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage)
     }

@@ -2,6 +2,7 @@
 //! the same list refuses a render and is what `devices` prints.
 
 use super::Caps;
+use super::caps::Formats;
 use crate::error::Error;
 
 /// An optional ability of a device.
@@ -17,6 +18,10 @@ pub enum Ability {
     StoreWordPairs,
     /// Fragment shaders count in storage buffers.
     FragmentAtomics,
+    /// Floats of colour and depth with 4 samples a pixel.
+    FourSamples,
+    /// The same with 8.
+    EightSamples,
 }
 
 impl Ability {
@@ -28,6 +33,8 @@ impl Ability {
             Self::BlendFloats => caps.formats.float_color_blend,
             Self::StoreWordPairs => caps.features.storage_image_extended_formats,
             Self::FragmentAtomics => caps.features.fragment_stores_and_atomics,
+            Self::FourSamples => has_samples(&caps.formats, 4),
+            Self::EightSamples => has_samples(&caps.formats, 8),
         }
     }
 
@@ -39,8 +46,17 @@ impl Ability {
             Self::BlendFloats => "R32G32B32A32_SFLOAT as blended colour attachment",
             Self::StoreWordPairs => "shaderStorageImageExtendedFormats",
             Self::FragmentAtomics => "fragmentStoresAndAtomics",
+            Self::FourSamples => "4 samples a pixel in float colour and D32_SFLOAT attachments",
+            Self::EightSamples => "8 samples a pixel in float colour and D32_SFLOAT attachments",
         }
     }
+}
+
+fn has_samples(formats: &Formats, count: u32) -> bool {
+    let Formats { float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts, .. } = formats;
+    [float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts]
+        .iter()
+        .all(|counts| counts.contains(&count))
 }
 
 /// Something that cannot be made without an ability.

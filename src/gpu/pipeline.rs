@@ -233,6 +233,8 @@ pub struct GraphicsDescription<'a> {
     /// One vertex buffer each: its stride and its attributes (location, format, offset).
     pub vertex_buffers: &'a [VertexBuffer],
     pub color_formats: &'a [vk::Format],
+    /// Samples a pixel of every attachment.
+    pub samples: u32,
     pub blending: Blending,
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,
@@ -345,8 +347,8 @@ impl GraphicsPipeline {
             vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
-        let multisample =
-            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::from_raw(description.samples));
         let stencil = description.stencil.map(StencilUse::state).unwrap_or_default();
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .stencil_test_enable(description.stencil.is_some())

@@ -29,11 +29,28 @@ fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
         let properties = unsafe { instance.get_physical_device_format_properties(physical, format) };
         properties.optimal_tiling_features.contains(flags)
     };
+    let samples = |format, usage| {
+        let (kind, tiling, flags) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL, vk::ImageCreateFlags::empty());
+        // SAFETY: as above.
+        let found = unsafe {
+            instance.get_physical_device_image_format_properties(physical, format, kind, tiling, usage, flags)
+        };
+        found.map_or(Vec::new(), |properties| counts(properties.sample_counts))
+    };
+    let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
     Formats {
         float_depth: has(vk::Format::D32_SFLOAT, Flags::DEPTH_STENCIL_ATTACHMENT | Flags::SAMPLED_IMAGE),
         float_depth_with_stencil: has(vk::Format::D32_SFLOAT_S8_UINT, Flags::DEPTH_STENCIL_ATTACHMENT),
         float_color_blend: has(vk::Format::R32G32B32A32_SFLOAT, Flags::COLOR_ATTACHMENT_BLEND),
+        float_color_sample_counts: samples(vk::Format::R32G32B32A32_SFLOAT, color),
+        half_color_sample_counts: samples(vk::Format::R16G16B16A16_SFLOAT, color),
+        float_depth_sample_counts: samples(vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
     }
+}
+
+/// The numbers of samples a pixel that a set of flags stands for, rising.
+fn counts(flags: vk::SampleCountFlags) -> Vec<u32> {
+    (0..7).map(|bit| 1 << bit).filter(|count| flags.as_raw() & count != 0).collect()
 }
 
 /// Everything that `Caps` holds.
@@ -108,10 +125,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             sub_pixel_bits: limits.sub_pixel_precision_bits,
             subgroup_size: subgroup.subgroup_size,
             timestamp_period_ns: if timestamp_bits == 0 { 0.0 } else { limits.timestamp_period },
-            framebuffer_sample_counts: (0..7)
-                .map(|bit| 1u32 << bit)
-                .filter(|count| limits.framebuffer_color_sample_counts.as_raw() & count != 0)
-                .collect(),
+            framebuffer_sample_counts: counts(limits.framebuffer_color_sample_counts),
         },
         features: Features {
             geometry_shader: features.geometry_shader != 0,

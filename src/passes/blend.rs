@@ -15,7 +15,7 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::BlendParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::gpu::{Access, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, SceneGpu};
 use crate::scene::AlphaMode;
@@ -81,6 +81,7 @@ impl Blend {
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[PICTURE_FORMAT],
+                samples: 1,
                 blending: Blending::Over,
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
@@ -107,7 +108,11 @@ impl Blend {
         cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
             cmd.barriers([depth.to(Access::DepthTest), picture.to(Access::ColorWrite)]);
             let extent = picture.resource.description.extent;
-            cmd.begin_rendering(extent, &[(picture.resource, None)], Some((depth.resource, None, Access::DepthTest)));
+            cmd.begin_rendering(
+                extent,
+                &[ColorTarget::new(picture.resource, None)],
+                Some((depth.resource, None, Access::DepthTest)),
+            );
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
             bound.extend([

@@ -14,6 +14,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         constants: &[],
         vertex_buffers: &[],
         color_formats,
+        samples: 1,
         blending: Blending::Replace,
         depth_format: None,
         depth_write: false,

@@ -18,7 +18,9 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::structs::GBufferParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Ability, Access, AccessSet, Barrier, Buffer, Commands, Edge, Gpu, Image, Need, Traffic, readback};
+use crate::gpu::{
+    Ability, Access, AccessSet, Barrier, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Need, Traffic, readback,
+};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{DrawList, SceneGpu};
@@ -317,6 +319,7 @@ impl GBufferPass {
                     constants: if has_emissive { &constants } else { &[] },
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
+                    samples: 1,
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,
@@ -361,7 +364,7 @@ impl GBufferPass {
             cmd.barriers([gbuffer.depth.discard(Access::DepthWrite)]);
             // All bits 0: no surface.
             let clear = Some(vk::ClearColorValue { uint32: [0; 4] });
-            let colors: Vec<_> = attachments.iter().map(|image| (*image, clear)).collect();
+            let colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
             cmd.begin_rendering(gbuffer.extent(), &colors, Some((&gbuffer.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {

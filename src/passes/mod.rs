@@ -7,4 +7,5 @@ pub mod filter;
 pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;
+pub mod resolve;
 pub mod texels;

@@ -146,7 +146,20 @@ impl Plan {
         format: vk::Format,
         usage: vk::ImageUsageFlags,
     ) {
-        let description = ImageDescription { extent, format, level_count: 1, layer_count: None, usage };
+        self.multisampled(group, name, extent, format, 1, usage);
+    }
+
+    /// The same with `samples` a pixel.
+    pub fn multisampled(
+        &mut self,
+        group: &'static str,
+        name: impl Into<String>,
+        extent: Extent,
+        format: vk::Format,
+        samples: u32,
+        usage: vk::ImageUsageFlags,
+    ) {
+        let description = ImageDescription { extent, format, level_count: 1, layer_count: None, samples, usage };
         self.push(group, name, Shape::Image(description));
     }
 

@@ -48,7 +48,7 @@ impl Requirements<'_> {
     }
 }
 
-/// Each level with its rows and its height rounded up, as often as there are layers.
+/// Each level with its rows and its height rounded up, as often as there are layers and samples.
 fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
     let texel = u64::from(match description.format {
         vk::Format::D32_SFLOAT_S8_UINT => rules.depth_stencil_texel_bytes,
@@ -62,7 +62,8 @@ fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
             row * side(description.extent.height).next_multiple_of(rules.image_height_multiple_px)
         })
         .sum();
-    (layer_bytes * u64::from(description.layers())).next_multiple_of(rules.image_size_multiple_bytes)
+    (layer_bytes * u64::from(description.layers()) * u64::from(description.samples))
+        .next_multiple_of(rules.image_size_multiple_bytes)
 }
 
 impl From<vk::MemoryRequirements> for Requirement {

@@ -216,6 +216,9 @@ fn what(row: &Row) -> String {
         Some(Shape::Image(ImageDescription { extent, format, layer_count: Some(layers), .. })) => {
             format!("{format:?} {extent}, {layers} layers")
         }
+        Some(Shape::Image(ImageDescription { extent, format, samples, .. })) if *samples > 1 => {
+            format!("{format:?} {extent}, {samples} samples")
+        }
         Some(Shape::Image(ImageDescription { extent, format, level_count: 1, .. })) => format!("{format:?} {extent}"),
         Some(Shape::Image(ImageDescription { extent, format, level_count, .. })) => {
             format!("{format:?} {extent}, {level_count} levels")
@@ -236,11 +239,14 @@ fn row_json(row: &Row) -> Value {
         "first_pass": row.passes.as_ref().map(|[first, _]| first),
         "last_pass": row.passes.as_ref().map(|[_, last]| last),
     });
-    if let Some(Shape::Image(ImageDescription { extent, format, layer_count, .. })) = row.shape {
+    if let Some(Shape::Image(ImageDescription { extent, format, layer_count, samples, .. })) = row.shape {
         document["format"] = json!(format!("{format:?}"));
         document["extent"] = json!(extent.to_string());
         if let Some(layers) = layer_count {
             document["layers"] = json!(layers);
+        }
+        if samples > 1 {
+            document["samples"] = json!(samples);
         }
     }
     document["touched_bytes"] = json!(row.touched_bytes);

@@ -204,6 +204,7 @@ fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
         format,
         level_count: mipmaps::level_count(extent.width, extent.height),
         layer_count: None,
+        samples: 1,
         usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
     })
 }

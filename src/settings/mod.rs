@@ -7,7 +7,7 @@ mod optics;
 mod tables;
 
 pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
-pub use tables::{BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, SHADING, TEXELS, VPL_CLAMP, WORKGROUP};
+pub use tables::{BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, SHADING, TEXELS, VPL_CLAMP, WORKGROUP};
 
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};
@@ -400,7 +400,7 @@ mod tests {
 
     #[test]
     fn every_default_of_the_table_is_possible() {
-        for setting in COMMON.iter().chain(SHADING) {
+        for setting in COMMON.iter().chain(SHADING).chain(MULTISAMPLE) {
             setting.check(setting.default).unwrap();
         }
     }

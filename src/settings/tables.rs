@@ -252,6 +252,17 @@ pub const TEXELS: Setting = Setting {
            22, 16 on other software drivers, else 1",
 };
 
+/// Settings of what is drawn with several samples a pixel (`passes::resolve`).
+pub const MULTISAMPLE: &[Setting] = &[Setting {
+    key: "msaa",
+    symbol: "",
+    kind: Kind::Choice(&["1", "4", "8"]),
+    default: "1",
+    unit: "",
+    paper: "Kircher 2009, 3",
+    help: "places of a pixel that are tested for coverage and depth and averaged; a surface is shaded once a pixel",
+}];
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
     BRDF,

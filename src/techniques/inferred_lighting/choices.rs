@@ -5,6 +5,7 @@ use super::stipple::Assignment;
 use crate::error::{Error, Result};
 use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::PositionStorage;
+use crate::passes::resolve;
 use crate::shading::brdf::Brdf;
 use crate::techniques::Inputs;
 use crate::units::Extent;
@@ -26,6 +27,8 @@ pub struct Choices {
     pub depth_threshold: f32,
     pub tests_alpha: bool,
     pub stipple_side: u32,
+    /// Samples a pixel of the material pass.
+    pub samples: u32,
     pub assignment: Assignment,
     /// In texels; 0: bilinear.
     cone_radius: f32,
@@ -58,6 +61,7 @@ impl Choices {
             depth_threshold: values.number("depth-threshold") as f32,
             tests_alpha: values.text("alpha") == "test",
             stipple_side,
+            samples: resolve::samples(values),
             assignment: Assignment::from_setting(values.text("assignment")),
             cone_radius,
         })

@@ -113,6 +113,7 @@ impl InferredFrame {
             depth_threshold: choices.depth_threshold,
             light_extent,
             stipple_side: choices.stipple_side,
+            samples: choices.samples,
         };
         let material_constants = choices.material_constants();
         Ok(Self {

@@ -16,7 +16,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::GeometryParams;
 use crate::gpu::shader::techniques::inferred_lighting::geometry::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::gpu::{Access, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
@@ -182,6 +182,7 @@ impl Geometry {
                     constants: &[],
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
+                    samples: 1,
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,
@@ -230,7 +231,7 @@ impl Geometry {
             cmd.barriers([geometry.depth.discard(Access::DepthWrite)]);
             // encoding.glsl's NO_SURFACE.
             let clear = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
-            let colors: Vec<_> = attachments.iter().map(|image| (*image, clear)).collect();
+            let colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
             cmd.begin_rendering(geometry.extent(), &colors, Some((&geometry.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {

@@ -1,8 +1,8 @@
 //! Material: the scene at full size with full materials, lit by the L-buffer through the discontinuity sensitive filter.
 //! Kircher 2009, sections 2.3, 3, 4. Shaders: mesh.vert, material.frag; the filter: dsf.glsl.
 //! reads   the scene, light.l_buffer, geometry.dsf
-//! writes  material.color       image, RGBA32F, frame extent
-//!         material.depth       image, 4 B a pixel, reversed
+//! writes  material.color       image, RGBA32F, frame extent; with --msaa material.samples, which `resolve` averages
+//!         material.depth       image, 4 B a sample, reversed
 //!         material.rejections  buffer: fragments, solid and BLEND, that none of the four samples belonged to
 
 use super::NAME;
@@ -14,8 +14,8 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MaterialParams;
 use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, readback};
-use crate::passes::mesh;
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Traffic, readback};
+use crate::passes::{mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::units::Extent;
@@ -34,19 +34,32 @@ fn full(what: &str) -> String {
 }
 
 /// Plans its images and its counters.
-pub fn plan(plan: &mut Plan, extent: Extent) {
+pub fn plan(plan: &mut Plan, extent: Extent, samples: u32) {
+    use vk::ImageUsageFlags as Usage;
     plan.picture(full("color"), extent);
-    plan.image("picture", full("depth"), extent, DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
+    if samples > 1 {
+        plan.multisampled("picture", full("samples"), extent, PICTURE_FORMAT, samples, Usage::COLOR_ATTACHMENT);
+    }
+    plan.multisampled("picture", full("depth"), extent, DEPTH_FORMAT, samples, Usage::DEPTH_STENCIL_ATTACHMENT);
     plan.buffer("counters", full("rejections"), REJECTIONS_BYTES);
     plan.read_back(&full("rejections"));
 }
 
-/// What the pass touches.
-pub fn touches() -> Vec<(String, Access)> {
+/// Plans its pass, and the one that resolves it.
+pub fn plan_passes(plan: &mut Plan, samples: u32) {
+    let drawn = full(if samples > 1 { "samples" } else { "color" });
+    plan.pass(format!("{NAME}.material"), touches(&drawn));
+    if samples > 1 {
+        plan.pass(format!("{NAME}.resolve"), resolve::touches(&drawn, &full("color")));
+    }
+}
+
+/// What the pass touches. `drawn`: the picture that it draws into.
+fn touches(drawn: &str) -> Vec<(String, Access)> {
     vec![
         (light::l_buffer(), Access::FragmentSample),
         super::geometry::filtered(),
-        (full("color"), Access::ColorWrite),
+        (drawn.to_owned(), Access::ColorWrite),
         (full("depth"), Access::DepthWrite),
         (full("rejections"), Access::TransferWrite),
         (full("rejections"), Access::FragmentWrite),
@@ -62,6 +75,8 @@ pub struct FilterSettings {
     pub depth_threshold: f32,
     pub light_extent: Extent,
     pub stipple_side: u32,
+    /// Samples a pixel of the material pass.
+    pub samples: u32,
 }
 
 pub struct Material {
@@ -73,6 +88,8 @@ pub struct Material {
     filter: FilterSettings,
     background: Vec3,
     pub color: Image,
+    /// With several a pixel.
+    samples: Option<Image>,
     depth: Image,
     rejections: Buffer,
 }
@@ -100,6 +117,7 @@ impl Material {
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
+                    samples: filter.samples,
                     blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: alpha != "blend",
@@ -118,6 +136,7 @@ impl Material {
             filter,
             background,
             color: resources.image(&full("color")),
+            samples: (filter.samples > 1).then(|| resources.image(&full("samples"))),
             depth: resources.image(&full("depth")),
             rejections: resources.buffer(&full("rejections")),
         })
@@ -148,11 +167,12 @@ impl Material {
         l_buffer_from: Access,
     ) -> Result<()> {
         let extent = self.color.description.extent;
+        let drawn = self.samples.as_ref().unwrap_or(&self.color);
         let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
             // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
             read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
-            written_bytes: extent.pixel_count() * 20,
+            written_bytes: extent.pixel_count() * 20 * u64::from(self.filter.samples),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
@@ -162,11 +182,11 @@ impl Material {
                 self.rejections.from(Access::TransferWrite).to(Access::FragmentWrite),
                 l_buffer.from(l_buffer_from).to(Access::FragmentSample),
                 geometry.dsf.from(Access::ColorWrite).to(Access::FragmentSample),
-                self.color.discard(Access::ColorWrite),
+                drawn.discard(Access::ColorWrite),
                 self.depth.discard(Access::DepthWrite),
             ]);
             let [r, g, b] = self.background.to_array();
-            let colors = [(&self.color, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))];
+            let colors = [ColorTarget::new(drawn, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))];
             cmd.begin_rendering(extent, &colors, Some((&self.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
@@ -196,7 +216,11 @@ impl Material {
             }
             cmd.end_rendering();
             Ok(())
-        })
+        })?;
+        match &self.samples {
+            Some(samples) => resolve::record(cmd, NAME, samples.from(Access::ColorWrite), &self.color),
+            None => Ok(()),
+        }
     }
 
     /// Fragments of solid and of BLEND surfaces that none of the four samples belonged to.

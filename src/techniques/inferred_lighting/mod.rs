@@ -2,7 +2,7 @@
 //! translucent objects". Light small, shade large.
 //!
 //! Passes: geometry (at the light buffer's size), cull (with `--volumes tiled`), light, pack (with draws and float sums),
-//! material (at the frame's size).
+//! material (at the frame's size), resolve (with `--msaa`).
 //!
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
 //! default road is one dispatch with light lists for tiles (`--volumes quad` and `scissor` are draws); depth is reversed and
@@ -28,10 +28,10 @@ use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::gpu::{Ability, Access, Caps, Gpu, Need};
 use crate::lights::{LightSet, cull as light_masks};
-use crate::passes::{direct, gbuffer};
+use crate::passes::{direct, gbuffer, resolve};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::{Setting, Values};
+use crate::settings::{MULTISAMPLE, Setting, Values};
 use choices::Choices;
 use frame::InferredFrame;
 use light::Volumes;
@@ -61,7 +61,7 @@ impl Technique for InferredLighting {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS]
+        &[settings::SETTINGS, MULTISAMPLE]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -72,6 +72,7 @@ impl Technique for InferredLighting {
         let mut needs = gbuffer::needs(has_blend);
         let of = "the material pass".to_owned();
         needs.push(Need { of, ability: Ability::FragmentAtomics, instead: "" });
+        needs.extend(resolve::needs(values));
         if values.text("volumes") != "tiled" {
             let of = format!("--volumes {}", values.text("volumes"));
             needs.push(Need { of, ability: Ability::BlendFloats, instead: "--volumes tiled works without it" });
@@ -104,7 +105,7 @@ impl Technique for InferredLighting {
         direct::plan(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
         light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves);
-        material::plan(&mut plan, inputs.view.extent);
+        material::plan(&mut plan, inputs.view.extent, choices.samples);
         plan.pass(format!("{NAME}.geometry"), geometry::written(choices.has_extras));
         let masks = choices.shading.culls(light_count);
         if masks {
@@ -127,7 +128,7 @@ impl Technique for InferredLighting {
                 plan.pass(format!("{NAME}.pack"), touches);
             }
         }
-        plan.pass(format!("{NAME}.material"), material::touches());
+        material::plan_passes(&mut plan, choices.samples);
         Ok(plan)
     }
 

@@ -7,7 +7,7 @@
 use super::NAME;
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;
-use crate::gpu::{Access, Buffer, Commands, Image};
+use crate::gpu::{Access, Buffer, ColorTarget, Commands, Image};
 use crate::plan::{Plan, Resources};
 use ash::vk;
 
@@ -58,7 +58,7 @@ impl Rendered {
         cmd.barriers([self.image.discard(Access::ColorWrite)]);
         // Every pixel is drawn, so what was there before need not be loaded; a clear says so.
         let clear = Some(vk::ClearColorValue { uint32: [0; 4] });
-        cmd.begin_rendering(mapping.extent(), &[(&self.image, clear)], depth);
+        cmd.begin_rendering(mapping.extent(), &[ColorTarget::new(&self.image, clear)], depth);
         draws(cmd)?;
         cmd.end_rendering();
         let drawn = self.image.from(Access::ColorWrite);

@@ -88,7 +88,11 @@ impl Storage {
         let written = if writer == Stage::Fragment { Usage::COLOR_ATTACHMENT } else { Usage::STORAGE };
         let usage = written | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let format = words_format(texel_bytes);
-        plan.push(group, name, Shape::Image(ImageDescription { extent, format, level_count: 1, layer_count, usage }));
+        plan.push(
+            group,
+            name,
+            Shape::Image(ImageDescription { extent, format, level_count: 1, layer_count, samples: 1, usage }),
+        );
     }
 }
 

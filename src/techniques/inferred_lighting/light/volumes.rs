@@ -14,7 +14,7 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::{LightBlock, VolumesParams};
 use crate::gpu::shader::techniques::inferred_lighting::light::volumes::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::DirectGpu;
 use crate::passes::fullscreen;
 use crate::units::Extent;
@@ -84,7 +84,8 @@ impl LightVolumes {
             cmd.barriers([target.discard(Access::ColorWrite)]);
             // As lighting.glsl's ambient_lighting: a float times a float, rounded once.
             let [r, g, b] = (std::f32::consts::PI * self.ambient).to_array();
-            cmd.begin_rendering(extent, &[(target, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))], None);
+            let ambient = Some(vk::ClearColorValue { float32: [r, g, b, 0.0] });
+            cmd.begin_rendering(extent, &[ColorTarget::new(target, ambient)], None);
             for (turn, (light, Rectangle { corner_px, extent })) in self.drawn.iter().enumerate() {
                 let params = VolumesParams { light: *light };
                 if turn == 0 {

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::gpu::pipeline::GraphicsPipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::gather::fragment::FRAG;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Buffer, ColorTarget, Commands, Edge, Gpu, Traffic};
 use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
 use std::sync::Arc;
@@ -136,7 +136,7 @@ impl FragmentGatherBlocks {
         cmd.pass(&format!("{NAME}.gather.translate"), traffic, |cmd| {
             cmd.barriers([source.to(Access::FragmentSample), self.between.discard(Access::ColorWrite)]);
             // Every texel is drawn: a clear spares the load.
-            let colors = [(self.between.attachment(), Some(Default::default()))];
+            let colors = [ColorTarget::new(self.between.attachment(), Some(Default::default()))];
             cmd.begin_rendering(mapping.padded(), &colors, None);
             self.translate.draw(cmd, source.resource)?;
             cmd.end_rendering();

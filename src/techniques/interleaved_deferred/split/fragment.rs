@@ -13,7 +13,7 @@ use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::fragment::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Barrier, Bound, ColorTarget, Commands, Edge, Gpu, Traffic};
 use crate::passes::fullscreen;
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::{Plan, Resources};
@@ -70,7 +70,7 @@ impl Program {
             cmd.barriers(target.discard(Access::ColorWrite));
             // Every texel is drawn: a clear spares the load.
             let clear = Some(Default::default());
-            let colors = [(target.position.attachment(), clear), (target.normal.attachment(), clear)];
+            let colors = [&target.position, &target.normal].map(|part| ColorTarget::new(part.attachment(), clear));
             cmd.begin_rendering(mapping.padded(), &colors, None);
             let mut bound = source.bound;
             bound.push(self.lookup.bound());

@@ -1,0 +1,127 @@
+//! Rendering: opened into whole images, one sample a pixel or several, which are averaged into a plain image where it ends.
+
+use super::{Access, Commands, Image};
+use crate::units::Extent;
+use ash::vk;
+
+/// A colour attachment.
+#[derive(Clone, Copy)]
+pub struct ColorTarget<'a> {
+    pub image: &'a Image,
+    /// What every sample holds before the draws; None: what is there.
+    pub clear: Option<vk::ClearColorValue>,
+    /// Gets the mean of each pixel's samples when rendering ends. Of the same extent and format, which is one of floats,
+    /// with one sample; it stands in `Access::ColorWrite` as the attachment does.
+    pub resolve: Option<&'a Image>,
+}
+
+impl<'a> ColorTarget<'a> {
+    /// Not resolved.
+    pub fn new(image: &'a Image, clear: Option<vk::ClearColorValue>) -> Self {
+        Self { image, clear, resolve: None }
+    }
+
+    /// Resolved into `plain`, which need not be cleared.
+    pub fn resolved(self, plain: &'a Image) -> Self {
+        Self { resolve: Some(plain), ..self }
+    }
+
+    fn info(&self) -> vk::RenderingAttachmentInfo<'static> {
+        let info = vk::RenderingAttachmentInfo::default()
+            .image_view(self.image.view)
+            .image_layout(Access::ColorWrite.layout())
+            .load_op(load(self.clear.is_some()))
+            .store_op(vk::AttachmentStoreOp::STORE)
+            .clear_value(vk::ClearValue { color: self.clear.unwrap_or_default() });
+        match self.resolve {
+            None => info,
+            Some(plain) => {
+                let (from, to) = (self.image.description, plain.description);
+                assert!(
+                    from.samples > 1 && to.samples == 1 && from.extent == to.extent && from.format == to.format,
+                    "{} ({from:?}) cannot be resolved into {} ({to:?})",
+                    self.image.name,
+                    plain.name
+                );
+                info.resolve_mode(vk::ResolveModeFlags::AVERAGE)
+                    .resolve_image_view(plain.view)
+                    .resolve_image_layout(Access::ColorWrite.layout())
+            }
+        }
+    }
+}
+
+fn load(clears: bool) -> vk::AttachmentLoadOp {
+    if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD }
+}
+
+impl Commands {
+    /// Opens rendering into whole images of `extent`. A depth image that has a stencil too is attached as both, and both
+    /// are cleared; a clear value of None loads what is there.
+    pub fn begin_rendering(
+        &mut self,
+        extent: Extent,
+        colors: &[ColorTarget<'_>],
+        depth: Option<(&Image, Option<f32>, Access)>,
+    ) {
+        for color in colors {
+            self.check_attached(color.image, Access::ColorWrite);
+            color.resolve.inspect(|plain| self.check_attached(plain, Access::ColorWrite));
+        }
+        if let Some((image, _, access)) = depth {
+            self.check_attached(image, access);
+        }
+        let color_infos: Vec<_> = colors.iter().map(ColorTarget::info).collect();
+        let depth_info = depth.map(|(image, clear, access)| {
+            let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
+            vk::RenderingAttachmentInfo::default()
+                .image_view(image.view)
+                .image_layout(access.layout())
+                .load_op(load(clear.is_some()))
+                .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
+                .clear_value(vk::ClearValue { depth_stencil: value })
+        });
+        let area = vk::Rect2D {
+            offset: vk::Offset2D::default(),
+            extent: vk::Extent2D { width: extent.width, height: extent.height },
+        };
+        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
+        if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
+            info = info.depth_attachment(depth_info);
+            if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {
+                info = info.stencil_attachment(depth_info);
+            }
+        }
+        let viewport = vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: extent.width as f32,
+            height: extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: the buffer is being recorded; the images are alive and in the layouts that the caller's barriers left.
+        unsafe {
+            self.gpu.device.cmd_begin_rendering(self.buffer(), &info);
+            self.gpu.device.cmd_set_viewport(self.buffer(), 0, &[viewport]);
+            self.gpu.device.cmd_set_scissor(self.buffer(), 0, &[area]);
+        }
+    }
+
+    pub fn end_rendering(&mut self) {
+        // SAFETY: opened by `begin_rendering`.
+        unsafe { self.gpu.device.cmd_end_rendering(self.buffer()) };
+    }
+
+    /// A programmer's mistake: rendering begins, and no barrier has brought an attachment there.
+    fn check_attached(&self, image: &Image, access: Access) {
+        if cfg!(debug_assertions) {
+            let truth = self.truth.get(&image.target()).copied().unwrap_or_default();
+            assert!(
+                truth.contains(access.into()),
+                "{} is attached as {access:?}, but the last barriers left {truth:?}",
+                image.name
+            );
+        }
+    }
+}
