@@ -103,6 +103,16 @@ fn lamps_deferred() {
     require_golden("lamps_deferred", "lamps", "deferred", &[("direct-shadow", "ray")]);
 }
 
+#[test]
+fn lamps_inferred() {
+    require_golden("lamps_inferred", "lamps", "inferred_lighting", &[]);
+}
+
+#[test]
+fn hall_inferred() {
+    require_golden("hall_inferred", "hall:triangles=8000", "inferred_lighting", &[("msaa", "4")]);
+}
+
 /// By its panel alone, as photographs of the box are.
 #[test]
 fn cornell_path_traced() {

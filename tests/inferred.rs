@@ -5,7 +5,7 @@ mod support;
 
 use glam::{Vec3, vec3};
 use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AlphaMode, Light, Material, Scene};
+use quincunx::scene::{self, AlphaMode, Light, Material, Projection, Scene};
 use support::boxes::{camera, point_light, rectangle};
 use support::watched::{Changes, Watched, both};
 
@@ -47,11 +47,15 @@ fn at_the_frame_s_size_it_is_deferred_shading() {
 
 #[test]
 fn every_road_of_the_lights_leaves_the_same_l_buffer() {
-    let roads: [Changes<'_>; 4] = [
+    let roads: [Changes<'_>; 8] = [
         &[("volumes", "tiled")],
         &[("volumes", "tiled"), ("texels", "1"), ("workgroup", "8x8")],
         &[("volumes", "quad")],
         &[("volumes", "scissor")],
+        &[("volumes", "stencil")],
+        &[("volumes", "both")],
+        &[("volumes", "auto")],
+        &[("volumes", "auto"), ("stencil-least", "50")],
     ];
     for (spec, more) in [
         ("lamps:objects=30,lights=30", &[("brdf", "lambert")][..]),
@@ -74,6 +78,30 @@ fn every_road_of_the_lights_leaves_the_same_l_buffer() {
                 assert!(found.1.pixels == first.1.pixels, "{spec}, {size:?}, {road:?}: another picture");
             }
         }
+    }
+}
+
+/// The eye inside of a volume, volumes that cross the near plane and that reach beyond a far plane just behind the scene, and
+/// one behind the eye: the stencil leaves out what adds nothing, and nothing else.
+#[test]
+fn volumes_are_right_around_the_eye_and_beyond_the_far_plane() {
+    let mut scene = edge(300.0);
+    let Projection::Perspective { z_far, .. } = &mut scene.cameras[0].projection else { panic!("edge has an eye") };
+    *z_far = Some(6.5);
+    for (position, range) in [
+        (vec3(0.1, 0.0, 0.2), 30.0),
+        (vec3(0.0, 0.5, -5.9), 4.0),
+        (vec3(-1.0, 0.0, -0.5), 1.0),
+        (vec3(0.0, 0.0, 9.0), 2.0),
+        (vec3(2.0, 1.0, -4.0), 1.5),
+    ] {
+        scene.lights.push(Light { range: Some(range), ..point_light(position, 40.0) });
+    }
+    let watched = Watched::with_scene(scene);
+    let changes = [("size", "160x120"), ("brdf", "blinn-phong"), ("light-cutoff", "0")];
+    let first = watched.hash(NAME, &both(&changes, &[("volumes", "tiled")]));
+    for volumes in ["quad", "scissor", "stencil", "both", "auto"] {
+        assert_eq!(watched.hash(NAME, &both(&changes, &[("volumes", volumes)])), first, "{volumes}");
     }
 }
 

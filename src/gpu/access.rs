@@ -29,6 +29,9 @@ pub enum Access {
     DepthWrite,
     /// Tested as a read-only depth attachment.
     DepthTest,
+    /// Tested as a read-only depth attachment and read through an image descriptor by fragment shaders, while its stencil is
+    /// tested and written.
+    StencilWrite,
     TransferRead,
     TransferWrite,
     /// Read as vertices or indices.
@@ -36,7 +39,7 @@ pub enum Access {
 }
 
 impl Access {
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::ComputeRead,
         Self::ComputeWrite,
         Self::ComputeSample,
@@ -46,6 +49,7 @@ impl Access {
         Self::ColorWrite,
         Self::DepthWrite,
         Self::DepthTest,
+        Self::StencilWrite,
         Self::TransferRead,
         Self::TransferWrite,
         Self::VertexRead,
@@ -59,6 +63,7 @@ impl Access {
             Self::FragmentSample | Self::FragmentWrite => Stage::FRAGMENT_SHADER,
             Self::ColorWrite => Stage::COLOR_ATTACHMENT_OUTPUT,
             Self::DepthWrite | Self::DepthTest => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,
+            Self::StencilWrite => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS | Stage::FRAGMENT_SHADER,
             Self::TransferRead | Self::TransferWrite => Stage::ALL_TRANSFER,
             Self::VertexRead => Stage::VERTEX_INPUT,
         }
@@ -74,6 +79,11 @@ impl Access {
             Self::ColorWrite => Flags::COLOR_ATTACHMENT_READ | Flags::COLOR_ATTACHMENT_WRITE,
             Self::DepthWrite => Flags::DEPTH_STENCIL_ATTACHMENT_READ | Flags::DEPTH_STENCIL_ATTACHMENT_WRITE,
             Self::DepthTest => Flags::DEPTH_STENCIL_ATTACHMENT_READ,
+            Self::StencilWrite => {
+                Flags::DEPTH_STENCIL_ATTACHMENT_READ
+                    | Flags::DEPTH_STENCIL_ATTACHMENT_WRITE
+                    | Flags::SHADER_SAMPLED_READ
+            }
             Self::TransferRead => Flags::TRANSFER_READ,
             Self::TransferWrite => Flags::TRANSFER_WRITE,
             Self::VertexRead => Flags::VERTEX_ATTRIBUTE_READ | Flags::INDEX_READ,
@@ -88,6 +98,7 @@ impl Access {
             Self::ColorWrite => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
             Self::DepthWrite => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
             Self::DepthTest => vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+            Self::StencilWrite => vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
             Self::TransferRead => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             Self::TransferWrite => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
             Self::GraphicsRead | Self::FragmentWrite | Self::VertexRead => vk::ImageLayout::UNDEFINED,
@@ -95,10 +106,12 @@ impl Access {
     }
 
     pub fn writes(self) -> bool {
-        matches!(
-            self,
-            Self::ComputeWrite | Self::FragmentWrite | Self::ColorWrite | Self::DepthWrite | Self::TransferWrite
-        )
+        match self {
+            Self::ComputeWrite | Self::FragmentWrite | Self::ColorWrite | Self::DepthWrite => true,
+            Self::StencilWrite | Self::TransferWrite => true,
+            Self::ComputeRead | Self::ComputeSample | Self::GraphicsRead | Self::FragmentSample => false,
+            Self::DepthTest | Self::TransferRead | Self::VertexRead => false,
+        }
     }
 
     fn bit(self) -> u16 {

@@ -125,6 +125,9 @@ pub struct Features {
     pub geometry_shader: bool,
     pub layer_from_vertex_shader: bool,
     pub fragment_stores_and_atomics: bool,
+    /// Data from before it was looked up has not.
+    #[serde(default)]
+    pub depth_clamp: bool,
     pub sampler_anisotropy: bool,
     pub storage_image_extended_formats: bool,
     pub shader_float16: bool,

@@ -302,6 +302,37 @@ impl Commands {
         Ok(())
     }
 
+    /// A set that can be bound for several draws whose pipelines take turns; None where the shaders bind nothing.
+    ///
+    /// Errors: the driver has no more room for sets (exit code 4).
+    pub fn set_for(
+        &mut self,
+        pipeline: &GraphicsPipeline,
+        bound: &[(&str, Bound<'_>)],
+    ) -> Result<Option<vk::DescriptorSet>> {
+        self.descriptors.set(&pipeline.interface, bound)
+    }
+
+    /// Binds a graphics pipeline with a set of `set_for`, inside rendering.
+    pub fn bind_with_set(&mut self, pipeline: &GraphicsPipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: the buffer is being recorded; pipeline and set outlive the recorded frame, and the set is of its layout.
+        unsafe {
+            self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle);
+            if let Some(set) = set {
+                self.gpu.device.cmd_bind_descriptor_sets(
+                    self.buffer(),
+                    point,
+                    pipeline.interface.layout,
+                    0,
+                    &[set],
+                    &[],
+                );
+            }
+        }
+        self.push(&pipeline.interface, params);
+    }
+
     /// What a stencil test compares with, and which bits a stencil write changes, for the draws that follow.
     pub fn set_stencil(&mut self, reference: u32, write_mask: u32) {
         let faces = vk::StencilFaceFlags::FRONT_AND_BACK;

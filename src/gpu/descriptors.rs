@@ -64,7 +64,7 @@ impl Descriptors {
                 }
                 (BindingKind::CombinedImageSampler, Bound::Sampled(image, sampler, access)) => {
                     image_info[0] =
-                        image_info[0].image_view(image.view).sampler(*sampler).image_layout(access.layout());
+                        image_info[0].image_view(image.sampled_view).sampler(*sampler).image_layout(access.layout());
                     write.image_info(&image_info)
                 }
                 (kind, _) => {

@@ -260,7 +260,8 @@ impl Gpu {
         let features = vk::PhysicalDeviceFeatures::default()
             .sampler_anisotropy(caps.features.sampler_anisotropy)
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
-            .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics);
+            .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
+            .depth_clamp(caps.features.depth_clamp);
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&features)

@@ -95,11 +95,20 @@ pub struct Image {
     pub view: vk::ImageView,
     /// The same texels as shaders store them; `view` itself where the formats are one.
     pub storage_view: vk::ImageView,
+    /// What shaders sample: of depth with stencil the depth alone; else `view` itself.
+    pub sampled_view: vk::ImageView,
     pub name: String,
     pub description: ImageDescription,
     /// Last accesses of whoever had its bytes before it in the frame.
     pub(super) takes_over: AccessSet,
     allocation: ManuallyDrop<Allocation>,
+}
+
+/// Views of one image.
+struct Views {
+    view: vk::ImageView,
+    storage: vk::ImageView,
+    sampled: vk::ImageView,
 }
 
 impl Image {
@@ -136,12 +145,22 @@ impl Image {
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
         match Self::bind(gpu, name, group, description, handle, berth) {
-            Ok((allocation, view, storage_view)) => {
+            Ok((allocation, Views { view, storage, sampled })) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
                 let (gpu, takes_over) = (gpu.clone(), berth.takes_over());
-                Ok(Self { gpu, handle, view, storage_view, name, description, takes_over, allocation })
+                Ok(Self {
+                    gpu,
+                    handle,
+                    view,
+                    storage_view: storage,
+                    sampled_view: sampled,
+                    name,
+                    description,
+                    takes_over,
+                    allocation,
+                })
             }
             Err(error) => {
                 // SAFETY: never used.
@@ -158,7 +177,7 @@ impl Image {
         description: ImageDescription,
         handle: vk::Image,
         berth: Berth<'_>,
-    ) -> Result<(Allocation, vk::ImageView, vk::ImageView)> {
+    ) -> Result<(Allocation, Views)> {
         // SAFETY: the image was made from this device.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
         let bytes = description.bytes();
@@ -167,7 +186,7 @@ impl Image {
         // SAFETY: fresh memory of an allowed type, in bounds, bound once.
         unsafe { gpu.device.bind_image_memory(handle, allocation.handle, allocation.offset) }
             .map_err(|result| Error::device(format!("binding image {name}: {result}")))?;
-        let range = vk::ImageSubresourceRange::default()
+        let whole = vk::ImageSubresourceRange::default()
             .aspect_mask(aspect_of(description.format))
             .level_count(description.level_count)
             .layer_count(description.layers());
@@ -176,7 +195,7 @@ impl Image {
         } else {
             vk::ImageViewType::TYPE_2D
         };
-        let view_as = |format, usage| {
+        let view_as = |format, usage, range| {
             let mut usage = vk::ImageViewUsageCreateInfo::default().usage(usage);
             let info = vk::ImageViewCreateInfo::default()
                 .image(handle)
@@ -189,13 +208,24 @@ impl Image {
                 .map_err(|result| Error::device(format!("creating a view of image {name}: {result}")))
         };
         let (format, usage) = (description.format, description.usage);
-        if !usage.contains(vk::ImageUsageFlags::STORAGE) || storage_format(format) == format {
-            let view = view_as(format, usage)?;
-            return Ok((allocation, view, view));
-        }
-        let view = view_as(format, usage & !vk::ImageUsageFlags::STORAGE)?;
-        match view_as(storage_format(format), vk::ImageUsageFlags::STORAGE) {
-            Ok(storage_view) => Ok((allocation, view, storage_view)),
+        let is_stored_otherwise = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
+        let is_sampled_in_part =
+            usage.contains(vk::ImageUsageFlags::SAMPLED) && format == vk::Format::D32_SFLOAT_S8_UINT;
+        let own_usage = if is_stored_otherwise { usage & !vk::ImageUsageFlags::STORAGE } else { usage };
+        let view = view_as(format, own_usage, whole)?;
+        let other = if is_stored_otherwise {
+            view_as(storage_format(format), vk::ImageUsageFlags::STORAGE, whole)
+        } else if is_sampled_in_part {
+            view_as(format, vk::ImageUsageFlags::SAMPLED, whole.aspect_mask(vk::ImageAspectFlags::DEPTH))
+        } else {
+            Ok(view)
+        };
+        match other {
+            Ok(other) => {
+                let storage = if is_stored_otherwise { other } else { view };
+                let sampled = if is_sampled_in_part { other } else { view };
+                Ok((allocation, Views { view, storage, sampled }))
+            }
             Err(error) => {
                 // SAFETY: never used.
                 unsafe { gpu.device.destroy_image_view(view, None) };
@@ -227,8 +257,8 @@ impl Drop for Image {
     fn drop(&mut self) {
         // SAFETY: the frame's fence was waited for; view, image, memory in this order, each once.
         unsafe {
-            if self.storage_view != self.view {
-                self.gpu.device.destroy_image_view(self.storage_view, None);
+            for other in [self.storage_view, self.sampled_view].into_iter().filter(|other| *other != self.view) {
+                self.gpu.device.destroy_image_view(other, None);
             }
             self.gpu.device.destroy_image_view(self.view, None);
             self.gpu.device.destroy_image(self.handle, None);

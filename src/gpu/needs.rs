@@ -18,6 +18,8 @@ pub enum Ability {
     StoreWordPairs,
     /// Fragment shaders count in storage buffers.
     FragmentAtomics,
+    /// What lies beyond the far plane is drawn on it.
+    DepthClamp,
     /// Floats of colour and depth with 4 samples a pixel.
     FourSamples,
     /// The same with 8.
@@ -33,6 +35,7 @@ impl Ability {
             Self::BlendFloats => caps.formats.float_color_blend,
             Self::StoreWordPairs => caps.features.storage_image_extended_formats,
             Self::FragmentAtomics => caps.features.fragment_stores_and_atomics,
+            Self::DepthClamp => caps.features.depth_clamp,
             Self::FourSamples => has_samples(&caps.formats, 4),
             Self::EightSamples => has_samples(&caps.formats, 8),
         }
@@ -46,6 +49,7 @@ impl Ability {
             Self::BlendFloats => "R32G32B32A32_SFLOAT as blended colour attachment",
             Self::StoreWordPairs => "shaderStorageImageExtendedFormats",
             Self::FragmentAtomics => "fragmentStoresAndAtomics",
+            Self::DepthClamp => "depthClamp",
             Self::FourSamples => "4 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::EightSamples => "8 samples a pixel in float colour and D32_SFLOAT attachments",
         }

@@ -239,6 +239,8 @@ pub struct GraphicsDescription<'a> {
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,
     pub depth_compare: vk::CompareOp,
+    /// What lies before the near plane or beyond the far one is drawn there instead of being cut off.
+    pub depth_clamp: bool,
     /// None: no stencil test. Reference and write mask are set by commands.
     pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
@@ -253,17 +255,23 @@ pub enum Blending {
     Over,
     /// Sums, in the order of the draws.
     Add,
+    /// Nothing is written.
+    Keep,
 }
 
 impl Blending {
     fn state(self) -> vk::PipelineColorBlendAttachmentState {
         let target = match self {
-            Self::Replace | Self::Over => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+            Self::Replace | Self::Over | Self::Keep => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
             Self::Add => vk::BlendFactor::ONE,
         };
         vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA)
-            .blend_enable(self != Self::Replace)
+            .color_write_mask(if self == Self::Keep {
+                vk::ColorComponentFlags::empty()
+            } else {
+                vk::ColorComponentFlags::RGBA
+            })
+            .blend_enable(matches!(self, Self::Over | Self::Add))
             .src_color_blend_factor(vk::BlendFactor::ONE)
             .dst_color_blend_factor(target)
             .src_alpha_blend_factor(vk::BlendFactor::ONE)
@@ -278,15 +286,30 @@ pub enum StencilUse {
     Replace,
     /// Draw only where the stencil holds the reference.
     RequireEqual,
+    /// Count closed surfaces' faces behind what was drawn, wrapping: backs up, fronts down. Where none of their inside is,
+    /// as many of both are behind (the depth-fail test).
+    CountBehind,
+    /// Draw only where the stencil differs from the reference, and set it to 0 there.
+    TakeUnequal,
 }
 
 impl StencilUse {
-    fn state(self) -> vk::StencilOpState {
+    /// Of front faces and of back faces.
+    fn states(self) -> [vk::StencilOpState; 2] {
         let (compare_op, pass_op) = match self {
             Self::Replace => (vk::CompareOp::ALWAYS, vk::StencilOp::REPLACE),
             Self::RequireEqual => (vk::CompareOp::EQUAL, vk::StencilOp::KEEP),
+            Self::CountBehind => (vk::CompareOp::ALWAYS, vk::StencilOp::KEEP),
+            Self::TakeUnequal => (vk::CompareOp::NOT_EQUAL, vk::StencilOp::ZERO),
         };
-        vk::StencilOpState { compare_op, pass_op, compare_mask: 0xff, ..vk::StencilOpState::default() }
+        let state = vk::StencilOpState { compare_op, pass_op, compare_mask: 0xff, ..vk::StencilOpState::default() };
+        let counting = |depth_fail_op| vk::StencilOpState { depth_fail_op, ..state };
+        match self {
+            Self::CountBehind => {
+                [counting(vk::StencilOp::DECREMENT_AND_WRAP), counting(vk::StencilOp::INCREMENT_AND_WRAP)]
+            }
+            Self::Replace | Self::RequireEqual | Self::TakeUnequal => [state; 2],
+        }
     }
 }
 
@@ -346,14 +369,16 @@ impl GraphicsPipeline {
         let assembly =
             vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .line_width(1.0)
+            .depth_clamp_enable(description.depth_clamp);
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(description.samples));
-        let stencil = description.stencil.map(StencilUse::state).unwrap_or_default();
+        let [front, back] = description.stencil.map(StencilUse::states).unwrap_or_default();
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .stencil_test_enable(description.stencil.is_some())
-            .front(stencil)
-            .back(stencil)
+            .front(front)
+            .back(back)
             .depth_test_enable(description.depth_format.is_some())
             .depth_write_enable(description.depth_write)
             .depth_compare_op(description.depth_compare);

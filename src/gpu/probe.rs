@@ -131,6 +131,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             geometry_shader: features.geometry_shader != 0,
             layer_from_vertex_shader: features12.shader_output_layer != 0,
             fragment_stores_and_atomics: features.fragment_stores_and_atomics != 0,
+            depth_clamp: features.depth_clamp != 0,
             sampler_anisotropy: features.sampler_anisotropy != 0,
             storage_image_extended_formats: features.shader_storage_image_extended_formats != 0,
             shader_float16: features12.shader_float16 != 0,

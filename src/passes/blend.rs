@@ -86,6 +86,7 @@ impl Blend {
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                depth_clamp: false,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

@@ -19,6 +19,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         depth_format: None,
         depth_write: false,
         depth_compare: vk::CompareOp::ALWAYS,
+        depth_clamp: false,
         stencil: None,
         foreign_sets: &[],
     }

@@ -324,6 +324,7 @@ impl GBufferPass {
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
+                    depth_clamp: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -21,6 +21,8 @@ pub struct Choices {
     pub has_extras: bool,
     light_roughness: f32,
     pub volumes: Volumes,
+    /// Texels of a rectangle from which on --volumes auto counts a light.
+    pub least_counted_texels: u64,
     /// The L-buffer is blended in half floats.
     pub in_halves: bool,
     pub filters: bool,
@@ -56,6 +58,7 @@ impl Choices {
             has_extras: values.is_on("extras") && values.text("brdf") != "lambert",
             light_roughness: values.number("light-roughness") as f32,
             volumes,
+            least_counted_texels: values.integer("stencil-least"),
             in_halves,
             filters: values.is_on("dsf"),
             depth_threshold: values.number("depth-threshold") as f32,

@@ -5,7 +5,7 @@ use super::cull::Cull;
 use super::geometry::{Geometry, LowGeometry};
 use super::light::pack::Pack;
 use super::light::tiled::Tiled;
-use super::light::volumes::LightVolumes;
+use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, Volumes};
 use super::material::{FilterSettings, Material};
 use super::stipple::{self, Shares};
@@ -84,18 +84,16 @@ impl InferredFrame {
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();
-        let volumes = |format| {
-            LightVolumes::new(
-                gpu,
-                &constants,
-                choices.has_extras,
-                choices.volumes,
-                lights,
-                inputs.view,
-                light_extent,
-                format,
+        let volumes = |target_format| {
+            let settings = VolumeSettings {
+                constants: &constants,
+                has_extras: choices.has_extras,
+                volumes: choices.volumes,
+                least_counted_texels: choices.least_counted_texels,
+                target_format,
                 ambient,
-            )
+            };
+            LightVolumes::new(gpu, &settings, lights, inputs.view, light_extent)
         };
         let road = match (choices.volumes, choices.in_halves) {
             (Volumes::Tiled, _) => {
@@ -128,6 +126,7 @@ impl InferredFrame {
                 choices.stipple_side,
                 depth_range_m,
                 choices.has_extras,
+                choices.volumes.depth_format(),
             )?,
             material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
             l_buffer: resources.image(&light::l_buffer()),
@@ -189,6 +188,7 @@ impl Frame for InferredFrame {
             Road::Halves(volumes) | Road::Sums { volumes, .. } => {
                 let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
                 let evaluated = volumes.evaluations();
+                counters.insert("lights_counted_into_stencil", volumes.counted_lights() as f64);
                 counters.insert("light_evaluations", evaluated as f64);
                 counters.insert("light_evaluations_culled", (all - evaluated) as f64);
             }

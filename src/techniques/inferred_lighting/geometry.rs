@@ -4,7 +4,7 @@
 //! writes  geometry.normal   image, 4 B a texel: view-space normal through the map of the sphere to the hemisphere
 //!         geometry.dsf      image, 4 B a texel: linear depth, ids of object and normal group
 //!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id
-//!         geometry.depth    image, 4 B a texel, reversed
+//!         geometry.depth    image, 4 B a texel, reversed; with a stencil where lights are counted into one
 //!
 //! BLEND surfaces are drawn last, each into its own texels of the stipple.
 
@@ -26,7 +26,6 @@ use bytemuck::Zeroable;
 use std::sync::Arc;
 
 const WORD: vk::Format = vk::Format::R32_UINT;
-const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
 /// What a pass touches.
 pub type Touches = Vec<(String, Access)>;
@@ -40,13 +39,13 @@ fn color_images(has_extras: bool) -> Vec<&'static str> {
 }
 
 /// Plans its images.
-pub fn plan(plan: &mut Plan, extent: Extent, has_extras: bool) {
+pub fn plan(plan: &mut Plan, extent: Extent, has_extras: bool, depth_format: vk::Format) {
     use vk::ImageUsageFlags as Usage;
     let read = Usage::SAMPLED | Usage::TRANSFER_SRC;
     for what in color_images(has_extras) {
         plan.image("g-buffer", full(what), extent, WORD, Usage::COLOR_ATTACHMENT | read);
     }
-    plan.image("g-buffer", full("depth"), extent, DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT | read);
+    plan.image("g-buffer", full("depth"), extent, depth_format, Usage::DEPTH_STENCIL_ATTACHMENT | read);
 }
 
 /// What the pass that fills them touches.
@@ -56,9 +55,9 @@ pub fn written(has_extras: bool) -> Touches {
 }
 
 /// What a pass touches that lights its surfaces.
-pub fn lit(has_extras: bool, access: Access) -> Touches {
-    let read = ["normal", "depth"].into_iter().chain(has_extras.then_some("extras"));
-    read.map(|what| (full(what), access)).collect()
+pub fn lit(has_extras: bool, access: Access, depth_access: Access) -> Touches {
+    let read = ["normal"].into_iter().chain(has_extras.then_some("extras")).map(|what| (full(what), access));
+    read.chain([(full("depth"), depth_access)]).collect()
 }
 
 /// What a pass touches that looks where its surfaces are.
@@ -116,8 +115,9 @@ impl LowGeometry {
     }
 
     /// What surface.glsl binds.
-    pub fn bound(&self, access: Access) -> Vec<(&'static str, Bound<'_>)> {
-        let mut bound = vec![("geometry_normal", self.sampled(&self.normal, access)), self.bound_depth(access)];
+    pub fn bound_with_depth(&self, access: Access, depth_access: Access) -> Vec<(&'static str, Bound<'_>)> {
+        let normal = self.sampled(&self.normal, access);
+        let mut bound = vec![("geometry_normal", normal), self.bound_depth(depth_access)];
         bound.extend(self.extras.as_ref().map(|extras| ("geometry_extras", self.sampled(extras, access))));
         bound
     }
@@ -139,10 +139,10 @@ impl Edge<'_, LowGeometry> {
         self.resource.depth.from(self.from).to(access)
     }
 
-    /// What `lit` names becomes readable as `access` says.
-    pub fn lit_to(self, access: Access) -> Vec<Barrier> {
+    /// What `lit` names becomes readable as both say.
+    pub fn lit_with_depth_to(self, access: Access, depth_access: Access) -> Vec<Barrier> {
         let written = [Some(&self.resource.normal), self.resource.extras.as_ref()].into_iter().flatten();
-        let mut barriers = vec![self.depth_to(access)];
+        let mut barriers = vec![self.depth_to(depth_access)];
         barriers.extend(written.map(|image| image.from(Access::ColorWrite).to(access)));
         barriers
     }
@@ -162,6 +162,7 @@ pub struct Geometry {
 
 impl Geometry {
     /// `list`: the solid surfaces that it draws. `stippled`: the others.
+    #[allow(clippy::too_many_arguments)]
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
@@ -170,6 +171,7 @@ impl Geometry {
         stipple_side: u32,
         depth_range_m: [f32; 2],
         has_extras: bool,
+        depth_format: vk::Format,
     ) -> Result<Self> {
         let formats = vec![WORD; color_images(has_extras).len()];
         let pipeline = |alpha: &str| {
@@ -184,9 +186,10 @@ impl Geometry {
                     color_formats: &formats,
                     samples: 1,
                     blending: Blending::Replace,
-                    depth_format: Some(DEPTH_FORMAT),
+                    depth_format: Some(depth_format),
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
+                    depth_clamp: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

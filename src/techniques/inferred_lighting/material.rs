@@ -122,6 +122,7 @@ impl Material {
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: alpha != "blend",
                     depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                    depth_clamp: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

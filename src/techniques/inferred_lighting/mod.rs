@@ -5,7 +5,7 @@
 //! material (at the frame's size), resolve (with `--msaa`).
 //!
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
-//! default road is one dispatch with light lists for tiles (`--volumes quad` and `scissor` are draws); depth is reversed and
+//! default road is one dispatch with light lists for tiles (`--volumes quad`, `scissor`, `stencil`, `both` and `auto` are draws); depth is reversed and
 //! a float; specular power travels in a third target by default (`--extras`), because materials of glTF have a roughness
 //! each; a highlight's Fresnel factor is that of normal incidence, because the L-buffer keeps no directions.
 //!
@@ -75,7 +75,16 @@ impl Technique for InferredLighting {
         needs.extend(resolve::needs(values));
         if values.text("volumes") != "tiled" {
             let of = format!("--volumes {}", values.text("volumes"));
-            needs.push(Need { of, ability: Ability::BlendFloats, instead: "--volumes tiled works without it" });
+            needs.push(Need {
+                of: of.clone(),
+                ability: Ability::BlendFloats,
+                instead: "--volumes tiled works without it",
+            });
+            if Volumes::from_setting(values.text("volumes")).counts() {
+                let instead = "--volumes scissor works without it";
+                needs.push(Need { of: of.clone(), ability: Ability::DepthWithStencil, instead });
+                needs.push(Need { of, ability: Ability::DepthClamp, instead });
+            }
         } else {
             let of = "--volumes tiled".to_owned();
             needs.push(Need { of, ability: Ability::StoreWordPairs, instead: "" });
@@ -100,7 +109,7 @@ impl Technique for InferredLighting {
         let choices = Choices::new(inputs)?;
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
-        geometry::plan(&mut plan, choices.light_extent, choices.has_extras);
+        geometry::plan(&mut plan, choices.light_extent, choices.has_extras, choices.volumes.depth_format());
         let tree = choices.shading.tree(inputs.bvh, inputs.scene)?;
         direct::plan(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
@@ -114,12 +123,13 @@ impl Technique for InferredLighting {
             plan.pass(format!("{NAME}.cull"), placed.into_iter().chain([written]));
         }
         if choices.volumes == Volumes::Tiled {
-            let mut touches = geometry::lit(choices.has_extras, Access::ComputeSample);
+            let mut touches = geometry::lit(choices.has_extras, Access::ComputeSample, Access::ComputeSample);
             touches.extend(masks.then(|| light_masks::masks(NAME, Access::ComputeRead)));
             touches.push((light::l_buffer(), Access::ComputeWrite));
             plan.pass(format!("{NAME}.light"), touches);
         } else {
-            let mut touches = geometry::lit(choices.has_extras, Access::FragmentSample);
+            let depth_access = if choices.volumes.counts() { Access::StencilWrite } else { Access::FragmentSample };
+            let mut touches = geometry::lit(choices.has_extras, Access::FragmentSample, depth_access);
             let target = if choices.in_halves { light::l_buffer() } else { light::sums() };
             touches.push((target, Access::ColorWrite));
             plan.pass(format!("{NAME}.light"), touches);

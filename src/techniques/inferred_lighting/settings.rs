@@ -40,12 +40,22 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "volumes",
         symbol: "",
-        kind: Kind::Choice(&["tiled", "quad", "scissor"]),
+        kind: Kind::Choice(&["tiled", "quad", "scissor", "stencil", "both", "auto"]),
         default: "tiled",
         unit: "",
         paper: "Kircher 2009, 2.2",
         help: "how texels meet their lights: in one dispatch with a list of lights a tile (tiled), or in a draw a light, over \
-               the frame (quad) or within the rectangle that bounds it (scissor)",
+               the frame (quad), within the rectangle that bounds what it reaches (scissor), where its volume meets a surface \
+               (stencil, depth-fail), or both; auto: both, but for lights smaller than --stencil-least, which go without",
+    },
+    Setting {
+        key: "stencil-least",
+        symbol: "",
+        kind: Kind::Integer { min: 0, max: 1 << 28 },
+        default: "4096",
+        unit: "texels",
+        paper: "Kircher 2009, 2.2",
+        help: "of --volumes auto: a light whose rectangle has fewer texels is drawn without the stencil",
     },
     Setting {
         key: "l-buffer",

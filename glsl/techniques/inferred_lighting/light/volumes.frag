@@ -5,13 +5,8 @@
 #include "frame.glsl"
 #include "bvh.glsl"
 #include "loops.glsl"
+#include "techniques/inferred_lighting/light/volumes.glsl"
 
-struct VolumesParams {
-    // Index of the light.
-    uint light;
-};
-
-layout(push_constant) uniform Push { VolumesParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 
 #include "techniques/inferred_lighting/surface.glsl"

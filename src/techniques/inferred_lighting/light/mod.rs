@@ -24,6 +24,12 @@ pub enum Volumes {
     Tiled,
     Quad,
     Scissor,
+    /// Over the frame, where the light's volume meets a surface.
+    Stencil,
+    /// The same within the rectangle.
+    Both,
+    /// The same, but for small lights, which have the rectangle alone.
+    Auto,
 }
 
 impl Volumes {
@@ -33,8 +39,21 @@ impl Volumes {
             "tiled" => Self::Tiled,
             "quad" => Self::Quad,
             "scissor" => Self::Scissor,
+            "stencil" => Self::Stencil,
+            "both" => Self::Both,
+            "auto" => Self::Auto,
             other => panic!("--volumes {other} was checked"),
         }
+    }
+
+    /// Whether lights are counted into a stencil.
+    pub fn counts(self) -> bool {
+        matches!(self, Self::Stencil | Self::Both | Self::Auto)
+    }
+
+    /// Of the geometry pass.
+    pub fn depth_format(self) -> vk::Format {
+        if self.counts() { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT }
     }
 }
 

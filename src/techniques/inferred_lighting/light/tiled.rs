@@ -50,10 +50,10 @@ impl Tiled {
             invocations: Some(u64::from(extent.width) * u64::from(columns)),
         };
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {
-            cmd.barriers(geometry.lit_to(Access::ComputeSample));
+            cmd.barriers(geometry.lit_with_depth_to(Access::ComputeSample, Access::ComputeSample));
             cmd.barriers([l_buffer.discard(Access::ComputeWrite)]);
             cmd.barriers(lights.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
-            let mut bound = geometry.resource.bound(Access::ComputeSample);
+            let mut bound = geometry.resource.bound_with_depth(Access::ComputeSample, Access::ComputeSample);
             bound.extend(lights.bound());
             bound.extend([("Frame", Bound::Buffer(frame)), ("l_buffer", Bound::Storage(l_buffer))]);
             let groups = self.pipeline.groups([extent.width, columns, 1]);

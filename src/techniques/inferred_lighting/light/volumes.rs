@@ -1,8 +1,10 @@
-//! Light, a draw a light: over the whole light buffer, or within the rectangle that bounds what the light reaches.
-//! Shaders: fullscreen.vert, volumes.frag.
+//! Light, a draw a light: over the whole light buffer, within the rectangle that bounds what the light reaches, where its
+//! volume meets a surface, or both. Kircher 2009, section 2.2. Shaders: fullscreen.vert, volumes.vert, volumes.frag.
 //! reads  geometry.normal, geometry.depth, geometry.extras      writes  light.sums, or light.l_buffer
 //!
-//! Beyond its range a light adds exactly 0, so what a rectangle leaves out changes no bit of a float sum.
+//! Beyond its range a light adds exactly 0, so what a rectangle or a volume leaves out changes no bit of a float sum. A volume
+//! is counted into the stencil by the depth-fail test, which is right with the eye inside of it too; depth is clamped, so
+//! that it may reach beyond the far plane. The draw that lights what was counted sets the stencil back to 0.
 
 use super::super::NAME;
 use super::super::geometry::{LowGeometry, extras_name};
@@ -10,9 +12,9 @@ use super::Volumes;
 use super::reach::{self, Rectangle};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline, StencilUse};
 use crate::gpu::shader::structs::{LightBlock, VolumesParams};
-use crate::gpu::shader::techniques::inferred_lighting::light::volumes::FRAG_VARIANTS;
+use crate::gpu::shader::techniques::inferred_lighting::light::volumes::{FRAG_VARIANTS, VERT};
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::DirectGpu;
@@ -22,45 +24,109 @@ use ash::vk;
 use glam::Vec3;
 use std::sync::Arc;
 
+/// Corners of volumes.vert's surface.
+const VOLUME_VERTICES: u32 = 60;
+
+/// What a light's draw is.
+#[derive(Clone, Copy, Debug)]
+struct LightDraw {
+    light: u32,
+    rectangle: Rectangle,
+    /// Only where its volume meets a surface.
+    is_counted: bool,
+}
+
+/// The pipelines of volumes in the stencil.
+struct Counted {
+    count: GraphicsPipeline,
+    light: GraphicsPipeline,
+}
+
 pub struct LightVolumes {
-    pipeline: GraphicsPipeline,
-    /// The lights that reach something on the screen, in their order, and where.
-    drawn: Vec<(u32, Rectangle)>,
+    plain: GraphicsPipeline,
+    counted: Option<Counted>,
+    /// The lights that reach something on the screen, in their order.
+    draws: Vec<LightDraw>,
     ambient: Vec3,
 }
 
+/// What the draws are made of.
+pub struct VolumeSettings<'a> {
+    /// BRDF_KIND and those that `surface.glsl` has beside it.
+    pub constants: &'a [(&'static str, u32)],
+    pub has_extras: bool,
+    pub volumes: Volumes,
+    /// `--volumes auto`: lights whose rectangle has fewer texels go without the stencil.
+    pub least_counted_texels: u64,
+    /// What lights are summed in.
+    pub target_format: vk::Format,
+    /// Radiance.
+    pub ambient: Vec3,
+}
+
 impl LightVolumes {
-    /// `constants`: BRDF_KIND and those that `surface.glsl` has beside it. `target_format`: what lights are summed in.
-    /// `ambient`: radiance.
-    #[allow(clippy::too_many_arguments)]
+    /// `extent`: of the light buffer.
     pub fn new(
         gpu: &Arc<Gpu>,
-        constants: &[(&str, u32)],
-        has_extras: bool,
-        volumes: Volumes,
+        settings: &VolumeSettings<'_>,
         lights: &[LightBlock],
         view: &View,
         extent: Extent,
-        target_format: vk::Format,
-        ambient: Vec3,
     ) -> Result<Self> {
-        let shader = variant(FRAG_VARIANTS, &[extras_name(has_extras)]);
-        let formats = [target_format];
-        let description =
-            GraphicsDescription { constants, blending: Blending::Add, ..fullscreen::description(shader, &formats) };
-        let whole = Rectangle { corner_px: [0, 0], extent };
-        let rectangle = |light: &LightBlock| match volumes {
-            Volumes::Quad | Volumes::Tiled => Some(whole),
-            Volumes::Scissor => reach::rectangle(light, view, extent),
+        let shader = variant(FRAG_VARIANTS, &[extras_name(settings.has_extras)]);
+        let formats = [settings.target_format];
+        let depth_format = settings.volumes.depth_format();
+        let is_counting = settings.volumes.counts();
+        let light = |stencil| GraphicsDescription {
+            constants: settings.constants,
+            blending: Blending::Add,
+            depth_format: is_counting.then_some(depth_format),
+            stencil,
+            ..fullscreen::description(shader, &formats)
         };
-        let drawn = lights.iter().enumerate();
-        let drawn = drawn.filter_map(|(index, light)| Some((index as u32, rectangle(light)?))).collect();
-        Ok(Self { pipeline: GraphicsPipeline::new(gpu, &description)?, drawn, ambient })
+        let counted = if is_counting {
+            let count = GraphicsDescription {
+                vertex: &VERT,
+                fragment: None,
+                constants: &[],
+                blending: Blending::Keep,
+                depth_compare: vk::CompareOp::GREATER,
+                depth_clamp: true,
+                ..light(Some(StencilUse::CountBehind))
+            };
+            Some(Counted {
+                count: GraphicsPipeline::new(gpu, &count)?,
+                light: GraphicsPipeline::new(gpu, &light(Some(StencilUse::TakeUnequal)))?,
+            })
+        } else {
+            None
+        };
+        let draw = |(index, light): (usize, &LightBlock)| {
+            let bounds = reach::rectangle(light, view, extent)?;
+            let whole = Rectangle { corner_px: [0, 0], extent };
+            let has_end = light.intensity[3] > 0.0;
+            let is_large = bounds.extent.pixel_count() >= settings.least_counted_texels;
+            let (rectangle, is_counted) = match settings.volumes {
+                Volumes::Quad | Volumes::Tiled => (whole, false),
+                Volumes::Scissor => (bounds, false),
+                Volumes::Stencil => (whole, has_end),
+                Volumes::Both => (bounds, has_end),
+                Volumes::Auto => (bounds, has_end && is_large),
+            };
+            Some(LightDraw { light: index as u32, rectangle, is_counted })
+        };
+        let draws = lights.iter().enumerate().filter_map(draw).collect();
+        Ok(Self { plain: GraphicsPipeline::new(gpu, &light(None))?, counted, draws, ambient: settings.ambient })
     }
 
-    /// Texels times lights that are drawn.
+    /// Texels times lights that are drawn, whatever the stencil leaves of them.
     pub fn evaluations(&self) -> u64 {
-        self.drawn.iter().map(|(_, rectangle)| rectangle.extent.pixel_count()).sum()
+        self.draws.iter().map(|draw| draw.rectangle.extent.pixel_count()).sum()
+    }
+
+    /// Lights whose volumes are counted.
+    pub fn counted_lights(&self) -> usize {
+        self.draws.iter().filter(|draw| draw.is_counted).count()
     }
 
     /// `frame`: the block of the light buffer's extent. `target`: where lights are summed.
@@ -80,27 +146,66 @@ impl LightVolumes {
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {
-            cmd.barriers(geometry.lit_to(Access::FragmentSample));
+            let depth_access = if self.counted.is_some() { Access::StencilWrite } else { Access::FragmentSample };
+            cmd.barriers(geometry.lit_with_depth_to(Access::FragmentSample, depth_access));
             cmd.barriers([target.discard(Access::ColorWrite)]);
             // As lighting.glsl's ambient_lighting: a float times a float, rounded once.
             let [r, g, b] = (std::f32::consts::PI * self.ambient).to_array();
             let ambient = Some(vk::ClearColorValue { float32: [r, g, b, 0.0] });
-            cmd.begin_rendering(extent, &[ColorTarget::new(target, ambient)], None);
-            for (turn, (light, Rectangle { corner_px, extent })) in self.drawn.iter().enumerate() {
-                let params = VolumesParams { light: *light };
-                if turn == 0 {
-                    let mut bound = geometry.resource.bound(Access::FragmentSample);
-                    bound.extend(lights.bound());
-                    bound.push(("Frame", Bound::Buffer(frame)));
-                    cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&params), &bound)?;
-                } else {
-                    cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&params));
-                }
-                cmd.set_scissor(*corner_px, *extent);
-                fullscreen::draw(cmd, 0);
-            }
+            let depth = self.counted.is_some().then_some((&geometry.resource.depth, None, depth_access));
+            cmd.begin_rendering(extent, &[ColorTarget::new(target, ambient)], depth);
+            let mut bound = geometry.resource.bound_with_depth(Access::FragmentSample, depth_access);
+            bound.extend(lights.bound());
+            bound.push(("Frame", Bound::Buffer(frame)));
+            self.draw(cmd, &bound, frame, lights)?;
             cmd.end_rendering();
             Ok(())
         })
+    }
+
+    /// Inside rendering.
+    fn draw(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        frame: &Buffer,
+        lights: &DirectGpu,
+    ) -> Result<()> {
+        let plain_set = cmd.set_for(&self.plain, bound)?;
+        let counted_sets = match &self.counted {
+            Some(Counted { count, light }) => {
+                let places = [("Frame", Bound::Buffer(frame)), ("Lights", Bound::Buffer(&lights.lights))];
+                Some((count, cmd.set_for(count, &places)?, light, cmd.set_for(light, bound)?))
+            }
+            None => None,
+        };
+        for LightDraw { light, rectangle, is_counted } in &self.draws {
+            let params = VolumesParams { light: *light };
+            let params = bytemuck::bytes_of(&params);
+            cmd.set_scissor(rectangle.corner_px, rectangle.extent);
+            match counted_sets {
+                Some((count, count_set, light, light_set)) if *is_counted => {
+                    cmd.bind_with_set(count, params, count_set);
+                    cmd.set_stencil(0, 0xff);
+                    draw_volume(cmd);
+                    cmd.bind_with_set(light, params, light_set);
+                    cmd.set_stencil(0, 0xff);
+                }
+                _ => cmd.bind_with_set(&self.plain, params, plain_set),
+            }
+            fullscreen::draw(cmd, 0);
+        }
+        Ok(())
+    }
+}
+
+/// The light's volume, both sides of it, inside rendering.
+fn draw_volume(cmd: &Commands) {
+    let (device, buffer) = (&cmd.gpu().device, cmd.buffer());
+    // SAFETY: the buffer is being recorded inside rendering; the stage reads no vertex buffer.
+    unsafe {
+        device.cmd_set_cull_mode(buffer, vk::CullModeFlags::NONE);
+        device.cmd_set_front_face(buffer, vk::FrontFace::COUNTER_CLOCKWISE);
+        device.cmd_draw(buffer, VOLUME_VERTICES, 1, 0, 0);
     }
 }
