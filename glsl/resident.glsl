@@ -9,7 +9,9 @@ struct DrawBlock {
     vec4 normal_y;
     vec4 normal_z;
     uint material;
-    uint _unused[3];
+    // 0 to 255: different from those of draws that it touches.
+    uint object_id;
+    uint _unused[2];
 };
 
 const uint MATERIAL_BASE_COLOR_TEXTURE = 1u;

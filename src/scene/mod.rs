@@ -12,6 +12,7 @@ pub mod material;
 pub mod mesh;
 pub mod mipmaps;
 pub mod normal_groups;
+pub mod object_ids;
 pub mod palette;
 pub mod places;
 pub mod procedural;

@@ -414,8 +414,7 @@ mod tests {
         };
         let triangle = |side: usize| [Vec3::Z * 0.1, rim(side), rim(side + 1)];
         // Normals that lean to and fro, by more than the tolerance, are as many groups as triangles.
-        let normal =
-            |side: usize| Vec3::new(0.3 * (side % 2) as f32, (side % 7) as f32, 9.0).normalize();
+        let normal = |side: usize| Vec3::new(0.3 * (side % 2) as f32, (side % 7) as f32, 9.0).normalize();
         let corners: Vec<_> =
             (0..SIDES).flat_map(|side| triangle(side).map(|position| (position, normal(side)))).collect();
         let ids: Vec<u8> = require_ids(&soup(&corners)).into_values().collect();
