@@ -16,6 +16,7 @@ pub mod object_ids;
 pub mod palette;
 pub mod places;
 pub mod procedural;
+pub mod shell;
 pub mod texture;
 
 use crate::error::{Error, Result};
