@@ -9,7 +9,7 @@ struct DrawBlock {
     vec4 normal_y;
     vec4 normal_z;
     uint material;
-    // 0 to 255.
+    // 0 to 255: different from those of draws that it touches.
     uint object_id;
     uint _unused[2];
 };

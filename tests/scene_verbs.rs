@@ -60,6 +60,7 @@ fn inspect_counts_what_a_file_holds() {
     assert_eq!(found["schema"], 1);
     assert_eq!((&found["triangles"], &found["vertices"], &found["draws"]), (&json!(1), &json!(3), &json!(1)));
     assert_eq!((&found["meshes"], &found["normal_groups"]), (&json!(1), &json!(1)));
+    assert_eq!(found["closed_meshes"], 0);
     assert_eq!(found["materials"], json!({"opaque": 1, "mask": 1, "blend": 1}));
     assert_eq!(found["emissive_materials"], 1);
     assert_eq!(found["lights"], json!({"directional": 1, "point": 1, "spot": 0}));
@@ -88,7 +89,7 @@ fn inspect_counts_what_a_file_holds() {
     for words in [
         "by hand",
         "1 triangles in 1 draws",
-        "1 meshes, 1 normal groups",
+        "1 meshes, 0 of them closed, 1 normal groups",
         "grain, 3x2 PNG",
         "wave, 2.5 s, 1 channels",
         "KHR_materials_sheen",
@@ -112,6 +113,8 @@ fn external_files_count_and_built_in_scenes_have_no_file() {
     assert_eq!(found["lights"]["point"], 7);
     // Five walls, two blocks with a top and four sides each, a panel; walls do not touch as meshes.
     assert_eq!(inspected(&program, "cornell")["normal_groups"], 16);
+    // All but the ground.
+    assert_eq!(found["closed_meshes"], found["meshes"].as_u64().unwrap() - 1);
     let same = inspected(&program, "lamps:objects=12,lights=7");
     assert_eq!(found["hash"], same["hash"]);
 }

@@ -26,7 +26,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
 use crate::gpu::{Access, Buffer, Caps, Gpu, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
-use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps};
+use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps, object_ids};
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -344,8 +344,8 @@ fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
     scene
         .draws
         .iter()
-        .enumerate()
-        .map(|(index, draw)| {
+        .zip(object_ids::of(scene))
+        .map(|(draw, object_id)| {
             let normals = normals_from(draw);
             let column = |v: Vec3| v.extend(0.0).to_array();
             DrawBlock {
@@ -354,8 +354,7 @@ fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
                 normal_y: column(normals.y_axis),
                 normal_z: column(normals.z_axis),
                 material: scene.meshes[draw.mesh].material as u32,
-                // Eight bits: beyond 256 objects some share one (Kircher 2009, section 3.1).
-                object_id: index as u32 % 256,
+                object_id: u32::from(object_id),
                 ..DrawBlock::zeroed()
             }
         })

@@ -78,6 +78,13 @@ pub struct Draw {
 }
 
 impl Draw {
+    /// The box around the vertices of `mesh`, which is the one drawn, in world space.
+    pub fn bounds(&self, mesh: &Mesh) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        self.extend(mesh, &mut bounds);
+        bounds
+    }
+
     /// Includes the vertices of `mesh`, which is the one drawn, in `bounds`, in world space.
     pub fn extend(&self, mesh: &Mesh, bounds: &mut Bounds) {
         for position in &mesh.positions {

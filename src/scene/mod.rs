@@ -12,9 +12,11 @@ pub mod material;
 pub mod mesh;
 pub mod mipmaps;
 pub mod normal_groups;
+pub mod object_ids;
 pub mod palette;
 pub mod places;
 pub mod procedural;
+pub mod shell;
 pub mod texture;
 
 use crate::error::{Error, Result};

@@ -3,6 +3,7 @@
 use crate::cli;
 use crate::error::Result;
 use crate::scene::gltf::Facts;
+use crate::scene::shell::Shell;
 use crate::scene::{self, AlphaMode, Camera, Image, LightKind, Material, Projection, Scene, normal_groups};
 use crate::units::{Bytes, Extent};
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -54,6 +55,7 @@ fn document(scene: &Scene, facts: Option<&Facts>) -> Value {
         "triangles": scene.triangle_count(),
         "vertices": vertex_count(scene),
         "meshes": scene.meshes.len(),
+        "closed_meshes": closed_mesh_count(scene),
         "normal_groups": normal_group_count(scene),
         "materials": { "opaque": opaque, "mask": mask, "blend": blend },
         "textures": scene.textures.len(),
@@ -111,8 +113,8 @@ fn describe(text: &mut String, scene: &Scene, facts: Option<&Facts>) -> std::fmt
     }
     let (triangles, draws) = (scene.triangle_count(), scene.draws.len());
     writeln!(text, "   drawn: {triangles} triangles in {draws} draws, {} vertices", vertex_count(scene))?;
-    let (meshes, groups) = (scene.meshes.len(), normal_group_count(scene));
-    writeln!(text, "   shapes: {meshes} meshes, {groups} normal groups")?;
+    let (meshes, closed, groups) = (scene.meshes.len(), closed_mesh_count(scene), normal_group_count(scene));
+    writeln!(text, "   shapes: {meshes} meshes, {closed} of them closed, {groups} normal groups")?;
     let bounds = scene.bounds();
     if !bounds.is_empty() {
         writeln!(text, "   from {} to {}, in metres", bounds.min, bounds.max)?;
@@ -168,6 +170,11 @@ fn describe_file(text: &mut String, facts: &Facts) -> std::fmt::Result {
 
 fn vertex_count(scene: &Scene) -> usize {
     scene.meshes.iter().map(|mesh| mesh.positions.len()).sum()
+}
+
+/// Meshes with an inside, which can cast a stencil shadow.
+fn closed_mesh_count(scene: &Scene) -> usize {
+    scene.meshes.par_iter().filter(|mesh| Shell::of(mesh).is_closed()).count()
 }
 
 /// Those of all meshes together.
