@@ -31,10 +31,16 @@ pub enum Access {
     TransferWrite,
     /// Read as vertices or indices.
     VertexRead,
+    /// Read by the build of an acceleration structure: a structure that it holds.
+    StructureRead,
+    /// Written (and read) by the build of an acceleration structure: the structure itself, or scratch.
+    StructureWrite,
+    /// An acceleration structure that rays of a compute shader go through.
+    ComputeTrace,
 }
 
 impl Access {
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 14] = [
         Self::ComputeRead,
         Self::ComputeWrite,
         Self::ComputeSample,
@@ -46,18 +52,22 @@ impl Access {
         Self::TransferRead,
         Self::TransferWrite,
         Self::VertexRead,
+        Self::StructureRead,
+        Self::StructureWrite,
+        Self::ComputeTrace,
     ];
 
     fn stage(self) -> vk::PipelineStageFlags2 {
         use vk::PipelineStageFlags2 as Stage;
         match self {
-            Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample => Stage::COMPUTE_SHADER,
+            Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample | Self::ComputeTrace => Stage::COMPUTE_SHADER,
             Self::GraphicsRead => Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER,
             Self::FragmentSample => Stage::FRAGMENT_SHADER,
             Self::ColorWrite => Stage::COLOR_ATTACHMENT_OUTPUT,
             Self::DepthWrite | Self::DepthTest => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,
             Self::TransferRead | Self::TransferWrite => Stage::ALL_TRANSFER,
             Self::VertexRead => Stage::VERTEX_INPUT,
+            Self::StructureRead | Self::StructureWrite => Stage::ACCELERATION_STRUCTURE_BUILD_KHR,
         }
     }
 
@@ -74,6 +84,8 @@ impl Access {
             Self::TransferRead => Flags::TRANSFER_READ,
             Self::TransferWrite => Flags::TRANSFER_WRITE,
             Self::VertexRead => Flags::VERTEX_ATTRIBUTE_READ | Flags::INDEX_READ,
+            Self::StructureRead | Self::ComputeTrace => Flags::ACCELERATION_STRUCTURE_READ_KHR,
+            Self::StructureWrite => Flags::ACCELERATION_STRUCTURE_READ_KHR | Flags::ACCELERATION_STRUCTURE_WRITE_KHR,
         }
     }
 
@@ -87,12 +99,17 @@ impl Access {
             Self::DepthTest => vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
             Self::TransferRead => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             Self::TransferWrite => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-            Self::GraphicsRead | Self::VertexRead => vk::ImageLayout::UNDEFINED,
+            Self::GraphicsRead | Self::VertexRead | Self::StructureRead | Self::StructureWrite | Self::ComputeTrace => {
+                vk::ImageLayout::UNDEFINED
+            }
         }
     }
 
     pub fn writes(self) -> bool {
-        matches!(self, Self::ComputeWrite | Self::ColorWrite | Self::DepthWrite | Self::TransferWrite)
+        matches!(
+            self,
+            Self::ComputeWrite | Self::ColorWrite | Self::DepthWrite | Self::TransferWrite | Self::StructureWrite
+        )
     }
 
     fn bit(self) -> u16 {

@@ -15,6 +15,8 @@ pub enum Ability {
     BlendFloats,
     /// Shaders store two words a texel into an image.
     StoreWordPairs,
+    /// Shaders send rays through structures that the driver builds.
+    RayQuery,
 }
 
 impl Ability {
@@ -25,6 +27,7 @@ impl Ability {
             Self::DepthWithStencil => caps.formats.float_depth_with_stencil,
             Self::BlendFloats => caps.formats.float_color_blend,
             Self::StoreWordPairs => caps.features.storage_image_extended_formats,
+            Self::RayQuery => caps.features.ray_query,
         }
     }
 
@@ -35,6 +38,7 @@ impl Ability {
             Self::DepthWithStencil => "D32_SFLOAT_S8_UINT as depth and stencil attachment",
             Self::BlendFloats => "R32G32B32A32_SFLOAT as blended colour attachment",
             Self::StoreWordPairs => "shaderStorageImageExtendedFormats",
+            Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",
         }
     }
 }
@@ -57,8 +61,8 @@ impl Need {
 
     /// The error where it is not met (exit code 3).
     pub fn refusal(&self, caps: &Caps) -> Error {
-        let (device, ability) = (&caps.identity.name, self.ability.name());
-        let error = Error::no_device(format!("{} needs {ability}, which {device} has not", self.of));
+        let (device, driver, ability) = (&caps.identity.name, caps.identity.driver_text(), self.ability.name());
+        let error = Error::no_device(format!("{} needs {ability}, which {device} on {driver} has not", self.of));
         let error = if self.instead.is_empty() { error } else { error.note(self.instead) };
         error.note("`quincunx devices` tells what each device can do")
     }
