@@ -17,6 +17,8 @@
 //!   for the shadow rays and light walks of the others
 //! - MASK surfaces have their holes for every ray, BLEND surfaces stop the part of all rays that alpha says (the others'
 //!   shadow rays take the first for solid and the second for nothing)
+//! - `--rays`: rays go through this program's tree or, by ray queries, through a structure that the driver builds over the
+//!   same triangles; the two pictures differ where a ray grazes an edge
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
 //! - `--aperture`: a thin lens, whose points rays leave evenly
