@@ -2,11 +2,13 @@
 // are the triangles of the tree, in the tree's order (src/resident/structure.rs).
 //
 // Alpha and backs are asked about here, of each candidate that the driver finds. Where a ray meets a triangle is said by
-// the tree's arithmetic, so that what follows from a hit is the same to the bit.
+// the tree's arithmetic, so that what follows from a hit is the same to the bit. What the driver decides otherwise are rays
+// that graze an edge, and which of two triangles at one distance comes first.
 #ifndef BVH_QUERY_GLSL
 #define BVH_QUERY_GLSL
 
-// `trace`'s distance and barycentrics, and the driver's where a ray that grazes the triangle misses it by the tree's arithmetic.
+// Distance and weights of the second and the third corner; the driver's where by the tree's arithmetic a ray that grazes the
+// triangle misses it.
 vec3 met_at(BvhTriangleBlock plane, vec3 origin, vec3 direction, float limit, vec3 by_driver) {
     vec3 met;
     return triangle_hit(plane, origin, direction, limit, met) ? met : by_driver;

@@ -48,12 +48,13 @@ fn require_same_but_for_edges(watched: &Watched, changes: Changes<'_>, what: &st
 }
 
 /// A closed room of single-sided walls, seen from outside through their backs. In it: a shining panel, a pane of BLEND, a
-/// screen of MASK with the holes of a picture, and squares whose draw mirrors them, seen from both sides.
-fn room() -> Scene {
+/// screen of MASK with the holes of a picture, and squares whose draw mirrors them, seen from both sides. Not `is_tested`:
+/// pane and screen are opaque.
+fn room(is_tested: bool) -> Scene {
     let mut scene = closed_box(&Material::diffuse("wall", vec3(0.7, 0.6, 0.5)));
     scene.images.push(checkered().into());
     scene.textures.push(Texture { image: 0, sampler: Sampler::default(), color_space: ColorSpace::Srgb });
-    let screen = Material {
+    let mut screen = Material {
         alpha: AlphaMode::Mask { cutoff: 0.5 },
         base_color_texture: Some(0),
         double_sided: true,
@@ -61,6 +62,9 @@ fn room() -> Scene {
     };
     let mut pane = Material { alpha: AlphaMode::Blend, double_sided: true, ..Material::diffuse("pane", Vec3::ONE) };
     pane.base_color.w = 0.4;
+    if !is_tested {
+        [&mut pane, &mut screen].into_iter().for_each(|material| material.alpha = AlphaMode::Opaque);
+    }
     rectangle(&mut scene, 0.95 * Vec3::Y, 0.4 * Vec3::X, 0.4 * Vec3::Z, panel(vec3(6.0, 5.0, 4.0)));
     rectangle(&mut scene, vec3(-0.3, -0.4, 0.2), 0.4 * Vec3::X, 0.5 * Vec3::Y, screen);
     rectangle(&mut scene, vec3(0.4, -0.1, 0.4), vec3(0.4, 0.0, 0.2), 0.6 * Vec3::Y, pane);
@@ -96,8 +100,9 @@ fn alpha_and_backs_are_asked_about_as_in_the_tree() {
     if !has_ray_query() {
         return;
     }
-    let watched = Watched::with_scene(room());
     let common = [("size", "64x48"), ("spp", "4"), ("background", "0.1")];
+    require_same_but_for_edges(&Watched::with_scene(room(false)), &common, "the opaque room");
+    let watched = Watched::with_scene(room(true));
     let settings: [Changes<'_>; 4] = [
         &[],
         &[("emissive", "on"), ("aperture", "0.1"), ("focus", "3")],
@@ -142,7 +147,7 @@ fn what_moves_while_a_shutter_is_open_is_refused() {
     if !has_ray_query() {
         return;
     }
-    let opening = Scene { hash: "opening".to_owned(), ..room() };
+    let opening = Scene { hash: "opening".to_owned(), ..room(true) };
     let mut closing = Scene { hash: "closing".to_owned(), ..opening.clone() };
     closing.draws[7].world_from_object = Mat4::from_translation(0.1 * Vec3::X);
     let watched = Watched::with_scene(opening.closing_as(closing).unwrap());

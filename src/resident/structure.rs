@@ -10,8 +10,9 @@ use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::gpu::shader::structs::BvhTriangleBlock;
-use crate::gpu::structure::INPUT_ALIGNMENT_BYTES;
-use crate::gpu::structure::{INPUT, INSTANCE_BYTES, Over, SCRATCH, STORAGE, TRIANGLE_BYTES, input_start};
+use crate::gpu::structure::{
+    INPUT, INPUT_ALIGNMENT_BYTES, INSTANCE_BYTES, Over, SCRATCH, STORAGE, TRIANGLE_BYTES, input_start,
+};
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Structure, upload};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Requirements, Shape};

@@ -18,7 +18,7 @@
 //! - MASK surfaces have their holes for every ray, BLEND surfaces stop the part of all rays that alpha says (the others'
 //!   shadow rays take the first for solid and the second for nothing)
 //! - `--rays`: rays go through this program's tree or, by ray queries, through a structure that the driver builds over the
-//!   same triangles; the two pictures differ where a ray grazes an edge
+//!   same triangles; the two pictures differ where a ray grazes an edge or meets two triangles at one distance
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
 //! - `--aperture`: a thin lens, whose points rays leave evenly
