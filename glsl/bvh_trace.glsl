@@ -2,7 +2,8 @@
 // that a shader holds it once. Twin: src/bvh.rs, `Bvh::closest_hit`.
 //
 // The walk goes in two loops, down to a leaf and through its triangles, and looks at alpha outside both: a driver that runs
-// lanes side by side runs what any of them needs for all. The including shader has the axis ALPHA and what bvh_walk.glsl,
+// lanes side by side runs what any of them needs for all. With RAYS_QUERY the driver walks a structure of its own
+// (bvh_query.glsl). The including shader has the axis ALPHA and what bvh_walk.glsl,
 // bvh_moving.glsl and, with ALPHA=tested, shading/traced.glsl want.
 #ifndef BVH_TRACE_GLSL
 #define BVH_TRACE_GLSL
@@ -26,6 +27,14 @@ struct TraceHit {
     vec2 barycentric;
 };
 
+// Whether the side that a ray meets is drawn.
+bool is_drawn(BvhTriangleBlock plane, vec3 direction) {
+    uint flags = floatBitsToUint(plane.corner.w);
+    vec3 facing = cross(plane.edge1.xyz, plane.edge2.xyz);
+    bool is_front = (dot(facing, direction) < 0.0) != ((flags & TRIANGLE_MIRRORED) != 0u);
+    return is_front || (flags & TRIANGLE_SINGLE_SIDED) == 0u;
+}
+
 #ifdef ALPHA_TESTED
 // Whether a ray stops at a triangle that alpha decides about. BLEND surfaces stop as many rays as their alpha says.
 bool stops(uint triangle, vec2 barycentric, uint kind, uint seed) {
@@ -38,6 +47,9 @@ bool stops(uint triangle, vec2 barycentric, uint kind, uint seed) {
 #endif
 
 // `kind`: RAY_ bits; a `limit` of 0 or less meets nothing. `seed`: of this ray's decisions about BLEND surfaces.
+#ifdef RAYS_QUERY
+#include "bvh_query.glsl"
+#else
 TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
     TraceHit hit = TraceHit(false, limit, 0u, vec2(0.0));
     vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
@@ -83,10 +95,7 @@ TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
             vec3 met;
             bool is_met = triangle_hit(plane, origin, direction, hit.distance, met);
             if ((kind & RAY_CAMERA) != 0u) {
-                uint flags = floatBitsToUint(plane.corner.w);
-                vec3 facing = cross(plane.edge1.xyz, plane.edge2.xyz);
-                bool is_front = (dot(facing, direction) < 0.0) != ((flags & TRIANGLE_MIRRORED) != 0u);
-                is_met = is_met && (is_front || (flags & TRIANGLE_SINGLE_SIDED) == 0u);
+                is_met = is_met && is_drawn(plane, direction);
             }
 #ifdef ALPHA_TESTED
             if (is_met && (floatBitsToUint(plane.corner.w) & TRIANGLE_TESTED) != 0u) {
@@ -115,5 +124,6 @@ TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
     expect_done(!has_node && triangle >= end);
     return hit;
 }
+#endif
 
 #endif

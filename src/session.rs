@@ -118,8 +118,10 @@ impl Session {
     fn make(&self, technique: &dyn Technique, values: &Values, aovs: &[String], submits: Submits) -> Result<Renderer> {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
+        let requirements = Requirements::Device(&self.gpu);
         let inputs = Inputs {
             caps: &self.gpu.caps,
+            requirements,
             scene: &self.scene,
             stats: &self.stats,
             bvh: &self.bvh,
@@ -130,7 +132,6 @@ impl Session {
         let plan = frame_plan(technique, &inputs, aovs)?;
         let prepared = technique.prepare(&inputs)?;
         let caps = &self.gpu.caps;
-        let requirements = Requirements::Device(&self.gpu);
         let sharing = Sharing::of(&plan, requirements, caps, values);
         let mut resources = Resources::make(&self.gpu, technique.name(), &plan, &sharing)?;
         let [light_count, vpl_count] = prepared.light_counts();

@@ -32,11 +32,19 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     let lights = LightSet::new(&scene, &view, &job.values)?;
     let stats = SceneStats::of(&scene);
     let bvh = LazyBvh::default();
-    let inputs =
-        Inputs { caps, scene: &scene, stats: &stats, bvh: &bvh, view: &view, lights: &lights, values: &job.values };
-    let frame = frame_plan(job.technique, &inputs, &job.aovs)?;
     let rules = caps.layout.as_ref().expect("known drivers say how they round");
     let requirements = Requirements::Rules(rules);
+    let inputs = Inputs {
+        caps,
+        requirements,
+        scene: &scene,
+        stats: &stats,
+        bvh: &bvh,
+        view: &view,
+        lights: &lights,
+        values: &job.values,
+    };
+    let frame = frame_plan(job.technique, &inputs, &job.aovs)?;
     let sharing = Sharing::of(&frame, requirements, caps, &job.values);
     let table = MemoryTable::new(&stats.plan(), &frame, sharing, requirements, &Kinds::new(caps), None)?;
     Ok(Study { device: caps_name.to_owned(), scene: scene.name, table })

@@ -2,8 +2,10 @@
 
 mod support;
 
-use quincunx::gpu::known;
+use quincunx::gpu::structure::Over;
+use quincunx::gpu::{Caps, DeviceRequest, Gpu, known};
 use quincunx::job::Job;
+use quincunx::plan::Requirements;
 use quincunx::{study, techniques};
 use serde_json::Value;
 
@@ -61,26 +63,77 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
     ];
     for spec in &specs {
         for (technique, changes) in settings {
-            let mut job = Job::new(spec, techniques::find(technique).unwrap());
-            changes.iter().for_each(|(key, value)| job.set(key, value).unwrap());
-            let what = format!("{technique} of {spec} with {changes:?}");
-            let planned = study::planned(&job, known, &known::caps(known).unwrap()).unwrap().table.json();
-            let made = study::made(&job).unwrap().table.json();
-            for key in ["planned_bytes", "allocated_bytes", "peak_bytes", "peak_pass", "groups"] {
-                assert_eq!(planned[key], made[key], "{what}: {key}");
-            }
-            let without_place = |table: &Value| -> Vec<Value> {
-                let mut rows = table["resources"].as_array().unwrap().clone();
-                for row in &mut rows {
-                    let row = row.as_object_mut().unwrap();
-                    row.remove("memory_block");
-                    row.remove("offset");
-                }
-                rows
-            };
-            assert_eq!(without_place(&planned), without_place(&made), "{what}");
+            require_made_as_planned(known, spec, technique, changes);
         }
     }
+}
+
+fn job(spec: &str, technique: &str, changes: &[(&str, &str)]) -> Job {
+    let mut job = Job::new(spec, techniques::find(technique).unwrap());
+    changes.iter().for_each(|(key, value)| job.set(key, value).unwrap());
+    job
+}
+
+fn require_made_as_planned(known: &str, spec: &str, technique: &str, changes: &[(&str, &str)]) {
+    let job = job(spec, technique, changes);
+    let what = format!("{technique} of {spec} with {changes:?}");
+    let planned = study::planned(&job, known, &known::caps(known).unwrap()).unwrap().table.json();
+    let made = study::made(&job).unwrap().table.json();
+    for key in ["planned_bytes", "allocated_bytes", "peak_bytes", "peak_pass", "groups"] {
+        assert_eq!(planned[key], made[key], "{what}: {key}");
+    }
+    let without_place = |table: &Value| -> Vec<Value> {
+        let mut rows = table["resources"].as_array().unwrap().clone();
+        for row in &mut rows {
+            let row = row.as_object_mut().unwrap();
+            row.remove("memory_block");
+            row.remove("offset");
+        }
+        rows
+    };
+    assert_eq!(without_place(&planned), without_place(&made), "{what}");
+}
+
+const QUERY: [(&str, &str); 3] = [("size", "97x53"), ("spp", "1"), ("rays", "query")];
+
+/// What is measured of a driver's structures is what it asks for, from none on, and what is planned is made.
+#[test]
+fn structures_are_as_large_as_their_driver_s_rules_say() {
+    let Some(known) = known_driver() else { return };
+    if !support::has(&support::driver(), support::Feature::RayQuery) {
+        return;
+    }
+    let layout = known::caps(known).unwrap().layout.unwrap();
+    let gpu = Gpu::open(&DeviceRequest::default()).unwrap();
+    let triangles = |count| [true, false].map(|is_opaque| Over::Triangles { count, is_opaque });
+    for over in [0, 1, 2, 3, 1000, 1 << 20].into_iter().flat_map(triangles).chain([Over::Instance]) {
+        let [planned, asked] = [Requirements::Rules(&layout), Requirements::Device(&gpu)]
+            .map(|requirements| requirements.structure_bytes(over).unwrap());
+        assert_eq!(planned, asked, "{over:?}");
+    }
+    for spec in ["cornell", "lamps:objects=10,lights=24"] {
+        require_made_as_planned(known, spec, "path_traced", &QUERY);
+    }
+}
+
+#[test]
+fn structures_of_a_driver_that_nobody_measured_are_not_planned() {
+    let name = "lavapipe-25.0.7";
+    let mut caps = known::caps(name).unwrap();
+    let job = job("cornell", "path_traced", &QUERY);
+    let table = study::planned(&job, name, &caps).unwrap().table.json();
+    let names: Vec<&str> =
+        table["resources"].as_array().unwrap().iter().map(|row| row["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"path_traced.structure.bottom") && names.contains(&"path_traced.structure.top"));
+    assert!(!names.contains(&"path_traced.bvh.nodes"), "{names:?}");
+    let mut require_refusal = |change: fn(&mut Caps), code: u8, words: &str| {
+        change(&mut caps);
+        let error = study::planned(&job, name, &caps).map(|_| ()).unwrap_err();
+        assert_eq!(error.exit_code(), code, "{error}");
+        assert!(error.to_string().contains(words) && error.to_string().contains("--rays tree"), "{error}");
+    };
+    require_refusal(|caps| caps.layout.as_mut().unwrap().structures = None, 2, "only its driver tells");
+    require_refusal(|caps| caps.features.ray_query = false, 3, "VK_KHR_ray_query");
 }
 
 #[test]

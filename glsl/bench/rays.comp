@@ -1,9 +1,13 @@
 // Rays through the whole tree and nothing else: what `bench rays` times. Pass: src/bench/rays/mod.rs.
 //
 // WALK: plain, the walk of shadow rays (bvh_walk.glsl), which has no order and knows any hit only; ordered, that of path
-// tracing (bvh_trace.glsl), nearer child first.
-// variants: WALK=plain|ordered
+// tracing (bvh_trace.glsl), nearer child first; query, the driver's, through a structure of its own.
+// variants: WALK=plain|ordered|query
 #version 460
+#ifdef WALK_QUERY
+#extension GL_EXT_ray_query : require
+#define RAYS_QUERY
+#endif
 #include "bvh.glsl"
 
 struct RayBlock {
@@ -14,13 +18,16 @@ struct RayBlock {
 
 struct RaysParams {
     uint ray_count;
-    // RAY_ bits of bvh_trace.glsl, for WALK=ordered.
+    // RAY_ bits of bvh_trace.glsl, for WALK=ordered and query.
     uint kind;
 };
 
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push { RaysParams params; };
+#ifdef WALK_QUERY
+layout(set = 0, binding = 4) uniform accelerationStructureEXT structure;
+#endif
 layout(std430, set = 0, binding = 0) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 1) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Rays { RayBlock rays[]; };

@@ -36,10 +36,16 @@ pub enum Access {
     TransferWrite,
     /// Read as vertices or indices.
     VertexRead,
+    /// Read by the build of an acceleration structure: a structure that it holds.
+    StructureRead,
+    /// Written (and read) by the build of an acceleration structure: the structure itself, or scratch.
+    StructureWrite,
+    /// An acceleration structure that rays of a compute shader go through.
+    ComputeTrace,
 }
 
 impl Access {
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 16] = [
         Self::ComputeRead,
         Self::ComputeWrite,
         Self::ComputeSample,
@@ -53,12 +59,15 @@ impl Access {
         Self::TransferRead,
         Self::TransferWrite,
         Self::VertexRead,
+        Self::StructureRead,
+        Self::StructureWrite,
+        Self::ComputeTrace,
     ];
 
     fn stage(self) -> vk::PipelineStageFlags2 {
         use vk::PipelineStageFlags2 as Stage;
         match self {
-            Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample => Stage::COMPUTE_SHADER,
+            Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample | Self::ComputeTrace => Stage::COMPUTE_SHADER,
             Self::GraphicsRead => Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER,
             Self::FragmentSample | Self::FragmentWrite => Stage::FRAGMENT_SHADER,
             Self::ColorWrite => Stage::COLOR_ATTACHMENT_OUTPUT,
@@ -66,6 +75,7 @@ impl Access {
             Self::StencilWrite => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS | Stage::FRAGMENT_SHADER,
             Self::TransferRead | Self::TransferWrite => Stage::ALL_TRANSFER,
             Self::VertexRead => Stage::VERTEX_INPUT,
+            Self::StructureRead | Self::StructureWrite => Stage::ACCELERATION_STRUCTURE_BUILD_KHR,
         }
     }
 
@@ -87,6 +97,8 @@ impl Access {
             Self::TransferRead => Flags::TRANSFER_READ,
             Self::TransferWrite => Flags::TRANSFER_WRITE,
             Self::VertexRead => Flags::VERTEX_ATTRIBUTE_READ | Flags::INDEX_READ,
+            Self::StructureRead | Self::ComputeTrace => Flags::ACCELERATION_STRUCTURE_READ_KHR,
+            Self::StructureWrite => Flags::ACCELERATION_STRUCTURE_READ_KHR | Flags::ACCELERATION_STRUCTURE_WRITE_KHR,
         }
     }
 
@@ -102,15 +114,17 @@ impl Access {
             Self::TransferRead => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             Self::TransferWrite => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
             Self::GraphicsRead | Self::FragmentWrite | Self::VertexRead => vk::ImageLayout::UNDEFINED,
+            Self::StructureRead | Self::StructureWrite | Self::ComputeTrace => vk::ImageLayout::UNDEFINED,
         }
     }
 
     pub fn writes(self) -> bool {
         match self {
             Self::ComputeWrite | Self::FragmentWrite | Self::ColorWrite | Self::DepthWrite => true,
-            Self::StencilWrite | Self::TransferWrite => true,
+            Self::StencilWrite | Self::TransferWrite | Self::StructureWrite => true,
             Self::ComputeRead | Self::ComputeSample | Self::GraphicsRead | Self::FragmentSample => false,
             Self::DepthTest | Self::TransferRead | Self::VertexRead => false,
+            Self::ComputeTrace | Self::StructureRead => false,
         }
     }
 

@@ -1,5 +1,6 @@
 //! What a device can do, as plain data: looked up once, printed by `devices`, and read by a Plan that needs no device.
 
+use super::structure::Over;
 use serde::{Deserialize, Serialize};
 
 /// A device's identity, limits, optional features and memory, without Vulkan types.
@@ -35,6 +36,30 @@ pub struct LayoutRules {
     pub depth_stencil_texel_bytes: u32,
     /// A bit for each memory type that any resource may lie in.
     pub memory_type_bits: u32,
+    /// None: it has no ray queries, or nobody has measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structures: Option<StructureRules>,
+}
+
+/// How large a driver makes acceleration structures, measured on it: a header, inner nodes, one fewer than leaves and at
+/// least one, and leaves.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct StructureRules {
+    pub header_bytes: u64,
+    pub inner_bytes: u64,
+    pub triangle_bytes: u64,
+    pub instance_bytes: u64,
+}
+
+impl StructureRules {
+    /// Bytes of a structure over this.
+    pub fn bytes(&self, over: Over) -> u64 {
+        let (count, leaf_bytes) = match over {
+            Over::Triangles { count, .. } => (u64::from(count), self.triangle_bytes),
+            Over::Instance => (1, self.instance_bytes),
+        };
+        self.header_bytes + self.inner_bytes * (count.max(2) - 1) + leaf_bytes * count
+    }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -134,6 +159,7 @@ pub struct Features {
     pub shader_int64_atomics: bool,
     pub pipeline_statistics: bool,
     pub conservative_rasterization: bool,
+    /// VK_KHR_ray_query and VK_KHR_acceleration_structure with their features, and addresses of buffers.
     pub ray_query: bool,
     pub memory_budget: bool,
 }

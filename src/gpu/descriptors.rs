@@ -4,7 +4,7 @@ use super::buffer::Buffer;
 use super::image::Image;
 use super::pipeline::Interface;
 use super::shader::BindingKind;
-use super::{Access, Gpu};
+use super::{Access, Gpu, Structure};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -17,6 +17,8 @@ pub enum Bound<'a> {
     Storage(&'a Image),
     /// Through a sampler, layout as `access` has it.
     Sampled(&'a Image, vk::Sampler, Access),
+    /// What rays go through.
+    Structure(&'a Structure),
 }
 
 /// The sets of one recorded frame.
@@ -49,6 +51,8 @@ impl Descriptors {
                 .unwrap_or_else(|| panic!("{}: {} is not bound", interface.label, binding.name));
             let mut buffer_info = [vk::DescriptorBufferInfo::default()];
             let mut image_info = [vk::DescriptorImageInfo::default()];
+            let mut structures = [vk::AccelerationStructureKHR::null()];
+            let mut structure_info = vk::WriteDescriptorSetAccelerationStructureKHR::default();
             let write = vk::WriteDescriptorSet::default()
                 .dst_set(set)
                 .dst_binding(binding.binding)
@@ -66,6 +70,11 @@ impl Descriptors {
                     image_info[0] =
                         image_info[0].image_view(image.sampled_view).sampler(*sampler).image_layout(access.layout());
                     write.image_info(&image_info)
+                }
+                (BindingKind::AccelerationStructure, Bound::Structure(structure)) => {
+                    structures[0] = structure.handle;
+                    structure_info = structure_info.acceleration_structures(&structures);
+                    write.descriptor_count(1).push_next(&mut structure_info)
                 }
                 (kind, _) => {
                     panic!("{}: {} is a {kind:?} and was bound as something else", interface.label, binding.name)
@@ -103,13 +112,17 @@ impl Descriptors {
 
 fn new_pool(gpu: &Gpu) -> Result<vk::DescriptorPool> {
     // Enough for any frame of today; a frame that needs more gets a second pool.
-    let sizes = [
+    let mut sizes = vec![
         (vk::DescriptorType::STORAGE_BUFFER, 256),
         (vk::DescriptorType::UNIFORM_BUFFER, 64),
         (vk::DescriptorType::STORAGE_IMAGE, 64),
         (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 128),
-    ]
-    .map(|(ty, descriptor_count)| vk::DescriptorPoolSize { ty, descriptor_count });
+    ];
+    if gpu.caps.features.ray_query {
+        sizes.push((vk::DescriptorType::ACCELERATION_STRUCTURE_KHR, 16));
+    }
+    let sizes: Vec<_> =
+        sizes.into_iter().map(|(ty, descriptor_count)| vk::DescriptorPoolSize { ty, descriptor_count }).collect();
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(64).pool_sizes(&sizes);
     // SAFETY: a live device.
     unsafe { gpu.device.create_descriptor_pool(&info, None) }

@@ -38,6 +38,8 @@ pub struct Gpu {
     /// Pipelines that were made before: a second renderer of the same settings compiles nothing on drivers that keep them.
     pub(super) pipelines: vk::PipelineCache,
     names: Option<ash::ext::debug_utils::Device>,
+    /// None: the device has no ray queries.
+    structures: Option<ash::khr::acceleration_structure::Device>,
     validation: Option<Validation>,
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
@@ -262,10 +264,18 @@ impl Gpu {
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
             .depth_clamp(caps.features.depth_clamp);
-        let info = vk::DeviceCreateInfo::default()
+        let mut addresses = vk::PhysicalDeviceBufferDeviceAddressFeatures::default().buffer_device_address(true);
+        let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
+        let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
+        let ray_query_extensions = probe::RAY_QUERY_EXTENSIONS.map(CStr::as_ptr);
+        let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&features)
             .push_next(&mut features13);
+        if caps.features.ray_query {
+            info = info.enabled_extension_names(&ray_query_extensions);
+            info = info.push_next(&mut addresses).push_next(&mut structures).push_next(&mut ray_queries);
+        }
         // SAFETY: every pointer in `info` outlives the call; the features were found present.
         let created = unsafe { instance.create_device(physical, &info, None) };
         let mut device =
@@ -305,6 +315,8 @@ impl Gpu {
         let pipelines = unsafe { device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None) };
         let pipelines = pipelines.unwrap_or_default();
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
+        let structures = caps.features.ray_query;
+        let structures = structures.then(|| ash::khr::acceleration_structure::Device::new(&instance, &device));
         let memory =
             Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
         Ok(Self {
@@ -315,6 +327,7 @@ impl Gpu {
             memory,
             pipelines,
             names,
+            structures,
             validation,
             instance,
             physical,
@@ -329,6 +342,11 @@ impl Gpu {
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&text);
         // SAFETY: the handle is alive and belongs to this device. A refused name costs nothing but the name.
         let _ = unsafe { names.set_debug_utils_object_name(&info) };
+    }
+
+    /// Functions of acceleration structures. Panics where the device has no ray queries: their need is checked before.
+    pub(super) fn structures(&self) -> &ash::khr::acceleration_structure::Device {
+        self.structures.as_ref().expect("a device without ray queries is refused before")
     }
 
     /// Opens (Some) or closes (None) a labelled section of a command buffer.

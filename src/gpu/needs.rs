@@ -24,6 +24,8 @@ pub enum Ability {
     FourSamples,
     /// The same with 8.
     EightSamples,
+    /// Shaders send rays through structures that the driver builds.
+    RayQuery,
 }
 
 impl Ability {
@@ -38,6 +40,7 @@ impl Ability {
             Self::DepthClamp => caps.features.depth_clamp,
             Self::FourSamples => has_samples(&caps.formats, 4),
             Self::EightSamples => has_samples(&caps.formats, 8),
+            Self::RayQuery => caps.features.ray_query,
         }
     }
 
@@ -52,6 +55,7 @@ impl Ability {
             Self::DepthClamp => "depthClamp",
             Self::FourSamples => "4 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::EightSamples => "8 samples a pixel in float colour and D32_SFLOAT attachments",
+            Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",
         }
     }
 }
@@ -81,8 +85,8 @@ impl Need {
 
     /// The error where it is not met (exit code 3).
     pub fn refusal(&self, caps: &Caps) -> Error {
-        let (device, ability) = (&caps.identity.name, self.ability.name());
-        let error = Error::no_device(format!("{} needs {ability}, which {device} has not", self.of));
+        let (device, driver, ability) = (&caps.identity.name, caps.identity.driver_text(), self.ability.name());
+        let error = Error::no_device(format!("{} needs {ability}, which {device} on {driver} has not", self.of));
         let error = if self.instead.is_empty() { error } else { error.note(self.instead) };
         error.note("`quincunx devices` tells what each device can do")
     }

@@ -2,6 +2,11 @@
 
 use super::caps::{Caps, Features, Formats, Heap, Identity, Limits, MemoryType};
 use ash::vk;
+use std::ffi::CStr;
+
+/// What ray queries need: the second asks for the third.
+pub const RAY_QUERY_EXTENSIONS: [&CStr; 3] =
+    [ash::khr::ray_query::NAME, ash::khr::acceleration_structure::NAME, ash::khr::deferred_host_operations::NAME];
 
 /// Queue family used here: the first that draws, computes and copies.
 pub fn queue_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
@@ -66,7 +71,12 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
     unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
     let core = properties.properties;
     let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
-    let mut features2 = vk::PhysicalDeviceFeatures2::default().push_next(&mut features12);
+    let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default();
+    let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default();
+    let mut features2 = vk::PhysicalDeviceFeatures2::default()
+        .push_next(&mut features12)
+        .push_next(&mut structures)
+        .push_next(&mut ray_queries);
     // SAFETY: as above.
     unsafe { instance.get_physical_device_features2(physical, &mut features2) };
     let features = features2.features;
@@ -76,7 +86,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
     let has = |name: &str| extensions.iter().any(|extension| extension == name);
     let limits = core.limits;
     let version = core.api_version;
-    let text = |name: Result<&std::ffi::CStr, std::ffi::FromBytesUntilNulError>| {
+    let text = |name: Result<&CStr, std::ffi::FromBytesUntilNulError>| {
         name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     };
     // A queue family that writes no timestamps says so with zero valid bits.
@@ -138,7 +148,10 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             shader_int64_atomics: features12.shader_buffer_int64_atomics != 0,
             pipeline_statistics: features.pipeline_statistics_query != 0,
             conservative_rasterization: has("VK_EXT_conservative_rasterization"),
-            ray_query: has("VK_KHR_ray_query"),
+            ray_query: RAY_QUERY_EXTENSIONS.iter().all(|name| has(&name.to_string_lossy()))
+                && ray_queries.ray_query != 0
+                && structures.acceleration_structure != 0
+                && features12.buffer_device_address != 0,
             memory_budget: has("VK_EXT_memory_budget"),
         },
         formats: formats(instance, physical),

@@ -46,6 +46,7 @@ pub enum BindingKind {
     SampledImage,
     CombinedImageSampler,
     Sampler,
+    AccelerationStructure,
 }
 
 /// A push-constant block, as spirq read it from the SPIR-V that the driver gets.
@@ -88,6 +89,7 @@ impl BindingKind {
             Self::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
             Self::CombinedImageSampler => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
             Self::Sampler => vk::DescriptorType::SAMPLER,
+            Self::AccelerationStructure => vk::DescriptorType::ACCELERATION_STRUCTURE_KHR,
         }
     }
 }

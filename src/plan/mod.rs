@@ -182,7 +182,8 @@ impl Plan {
     /// Errors: exit code 4, naming the resource and the limit.
     pub fn check(&self, max_storage_buffer_range_bytes: u64) -> Result<()> {
         for planned in &self.resources {
-            if let Shape::Buffer { bytes, .. } = planned.shape
+            if let Shape::Buffer { bytes, flags, .. } = planned.shape
+                && flags.contains(vk::BufferUsageFlags::STORAGE_BUFFER)
                 && bytes > max_storage_buffer_range_bytes
             {
                 return Err(Error::memory(format!(

@@ -2,8 +2,10 @@
 //! driver are applied, which stand in its caps (`assets/caps/`).
 
 use super::Shape;
+use crate::error::{Error, Result};
 use crate::gpu::caps::LayoutRules;
 use crate::gpu::image::texel_bytes;
+use crate::gpu::structure::Over;
 use crate::gpu::{Buffer, Gpu, ImageDescription};
 use ash::vk;
 
@@ -44,6 +46,19 @@ impl Requirements<'_> {
                 alignment_bytes: rules.image_alignment_bytes,
                 memory_type_bits: rules.memory_type_bits,
             },
+        }
+    }
+
+    /// Bytes that an acceleration structure takes; the device has ray queries, or the rules' driver has.
+    ///
+    /// Errors: nobody has measured how large the rules' driver makes them (exit code 2).
+    pub fn structure_bytes(&self, over: Over) -> Result<u64> {
+        match self {
+            Self::Device(gpu) => Ok(over.sizes(gpu).structure_bytes),
+            Self::Rules(rules) => rules.structures.as_ref().map(|rules| rules.bytes(over)).ok_or_else(|| {
+                Error::request("--rays query: only its driver tells how large an acceleration structure is")
+                    .note("without --plan the device is asked; --rays tree is planned without one")
+            }),
         }
     }
 }

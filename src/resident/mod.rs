@@ -11,6 +11,7 @@ mod clusters;
 mod geometry;
 mod material_blocks;
 mod relief;
+pub mod structure;
 mod textures;
 pub mod traced;
 mod visible;

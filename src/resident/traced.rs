@@ -4,6 +4,7 @@
 //! Each triangle has its own copy of its corners: a ray reads one place instead of three indices and three vertices, which
 //! lavapipe would fetch lane by lane.
 
+use super::structure::{self, SceneStructure};
 use super::{limited, material_blocks};
 use crate::bvh::{Bvh, Source};
 use crate::error::{Error, Result};
@@ -11,8 +12,9 @@ use crate::gpu::shader::structs::{
     BvhNodeBlock, BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock,
     TracedTangentsBlock, TracedTriangleBlock,
 };
+use crate::gpu::structure::Over;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
-use crate::plan::{Plan, Resources};
+use crate::plan::{Plan, Requirements, Resources};
 use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, Wrap, mipmaps};
 use crate::units::Bytes;
 use bytemuck::Zeroable;
@@ -32,9 +34,9 @@ const ALPHA_BLEND: u32 = 2;
 /// Buffers that texels may fill: the shader's texels_0 to texels_3.
 const TEXEL_BUFFERS: usize = 4;
 
-/// Names of the buffers after the technique's, and of their blocks in GLSL.
-const BUFFERS: [(&str, &str); 8] = [
-    ("bvh.nodes", "BvhNodes"),
+/// Names of the buffers after the technique's, and of their blocks in GLSL. Nodes are there where rays walk the tree.
+const NODES: (&str, &str) = ("bvh.nodes", "BvhNodes");
+const BUFFERS: [(&str, &str); 7] = [
     ("bvh.triangles", "BvhTriangles"),
     ("traced.triangles", "TracedTriangles"),
     ("traced.tangents", "TracedTangents"),
@@ -49,6 +51,15 @@ const TEXELS: [(&str, &str); TEXEL_BUFFERS] = [
     ("traced.texels.2", "Texels2"),
     ("traced.texels.3", "Texels3"),
 ];
+
+/// What rays go through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rays {
+    /// The tree's nodes, walked by the shader.
+    Tree,
+    /// The driver's structure, by ray queries. `is_opaque`: alpha decides about no triangle.
+    Query { is_opaque: bool },
+}
 
 /// Where the first texel of a picture lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +79,8 @@ pub struct Layout {
     has_extended: bool,
     /// Triangles move while the shutter is open.
     is_moving: bool,
+    /// None: rays walk the tree.
+    structures: Option<[Over; 2]>,
     /// Of each image of the scene; None where no traced material reads it.
     places: Vec<Option<Place>>,
     /// Texels of each buffer.
@@ -81,8 +94,15 @@ const SLOTS: [TextureSlot; 4] =
 impl Layout {
     /// `most_bytes`: what a device binds of a buffer at once.
     ///
-    /// Errors: the textures are more than the shader's buffers hold (exit code 4).
-    pub fn new(scene: &Scene, bvh: &Bvh, most_bytes: u64) -> Result<Self> {
+    /// Errors: the textures are more than the shader's buffers hold (exit code 4); structures of what moves (2).
+    pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, most_bytes: u64) -> Result<Self> {
+        if rays != Rays::Tree && !bvh.closing.is_empty() {
+            return Err(Error::request(format!(
+                "--rays query: {} moves while its --shutter is open, and what ray queries go through stands still",
+                scene.name
+            ))
+            .note("--rays tree moves with it; --shutter none freezes it"));
+        }
         let mut places = vec![None; scene.images.len()];
         let mut texel_counts = Vec::new();
         let most_texels = (most_bytes / 4).min(u64::from(u32::MAX));
@@ -118,17 +138,28 @@ impl Layout {
             has_tangents: scene.drawn_materials().any(|material| material.normal_texture.is_some()),
             has_extended: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty()),
             is_moving: !bvh.closing.is_empty(),
+            structures: match rays {
+                Rays::Tree => None,
+                Rays::Query { is_opaque } => Some(structure::over(bvh, is_opaque)),
+            },
             places,
             texel_counts,
         })
     }
 
     /// Plans the buffers, as resources of `technique`.
-    pub fn plan(&self, plan: &mut Plan, technique: &str) {
+    ///
+    /// Errors: as of `structure::plan`.
+    pub fn plan(&self, plan: &mut Plan, technique: &str, requirements: Requirements<'_>) -> Result<()> {
         let of = |count: usize, size: usize| count as u64 * size as u64;
         let when = |is_there: bool, bytes: u64| if is_there { bytes } else { 0 };
+        match self.structures {
+            None => {
+                plan.buffer("bvh", format!("{technique}.{}", NODES.0), of(self.node_count, size_of::<BvhNodeBlock>()));
+            }
+            Some(over) => structure::plan(plan, technique, over, requirements)?,
+        }
         let bytes = [
-            of(self.node_count, size_of::<BvhNodeBlock>()),
             of(self.triangle_count, size_of::<BvhTriangleBlock>()),
             of(self.triangle_count, size_of::<TracedTriangleBlock>()),
             when(self.has_tangents, of(self.triangle_count, size_of::<TracedTangentsBlock>())),
@@ -145,6 +176,7 @@ impl Layout {
             let count = self.texel_counts.get(index).copied().unwrap_or(0);
             plan.buffer("traced", format!("{technique}.{name}"), 4 * count);
         }
+        Ok(())
     }
 
     /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, MOVES.
@@ -226,6 +258,7 @@ impl Layout {
 /// The scene's rays on the device.
 pub struct TracedGpu {
     buffers: Vec<(&'static str, Buffer)>,
+    structure: Option<SceneStructure>,
 }
 
 impl TracedGpu {
@@ -248,8 +281,10 @@ impl TracedGpu {
             buffers.push((block, buffer));
             Result::Ok(())
         };
-        let [nodes, planes, triangles, tangents, extended, materials, planes_closing, closing] = BUFFERS;
-        fill(nodes, bytemuck::cast_slice(&bvh.nodes))?;
+        let [planes, triangles, tangents, extended, materials, planes_closing, closing] = BUFFERS;
+        if layout.structures.is_none() {
+            fill(NODES, bytemuck::cast_slice(&bvh.nodes))?;
+        }
         fill(planes, bytemuck::cast_slice(&bvh.triangles))?;
         let of = |source: &Source| Corners::of(scene, source);
         let all: Vec<TracedTriangleBlock> = bvh.sources.iter().map(|source| of(source).triangle()).collect();
@@ -276,12 +311,17 @@ impl TracedGpu {
             upload::buffer_with(gpu, &buffer, bytes, Access::ComputeRead, fill)?;
             buffers.push((block, buffer));
         }
-        Ok(Self { buffers })
+        let build = |over| {
+            let taken = structure::BUFFERS.map(|name| resources.buffer(&format!("{technique}.{name}")));
+            SceneStructure::build(gpu, bvh, over, taken)
+        };
+        Ok(Self { structure: layout.structures.map(build).transpose()?, buffers })
     }
 
     /// What shading/traced.glsl and bvh_trace.glsl bind.
     pub fn bound(&self) -> impl Iterator<Item = (&'static str, Bound<'_>)> {
-        self.buffers.iter().map(|(block, buffer)| (*block, Bound::Buffer(buffer)))
+        let buffers = self.buffers.iter().map(|(block, buffer)| (*block, Bound::Buffer(buffer)));
+        buffers.chain(self.structure.iter().map(SceneStructure::bound))
     }
 }
 

@@ -70,6 +70,7 @@ mod tests {
     /// A device that has everything, changed.
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
         let mut caps = known::caps(known::DEFAULT).unwrap();
+        caps.features.ray_query = true;
         change(&mut caps);
         caps
     }
@@ -118,6 +119,24 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn ray_queries_are_refused_where_there_are_none_and_the_tree_is_not() {
+        let technique = find("path_traced").unwrap();
+        let caps = device(|caps| caps.features.ray_query = false);
+        let fitness = fitness(technique, &caps);
+        assert!(fitness.stopped_by.is_empty() && of(&fitness.left_out) == ["--rays query"], "{fitness:?}");
+        let mut values = Values::defaults(&settings_of(technique));
+        require(technique, &values, &caps, true).unwrap();
+        let rays = settings_of(technique).into_iter().find(|setting| setting.key == "rays").unwrap();
+        values.set(&rays, "query").unwrap();
+        let error = require(technique, &values, &caps, false).unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+        let text = error.to_string();
+        for words in [caps.identity.driver_text(), "VK_KHR_ray_query", "--rays tree"] {
+            assert!(text.contains(words), "{text}");
         }
     }
 

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
-use crate::plan::{Plan, Resources};
+use crate::plan::{Plan, Requirements, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::{DrawList, GeometryChoice, SceneGpu, SceneStats};
 use crate::scene::Scene;
@@ -27,6 +27,8 @@ use std::sync::Arc;
 /// Everything that the plan and the host's part of a technique may read.
 pub struct Inputs<'a> {
     pub caps: &'a Caps,
+    /// Who says how large what only a driver knows is.
+    pub requirements: Requirements<'a>,
     pub scene: &'a Scene,
     pub stats: &'a SceneStats,
     pub bvh: &'a LazyBvh,

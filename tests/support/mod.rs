@@ -34,15 +34,21 @@ pub fn shared_scenes() -> Option<PathBuf> {
 ///
 /// Panics where CI is `true`: a skip in CI is a failure.
 pub fn skip(why: &str) {
+    let line = name_skip(why);
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "in CI, {line}");
+}
+
+/// What `skip` says, in CI too.
+fn name_skip(why: &str) -> String {
     let thread = std::thread::current();
     let line = format!("skipped: {}: {why}\n", thread.name().unwrap_or("a test"));
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "in CI, {line}");
     print!("{line}");
     if let Some(file) = std::env::var_os("QUINCUNX_SKIPS") {
         let mut file = std::fs::OpenOptions::new().append(true).create(true).open(file).unwrap();
         // One write: tests run side by side.
         file.write_all(line.as_bytes()).unwrap();
     }
+    line
 }
 
 /// The caps of the device that tests run on.
@@ -57,6 +63,8 @@ pub enum Feature {
     Pinned,
     /// Points of a surface as exact as closed forms are: vertices are placed to a 256th of a pixel.
     ExactPositions,
+    /// Rays through structures of the driver's own.
+    RayQuery,
 }
 
 impl Feature {
@@ -64,6 +72,15 @@ impl Feature {
         match self {
             Self::Pinned => caps.identity.driver_info.contains(PINNED),
             Self::ExactPositions => caps.limits.sub_pixel_bits >= 8,
+            Self::RayQuery => caps.features.ray_query,
+        }
+    }
+
+    /// Whether the driver that CI runs on has it: where not, CI skips the test as others do.
+    fn is_of_pinned(self) -> bool {
+        match self {
+            Self::Pinned | Self::ExactPositions => true,
+            Self::RayQuery => false,
         }
     }
 
@@ -74,16 +91,24 @@ impl Feature {
             Self::ExactPositions => {
                 format!("vertices placed to a 256th of a pixel: {} bits, 8 are needed", caps.limits.sub_pixel_bits)
             }
+            Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure".to_owned(),
         }
     }
 }
 
 /// Whether the driver has what a test needs; where not, the test is skipped by name, with the reason.
+///
+/// Panics where CI is `true` and the pinned driver has it.
 #[must_use]
 pub fn has(caps: &Caps, feature: Feature) -> bool {
     let is_there = feature.is_there(caps);
     if !is_there {
-        skip(&format!("{} has no {}", caps.identity.driver_text(), feature.lack(caps)));
+        let why = format!("{} has no {}", caps.identity.driver_text(), feature.lack(caps));
+        if feature.is_of_pinned() {
+            skip(&why);
+        } else {
+            name_skip(&why);
+        }
     }
     is_there
 }

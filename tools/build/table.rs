@@ -116,6 +116,7 @@ fn kind_of(kind: &DescriptorType) -> Result<&'static str, String> {
         DescriptorType::SampledImage() => "SampledImage",
         DescriptorType::CombinedImageSampler() => "CombinedImageSampler",
         DescriptorType::Sampler() => "Sampler",
+        DescriptorType::AccelStruct() => "AccelerationStructure",
         other => return Err(format!("{other:?} is not in the table's vocabulary")),
     })
 }

@@ -1,6 +1,9 @@
 // One path a pixel, added to those before it. Pass: src/techniques/path_traced/sample.rs.
-// variants: ALPHA=opaque|tested
+// variants: ALPHA=opaque|tested RAYS=tree|query
 #version 460
+#ifdef RAYS_QUERY
+#extension GL_EXT_ray_query : require
+#endif
 #include "techniques/path_traced/path.glsl"
 #include "techniques/path_traced/airlight.glsl"
 #include "techniques/path_traced/light_walk.glsl"

@@ -17,8 +17,10 @@ use crate::gpu::recorded::Recorded;
 use crate::gpu::shader::bench::rays::COMP_VARIANTS;
 use crate::gpu::shader::structs::{RayBlock, RaysParams};
 use crate::gpu::shader::variant;
+use crate::gpu::structure::STORAGE;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, readback, upload};
 use crate::memory::kinds::Use;
+use crate::resident::structure::{self, SceneStructure};
 use crate::scene::Scene;
 use ash::vk;
 use cast::Rays;
@@ -50,14 +52,22 @@ impl Query {
     }
 }
 
+/// The driver's own, by ray queries: there where the device has them.
+const QUERY: &str = "query";
 /// A walk of the device, with what it can be asked.
-const WALKS: [(&str, Query); 3] = [("plain", Query::Any), ("ordered", Query::Any), ("ordered", Query::Nearest)];
+const WALKS: [(&str, Query); 5] = [
+    ("plain", Query::Any),
+    ("ordered", Query::Any),
+    ("ordered", Query::Nearest),
+    (QUERY, Query::Any),
+    (QUERY, Query::Nearest),
+];
 
 /// One walk on the device, and what came of it.
 pub struct Measured {
     pub rays: Rays,
     pub query: Query,
-    /// `plain` or `ordered`: the shader's WALK.
+    /// `plain`, `ordered` or `query`: the shader's WALK.
     pub walk: &'static str,
     pub device: Samples,
     /// The host's walk for the same query.
@@ -94,7 +104,7 @@ pub fn run(
     let (mut device, mut host) = (Vec::new(), Vec::new());
     for rays in Rays::ALL {
         let cast: Rc<[RayBlock]> = rays.cast(scene, &bvh, request.ray_count, request.seed).into();
-        for (walk, query) in WALKS {
+        for (walk, query) in WALKS.into_iter().filter(|(walk, _)| *walk != QUERY || tree.structure.is_some()) {
             device.push((rays, DeviceWalk::new(gpu, &tree, &cast, walk, query)?));
         }
         host.extend([Query::Any, Query::Nearest].map(|query| (rays, HostWalk::new(&bvh, cast.clone(), query))));
@@ -142,11 +152,23 @@ fn filled<T: bytemuck::Pod>(gpu: &Arc<Gpu>, what: &str, values: &[T]) -> Result<
 struct Tree {
     nodes: Buffer,
     triangles: Buffer,
+    /// None: the device has no ray queries.
+    structure: Option<SceneStructure>,
 }
 
 impl Tree {
     fn new(gpu: &Arc<Gpu>, bvh: &Bvh) -> Result<Rc<Self>> {
+        let structure = gpu.caps.features.ray_query.then(|| {
+            let over = structure::over(bvh, true);
+            let buffer = |at: usize| {
+                let (name, bytes) =
+                    (format!("bench.rays.{}", structure::BUFFERS[at]), over[at].sizes(gpu).structure_bytes);
+                Buffer::new(gpu, &name, GROUP, bytes, STORAGE, Use::Device)
+            };
+            SceneStructure::build(gpu, bvh, over, [buffer(0)?, buffer(1)?])
+        });
         Ok(Rc::new(Self {
+            structure: structure.transpose()?,
             nodes: filled(gpu, "nodes", &bvh.nodes)?,
             triangles: filled(gpu, "triangles", &bvh.triangles)?,
         }))
@@ -177,8 +199,12 @@ impl DeviceWalk {
         cmd.pass("bench.rays", traffic, |cmd| {
             cmd.barriers([hits.discard(Access::ComputeWrite)]);
             let params = RaysParams { ray_count, kind: if query == Query::Any { RAY_SHADOW } else { 0 } };
+            let walked = match &tree.structure {
+                Some(structure) if walk == QUERY => structure.bound(),
+                _ => ("BvhNodes", Bound::Buffer(&tree.nodes)),
+            };
             let bound = [
-                ("BvhNodes", Bound::Buffer(&tree.nodes)),
+                walked,
                 ("BvhTriangles", Bound::Buffer(&tree.triangles)),
                 ("Rays", Bound::Buffer(&rays)),
                 ("Hits", Bound::Buffer(&hits)),

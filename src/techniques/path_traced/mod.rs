@@ -17,6 +17,8 @@
 //!   for the shadow rays and light walks of the others
 //! - MASK surfaces have their holes for every ray, BLEND surfaces stop the part of all rays that alpha says (the others'
 //!   shadow rays take the first for solid and the second for nothing)
+//! - `--rays`: rays go through this program's tree or, by ray queries, through a structure that the driver builds over the
+//!   same triangles; the two pictures differ where a ray grazes an edge or meets two triangles at one distance
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
 //! - `--aperture`: a thin lens, whose points rays leave evenly
@@ -38,7 +40,7 @@ use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
-use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::gpu::{Ability, Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::lights::emitters::{self, Emitters};
@@ -46,7 +48,7 @@ use crate::passes::direct;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::resident::traced::Layout;
+use crate::resident::traced::{Layout, Rays};
 use crate::scene::{AlphaMode, Light, Material};
 use crate::settings::{Setting, Values};
 use crate::shading::brdf::Brdf;
@@ -89,8 +91,10 @@ impl Technique for PathTraced {
         &[]
     }
 
-    fn needs(&self, _: &Values, _: &Caps, _: bool) -> Vec<Need> {
-        Vec::new()
+    fn needs(&self, values: &Values, _: &Caps, _: bool) -> Vec<Need> {
+        let instead = "--rays tree walks a tree of this program's, to the same picture";
+        let query = Need { of: "--rays query".to_owned(), ability: Ability::RayQuery, instead };
+        Vec::from_iter((values.text("rays") == "query").then_some(query))
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -102,7 +106,7 @@ impl Technique for PathTraced {
         let bvh = inputs.bvh.whole(inputs.scene)?;
         let sources = Sources::new(inputs, bvh)?;
         let mut plan = Plan::default();
-        layout(inputs, bvh)?.plan(&mut plan, NAME);
+        layout(inputs, bvh)?.plan(&mut plan, NAME, inputs.requirements)?;
         let of = |count: usize, size: usize| count as u64 * size as u64;
         let light_count = sources.all_lights().count();
         plan.buffer("lights", format!("{NAME}.lights"), of(light_count, size_of::<LightBlock>()));
@@ -123,7 +127,16 @@ impl Technique for PathTraced {
 }
 
 fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
-    Layout::new(inputs.scene, bvh, inputs.caps.limits.max_storage_buffer_range_bytes)
+    let rays = match inputs.values.text("rays") {
+        "query" => Rays::Query { is_opaque: !is_tested(inputs) },
+        _ => Rays::Tree,
+    };
+    Layout::new(inputs.scene, bvh, rays, inputs.caps.limits.max_storage_buffer_range_bytes)
+}
+
+/// The scene has MASK or BLEND surfaces.
+fn is_tested(inputs: &Inputs<'_>) -> bool {
+    inputs.scene.drawn_materials().any(|material| material.alpha != AlphaMode::Opaque)
 }
 
 /// Where light comes from.
@@ -212,7 +225,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         extras: inputs.scene.drawn_materials().any(Material::has_extras),
         workgroup: values.pair("workgroup"),
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),
-        is_tested: inputs.scene.drawn_materials().any(|material| material.alpha != AlphaMode::Opaque),
+        is_tested: is_tested(inputs),
         air,
         has_lens: lens.is_some(),
         params,

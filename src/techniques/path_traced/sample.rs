@@ -1,5 +1,5 @@
 //! Sample: one path a pixel, added to those before it. Shader: sample.comp.
-//! reads  the whole tree, the traced scene, the lights      writes  path_traced.sums  buffer, four floats a pixel, kept
+//! reads  the whole tree or a structure over it, the traced scene, the lights      writes  path_traced.sums  buffer, four floats a pixel, kept
 //! from run to run, and path_traced.color  image, RGBA32F, frame extent: the mean so far
 
 use super::airlight::Air;
@@ -66,6 +66,7 @@ impl Sample {
         density_of: impl Fn(&crate::scene::Material) -> f32,
     ) -> Result<Self> {
         let alpha = if choices.is_tested { "tested" } else { "opaque" };
+        let rays = inputs.values.text("rays");
         let own = [
             ("WORKGROUP_X", choices.workgroup[0]),
             ("WORKGROUP_Y", choices.workgroup[1]),
@@ -90,7 +91,7 @@ impl Sample {
             Result::Ok(buffer)
         };
         Ok(Self {
-            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha]), &constants)?,
+            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha, rays]), &constants)?,
             params: choices.params,
             traced,
             lights: filled("lights", bytemuck::cast_slice(lights))?,

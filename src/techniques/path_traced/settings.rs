@@ -85,6 +85,16 @@ pub const SETTINGS: &[Setting] = &[
         paper: "",
         help: "point, spot and directional lights; off: emissive triangles light the scene even where --emissive is auto",
     },
+    Setting {
+        key: "rays",
+        symbol: "",
+        kind: Kind::Choice(&["tree", "query"]),
+        default: "tree",
+        unit: "",
+        paper: "",
+        help: "what rays go through: a tree of this program's, walked by the shader; or the driver's own acceleration structure, by \
+               ray queries, where the device has them. The same picture, but for rays that graze an edge",
+    },
     APERTURE,
     FOCUS,
     SHUTTER,
