@@ -128,14 +128,14 @@ impl Access {
         }
     }
 
-    fn bit(self) -> u16 {
+    fn bit(self) -> u32 {
         1 << self as u16
     }
 }
 
 /// Several accesses at once: all readers since the last write, or one writer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct AccessSet(u16);
+pub struct AccessSet(u32);
 
 impl AccessSet {
     /// Not touched in this frame. A frame begins after the fence of the one before it, so nothing is waited for.

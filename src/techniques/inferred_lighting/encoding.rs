@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn depth_runs_from_the_first_step_to_the_last() {
-        assert_eq!(depth_m(0xab_cd00_00, [2.0, 6.0]), Some(2.0));
+        assert_eq!(depth_m(0xabcd_0000, [2.0, 6.0]), Some(2.0));
         assert_eq!(depth_m(65534, [2.0, 6.0]), Some(8.0));
         assert_eq!(depth_m(0xffff, [2.0, 6.0]), None);
         assert_eq!(id(0x1234_0000), 0x1234);

@@ -25,13 +25,17 @@ use std::sync::Arc;
 /// How lights reach the L-buffer.
 enum Road {
     Tiled(Tiled),
-    /// Blended in half floats.
-    Halves(LightVolumes),
-    Sums {
-        volumes: LightVolumes,
-        pack: Pack,
-        sums: Image,
+    /// Without `packed` blended into the L-buffer itself.
+    Drawn {
+        volumes: Box<LightVolumes>,
+        packed: Option<Box<Packed>>,
     },
+}
+
+/// Float sums on their way to the L-buffer.
+struct Packed {
+    pack: Pack,
+    sums: Image,
 }
 
 pub struct InferredFrame {
@@ -99,12 +103,12 @@ impl InferredFrame {
             (Volumes::Tiled, _) => {
                 Road::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
             }
-            (_, true) => Road::Halves(volumes(light::L_BUFFER_FORMAT)?),
-            (_, false) => Road::Sums {
-                volumes: volumes(PICTURE_FORMAT)?,
-                pack: Pack::new(gpu, &choices.shading.workgroup_constants())?,
-                sums: resources.image(&light::sums()),
-            },
+            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::L_BUFFER_FORMAT)?), packed: None },
+            (_, false) => {
+                let pack = Pack::new(gpu, &choices.shading.workgroup_constants())?;
+                let packed = Packed { pack, sums: resources.image(&light::sums()) };
+                Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT)?), packed: Some(Box::new(packed)) }
+            }
         };
         let filter = FilterSettings {
             depth_range_m,
@@ -159,10 +163,12 @@ impl Frame for InferredFrame {
         let from = geometry.from(written);
         match &self.road {
             Road::Tiled(tiled) => tiled.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
-            Road::Halves(volumes) => volumes.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
-            Road::Sums { volumes, pack, sums } => {
-                volumes.record(cmd, &self.light_frame, &self.lights, from, sums)?;
-                pack.record(cmd, &self.light_frame, sums, &self.l_buffer)?;
+            Road::Drawn { volumes, packed } => {
+                let target = packed.as_ref().map_or(&self.l_buffer, |packed| &packed.sums);
+                volumes.record(cmd, &self.light_frame, &self.lights, from, target)?;
+                if let Some(Packed { pack, sums }) = packed.as_deref() {
+                    pack.record(cmd, &self.light_frame, sums, &self.l_buffer)?;
+                }
             }
         }
         let last = light::last_access(self.in_halves);
@@ -185,7 +191,7 @@ impl Frame for InferredFrame {
         let mut counters = self.material.counters(gpu)?;
         match &self.road {
             Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
-            Road::Halves(volumes) | Road::Sums { volumes, .. } => {
+            Road::Drawn { volumes, .. } => {
                 let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
                 let evaluated = volumes.evaluations();
                 counters.insert("lights_counted_into_stencil", volumes.counted_lights() as f64);
