@@ -235,7 +235,7 @@ pub struct GraphicsDescription<'a> {
     pub color_formats: &'a [vk::Format],
     /// Samples a pixel of every attachment.
     pub samples: u32,
-    /// Blend source over destination by alpha (premultiplied), on every colour attachment.
+    /// Blend source over destination by alpha (premultiplied), on every colour attachment, whose own alpha stays.
     pub blend_over: bool,
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,
@@ -332,13 +332,15 @@ impl GraphicsPipeline {
             .depth_test_enable(description.depth_format.is_some())
             .depth_write_enable(description.depth_write)
             .depth_compare_op(description.depth_compare);
+        let written = match description.blend_over {
+            true => vk::ColorComponentFlags::R | vk::ColorComponentFlags::G | vk::ColorComponentFlags::B,
+            false => vk::ColorComponentFlags::RGBA,
+        };
         let attachment = vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA)
+            .color_write_mask(written)
             .blend_enable(description.blend_over)
             .src_color_blend_factor(vk::BlendFactor::ONE)
-            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
-            .src_alpha_blend_factor(vk::BlendFactor::ONE)
-            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA);
+            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA);
         let attachments = vec![attachment; description.color_formats.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let mut dynamic_states = vec![

@@ -2,6 +2,7 @@
 
 pub mod cull;
 pub mod emitters;
+pub mod object_lists;
 pub mod vpl;
 
 use crate::error::{Error, Result};

@@ -7,7 +7,7 @@ mod optics;
 mod tables;
 
 pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
-pub use tables::{BRDF, COMMON, EMISSIVE, MULTISAMPLE, SHADING, VPL_CLAMP, WORKGROUP};
+pub use tables::{BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, SHADING, VPL_CLAMP, WORKGROUP};
 
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};

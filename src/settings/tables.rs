@@ -227,6 +227,29 @@ pub const MULTISAMPLE: &[Setting] = &[Setting {
     help: "places of a pixel that are tested for coverage and depth and averaged; a surface is shaded once a pixel",
 }];
 
+/// What is drawn of the solid surfaces.
+pub const GEOMETRY: Setting = Setting {
+    key: "geometry",
+    symbol: "",
+    kind: Kind::Choice(&["culled", "all"]),
+    default: "culled",
+    unit: "",
+    paper: "",
+    help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
+           plain way to the same bits)",
+};
+
+/// Which lights cast shadow rays.
+pub const DIRECT_SHADOW: Setting = Setting {
+    key: "direct-shadow",
+    symbol: "",
+    kind: Kind::Choice(&["none", "sun", "ray"]),
+    default: "sun",
+    unit: "",
+    paper: "",
+    help: "shadow rays to no light, to directional lights, or to every punctual light",
+};
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
     BRDF,
@@ -240,16 +263,7 @@ pub const SHADING: &[Setting] = &[
         help: "how the G-buffer holds positions: half floats (the paper's), 16-bit fractions of the scene's box, the depth \
                buffer, or 32-bit floats (the oracle)",
     },
-    Setting {
-        key: "geometry",
-        symbol: "",
-        kind: Kind::Choice(&["culled", "all"]),
-        default: "culled",
-        unit: "",
-        paper: "",
-        help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
-               plain way to the same bits)",
-    },
+    GEOMETRY,
     Setting {
         key: "cull",
         symbol: "",
@@ -259,15 +273,7 @@ pub const SHADING: &[Setting] = &[
         paper: "",
         help: "of direct light: every light on every pixel, or a list of lights for each tile of 16x16; the same picture",
     },
-    Setting {
-        key: "direct-shadow",
-        symbol: "",
-        kind: Kind::Choice(&["none", "sun", "ray"]),
-        default: "sun",
-        unit: "",
-        paper: "",
-        help: "shadow rays to no light, to directional lights, or to every punctual light",
-    },
+    DIRECT_SHADOW,
     Setting {
         key: "texels",
         symbol: "",

@@ -6,6 +6,7 @@
 
 pub mod deferred;
 pub mod fitness;
+pub mod forward;
 pub mod interleaved_deferred;
 pub mod path_traced;
 
@@ -16,9 +17,10 @@ use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::{DrawList, GeometryChoice, SceneGpu, SceneStats};
+use crate::resident::{Coverage, DrawList, GeometryChoice, SceneGpu, SceneStats};
 use crate::scene::Scene;
 use crate::settings::{Setting, Values};
+use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -34,9 +36,10 @@ pub struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// What the G-buffer pass draws of the scene.
-    fn draw_list(&self, scene: &SceneGpu) -> DrawList {
-        DrawList::new(self.scene, scene, self.view, GeometryChoice::from_setting(self.values.text("geometry")))
+    /// What is drawn of the solid surfaces.
+    fn draw_list(&self, scene: &SceneGpu, coverage: Coverage) -> DrawList {
+        let choice = GeometryChoice::from_setting(self.values.text("geometry"));
+        DrawList::new(self.scene, scene, self.view, choice, coverage)
     }
 }
 
@@ -132,6 +135,11 @@ pub trait Frame {
         1
     }
 
+    /// Pixels to the right and down by which the picture of this run is moved, each less than half a pixel.
+    fn offset_px(&self, _run: u32) -> Vec2 {
+        Vec2::ZERO
+    }
+
     /// What it sums up from run to run; None where a picture is one run.
     fn sums(&self) -> Option<Sums<'_>> {
         None
@@ -156,7 +164,7 @@ pub trait Frame {
 
 /// Every technique.
 pub const ALL: &[&dyn Technique] =
-    &[&interleaved_deferred::InterleavedDeferred, &deferred::Deferred, &path_traced::PathTraced];
+    &[&interleaved_deferred::InterleavedDeferred, &deferred::Deferred, &forward::Forward, &path_traced::PathTraced];
 
 /// The technique of this name.
 ///
