@@ -5,7 +5,7 @@ use crate::gpu::shader::structs::FrameBlock;
 use crate::scene::{Bounds, Camera, Projection, Scene};
 use crate::units::Extent;
 use bytemuck::Zeroable;
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// A camera and the picture it fills.
 #[derive(Clone, Debug)]
@@ -149,6 +149,23 @@ impl View {
             ..FrameBlock::zeroed()
         }
     }
+
+    /// `block`, which is of this view, with the picture moved by `offset_px` to the right and down.
+    pub fn moved(&self, block: FrameBlock, offset_px: Vec2) -> FrameBlock {
+        if offset_px == Vec2::ZERO {
+            return block;
+        }
+        let [x, y] = [offset_px.x / self.extent.width as f32, offset_px.y / self.extent.height as f32];
+        // Clip space is two units wide, times w.
+        let moving = Mat4::from_translation(Vec3::new(2.0 * x, 2.0 * y, 0.0));
+        let clip_from_world = moving * self.clip_from_world();
+        let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
+        FrameBlock {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            world_from_clip: world_from_clip.to_cols_array_2d(),
+            ..block
+        }
+    }
 }
 
 /// A camera that sees all of `bounds`.
@@ -191,6 +208,23 @@ mod tests {
             // Vulkan's y points down: what is up in the world has a negative y.
             assert!(clip.project_point3(Vec3::new(0.0, 0.5, 0.0)).y < 0.0);
             assert!(clip.project_point3(Vec3::new(0.5, 0.0, 0.0)).x > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_moved_picture_has_every_point_so_many_pixels_further() {
+        let perspective = Projection::Perspective { y_fov: 1.0, aspect: None, z_near: 1.0, z_far: None };
+        let orthographic = Projection::Orthographic { x_mag: 4.0, y_mag: 2.0, z_near: 1.0, z_far: 10.0 };
+        for projection in [perspective, orthographic] {
+            let view = view(projection);
+            let plain = view.block(&Bounds::EMPTY, Vec3::ZERO, Vec3::ZERO, 0, 0);
+            assert_eq!(view.moved(plain, Vec2::ZERO), plain);
+            let moved = view.moved(plain, Vec2::new(0.25, -0.5));
+            for point in [Vec3::new(0.3, 0.2, -1.0), Vec3::new(-0.7, 0.1, 3.0)] {
+                let at = |block: &FrameBlock| Mat4::from_cols_array_2d(&block.clip_from_world).project_point3(point);
+                let apart = (at(&moved) - at(&plain)) * Vec3::new(100.0, 50.0, 1.0);
+                assert!((apart - Vec3::new(0.25, -0.5, 0.0)).length() < 1e-4, "{apart}");
+            }
         }
     }
 

@@ -5,6 +5,7 @@
 //!
 //! - [`techniques::interleaved_deferred`]: Segovia et al. 2006, virtual point lights interleaved over a pattern
 //! - [`techniques::deferred`]: plain deferred shading of punctual lights, the baseline
+//! - [`techniques::forward`]: forward shading with a list of lights for each object, the other baseline
 //! - [`techniques::path_traced`]: the integral that the others approximate
 //!
 //! # A picture in ten lines

@@ -263,7 +263,8 @@ impl Renderer {
     }
 
     fn run(&self, index: u32) -> Result<FrameTime> {
-        let numbers = FrameBlock { sample_index: index, ..self.numbers };
+        let numbers = self.view.moved(self.numbers, self.frame.offset_px(index));
+        let numbers = FrameBlock { sample_index: index, ..numbers };
         // The run before has ended: the device reads the block no more.
         self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
         let time = self.recorded.run()?;

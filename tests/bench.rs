@@ -304,3 +304,43 @@ fn ctrl_c_keeps_finished_rows_and_resume_goes_on() {
     assert!(after.starts_with(&before));
     assert_eq!(lines(&after).len(), 32);
 }
+
+/// Techniques are an axis: what all of them read stays, what one does not read leaves out its points alone.
+#[test]
+fn techniques_are_measured_in_one_run() {
+    let program = Program::new();
+    let common =
+        ["bench", "frame", "lamps:objects=10,lights=8", "--size", "64x48", "--repeat", "2", "--json", "--quiet"];
+    let swept = ["--technique", "forward", "--sweep", "technique=forward,deferred", "--sweep", "msaa=1,4"];
+    let ran = program.run(&[&common[..], &swept, &["--brdf", "lambert"]].concat()).fine();
+    let mut rows = lines(&ran.out);
+    rows.sort_by_key(|row| row["variant"].as_str().unwrap().to_owned());
+    assert_eq!(
+        variants(&rows),
+        [
+            "technique=deferred msaa=1",
+            "technique=deferred msaa=4",
+            "technique=forward msaa=1",
+            "technique=forward msaa=4"
+        ]
+    );
+    for row in &rows[..2] {
+        assert!(row["skipped"].as_str().unwrap().contains("deferred: it does not read --msaa"), "{row}");
+    }
+    for row in &rows[2..] {
+        has_ratio(&row["ratio"]);
+        assert_eq!((&row["technique"], &row["settings"]["brdf"]), (&"forward".into(), &"lambert".into()));
+    }
+    let ran = program.run(&[&common[..], &swept[..4], &["--brdf", "lambert"]].concat()).fine();
+    for row in lines(&ran.out) {
+        has_ratio(&row["ratio"]);
+        let technique = row["technique"].as_str().unwrap();
+        assert_eq!(row["variant"], format!("technique={technique}"));
+        let command: Vec<&str> = row["command"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        assert_eq!(command[3..5], ["--technique", technique]);
+        assert!(command.join(" ").contains("--brdf lambert"), "{command:?}");
+        assert!(row["settings"]["technique"].is_null());
+    }
+    let wrong = program.run(&[&common[..], &["--sweep", "technique=nothing"]].concat());
+    assert_eq!(wrong.code, 2, "{}", wrong.err);
+}

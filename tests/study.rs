@@ -50,6 +50,9 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
     let settings: &[(&str, &[(&str, &str)])] = &[
         ("deferred", &[("size", "97x53")]),
         ("deferred", &[("size", "161x91"), ("cull", "tiled"), ("position", "depth"), ("direct-shadow", "ray")]),
+        ("forward", &[("size", "97x53")]),
+        ("forward", &[("size", "161x91"), ("msaa", "4"), ("direct-shadow", "ray"), ("light-buffer", "storage")]),
+        ("forward", &[("size", "97x53"), ("msaa", "4"), ("supersample", "2"), ("depth-prepass", "off")]),
         ("interleaved_deferred", &[("size", "161x91")]),
         ("interleaved_deferred", &[("size", "161x91"), ("filter", "gauss-fast"), ("pattern", "5x7")]),
         ("interleaved_deferred", &[("size", "97x53"), ("split", "subsample"), ("position", "float")]),

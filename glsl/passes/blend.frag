@@ -1,6 +1,6 @@
-// BLEND surfaces over the finished picture, back to front, lit forward by every punctual light and by the virtual ones of
-// their pixel. Pass: src/passes/blend.rs.
-// variants: VERTEX=plain|extended
+// BLEND surfaces over the finished picture, back to front, lit forward by every punctual light, or those of the draw's list,
+// and by the virtual ones of their pixel. Pass: src/passes/blend.rs.
+// variants: VERTEX=plain|extended LISTS=none|object
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -8,6 +8,7 @@
 #include "sampling/pattern.glsl"
 #include "shading/light.glsl"
 #include "shading/subset.glsl"
+#include "lights/object_lists.glsl"
 #include "resident.glsl"
 
 // BRDF_ and SHADOW_ values.
@@ -22,6 +23,8 @@ struct BlendParams {
     // n x m; 0 x 0: every virtual point light on every pixel.
     uint pattern_x;
     uint pattern_y;
+    // The draw's, with LISTS=object.
+    ObjectLightsBlock object;
 };
 
 layout(push_constant) uniform Push { BlendParams params; };
@@ -37,9 +40,15 @@ layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleB
 layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
 #endif
 
+#ifdef LISTS_OBJECT
+layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lists[]; };
+// With lists there may be several samples a pixel.
+#define INTERPOLATION centroid
+#endif
+
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
-#include "shading/shade_lights.glsl"
+#include "shading/lit.glsl"
 
 layout(location = 0) out vec4 out_color;
 
@@ -50,22 +59,12 @@ void main() {
         out_color = vec4(base_color.rgb * base_color.a, base_color.a);
         return;
     }
-    vec2 metallic_roughness = metallic_roughness_at(material);
-    vec3 normal_ws = normal_at(material);
-    Surface surface = Surface(base_color.rgb, metallic_roughness.x, metallic_roughness.y, DEFAULT_DIELECTRIC_F0);
-    vec3 eye_ws = to_eye(frame, in_position_ws);
-    float openness = 1.0;
-    if (SURFACE_EXTRAS != 0u) {
-        uint extras = extras_at(material);
-        surface.dielectric_f0 = f0_of_extras(extras);
-        openness = openness_of_extras(extras);
-    }
-    vec3 radiance = emissive_at(material) + ambient_reflectance(BRDF_KIND, surface) * frame.ambient.rgb * openness;
-    uint light = 0u;
-    for (; light < frame.light_count; light++) {
-        radiance += shade_light(lights[light], surface, in_position_ws, normal_ws, eye_ws);
-    }
-    expect_done(light == frame.light_count);
+#ifdef LISTS_OBJECT
+    vec3 position_ws = inside_box(params.object, in_position_ws);
+    Lit lit = lit_at(material, base_color.rgb, position_ws, params.object.first, params.object.count);
+#else
+    Lit lit = lit_at(material, base_color.rgb, in_position_ws, 0u, frame.light_count);
+#endif
     vec3 received = vec3(0.0);
     uint first = 0u;
     uint end = frame.vpl_count;
@@ -76,10 +75,10 @@ void main() {
     }
     uint vpl = first;
     for (; vpl < end; vpl++) {
-        received += vpl_irradiance(vpls[vpl], in_position_ws, normal_ws, params.least_squared);
+        received += vpl_irradiance(vpls[vpl], in_position_ws, lit.normal_ws, params.least_squared);
     }
     expect_done(vpl == end);
-    radiance += albedo_of(surface) * received * (params.weight / PI);
+    vec3 radiance = lit.radiance + albedo_of(lit.surface) * received * (params.weight / PI);
     // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
     out_color = vec4(nan_if_cut(radiance) * base_color.a, base_color.a);
 }

@@ -8,6 +8,9 @@ const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 const uint LIGHT_SPOT = 2u;
 
+// A bit for each kind that is there: what a driver would do for the others, and throw away, is left out.
+layout(constant_id = 67) const uint LIGHT_KINDS = 7;
+
 // A punctual light (KHR_lights_punctual).
 struct LightBlock {
     // xyz: world space; w: 1 / range^2, 0 without range.
@@ -41,9 +44,13 @@ struct Incident {
     vec3 irradiance;
 };
 
+bool is_kind(LightBlock light, uint kind) {
+    return (LIGHT_KINDS & (1u << kind)) != 0u && light.kind == kind;
+}
+
 Incident incident_from(LightBlock light, vec3 position_ws) {
     Incident incident;
-    if (light.kind == LIGHT_DIRECTIONAL) {
+    if (is_kind(light, LIGHT_DIRECTIONAL)) {
         incident.direction_ws = -light.direction_ws.xyz;
         incident.distance = 1e30;
         incident.irradiance = light.intensity.rgb;
@@ -57,7 +64,7 @@ Incident incident_from(LightBlock light, vec3 position_ws) {
     precise float fraction_squared = distance_squared * light.position_ws.w;
     precise float window = clamp(1.0 - fraction_squared * fraction_squared, 0.0, 1.0);
     precise float attenuation = window / max(distance_squared, LEAST_DISTANCE_SQUARED);
-    if (light.kind == LIGHT_SPOT) {
+    if (is_kind(light, LIGHT_SPOT)) {
         precise float cone = dot(light.direction_ws.xyz, -incident.direction_ws) * light.spot_scale + light.spot_offset;
         cone = clamp(cone, 0.0, 1.0);
         attenuation *= cone * cone;

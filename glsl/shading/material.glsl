@@ -2,7 +2,9 @@
 //
 // With the axis VERTEX=extended vertices have colours, and textures placements: `placements[]` is the including shader's.
 // Set 1 belongs to the material: src/resident.rs makes one set each, with a white pixel where a texture is missing.
-// The including shader reads the material's block: from its push constants, or from `materials[]`.
+// The including shader reads the material's block: from its push constants, or from `materials[]`. Where pixels have several
+// samples it defines INTERPOLATION as centroid: a pixel whose middle the triangle does not cover must not be shaded beyond
+// the triangle's edge.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 
@@ -15,14 +17,18 @@ layout(set = 1, binding = 2) uniform sampler2D normal_texture;
 layout(set = 1, binding = 3) uniform sampler2D emissive_texture;
 layout(set = 1, binding = 4) uniform sampler2D occlusion_texture;
 
-layout(location = 0) in vec3 in_position_ws;
-layout(location = 1) in vec3 in_normal_ws;
-layout(location = 2) in vec4 in_tangent_ws;
-layout(location = 3) in vec2 in_uv;
+#ifndef INTERPOLATION
+#define INTERPOLATION
+#endif
+
+layout(location = 0) INTERPOLATION in vec3 in_position_ws;
+layout(location = 1) INTERPOLATION in vec3 in_normal_ws;
+layout(location = 2) INTERPOLATION in vec4 in_tangent_ws;
+layout(location = 3) INTERPOLATION in vec2 in_uv;
 layout(location = 4) flat in uvec2 in_ids;
 #ifdef VERTEX_EXTENDED
-layout(location = 5) in vec4 in_color;
-layout(location = 6) in vec2 in_uv_1;
+layout(location = 5) INTERPOLATION in vec4 in_color;
+layout(location = 6) INTERPOLATION in vec2 in_uv_1;
 #endif
 
 #define in_material in_ids.x

@@ -2,12 +2,18 @@
 
 use super::sweep::{Point, label};
 use crate::error::{Error, Result};
-use crate::job::Job;
+use crate::job::{Job, settings_of};
 use crate::settings::Values;
+use crate::techniques::{self, Technique};
 use std::collections::BTreeMap;
+
+/// The key of a sweep that names techniques; no setting has it.
+pub const TECHNIQUE: &str = "technique";
 
 /// A point with all its settings.
 pub struct Candidate {
+    /// The technique of the point; its settings are those of the request, where it reads them.
+    pub job: Job,
     /// Its name in tables, and for `--baseline`.
     pub label: String,
     /// Texts of every setting, those of the point as they were asked for.
@@ -19,13 +25,35 @@ pub struct Candidate {
 impl Candidate {
     /// `scene_hash`: of the scene that `job` loads; a point that would load another one is impossible.
     pub fn new(job: &Job, point: &Point, scene_hash: &str) -> Self {
+        let (named, own): (Point, Point) = point.iter().cloned().partition(|(key, _)| key == TECHNIQUE);
+        let with = match named.first() {
+            None => Ok(job.at(&job.values)),
+            Some((_, name)) => techniques::find(name).map(|technique| with_technique(job, technique)),
+        };
+        let (job, known) = match with {
+            Ok(job) => (job, Ok(())),
+            Err(error) => (job.at(&job.values), Err(error)),
+        };
         let mut settings: BTreeMap<String, String> =
             job.values.iter().map(|(key, text)| (key.to_owned(), text.to_owned())).collect();
-        settings.extend(point.iter().cloned());
-        let values = changed(job, &job.values, point.iter().map(|(key, text)| (key.as_str(), text.as_str())))
-            .and_then(|values| one_session(job, &values, scene_hash).map(|()| values));
-        Self { label: label(point), settings, values }
+        settings.extend(own.iter().cloned());
+        let values = known
+            .and_then(|()| changed(&job, &job.values, own.iter().map(|(key, text)| (key.as_str(), text.as_str()))))
+            .and_then(|values| one_session(&job, &values, scene_hash).map(|()| values));
+        Self { job, label: label(point), settings, values }
     }
+}
+
+/// `job` with another technique: what both read stays as it is, what the other alone reads is at its default.
+fn with_technique(job: &Job, technique: &'static dyn Technique) -> Job {
+    let mut other = Job::new(&job.scene, technique);
+    for setting in settings_of(technique) {
+        if let Some((_, text)) = job.values.iter().find(|(key, _)| *key == setting.key) {
+            // A key means the same, and takes the same values, for every technique that reads it.
+            other.set(setting.key, text).expect("it was checked for the first technique");
+        }
+    }
+    other
 }
 
 /// `values` with some of them changed.

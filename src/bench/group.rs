@@ -1,6 +1,6 @@
 //! A group: the baseline and a few variants that are on the device together, with what their copies are held against.
 
-use super::candidate::changed;
+use super::candidate::{Candidate, changed};
 use super::copy::BufferCopy;
 use super::rounds::{self, Probe, Samples};
 use super::variant::Variant;
@@ -46,9 +46,17 @@ pub struct Group {
 
 /// What rounds of a group need to know.
 pub struct Ground<'a> {
+    /// The request, or one of its candidates.
     pub job: &'a Job,
     pub session: &'a Session,
     pub what: What,
+}
+
+impl<'a> Ground<'a> {
+    /// The same for a candidate.
+    pub fn of(&self, candidate: &'a Candidate) -> Ground<'a> {
+        Ground { job: &candidate.job, session: self.session, what: self.what }
+    }
 }
 
 impl Group {

@@ -72,7 +72,7 @@ impl References {
             Ok(plain) => plain,
             Err(error) => return Ok(Err(error)),
         };
-        let key = format!("{plain:?}");
+        let key = format!("{} {plain:?}", job.technique.name());
         if let Some(known) = self.known.get(&key) {
             return Ok(Ok(known.clone()));
         }

@@ -35,7 +35,7 @@ impl Head<'_> {
             "device": session.gpu.caps.identity,
             "commit": env!("QUINCUNX_COMMIT"),
             "scene": { "name": session.scene.name, "hash": session.scene.hash },
-            "technique": job.technique.name(),
+            "technique": candidate.job.technique.name(),
             "settings": candidate.settings,
             "repeat": self.repeat,
             "baseline": self.baseline,
@@ -104,10 +104,10 @@ impl Head<'_> {
 
     /// Median milliseconds of each timed pass. A frame is one submit: its passes are timed in frames of their own.
     fn pass_ms(&self, candidate: &Candidate, member: &Member, samples: &[Samples]) -> Result<Value> {
-        let Ground { job, session, what } = &self.ground;
+        let Ground { session, what, .. } = &self.ground;
         let passes: Vec<(String, f64)> = if *what == What::Frame {
             let values = candidate.values.as_ref().map_err(Error::clone)?;
-            match pass_ms(job, session, values)? {
+            match pass_ms(&candidate.job, session, values)? {
                 Some(passes) => passes,
                 None => return Ok(Value::Null),
             }
@@ -129,9 +129,9 @@ pub fn key(row: &Value) -> String {
 
 /// The `render` command of a variant: every setting that is not at its default; pass times where a stage is timed.
 fn repeating_command(job: &Job, what: What, candidate: &Candidate) -> Vec<String> {
-    let defaults = Job::new(&job.scene, job.technique).values;
-    let mut command =
-        ["quincunx", "render", &job.scene, "--technique", job.technique.name()].map(str::to_owned).to_vec();
+    let technique = candidate.job.technique;
+    let defaults = Job::new(&job.scene, technique).values;
+    let mut command = ["quincunx", "render", &job.scene, "--technique", technique.name()].map(str::to_owned).to_vec();
     for (key, default) in defaults.iter() {
         if candidate.settings[key] != default {
             command.extend([format!("--{key}"), candidate.settings[key].clone()]);

@@ -173,14 +173,15 @@ impl<'a> Sweep<'a> {
         let mut group = Group::new(&self.baseline_variant);
         if self.rows[self.baseline].is_none() {
             let values = self.candidates[self.baseline].values.clone()?;
-            group.add_baseline(&self.head.ground, self.baseline, &self.baseline_variant, &values);
+            let ground = self.head.ground.of(&self.candidates[self.baseline]);
+            group.add_baseline(&ground, self.baseline, &self.baseline_variant, &values);
         }
         while group.has_room(self.head.ground.what)
             && let Some(index) = waiting.front().copied()
         {
             interrupt::check()?;
             let added = match &self.candidates[index].values {
-                Ok(values) => group.add(&self.head.ground, index, values),
+                Ok(values) => group.add(&self.head.ground.of(&self.candidates[index]), index, values),
                 Err(error) => Err(error.clone()),
             };
             match added {
@@ -207,11 +208,11 @@ impl<'a> Sweep<'a> {
         for (member, picture) in group.members.iter().zip(&pictures) {
             interrupt::check()?;
             let candidate = &self.candidates[member.candidate];
-            let Ground { job, session, what } = &self.head.ground;
+            let Ground { job, session, what } = self.head.ground.of(candidate);
             let values = candidate.values.as_ref().map_err(Error::clone)?;
-            let reference = self.references.of(job, session, *what, values)?;
+            let reference = self.references.of(job, session, what, values)?;
             let mut row = self.head.measured(candidate, member, picture, &samples, &reference)?;
-            if let Some(asked) = &job.reference {
+            if let Some(asked) = &self.head.ground.job.reference {
                 match asked.judge(picture, job.technique, values, session) {
                     Ok(judged) => {
                         row["errors"] = judged.errors;
@@ -248,5 +249,5 @@ impl<'a> Sweep<'a> {
 
 fn possible(ground: &Ground<'_>, candidate: &Candidate) -> Result<Variant> {
     let values = candidate.values.as_ref().map_err(Error::clone)?;
-    Variant::new(ground.session, ground.job.technique, ground.what, values)
+    Variant::new(ground.session, candidate.job.technique, ground.what, values)
 }

@@ -102,6 +102,9 @@ pub struct Limits {
     #[serde(default = "least_image_layers")]
     pub max_image_layers: u32,
     pub max_storage_buffer_range_bytes: u64,
+    /// Data from before it was looked up gets the least that Vulkan promises.
+    #[serde(default = "least_uniform_buffer_range_bytes")]
+    pub max_uniform_buffer_range_bytes: u64,
     pub max_push_constant_bytes: u32,
     pub max_workgroup_invocations: u32,
     pub max_workgroup_size: [u32; 3],
@@ -134,6 +137,10 @@ fn one_sample() -> Vec<u32> {
 
 fn least_image_layers() -> u32 {
     256
+}
+
+fn least_uniform_buffer_range_bytes() -> u64 {
+    16 << 10
 }
 
 fn least_sub_pixel_bits() -> u32 {

@@ -251,7 +251,7 @@ pub struct GraphicsDescription<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blending {
     Replace,
-    /// Source over destination by alpha (premultiplied).
+    /// Source over destination by alpha (premultiplied); the destination's own alpha stays.
     Over,
     /// Sums, in the order of the draws.
     Add,
@@ -261,16 +261,18 @@ pub enum Blending {
 
 impl Blending {
     fn state(self) -> vk::PipelineColorBlendAttachmentState {
+        use vk::ColorComponentFlags as Components;
         let target = match self {
             Self::Replace | Self::Over | Self::Keep => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
             Self::Add => vk::BlendFactor::ONE,
         };
+        let written = match self {
+            Self::Replace | Self::Add => Components::RGBA,
+            Self::Over => Components::R | Components::G | Components::B,
+            Self::Keep => Components::empty(),
+        };
         vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(if self == Self::Keep {
-                vk::ColorComponentFlags::empty()
-            } else {
-                vk::ColorComponentFlags::RGBA
-            })
+            .color_write_mask(written)
             .blend_enable(matches!(self, Self::Over | Self::Add))
             .src_color_blend_factor(vk::BlendFactor::ONE)
             .dst_color_blend_factor(target)

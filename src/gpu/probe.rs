@@ -118,6 +118,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             max_image_side_px: limits.max_image_dimension2_d,
             max_image_layers: limits.max_image_array_layers,
             max_storage_buffer_range_bytes: u64::from(limits.max_storage_buffer_range),
+            max_uniform_buffer_range_bytes: u64::from(limits.max_uniform_buffer_range),
             max_push_constant_bytes: limits.max_push_constants_size,
             max_workgroup_invocations: limits.max_compute_work_group_invocations,
             max_workgroup_size: limits.max_compute_work_group_size,

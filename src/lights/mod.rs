@@ -2,6 +2,7 @@
 
 pub mod cull;
 pub mod emitters;
+pub mod object_lists;
 pub mod shadow_volume;
 pub mod vpl;
 

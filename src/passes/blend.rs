@@ -1,13 +1,13 @@
 //! BLEND surfaces over the finished picture: forward, back to front by their boxes' middles, counted.
 //! Shaders: mesh.vert, blend.frag.
-//! reads  the scene, every light, the G-buffer's depth      writes  the picture
+//! reads  the scene, the lights, the depth of solid surfaces      writes  the picture
 //!
 //! Their indirect light comes from all virtual point lights, or from the subset of the pixel as that of every other
 //! surface does. A blended surface has no neighbours to filter with, so that its subsets show as a faint pattern; hall at
 //! 1024x768, 480 lights, 8x6: FLIP against every light on every pixel is 0.0431 with subsets and 0.0415 without, and the
 //! pass takes 15 ms instead of 104 on lavapipe.
 
-use super::{gbuffer, mesh};
+use super::mesh;
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::Bound;
@@ -15,11 +15,13 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::BlendParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
+use crate::gpu::{Ability, Access, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Need, Traffic};
+use crate::lights::object_lists::ObjectLights;
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, SceneGpu};
 use crate::scene::AlphaMode;
 use ash::vk;
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 /// What the fragment stage reads beside the scene.
@@ -30,16 +32,37 @@ pub struct BlendLights<'a> {
     pub subsets: &'a Buffer,
     pub bvh_nodes: &'a Buffer,
     pub bvh_triangles: &'a Buffer,
+    /// Where the pass was made with lists.
+    pub lists: Option<&'a Buffer>,
 }
 
-/// What the pass touches: depth, and the picture of this full name.
-pub fn touches(technique: &str, picture: &str) -> [(String, Access); 2] {
-    [gbuffer::depth_tested(technique), (picture.to_owned(), Access::ColorWrite)]
+/// What the pass needs of a device, where the scene has BLEND surfaces.
+pub fn needs(has_blend: bool) -> Option<Need> {
+    let of = "a scene with BLEND surfaces".to_owned();
+    has_blend.then_some(Need { of, ability: Ability::BlendFloats, instead: "scenes without them can be rendered" })
+}
+
+/// What the pass touches: depth and picture of these full names.
+pub fn touches(depth: &str, picture: &str) -> [(String, Access); 2] {
+    [(depth.to_owned(), Access::DepthTest), (picture.to_owned(), Access::ColorWrite)]
+}
+
+/// Which punctual lights the surfaces are under, and how many samples their pixels have.
+pub struct BlendTarget<'a> {
+    /// None: every light.
+    pub lists: Option<&'a [ObjectLights]>,
+    /// More than 1 with lists only.
+    pub samples: u32,
+}
+
+impl BlendTarget<'_> {
+    /// Every light, one sample.
+    pub const PLAIN: Self = Self { lists: None, samples: 1 };
 }
 
 /// Every virtual point light on every pixel, none nearer than the root of `least_squared` (m^2).
 pub fn all_lights(least_squared: f32) -> BlendParams {
-    BlendParams { least_squared, weight: 1.0, pattern_x: 0, pattern_y: 0 }
+    BlendParams { least_squared, weight: 1.0, ..BlendParams::zeroed() }
 }
 
 /// The BLEND draws, farthest first, by the middles of their boxes.
@@ -58,17 +81,21 @@ pub struct Blend {
     /// Farthest first.
     calls: Vec<DrawCall>,
     params: BlendParams,
+    /// By index into the scene's draws.
+    lists: Option<Vec<ObjectLights>>,
 }
 
 impl Blend {
-    /// None where the scene has no BLEND surface. `constants`: `ShadingSettings::light_constants`.
+    /// None where the scene has no BLEND surface. `constants`: `DirectSettings::light_constants`.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
         view: &View,
         params: BlendParams,
         constants: &[(&str, u32)],
+        target: &BlendTarget<'_>,
     ) -> Result<Option<Self>> {
+        let lists = if target.lists.is_some() { "object" } else { "none" };
         let calls = back_to_front(scene, view);
         if calls.is_empty() {
             return Ok(None);
@@ -77,11 +104,11 @@ impl Blend {
             gpu,
             &GraphicsDescription {
                 vertex: mesh::vertex_shader(scene),
-                fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene)])),
+                fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), lists])),
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[PICTURE_FORMAT],
-                samples: 1,
+                samples: target.samples,
                 blending: Blending::Over,
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
@@ -91,7 +118,7 @@ impl Blend {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Some(Self { pipeline, calls, params }))
+        Ok(Some(Self { pipeline, calls, params, lists: target.lists.map(<[ObjectLights]>::to_vec) }))
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -124,8 +151,14 @@ impl Blend {
                 ("BvhNodes", Bound::Buffer(lights.bvh_nodes)),
                 ("BvhTriangles", Bound::Buffer(lights.bvh_triangles)),
             ]);
+            bound.extend(lights.lists.map(|lists| ("LightLists", Bound::Buffer(lists))));
             cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&self.params), &bound)?;
-            mesh::draw(cmd, &self.pipeline, scene, &self.calls);
+            mesh::draw_each(cmd, &self.pipeline, scene, &self.calls, |call| {
+                if let Some(lists) = &self.lists {
+                    let params = BlendParams { object: lists[call.draw as usize].block(), ..self.params };
+                    cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&params));
+                }
+            });
             cmd.end_rendering();
             Ok(())
         })

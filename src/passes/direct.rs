@@ -38,26 +38,81 @@ impl DirectShadow {
     }
 }
 
-/// What the settings say of shading with a G-buffer (`settings::SHADING`).
+/// What the settings say of direct light, wherever it is shaded.
 #[derive(Clone, Debug)]
-pub struct ShadingSettings {
+pub struct DirectSettings {
     pub brdf: Brdf,
-    pub position: PositionStorage,
-    pub cull: bool,
     pub shadow: DirectShadow,
     /// Directional lights of the scene.
     sun_count: u64,
-    pub workgroup: [u32; 2],
-    /// Pixels that a thread works on.
-    pub texels: Texels,
     /// Metres that a shadow ray starts off its surface.
     pub ray_offset: f32,
     /// Whether a drawn material has `Material::has_extras`.
     pub extras: bool,
+    /// A bit for each kind of light that is there (`light::kinds`).
+    kinds: u32,
 }
 
 /// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
 const RAY_OFFSET: f32 = 1e-4;
+
+impl DirectSettings {
+    /// Reads `--brdf` and `--direct-shadow`.
+    pub fn new(values: &Values, lights: &LightSet, scene: &Scene) -> Self {
+        Self {
+            brdf: Brdf::from_setting(values.text("brdf")),
+            shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
+            sun_count: lights.sun_count() as u64,
+            ray_offset: RAY_OFFSET * scene.lasting_bounds().diagonal().max(1e-6),
+            extras: scene.drawn_materials().any(Material::has_extras),
+            kinds: light::kinds(&lights.lights),
+        }
+    }
+
+    /// What `light_count` of the punctual lights ask of a pixel.
+    pub fn load(&self, light_count: usize) -> LightLoad {
+        let light_count = light_count as u64;
+        let casting_count = match self.shadow {
+            DirectShadow::None => 0,
+            DirectShadow::Sun => self.sun_count.min(light_count),
+            DirectShadow::Ray => light_count,
+        };
+        LightLoad { light_count, casting_count }
+    }
+
+    /// DIRECT_SHADOW and RAY_OFFSET.
+    pub fn shadow_constants(&self) -> [(&'static str, u32); 2] {
+        [("DIRECT_SHADOW", self.shadow as u32), ("RAY_OFFSET", self.ray_offset.to_bits())]
+    }
+
+    /// LIGHT_KINDS.
+    pub fn kinds_constant(&self) -> (&'static str, u32) {
+        ("LIGHT_KINDS", self.kinds)
+    }
+
+    /// BRDF_KIND, SURFACE_EXTRAS, LIGHT_KINDS and those of shadows.
+    pub fn light_constants(&self) -> [(&'static str, u32); 5] {
+        let [shadow, offset] = self.shadow_constants();
+        let extras = ("SURFACE_EXTRAS", u32::from(self.extras));
+        [("BRDF_KIND", self.brdf as u32), extras, self.kinds_constant(), shadow, offset]
+    }
+
+    /// The tree that shadow rays walk: the scene's, or the empty one where no ray is cast.
+    pub fn tree<'a>(&self, bvh: &'a LazyBvh, scene: &Scene) -> Result<&'a Bvh> {
+        if self.shadow == DirectShadow::None { Ok(bvh.empty()) } else { bvh.over(scene) }
+    }
+}
+
+/// What the settings say of shading with a G-buffer (`settings::SHADING`).
+#[derive(Clone, Debug)]
+pub struct ShadingSettings {
+    pub direct: DirectSettings,
+    pub position: PositionStorage,
+    pub cull: bool,
+    pub workgroup: [u32; 2],
+    /// Pixels that a thread works on.
+    pub texels: Texels,
+}
 
 impl ShadingSettings {
     pub fn new(values: &Values, lights: &LightSet, scene: &Scene, caps: &Caps) -> Self {
@@ -75,15 +130,11 @@ impl ShadingSettings {
         cull: bool,
     ) -> Self {
         Self {
-            brdf: Brdf::from_setting(values.text("brdf")),
+            direct: DirectSettings::new(values, lights, scene),
             position,
             cull,
-            shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
-            sun_count: lights.sun_count() as u64,
             workgroup: values.pair("workgroup"),
             texels: Texels::new(values, caps),
-            ray_offset: RAY_OFFSET * scene.lasting_bounds().diagonal().max(1e-6),
-            extras: scene.drawn_materials().any(Material::has_extras),
         }
     }
 
@@ -92,53 +143,19 @@ impl ShadingSettings {
         [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
     }
 
-    /// What `light_count` of the punctual lights ask of a pixel.
-    pub fn load(&self, light_count: usize) -> LightLoad {
-        let light_count = light_count as u64;
-        let casting_count = match self.shadow {
-            DirectShadow::None => 0,
-            DirectShadow::Sun => self.sun_count.min(light_count),
-            DirectShadow::Ray => light_count,
-        };
-        LightLoad { light_count, casting_count }
-    }
-
     /// Threads of a workgroup.
     pub fn lane_count(&self) -> u32 {
         self.workgroup[0] * self.workgroup[1]
-    }
-
-    /// DIRECT_SHADOW and RAY_OFFSET.
-    pub fn shadow_constants(&self) -> [(&'static str, u32); 2] {
-        [("DIRECT_SHADOW", self.shadow as u32), ("RAY_OFFSET", self.ray_offset.to_bits())]
-    }
-
-    /// BRDF_KIND, SURFACE_EXTRAS and those of shadows.
-    pub fn light_constants(&self) -> [(&'static str, u32); 4] {
-        let [shadow, offset] = self.shadow_constants();
-        [("BRDF_KIND", self.brdf as u32), ("SURFACE_EXTRAS", u32::from(self.extras)), shadow, offset]
     }
 
     /// Whether lists of lights for tiles are made.
     pub fn culls(&self, light_count: usize) -> bool {
         self.cull && light_count > 0
     }
-
-    /// The tree that shadow rays walk: the scene's, or the empty one where no ray is cast.
-    pub fn tree<'a>(&self, bvh: &'a LazyBvh, scene: &Scene) -> Result<&'a Bvh> {
-        if self.shadow == DirectShadow::None { Ok(bvh.empty()) } else { bvh.over(scene) }
-    }
 }
 
 /// Plans the list of lights and the tree, as resources of `technique`.
-pub fn plan(
-    plan: &mut Plan,
-    technique: &str,
-    light_count: usize,
-    settings: &ShadingSettings,
-    tree: &Bvh,
-    extent: Extent,
-) {
+pub fn plan(plan: &mut Plan, technique: &str, light_count: usize, tree: &Bvh) {
     let bytes = |count: usize, size: usize| count as u64 * size as u64;
     plan.buffer("lights", format!("{technique}.lights"), bytes(light_count, size_of::<LightBlock>()));
     plan.buffer("bvh", format!("{technique}.bvh.nodes"), bytes(tree.nodes.len(), size_of::<BvhNodeBlock>()));
@@ -147,6 +164,18 @@ pub fn plan(
         format!("{technique}.bvh.triangles"),
         bytes(tree.triangles.len(), size_of::<BvhTriangleBlock>()),
     );
+}
+
+/// The same with the masks of `--cull tiled`, where `settings` have it.
+pub fn plan_with_masks(
+    plan: &mut Plan,
+    technique: &str,
+    light_count: usize,
+    settings: &ShadingSettings,
+    tree: &Bvh,
+    extent: Extent,
+) {
+    self::plan(plan, technique, light_count, tree);
     if settings.culls(light_count) {
         cull::plan(plan, technique, extent, light_count as u32);
         // Counted after the frame.
@@ -165,13 +194,13 @@ pub struct DirectGpu {
 }
 
 impl DirectGpu {
-    /// Uploads `lights` and the tree.
+    /// Uploads `lights` and the tree. `has_masks`: the plan has those of `--cull tiled`.
     pub fn new(
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
         technique: &str,
         lights: &[LightBlock],
-        settings: &ShadingSettings,
+        has_masks: bool,
         tree: &Bvh,
     ) -> Result<Self> {
         let mut filled = |what: &str, bytes: &[u8]| {
@@ -185,7 +214,7 @@ impl DirectGpu {
             light_count: lights.len() as u32,
             bvh_nodes: filled("bvh.nodes", bytemuck::cast_slice(&tree.nodes))?,
             bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
-            masks: settings.culls(lights.len()).then(|| resources.buffer(&format!("{technique}.cull.masks"))),
+            masks: has_masks.then(|| resources.buffer(&format!("{technique}.cull.masks"))),
         })
     }
 

@@ -85,14 +85,9 @@ pub fn emissive_name(has_emissive: bool) -> &'static str {
 const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const WORDS: vk::Format = vk::Format::R32G32_UINT;
 
-/// What every frame with a G-buffer needs of a device; with BLEND surfaces, their pass too.
-pub fn needs(has_blend: bool) -> Vec<Need> {
-    let mut needs = vec![Need { of: "the G-buffer".to_owned(), ability: Ability::FloatDepth, instead: "" }];
-    if has_blend {
-        let of = "a scene with BLEND surfaces".to_owned();
-        needs.push(Need { of, ability: Ability::BlendFloats, instead: "scenes without them can be rendered" });
-    }
-    needs
+/// What every frame with a G-buffer needs of a device.
+pub fn need() -> Need {
+    Need { of: "the G-buffer".to_owned(), ability: Ability::FloatDepth, instead: "" }
 }
 
 /// Plans the images of one G-buffer, as resources of `technique`.
@@ -134,9 +129,9 @@ pub fn shading(technique: &str, position: PositionStorage, has_emissive: bool) -
     touches
 }
 
-/// What a pass touches that tests depth without writing it.
-pub fn depth_tested(technique: &str) -> (String, Access) {
-    (full(technique, "depth"), Access::DepthTest)
+/// Full name of the depth buffer.
+pub fn depth(technique: &str) -> String {
+    full(technique, "depth")
 }
 
 fn color_images(position: PositionStorage, has_emissive: bool) -> Vec<&'static str> {
@@ -335,11 +330,7 @@ impl GBufferPass {
 
     /// Numbers for the report's `counters`.
     pub fn counters(&self) -> [(&'static str, f64); 3] {
-        [
-            ("triangles_drawn", self.list.triangles_drawn() as f64),
-            ("clusters_drawn", self.list.clusters_drawn as f64),
-            ("clusters_culled", self.list.clusters_culled as f64),
-        ]
+        self.list.counters()
     }
 
     pub fn record(

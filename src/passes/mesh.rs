@@ -46,9 +46,14 @@ pub fn vertex_shader(scene: &SceneGpu) -> &'static Shader {
     variant(VERT_VARIANTS, &[vertex_name(scene)])
 }
 
+/// What mesh.vert binds.
+pub fn vertex_bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> [(&'static str, Bound<'a>); 2] {
+    [("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))]
+}
+
 /// What mesh.vert binds, and material.glsl of set 0.
 pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> Vec<(&'static str, Bound<'a>)> {
-    let mut bound = vec![("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))];
+    let mut bound = vertex_bound(frame, scene).to_vec();
     bound.extend(scene.extended.as_ref().map(|extended| ("Placements", Bound::Buffer(&extended.placements))));
     bound
 }
@@ -72,23 +77,31 @@ pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
     }
 }
 
-/// Draws `calls` with `pipeline`, which is bound, setting sides, winding and material where they change.
-pub fn draw<'a>(
-    cmd: &Commands,
-    pipeline: &GraphicsPipeline,
-    scene: &SceneGpu,
-    calls: impl IntoIterator<Item = &'a DrawCall>,
-) {
-    draw_with(cmd, pipeline, scene, calls, |_| ());
-}
-
-/// The same; `changed` is told each material before the draws that follow with it.
+/// Draws `calls` with `pipeline`, which is bound, setting sides, winding and material where they change; `changed` is told
+/// each material before the draws that follow with it.
 pub fn draw_with<'a>(
     cmd: &Commands,
     pipeline: &GraphicsPipeline,
     scene: &SceneGpu,
     calls: impl IntoIterator<Item = &'a DrawCall>,
     changed: impl Fn(u32),
+) {
+    let mut known = None;
+    draw_each(cmd, pipeline, scene, calls, |call| {
+        if known != Some(call.material) {
+            known = Some(call.material);
+            changed(call.material);
+        }
+    });
+}
+
+/// The same; `before` is told each call before it is drawn.
+pub fn draw_each<'a>(
+    cmd: &Commands,
+    pipeline: &GraphicsPipeline,
+    scene: &SceneGpu,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+    mut before: impl FnMut(&DrawCall),
 ) {
     let device = &cmd.gpu().device;
     let buffer = cmd.buffer();
@@ -108,7 +121,6 @@ pub fn draw_with<'a>(
         }
         if material != Some(call.material) {
             material = Some(call.material);
-            changed(call.material);
             let set = [scene.material_sets[call.material as usize]];
             let layout = pipeline.interface.layout;
             // SAFETY: as above; the pipeline's set 1 is the scene's layout.
@@ -116,6 +128,7 @@ pub fn draw_with<'a>(
                 device.cmd_bind_descriptor_sets(buffer, vk::PipelineBindPoint::GRAPHICS, layout, 1, &set, &[]);
             }
         }
+        before(call);
         let DrawCall { index_count, first_index, vertex_offset, draw, .. } = *call;
         // SAFETY: as above; the importer checked that every index has its vertex.
         unsafe { device.cmd_draw_indexed(buffer, index_count, 1, first_index, vertex_offset, draw) };

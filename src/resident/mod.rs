@@ -20,7 +20,7 @@ pub use clusters::Cluster;
 pub use geometry::Geometry;
 pub use relief::advise;
 pub use textures::Textures;
-pub use visible::{DrawList, GeometryChoice};
+pub use visible::{Coverage, DrawList, GeometryChoice};
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;

@@ -37,6 +37,15 @@ impl GeometryChoice {
     }
 }
 
+/// Where in a pixel the device asks whether a triangle covers it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coverage {
+    /// In its middle.
+    Middle,
+    /// Anywhere: at several samples, or in a middle that moves from run to run.
+    Anywhere,
+}
+
 /// Rounding of a clip-space number that two products with a matrix made in 32 bits, as a part of the sum of its terms'
 /// magnitudes: eight roundings of 2^-24 each, doubled.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
@@ -54,8 +63,16 @@ pub struct DrawList {
 
 impl DrawList {
     /// `raster`: the extent of the images that are drawn into, which need not be the picture's.
-    pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, raster: Extent, choice: GeometryChoice) -> Self {
-        Self::of(scene, (&resident.calls, &resident.clusters, &resident.host_indices), view, raster, choice)
+    pub fn new(
+        scene: &Scene,
+        resident: &SceneGpu,
+        view: &View,
+        raster: Extent,
+        choice: GeometryChoice,
+        coverage: Coverage,
+    ) -> Self {
+        let drawn = (&resident.calls[..], &resident.clusters[..], &resident.host_indices[..]);
+        Self::of(scene, drawn, view, raster, choice, coverage)
     }
 
     fn of(
@@ -64,11 +81,12 @@ impl DrawList {
         view: &View,
         raster: Extent,
         choice: GeometryChoice,
+        coverage: Coverage,
     ) -> Self {
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
-            let lens = Lens::new(scene, call, view, raster);
+            let lens = Lens::new(scene, call, view, raster, coverage);
             for cluster in &clusters[call.clusters()] {
                 if choice == GeometryChoice::Culled && lens.sees_nothing_of(cluster, &indices[cluster.indices()]) {
                     clusters_culled += 1;
@@ -99,6 +117,15 @@ impl DrawList {
         self.opaque.iter().chain(&self.mask)
     }
 
+    /// Numbers for the report's `counters`.
+    pub fn counters(&self) -> [(&'static str, f64); 3] {
+        [
+            ("triangles_drawn", self.triangles_drawn() as f64),
+            ("clusters_drawn", self.clusters_drawn as f64),
+            ("clusters_culled", self.clusters_culled as f64),
+        ]
+    }
+
     pub fn triangles_drawn(&self) -> u64 {
         self.calls().map(|call| u64::from(call.index_count / 3)).sum()
     }
@@ -109,6 +136,7 @@ struct Lens<'a> {
     positions: &'a [Vec3],
     double_sided: bool,
     mirrored: bool,
+    coverage: Coverage,
     extent_px: DVec2,
     clip_from_object: DMat4,
     /// The same from the magnitudes of all numbers: what rounding is a part of.
@@ -142,7 +170,7 @@ impl Clipped {
 }
 
 impl<'a> Lens<'a> {
-    fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Extent) -> Self {
+    fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Extent, coverage: Coverage) -> Self {
         let draw = &scene.draws[call.draw as usize];
         let (clip_from_world, world_from_object) =
             (view.clip_from_world().as_dmat4(), draw.world_from_object.as_dmat4());
@@ -155,6 +183,7 @@ impl<'a> Lens<'a> {
             positions: &scene.meshes[draw.mesh].positions,
             double_sided: call.double_sided,
             mirrored: call.mirrored,
+            coverage,
             extent_px: DVec2::new(f64::from(raster.width), f64::from(raster.height)),
             clip_from_object: clip_from_world * world_from_object,
             magnitude_from_object: magnitudes(clip_from_world) * magnitudes(world_from_object),
@@ -166,10 +195,13 @@ impl<'a> Lens<'a> {
 
     fn clipped(&self, position: Vec3) -> Clipped {
         let position = position.as_dvec3().extend(1.0);
-        Clipped {
-            at: self.clip_from_object * position,
-            error: ROUNDING * (self.magnitude_from_object * position.abs()),
+        let at = self.clip_from_object * position;
+        let mut error = ROUNDING * (self.magnitude_from_object * position.abs());
+        if self.coverage == Coverage::Anywhere {
+            // Half a pixel: a frame that is moved by less is clipped elsewhere.
+            error += (at.w.abs() / self.extent_px).extend(0.0).extend(0.0);
         }
+        Clipped { at, error }
     }
 
     /// True: no triangle of the cluster can make a fragment. `indices`: the cluster's.
@@ -192,7 +224,7 @@ impl<'a> Lens<'a> {
         })
     }
 
-    /// True: the triangle's back is seen, or it is too small to hold a pixel's middle. Every corner must be inside the
+    /// True: the triangle's back is seen, or it is too small to hold a pixel's middle, where middles count. Every corner must be inside the
     /// planes that clip: what is clipped falls into thin pieces, which a device may snap to another facing.
     fn faces_away(&self, corners: &[Clipped; 3]) -> bool {
         let surely_inside = |corner: &Clipped| {
@@ -215,6 +247,9 @@ impl<'a> Lens<'a> {
         let change = 2.0 * std::f64::consts::SQRT_2 * moved;
         if back > change * (ab.length() + ac.length() + change) {
             return true;
+        }
+        if self.coverage == Coverage::Anywhere {
+            return false;
         }
         // Too small to know its side: no fragment either where it holds no pixel's middle.
         let (low, high) = (a.min(b).min(c) - moved - 0.5, a.max(b).max(c) + moved - 0.5);
@@ -277,9 +312,10 @@ mod tests {
         }
     }
 
-    fn list(scene: &Scene, view: &View, choice: GeometryChoice) -> DrawList {
+    fn list(scene: &Scene, view: &View, choice: GeometryChoice, coverage: Coverage) -> DrawList {
         let geometry = Geometry::of(scene);
-        DrawList::of(scene, (&geometry.calls(scene), &geometry.clusters, &geometry.indices), view, view.extent, choice)
+        let drawn = (&geometry.calls(scene)[..], &geometry.clusters[..], &geometry.indices[..]);
+        DrawList::of(scene, drawn, view, view.extent, choice, coverage)
     }
 
     fn view(eye: Vec3, at: Vec3, projection: Projection) -> View {
@@ -299,9 +335,9 @@ mod tests {
         }
     }
 
-    /// By brute force: the triangle, clipped, shows its front (or either side) over the middle of a pixel. Sides are told
+    /// By brute force: the triangle, clipped, shows its front (or either side) over one of `places` in a pixel. Sides are told
     /// by where the eye is in object space, not by the picture.
-    fn makes_a_fragment(view: &View, draw: &Draw, triangle: [Vec3; 3], double_sided: bool) -> bool {
+    fn makes_a_fragment(view: &View, draw: &Draw, triangle: [Vec3; 3], double_sided: bool, places: &[DVec2]) -> bool {
         let object_from_world = draw.world_from_object.as_dmat4().inverse();
         let [a, b, c] = triangle.map(|corner| corner.as_dvec3());
         let normal = (b - a).cross(c - a);
@@ -342,15 +378,22 @@ mod tests {
             sides.len() > 2 && (sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0))
         };
         (0..view.extent.width * view.extent.height).any(|pixel| {
-            let [x, y] = [pixel % view.extent.width, pixel / view.extent.width].map(|at| f64::from(at) + 0.5);
-            holds(DVec2::new(x, y))
+            let [x, y] = [pixel % view.extent.width, pixel / view.extent.width].map(f64::from);
+            places.iter().any(|place| holds(DVec2::new(x, y) + *place))
         })
     }
 
     /// Returns how many clusters were left out.
-    fn require_nothing_lost(scene: &Scene, view: &View) -> u64 {
+    fn require_nothing_lost(scene: &Scene, view: &View, coverage: Coverage) -> u64 {
+        let places: Vec<DVec2> = match coverage {
+            Coverage::Middle => vec![DVec2::splat(0.5)],
+            // Vulkan's standard places of four samples.
+            Coverage::Anywhere => {
+                [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]].map(DVec2::from).into()
+            }
+        };
         let geometry = Geometry::of(scene);
-        let list = list(scene, view, GeometryChoice::Culled);
+        let list = list(scene, view, GeometryChoice::Culled, coverage);
         for call in geometry.calls(scene) {
             for cluster in &geometry.clusters[call.clusters()] {
                 let drawn = list.calls().any(|part| {
@@ -360,7 +403,8 @@ mod tests {
                 for corners in geometry.indices[cluster.indices()].chunks_exact(3).filter(|_| !drawn) {
                     let draw = &scene.draws[call.draw as usize];
                     let triangle = [0, 1, 2].map(|at| scene.meshes[draw.mesh].positions[corners[at] as usize]);
-                    assert!(!makes_a_fragment(view, draw, triangle, call.double_sided), "{triangle:?} in {view:?}");
+                    let made = makes_a_fragment(view, draw, triangle, call.double_sided, &places);
+                    assert!(!made, "{triangle:?} in {view:?}");
                 }
             }
         }
@@ -386,7 +430,9 @@ mod tests {
                 let world_from_object = Mat4::from_scale_rotation_translation(scale.into(), rotation, translation);
                 scene.draws.push(Draw { mesh: 0, world_from_object });
             }
-            require_nothing_lost(&scene, &view(eye.into(), at.into(), projection(kind)));
+            for coverage in [Coverage::Middle, Coverage::Anywhere] {
+                require_nothing_lost(&scene, &view(eye.into(), at.into(), projection(kind)), coverage);
+            }
         }
     }
 
@@ -400,15 +446,19 @@ mod tests {
                 let world_from_object = Mat4::from_scale(Vec3::new(0.4 * mirror, 0.4, 0.4));
                 scene.draws.push(Draw { mesh: 0, world_from_object });
                 let from = |z: f32| view(Vec3::new(0.1, 0.2, z), Vec3::ZERO, projection(kind));
-                assert_eq!(require_nothing_lost(&scene, &from(3.0)), 0, "its front");
-                assert_eq!(require_nothing_lost(&scene, &from(-3.0)), if double_sided { 0 } else { 4 }, "its back");
+                for coverage in [Coverage::Middle, Coverage::Anywhere] {
+                    let left_out = |z: f32| require_nothing_lost(&scene, &from(z), coverage);
+                    assert_eq!(left_out(3.0), 0, "its front");
+                    assert_eq!(left_out(-3.0), if double_sided { 0 } else { 4 }, "its back");
+                }
                 // Behind the eye, beside the view, nearer than the near plane.
                 for (eye, at) in [
                     (Vec3::new(0.0, 0.0, 3.0), Vec3::new(0.0, 0.0, 6.0)),
                     (Vec3::new(0.0, 0.0, 3.0), Vec3::new(5.0, 0.0, 0.0)),
                     (Vec3::new(0.0, 0.0, 0.3), Vec3::ZERO),
                 ] {
-                    assert_eq!(require_nothing_lost(&scene, &view(eye, at, projection(kind))), 4, "{eye} to {at}");
+                    let view = view(eye, at, projection(kind));
+                    assert_eq!(require_nothing_lost(&scene, &view, Coverage::Middle), 4, "{eye} to {at}");
                 }
             }
         }
@@ -421,7 +471,8 @@ mod tests {
         scene.draws.push(Draw { mesh: 0, world_from_object: Mat4::IDENTITY });
         let eye = Vec3::new(0.0, 0.0, 7.0);
         for (kind, culled) in [(0, 0), (1, 4), (2, 4)] {
-            assert_eq!(require_nothing_lost(&scene, &view(eye, Vec3::ZERO, projection(kind))), culled);
+            let view = view(eye, Vec3::ZERO, projection(kind));
+            assert_eq!(require_nothing_lost(&scene, &view, Coverage::Middle), culled);
         }
     }
 
@@ -434,7 +485,8 @@ mod tests {
                 scene.draws.push(Draw { mesh: 0, world_from_object });
             }
             let view = view(Vec3::new(0.0, 0.0, 3.0), Vec3::ZERO, projection(kind));
-            let [all, culled] = [GeometryChoice::All, GeometryChoice::Culled].map(|choice| list(&scene, &view, choice));
+            let [all, culled] = [GeometryChoice::All, GeometryChoice::Culled]
+                .map(|choice| list(&scene, &view, choice, Coverage::Middle));
             assert_eq!(all.triangles_drawn(), 4 * 512);
             assert_eq!((all.clusters_drawn, all.clusters_culled), (16, 0));
             let draws = |list: &DrawList| {

@@ -13,6 +13,16 @@ const SPOT: u32 = 2;
 /// 1/d^2 of a punctual light ends at a millimetre: a surface inside a lamp stays finite.
 const LEAST_DISTANCE_SQUARED: f32 = 1e-6;
 
+/// A bit for each kind of light that is among `lights`: glsl/shading/light.glsl's LIGHT_KINDS.
+pub fn kinds(lights: &[Light]) -> u32 {
+    let kind = |light: &Light| match light.kind {
+        LightKind::Directional => DIRECTIONAL,
+        LightKind::Point => POINT,
+        LightKind::Spot { .. } => SPOT,
+    };
+    lights.iter().fold(0, |bits, light| bits | 1 << kind(light))
+}
+
 /// A light as shaders read it. `cutoff_lux`: a light without range ends where it gives this irradiance; 0: never.
 pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
     let range = match (light.kind, light.range) {

@@ -64,6 +64,7 @@ pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::caps::Formats;
     use crate::gpu::known;
     use crate::techniques::{ALL, find};
 
@@ -71,6 +72,11 @@ mod tests {
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
         let mut caps = known::caps(known::DEFAULT).unwrap();
         caps.features.ray_query = true;
+        let Formats { float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts, .. } =
+            &mut caps.formats;
+        for counts in [float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts] {
+            *counts = vec![1, 2, 4, 8];
+        }
         change(&mut caps);
         caps
     }
@@ -141,10 +147,27 @@ mod tests {
     }
 
     #[test]
+    fn samples_are_left_out_where_one_format_has_not_as_many() {
+        let forward = find("forward").unwrap();
+        for (caps, expected) in [
+            (known::caps(known::DEFAULT).unwrap(), &["--msaa 8"][..]),
+            (device(|caps| caps.formats.half_color_sample_counts = vec![1, 2, 4]), &["--msaa 8"]),
+            (device(|caps| caps.formats.float_depth_sample_counts = vec![1, 8]), &["--msaa 4"]),
+            (device(|caps| caps.formats.float_color_sample_counts = vec![1]), &["--msaa 4", "--msaa 8"]),
+        ] {
+            assert_eq!(of(&fitness(forward, &caps).left_out), expected);
+        }
+    }
+
+    #[test]
     fn what_every_frame_needs_stops_the_technique() {
         let caps = device(|caps| caps.formats.float_depth = false);
         for technique in ALL {
-            let expected: &[&str] = if technique.name() == "path_traced" { &[] } else { &["the G-buffer"] };
+            let expected: &[&str] = match technique.name() {
+                "path_traced" => &[],
+                "forward" => &["the depth buffer"],
+                _ => &["the G-buffer"],
+            };
             assert_eq!(of(&fitness(*technique, &caps).stopped_by), expected);
         }
     }

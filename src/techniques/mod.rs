@@ -6,6 +6,7 @@
 
 pub mod deferred;
 pub mod fitness;
+pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
 pub mod path_traced;
@@ -17,10 +18,11 @@ use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::{DrawList, GeometryChoice, SceneGpu, SceneStats};
+use crate::resident::{Coverage, DrawList, GeometryChoice, SceneGpu, SceneStats};
 use crate::scene::Scene;
 use crate::settings::{Setting, Values};
 use crate::units::Extent;
+use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -38,15 +40,15 @@ pub struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// What the G-buffer pass draws of the scene.
-    fn draw_list(&self, scene: &SceneGpu) -> DrawList {
-        self.draw_list_into(scene, self.view.extent)
+    /// What is drawn of the solid surfaces.
+    fn draw_list(&self, scene: &SceneGpu, coverage: Coverage) -> DrawList {
+        self.draw_list_into(scene, self.view.extent, coverage)
     }
 
     /// The same, drawn into images of another extent than the picture's.
-    fn draw_list_into(&self, scene: &SceneGpu, raster: Extent) -> DrawList {
+    fn draw_list_into(&self, scene: &SceneGpu, raster: Extent, coverage: Coverage) -> DrawList {
         let choice = GeometryChoice::from_setting(self.values.text("geometry"));
-        DrawList::new(self.scene, scene, self.view, raster, choice)
+        DrawList::new(self.scene, scene, self.view, raster, choice, coverage)
     }
 }
 
@@ -142,6 +144,11 @@ pub trait Frame {
         1
     }
 
+    /// Pixels to the right and down by which the picture of this run is moved, each less than half a pixel.
+    fn offset_px(&self, _run: u32) -> Vec2 {
+        Vec2::ZERO
+    }
+
     /// What it sums up from run to run; None where a picture is one run.
     fn sums(&self) -> Option<Sums<'_>> {
         None
@@ -169,6 +176,7 @@ pub const ALL: &[&dyn Technique] = &[
     &interleaved_deferred::InterleavedDeferred,
     &inferred_lighting::InferredLighting,
     &deferred::Deferred,
+    &forward::Forward,
     &path_traced::PathTraced,
 ];
 

@@ -6,7 +6,7 @@
 #include "resident.glsl"
 #include "shading/brdf.glsl"
 
-struct MaterialParams {
+struct InferredMaterialParams {
     // The draw's.
     MaterialBlock material;
     // Linear depth: the first step, and all of them.
@@ -28,7 +28,7 @@ layout(early_fragment_tests) in;
 
 layout(constant_id = 2) const uint BRDF_KIND = 2;
 
-layout(push_constant) uniform Push { MaterialParams params; };
+layout(push_constant) uniform Push { InferredMaterialParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 #ifdef VERTEX_EXTENDED
 layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
@@ -36,6 +36,7 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 // Fragments of solid surfaces, and of BLEND ones, that no sample belonged to.
 layout(std430, set = 0, binding = 2) buffer Rejections { uint rejected_counts[2]; };
 
+#define INTERPOLATION centroid
 #include "shading/material.glsl"
 #include "techniques/inferred_lighting/dsf.glsl"
 

@@ -11,12 +11,12 @@ use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
 use crate::lights::cull::{self, Cull};
-use crate::passes::blend::{self, Blend, BlendLights};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::SceneGpu;
+use crate::resident::{Coverage, SceneGpu};
 use crate::settings::{SHADING, Setting, Values};
 use shade::Shade;
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ impl Technique for Deferred {
     }
 
     fn needs(&self, _: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        gbuffer::needs(has_blend)
+        [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -72,8 +72,8 @@ impl Technique for Deferred {
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
         gbuffer::plan(&mut plan, NAME, extent, position, has_emissive);
-        let tree = settings.tree(inputs.bvh, inputs.scene)?;
-        direct::plan(&mut plan, NAME, light_count, &settings, tree, extent);
+        let tree = settings.direct.tree(inputs.bvh, inputs.scene)?;
+        direct::plan_with_masks(&mut plan, NAME, light_count, &settings, tree, extent);
         // No virtual lights: what blended surfaces bind in their place.
         plan.buffer("lights", "deferred.vpls", 0);
         plan.picture(COLOR, extent);
@@ -88,7 +88,7 @@ impl Technique for Deferred {
         shaded.push((COLOR.to_owned(), Access::ComputeWrite));
         plan.pass(format!("{NAME}.shade"), shaded);
         if inputs.stats.has_blend {
-            plan.pass(format!("{NAME}.blend"), blend::touches(NAME, COLOR));
+            plan.pass(format!("{NAME}.blend"), blend::touches(&gbuffer::depth(NAME), COLOR));
         }
         Ok(plan)
     }
@@ -118,7 +118,10 @@ impl Prepared for PreparedDeferred {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        BTreeMap::from([("texels", self.settings.texels.of_column(self.settings.load(self.lights.len())).to_string())])
+        BTreeMap::from([(
+            "texels",
+            self.settings.texels.of_column(self.settings.direct.load(self.lights.len())).to_string(),
+        )])
     }
 
     fn light_counts(&self) -> [u32; 2] {
@@ -133,13 +136,26 @@ impl Prepared for PreparedDeferred {
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
         let (settings, has_emissive) = (&self.settings, inputs.stats.has_emissive);
-        let tree = settings.tree(inputs.bvh, inputs.scene)?;
-        let direct = DirectGpu::new(gpu, resources, NAME, &self.lights, settings, tree)?;
+        let tree = settings.direct.tree(inputs.bvh, inputs.scene)?;
+        let direct = DirectGpu::new(gpu, resources, NAME, &self.lights, settings.culls(self.lights.len()), tree)?;
         Ok(Box::new(DeferredFrame {
-            gbuffer_pass: GBufferPass::new(gpu, scene, inputs.draw_list(scene), settings.position, has_emissive)?,
+            gbuffer_pass: GBufferPass::new(
+                gpu,
+                scene,
+                inputs.draw_list(scene, Coverage::Middle),
+                settings.position,
+                has_emissive,
+            )?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
             shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some(), self.lights.len())?,
-            blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &settings.light_constants())?,
+            blend: Blend::new(
+                gpu,
+                scene,
+                inputs.view,
+                blend::all_lights(0.0),
+                &settings.direct.light_constants(),
+                &BlendTarget::PLAIN,
+            )?,
             gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
             direct,
             vpls: resources.buffer("deferred.vpls"),
@@ -177,6 +193,7 @@ impl Frame for DeferredFrame {
                 subsets: &self.vpls,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
+                lists: None,
             };
             let picture = self.color.from(Access::ComputeWrite);
             let depth = gbuffer.depth_edge(Access::ComputeSample);

@@ -27,9 +27,9 @@ impl Shade {
     ) -> Result<Self> {
         let cull = if tiled { "tiled" } else { "none" };
         let shader = variant(COMP_VARIANTS, &[settings.position.name(), emissive_name(has_emissive), cull]);
-        let texels = settings.texels.of_column(settings.load(light_count));
+        let texels = settings.texels.of_column(settings.direct.load(light_count));
         let constants =
-            [&settings.workgroup_constants()[..], &settings.light_constants(), &[("TEXELS", texels)]].concat();
+            [&settings.workgroup_constants()[..], &settings.direct.light_constants(), &[("TEXELS", texels)]].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, texels })
     }
 

@@ -72,9 +72,10 @@ impl Choices {
 
     /// Constants of the light pass: those of lights that are not of materials, and ROUGHNESS without extras.
     pub fn light_constants(&self) -> Vec<(&'static str, u32)> {
-        let mut constants = vec![("BRDF_KIND", self.shading.brdf as u32)];
-        constants.extend(self.shading.shadow_constants());
-        if !self.has_extras && self.shading.brdf != Brdf::Lambert {
+        let mut constants = vec![("BRDF_KIND", self.shading.direct.brdf as u32)];
+        constants.push(self.shading.direct.kinds_constant());
+        constants.extend(self.shading.direct.shadow_constants());
+        if !self.has_extras && self.shading.direct.brdf != Brdf::Lambert {
             constants.push(("ROUGHNESS", self.light_roughness.to_bits()));
         }
         constants
@@ -83,8 +84,8 @@ impl Choices {
     /// Constants of the material pass.
     pub fn material_constants(&self) -> [(&'static str, u32); 4] {
         [
-            ("BRDF_KIND", self.shading.brdf as u32),
-            ("SURFACE_EXTRAS", u32::from(self.shading.extras)),
+            ("BRDF_KIND", self.shading.direct.brdf as u32),
+            ("SURFACE_EXTRAS", u32::from(self.shading.direct.extras)),
             ("DSF", u32::from(self.filters)),
             ("CONE_RADIUS", self.cone_radius.to_bits()),
         ]

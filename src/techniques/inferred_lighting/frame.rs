@@ -17,7 +17,7 @@ use crate::passes::blend;
 use crate::passes::direct::DirectGpu;
 use crate::plan::{PICTURE_FORMAT, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::{Coverage, DrawList, SceneGpu};
 use crate::techniques::{Frame, Inputs};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -74,11 +74,13 @@ impl InferredFrame {
         };
         let light_frame = resources.buffer(&light_frame());
         upload::buffer(gpu, &light_frame, bytemuck::bytes_of(&numbers), Access::ComputeRead | Access::GraphicsRead)?;
-        let tree = choices.shading.tree(inputs.bvh, inputs.scene)?;
-        let direct = DirectGpu::new(gpu, resources, NAME, lights, &choices.shading, tree)?;
+        let tree = choices.shading.direct.tree(inputs.bvh, inputs.scene)?;
+        let direct = DirectGpu::new(gpu, resources, NAME, lights, choices.shading.culls(lights.len()), tree)?;
         let [first_m, last_m] = inputs.view.depth_range(&bounds);
         let depth_range_m = [first_m, last_m - first_m];
-        let mut lists = [inputs.draw_list_into(scene, light_extent), inputs.draw_list(scene)];
+        let coverage = if choices.samples > 1 { Coverage::Anywhere } else { Coverage::Middle };
+        let mut lists =
+            [inputs.draw_list_into(scene, light_extent, Coverage::Middle), inputs.draw_list(scene, coverage)];
         let blended = blend::back_to_front(scene, inputs.view);
         let (stippled, shares) = if choices.tests_alpha {
             lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));

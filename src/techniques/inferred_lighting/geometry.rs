@@ -244,17 +244,19 @@ impl Geometry {
                 let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
                 mesh::draw_with(cmd, pipeline, scene, calls, push);
             }
-            for (index, Stippled { call, layer }) in self.stippled.iter().enumerate() {
-                let params = GeometryParams {
+            if let Some(first) = self.stippled.first() {
+                let params = |stippled: &Stippled| GeometryParams {
                     stipple_side: self.stipple_side,
-                    stipple_layer: *layer,
-                    ..self.params(scene, call.material)
+                    stipple_layer: stippled.layer,
+                    ..self.params(scene, stippled.call.material)
                 };
-                match index {
-                    0 => cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params), &mesh::bound(frame, scene))?,
-                    _ => cmd.push(&self.blend.interface, bytemuck::bytes_of(&params)),
-                }
-                mesh::draw(cmd, &self.blend, scene, [call]);
+                cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params(first)), &mesh::bound(frame, scene))?;
+                let mut next = self.stippled.iter();
+                let calls = self.stippled.iter().map(|stippled| &stippled.call);
+                mesh::draw_each(cmd, &self.blend, scene, calls, |_| {
+                    let stippled = next.next().expect("as many as calls");
+                    cmd.push(&self.blend.interface, bytemuck::bytes_of(&params(stippled)));
+                });
             }
             cmd.end_rendering();
             Ok(())

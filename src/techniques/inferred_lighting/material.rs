@@ -11,7 +11,7 @@ use super::light;
 use super::stipple::Stippled;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
-use crate::gpu::shader::structs::MaterialParams;
+use crate::gpu::shader::structs::InferredMaterialParams;
 use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Traffic, readback};
@@ -143,9 +143,9 @@ impl Material {
         })
     }
 
-    fn params(&self, scene: &SceneGpu, material: u32) -> MaterialParams {
+    fn params(&self, scene: &SceneGpu, material: u32) -> InferredMaterialParams {
         let (frame, light) = (self.color.description.extent, self.filter.light_extent);
-        MaterialParams {
+        InferredMaterialParams {
             material: scene.material_blocks[material as usize],
             first_depth_m: self.filter.depth_range_m[0],
             depth_range_m: self.filter.depth_range_m[1],
@@ -153,7 +153,7 @@ impl Material {
             light_scale_x: light.width as f32 / frame.width as f32,
             light_scale_y: light.height as f32 / frame.height as f32,
             stipple_side: 1,
-            ..MaterialParams::zeroed()
+            ..InferredMaterialParams::zeroed()
         }
     }
 
@@ -203,17 +203,19 @@ impl Material {
                 let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
                 mesh::draw_with(cmd, pipeline, scene, calls, push);
             }
-            for (index, Stippled { call, layer }) in self.stippled.iter().enumerate() {
-                let params = MaterialParams {
+            if let Some(first) = self.stippled.first() {
+                let params = |stippled: &Stippled| InferredMaterialParams {
                     stipple_side: self.filter.stipple_side,
-                    stipple_layer: *layer,
-                    ..self.params(scene, call.material)
+                    stipple_layer: stippled.layer,
+                    ..self.params(scene, stippled.call.material)
                 };
-                match index {
-                    0 => cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params), &bound)?,
-                    _ => cmd.push(&self.blend.interface, bytemuck::bytes_of(&params)),
-                }
-                mesh::draw(cmd, &self.blend, scene, [call]);
+                cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params(first)), &bound)?;
+                let mut next = self.stippled.iter();
+                let calls = self.stippled.iter().map(|stippled| &stippled.call);
+                mesh::draw_each(cmd, &self.blend, scene, calls, |_| {
+                    let stippled = next.next().expect("as many as calls");
+                    cmd.push(&self.blend.interface, bytemuck::bytes_of(&params(stippled)));
+                });
             }
             cmd.end_rendering();
             Ok(())

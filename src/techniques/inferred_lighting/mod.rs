@@ -28,7 +28,7 @@ use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::gpu::{Ability, Access, Caps, Gpu, Need};
 use crate::lights::{LightSet, cull as light_masks};
-use crate::passes::{direct, gbuffer, resolve};
+use crate::passes::{blend, direct, resolve};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{MULTISAMPLE, Setting, Values};
@@ -69,7 +69,9 @@ impl Technique for InferredLighting {
     }
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        let mut needs = gbuffer::needs(has_blend);
+        let of = "the geometry pass".to_owned();
+        let mut needs = vec![Need { of, ability: Ability::FloatDepth, instead: "" }];
+        needs.extend(blend::needs(has_blend));
         let of = "the material pass".to_owned();
         needs.push(Need { of, ability: Ability::FragmentAtomics, instead: "" });
         needs.extend(resolve::needs(values));
@@ -110,8 +112,8 @@ impl Technique for InferredLighting {
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
         geometry::plan(&mut plan, choices.light_extent, choices.has_extras, choices.volumes.depth_format());
-        let tree = choices.shading.tree(inputs.bvh, inputs.scene)?;
-        direct::plan(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
+        let tree = choices.shading.direct.tree(inputs.bvh, inputs.scene)?;
+        direct::plan_with_masks(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
         light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves);
         material::plan(&mut plan, inputs.view.extent, choices.samples);
@@ -164,7 +166,7 @@ impl Prepared for PreparedInferred {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let shading = &self.choices.shading;
-        let texels = shading.texels.of_column(shading.load(self.lights.len()));
+        let texels = shading.texels.of_column(shading.direct.load(self.lights.len()));
         BTreeMap::from([("light-size", self.choices.light_extent.to_string()), ("texels", texels.to_string())])
     }
 

@@ -179,11 +179,12 @@ impl Choices {
 
     /// How blended surfaces meet the virtual point lights.
     pub fn blend_params(&self, least_squared: f32) -> BlendParams {
+        let all = blend::all_lights(least_squared);
         if !self.blend_subsets || self.road.sums_all() {
-            return blend::all_lights(least_squared);
+            return all;
         }
         let [pattern_x, pattern_y] = [self.mapping.pattern_x, self.mapping.pattern_y];
-        BlendParams { least_squared, weight: self.subset_count() as f32, pattern_x, pattern_y }
+        BlendParams { weight: self.subset_count() as f32, pattern_x, pattern_y, ..all }
     }
 
     /// Whether the gather walks the rows of the filter: where one compute shader pulls each pixel.
@@ -223,14 +224,14 @@ impl Choices {
 
     /// The constants of irradiance.glsl that every road has.
     pub fn irradiance_constants(&self) -> [(&'static str, u32); 3] {
-        let [shadow, offset] = self.shading.shadow_constants();
+        let [shadow, offset] = self.shading.direct.shadow_constants();
         [shadow, offset, ("HAS_JOINED", u32::from(self.joined_count() > 0))]
     }
 
     /// Texels that a thread shades with one list of lights.
     pub fn list_texels(&self) -> u32 {
         let joined = self.joined_count().div_ceil(self.direct_subset_count());
-        self.shading.texels.of_list(self.shading.load(joined as usize))
+        self.shading.texels.of_list(self.shading.direct.load(joined as usize))
     }
 
     /// Sub-buffers that share one subset of the punctual lights.

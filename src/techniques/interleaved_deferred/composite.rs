@@ -28,9 +28,9 @@ impl Composite {
         let cull = if tiled { "tiled" } else { "none" };
         let filter = if choices.fused { "columns" } else { "whole" };
         let shader = variant(COMP_VARIANTS, &[shading.position.name(), emissive_name(has_emissive), cull, filter]);
-        let texels = shading.texels.of_column(shading.load(light_count));
+        let texels = shading.texels.of_column(shading.direct.load(light_count));
         let mut constants =
-            [&shading.workgroup_constants()[..], &shading.light_constants(), &[("TEXELS", texels)]].concat();
+            [&shading.workgroup_constants()[..], &shading.direct.light_constants(), &[("TEXELS", texels)]].concat();
         if choices.fused {
             constants.push(("RADIUS", kernel.radius()));
         }

@@ -10,11 +10,11 @@ use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
 use crate::gpu::{Gpu, Image};
 use crate::lights::cull::Cull;
-use crate::passes::blend::Blend;
+use crate::passes::blend::{Blend, BlendTarget};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, GBufferPass};
 use crate::plan::Resources;
-use crate::resident::SceneGpu;
+use crate::resident::{Coverage, SceneGpu};
 use crate::techniques::Inputs;
 use std::sync::Arc;
 
@@ -45,8 +45,8 @@ impl InterleavedFrame {
     ) -> Result<Self> {
         let Choices { shading, mapping, .. } = choices;
         let has_emissive = inputs.stats.has_emissive;
-        let tree = shading.tree(inputs.bvh, inputs.scene)?;
-        let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading, tree)?;
+        let tree = shading.direct.tree(inputs.bvh, inputs.scene)?;
+        let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading.culls(direct_lights.len()), tree)?;
         let least = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
         let params = ShadeParams {
             mapping: *mapping,
@@ -58,7 +58,13 @@ impl InterleavedFrame {
         let shade = ShadeGpu::new(gpu, resources, lights, params)?;
         let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
         Ok(Self {
-            gbuffer_pass: GBufferPass::new(gpu, scene, inputs.draw_list(scene), shading.position, has_emissive)?,
+            gbuffer_pass: GBufferPass::new(
+                gpu,
+                scene,
+                inputs.draw_list(scene, Coverage::Middle),
+                shading.position,
+                has_emissive,
+            )?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position)).transpose()?,
             roads: Roads::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
@@ -69,7 +75,8 @@ impl InterleavedFrame {
                 scene,
                 inputs.view,
                 choices.blend_params(least * least),
-                &shading.light_constants(),
+                &shading.direct.light_constants(),
+                &BlendTarget::PLAIN,
             )?,
             gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
             direct,

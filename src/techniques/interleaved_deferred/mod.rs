@@ -50,7 +50,7 @@ use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, AccessSet, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::{LightSet, vpl};
-use crate::passes::blend::BlendLights;
+use crate::passes::blend::{self, BlendLights};
 use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
@@ -102,7 +102,7 @@ impl Technique for InterleavedDeferred {
     }
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
-        let mut needs = gbuffer::needs(has_blend);
+        let mut needs: Vec<Need> = [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect();
         if let Ok(road) = Road::new(values, caps) {
             needs.extend(road.needs(values));
         }
@@ -266,6 +266,7 @@ impl Frame for InterleavedFrame {
                 subsets: &self.shade.subsets,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
+                lists: None,
             };
             let picture = self.color.from(Access::ComputeWrite);
             blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(surface), picture)?;

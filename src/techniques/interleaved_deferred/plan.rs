@@ -24,8 +24,8 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     let (extent, has_emissive) = (inputs.view.extent, inputs.stats.has_emissive);
     let mut plan = Plan::default();
     gbuffer::plan(&mut plan, NAME, extent, shading.position, has_emissive);
-    let tree = shading.tree(inputs.bvh, inputs.scene)?;
-    direct::plan(&mut plan, NAME, choices.direct_count as usize, shading, tree, extent);
+    let tree = shading.direct.tree(inputs.bvh, inputs.scene)?;
+    direct::plan_with_masks(&mut plan, NAME, choices.direct_count as usize, shading, tree, extent);
     shade::plan(&mut plan, choices.vpl_count, choices.joined_count(), choices.subset_count());
     plan.picture(full("composite.color"), extent);
     plan.pass(full("gbuffer"), gbuffer::written(NAME, shading.position, has_emissive));
@@ -43,7 +43,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     composed.push((full("composite.color"), Access::ComputeWrite));
     plan.pass(full("composite"), composed);
     if inputs.stats.has_blend {
-        plan.pass(full("blend"), blend::touches(NAME, &full("composite.color")));
+        plan.pass(full("blend"), blend::touches(&gbuffer::depth(NAME), &full("composite.color")));
     }
     Ok(plan)
 }

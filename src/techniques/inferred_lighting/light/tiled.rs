@@ -28,7 +28,7 @@ impl Tiled {
     ) -> Result<Self> {
         let cull = if settings.culls(light_count) { "tiled" } else { "none" };
         let shader = variant(COMP_VARIANTS, &[extras_name(has_extras), cull]);
-        let texels = settings.texels.of_column(settings.load(light_count));
+        let texels = settings.texels.of_column(settings.direct.load(light_count));
         let constants = [constants, &settings.workgroup_constants(), &[("TEXELS", texels)]].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, texels })
     }

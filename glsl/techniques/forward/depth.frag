@@ -1,0 +1,23 @@
+// MASK surfaces in the depth pre-pass: what alpha cuts out has no depth. Pass: src/techniques/forward/depth.rs.
+// variants: VERTEX=plain|extended
+#version 460
+#include "resident.glsl"
+
+struct DepthParams {
+    // The draw's.
+    MaterialBlock material;
+};
+
+layout(push_constant) uniform Push { DepthParams params; };
+#ifdef VERTEX_EXTENDED
+layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
+#endif
+
+#define INTERPOLATION centroid
+#include "shading/material.glsl"
+
+void main() {
+    if (base_color_at(params.material).a < params.material.alpha_cutoff) {
+        discard;
+    }
+}

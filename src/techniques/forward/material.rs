@@ -1,0 +1,140 @@
+//! Material pass: every solid surface that is seen, with its whole material, under the lights of its object's list.
+//! Shaders: mesh.vert, material.frag.
+//! reads   the scene, the lights, their lists, the tree, forward.depth.reversed
+//! writes  the picture, RGBA32F, all samples; without a pre-pass forward.depth.reversed
+//!
+//! With a pre-pass the draws come in the opposite order: of surfaces at the same depth the last one drawn then wins, which
+//! is the first one of those that are tested by "nearer". So both ways make the same picture, where pixels have
+//! one sample. Only inside one range of a
+//! mesh's triangles the order is one: there the later of two triangles at the same depth wins with a pre-pass.
+
+use super::{Choices, NAME, Targets};
+use crate::error::Result;
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::structs::MaterialParams;
+use crate::gpu::shader::techniques::forward::material::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Traffic};
+use crate::lights::object_lists::ObjectLights;
+use crate::passes::mesh;
+use crate::plan::PICTURE_FORMAT;
+use crate::resident::{DrawCall, DrawList, SceneGpu};
+use ash::vk;
+use bytemuck::Zeroable;
+use glam::Vec3;
+use std::sync::Arc;
+
+pub struct Material {
+    opaque: GraphicsPipeline,
+    mask: GraphicsPipeline,
+    has_prepass: bool,
+    /// By index into the scene's draws.
+    objects: Vec<ObjectLights>,
+    background: Vec3,
+}
+
+impl Material {
+    /// `background`: radiance where no surface is.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        choices: &Choices,
+        objects: &[ObjectLights],
+        background: Vec3,
+    ) -> Result<Self> {
+        let Choices { samples, has_prepass, is_uniform, .. } = *choices;
+        let lights = if is_uniform { "uniform" } else { "storage" };
+        let pipeline = |alpha: &str| {
+            GraphicsPipeline::new(
+                gpu,
+                &GraphicsDescription {
+                    vertex: mesh::vertex_shader(scene),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights])),
+                    constants: &choices.direct.light_constants(),
+                    vertex_buffers: mesh::vertex_buffers(scene),
+                    color_formats: &[PICTURE_FORMAT],
+                    samples,
+                    blending: Blending::Replace,
+                    depth_format: Some(super::depth::FORMAT),
+                    depth_write: !has_prepass,
+                    depth_compare: if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER },
+                    depth_clamp: false,
+                    stencil: None,
+                    foreign_sets: &[scene.material_layout],
+                },
+            )
+        };
+        let (opaque, mask) = (pipeline("opaque")?, pipeline("mask")?);
+        Ok(Self { opaque, mask, has_prepass, objects: objects.to_vec(), background })
+    }
+
+    /// `lit`: the lights, their lists, the tree.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        scene: &SceneGpu,
+        list: &DrawList,
+        lit: &[(&'static str, Bound<'_>)],
+        targets: &Targets,
+    ) -> Result<()> {
+        let (depth, color) = (&targets.depth, &targets.drawn);
+        let traffic = Traffic {
+            read_bytes: mesh::read_bytes(scene, list.calls()),
+            // Each sample once: overdraw depends on the view.
+            written_bytes: color.description.bytes() + if self.has_prepass { 0 } else { depth.description.bytes() },
+            invocations: None,
+        };
+        let mut bound = mesh::bound(frame, scene);
+        bound.extend_from_slice(lit);
+        cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
+            cmd.barriers([color.discard(Access::ColorWrite)]);
+            let depth = if self.has_prepass {
+                cmd.barriers([depth.from(Access::DepthWrite).to(Access::DepthTest)]);
+                (depth, None, Access::DepthTest)
+            } else {
+                cmd.barriers([depth.discard(Access::DepthWrite)]);
+                (depth, Some(0.0), Access::DepthWrite)
+            };
+            let clear = vk::ClearColorValue { float32: self.background.extend(0.0).to_array() };
+            cmd.begin_rendering(color.description.extent, &[ColorTarget::new(color, Some(clear))], Some(depth));
+            mesh::bind_streams(cmd, scene);
+            if self.has_prepass {
+                self.draw(cmd, &self.mask, scene, &bound, list.mask.iter().rev())?;
+                self.draw(cmd, &self.opaque, scene, &bound, list.opaque.iter().rev())?;
+            } else {
+                self.draw(cmd, &self.opaque, scene, &bound, list.opaque.iter())?;
+                self.draw(cmd, &self.mask, scene, &bound, list.mask.iter())?;
+            }
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+
+    fn draw<'a>(
+        &self,
+        cmd: &mut Commands,
+        pipeline: &GraphicsPipeline,
+        scene: &SceneGpu,
+        bound: &[(&str, Bound<'_>)],
+        calls: impl Iterator<Item = &'a DrawCall>,
+    ) -> Result<()> {
+        let mut calls = calls.peekable();
+        if calls.peek().is_none() {
+            return Ok(());
+        }
+        cmd.bind_graphics(pipeline, bytemuck::bytes_of(&MaterialParams::zeroed()), bound)?;
+        let mut known = None;
+        mesh::draw_each(cmd, pipeline, scene, calls, |call| {
+            if known != Some(call.draw) {
+                known = Some(call.draw);
+                let params = MaterialParams {
+                    material: scene.material_blocks[call.material as usize],
+                    object: self.objects[call.draw as usize].block(),
+                };
+                cmd.push(&pipeline.interface, bytemuck::bytes_of(&params));
+            }
+        });
+        Ok(())
+    }
+}

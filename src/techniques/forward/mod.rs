@@ -1,0 +1,341 @@
+//! Forward shading with a depth pre-pass and a list of lights for each object: what Kircher and Lawrance 2009, section 5,
+//! call an optimized forward renderer and beat with inferred lighting. Direct light only.
+//!
+//! Passes: lights (on the host: the lists), depth, material, blend (where the scene has BLEND surfaces), resolve (with
+//! `--msaa` above 1), accumulate (with `--supersample` above 1).
+//!
+//! Differs from the paper, which says of its forward renderer no more than that it is one
+//! - lists are by the box around an object and the light's range; the floor of a hall is one object, under all its lights
+//! - the samples of MSAA are 32-bit floats of linear light, averaged before any tone mapping
+//! - holes of MASK surfaces are cut once a pixel: their edges stay as jagged as without MSAA
+//!
+//! Equal to others: with `--msaa 1` it is `deferred` but for what that one's G-buffer rounds. `--light-lists none`,
+//! `--light-buffer storage` and, with one sample, `--depth-prepass off` are the plain ways to its own bits (with more a
+//! driver may choose the place in a pixel that is shaded among the samples that pass the depth test). `--supersample` is the reference of edges: the same picture
+//! from N x N places in each pixel, every one of them shaded.
+//!
+//! Why this way: a list is found by the draw's push constants. An index of the object in the fragment shader would be one
+//! more thing to interpolate for every technique that shares the vertex stage.
+
+pub mod accumulate;
+pub mod depth;
+pub mod material;
+mod plan;
+mod settings;
+
+use super::{Frame, Inputs, Prepared, Technique, left_out, light_visibility};
+use crate::error::{Error, Result};
+use crate::gpu::shader::structs::LightBlock;
+use crate::gpu::{Ability, Access, Bound, Buffer, Caps, Commands, Gpu, Image, Need, readback, upload};
+use crate::lights::LightSet;
+use crate::lights::object_lists::{ListChoice, ObjectLists};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
+use crate::passes::direct::{self, DirectGpu, DirectSettings};
+use crate::passes::resolve;
+use crate::plan::{Plan, Resources};
+use crate::report::image_file::{Aov, AovChannels};
+use crate::resident::{Coverage, DrawList, SceneGpu};
+use crate::settings::{MULTISAMPLE, Setting, Values};
+use crate::units::Bytes;
+use accumulate::Accumulate;
+use depth::Depth;
+use glam::Vec2;
+use material::Material;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+const NAME: &str = "forward";
+
+pub struct Forward;
+
+/// What the settings come to.
+pub struct Choices {
+    direct: DirectSettings,
+    lists: ListChoice,
+    /// Lights in a uniform buffer.
+    is_uniform: bool,
+    has_prepass: bool,
+    /// Samples a pixel.
+    samples: u32,
+    /// Runs of a picture along each side of a pixel.
+    runs_per_side: u32,
+}
+
+impl Choices {
+    /// Errors: more lights than a uniform buffer holds (exit code 2).
+    fn new(inputs: &Inputs<'_>) -> Result<Self> {
+        let values = inputs.values;
+        let (count, range) = (inputs.lights.lights.len(), inputs.caps.limits.max_uniform_buffer_range_bytes);
+        let fits = count <= plan::UNIFORM_LIGHT_COUNT && plan::UNIFORM_BYTES <= range;
+        if values.text("light-buffer") == "uniform" && !fits {
+            let (most, device) = (plan::UNIFORM_LIGHT_COUNT, &inputs.caps.identity.name);
+            let why = format!(
+                "--light-buffer uniform: {count} lights: it holds {most}, where a device binds {} ({device} binds {})",
+                Bytes(plan::UNIFORM_BYTES),
+                Bytes(range)
+            );
+            return Err(Error::request(why).within(NAME).note("--light-buffer storage holds all of them"));
+        }
+        Ok(Self {
+            is_uniform: fits && values.text("light-buffer") != "storage",
+            direct: DirectSettings::new(values, inputs.lights, inputs.scene),
+            lists: ListChoice::from_setting(values.text("light-lists")),
+            has_prepass: values.is_on("depth-prepass"),
+            samples: resolve::samples(values),
+            runs_per_side: values.integer("supersample") as u32,
+        })
+    }
+
+    /// The lights as shaders read them, and the lists of all objects.
+    fn lists(&self, inputs: &Inputs<'_>) -> Result<(Vec<LightBlock>, ObjectLists)> {
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        let most_bytes = inputs.caps.limits.max_storage_buffer_range_bytes;
+        let lists = ObjectLists::new(inputs.scene, &lights, self.lists, most_bytes)?;
+        Ok((lights, lists))
+    }
+
+    fn coverage(&self) -> Coverage {
+        if self.samples * self.runs_per_side > 1 { Coverage::Anywhere } else { Coverage::Middle }
+    }
+}
+
+impl Technique for Forward {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "forward shading with a depth pre-pass and a list of lights for each object"
+    }
+
+    fn scene(&self) -> &'static str {
+        "lamps"
+    }
+
+    fn settings(&self) -> &'static [&'static [Setting]] {
+        &[settings::SETTINGS, MULTISAMPLE]
+    }
+
+    fn aovs(&self) -> &'static [&'static str] {
+        &["depth.reversed"]
+    }
+
+    fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        let depth = Need { of: "the depth buffer".to_owned(), ability: Ability::FloatDepth, instead: "" };
+        [depth].into_iter().chain(resolve::needs(values)).chain(blend::needs(has_blend)).collect()
+    }
+
+    fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
+    /// Punctual lights, straight.
+    fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        Ok(vec![
+            ("transport", "direct".to_owned()),
+            ("light-visibility", light_visibility(values, lights)?),
+            ("emissive", "off".to_owned()),
+        ])
+    }
+
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        let choices = Choices::new(inputs)?;
+        let (_, lists) = choices.lists(inputs)?;
+        plan::plan(&choices, inputs, &lists)
+    }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let choices = Choices::new(inputs)?;
+        let began = Instant::now();
+        let (lights, lists) = choices.lists(inputs)?;
+        let lists_ns = began.elapsed().as_nanos() as u64;
+        Ok(Box::new(PreparedForward { choices, lights, lists, lists_ns }))
+    }
+}
+
+struct PreparedForward {
+    choices: Choices,
+    lights: Vec<LightBlock>,
+    lists: ObjectLists,
+    lists_ns: u64,
+}
+
+impl Prepared for PreparedForward {
+    fn host_passes(&self) -> Vec<(String, u64)> {
+        vec![(format!("{NAME}.lights"), self.lists_ns)]
+    }
+
+    fn counters(&self) -> BTreeMap<&'static str, f64> {
+        let [mean, most] = self.lists.lights_per_object();
+        BTreeMap::from([
+            ("lights", self.lights.len() as f64),
+            ("lights_per_object", mean),
+            ("lights_per_object_most", most),
+            ("objects", self.lists.objects.len() as f64),
+        ])
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let buffer = if self.choices.is_uniform { "uniform" } else { "storage" };
+        BTreeMap::from([("light-buffer", buffer.to_owned())])
+    }
+
+    fn light_counts(&self) -> [u32; 2] {
+        [self.lights.len() as u32, 0]
+    }
+
+    fn build(
+        self: Box<Self>,
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+    ) -> Result<Box<dyn Frame>> {
+        let Self { choices, lights, lists, .. } = *self;
+        let Choices { samples, runs_per_side, has_prepass, .. } = choices;
+        let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
+        let list_buffer = resources.buffer(plan::LISTS);
+        upload::buffer(gpu, &list_buffer, bytemuck::cast_slice(&lists.entries), Access::GraphicsRead)?;
+        let uniform_lights = match choices.is_uniform {
+            false => None,
+            true => {
+                let buffer = resources.buffer(plan::UNIFORM);
+                upload::buffer(gpu, &buffer, bytemuck::cast_slice(&lights), Access::GraphicsRead)?;
+                Some(buffer)
+            }
+        };
+        let constants = choices.direct.light_constants();
+        let target = BlendTarget { lists: Some(&lists.objects), samples };
+        let background = inputs.values.color("background");
+        Ok(Box::new(ForwardFrame {
+            list: inputs.draw_list(scene, choices.coverage()),
+            depth: if has_prepass { Some(Depth::new(gpu, scene, samples)?) } else { None },
+            material: Material::new(gpu, scene, &choices, &lists.objects, background)?,
+            blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &constants, &target)?,
+            accumulate: if runs_per_side > 1 { Some(Accumulate::new(gpu, resources)?) } else { None },
+            targets: Targets {
+                depth: resources.image(plan::DEPTH),
+                drawn: resources.image(plan::DRAWN),
+                resolved: (samples > 1).then(|| resources.image(plan::RESOLVED)),
+            },
+            direct: DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?,
+            lists: list_buffer,
+            uniform_lights,
+            vpls: resources.buffer(plan::VPLS),
+            runs_per_side,
+        }))
+    }
+}
+
+/// What is drawn into.
+pub struct Targets {
+    depth: Image,
+    drawn: Image,
+    /// Where pixels have several samples.
+    resolved: Option<Image>,
+}
+
+struct ForwardFrame {
+    list: DrawList,
+    depth: Option<Depth>,
+    material: Material,
+    blend: Option<Blend>,
+    accumulate: Option<Accumulate>,
+    targets: Targets,
+    direct: DirectGpu,
+    lists: Buffer,
+    /// The same lights as `direct` has, where the material pass reads them as uniforms.
+    uniform_lights: Option<Buffer>,
+    vpls: Buffer,
+    runs_per_side: u32,
+}
+
+impl Frame for ForwardFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let Targets { depth, drawn, resolved } = &self.targets;
+        if let Some(prepass) = &self.depth {
+            prepass.record(cmd, frame, scene, &self.list, depth)?;
+        }
+        let mut lit = self.direct.bound();
+        if let Some(uniform) = &self.uniform_lights {
+            lit.retain(|(name, _)| *name != "Lights");
+            lit.push(("Lights", Bound::Buffer(uniform)));
+        }
+        lit.push(("LightLists", Bound::Buffer(&self.lists)));
+        self.material.record(cmd, frame, scene, &self.list, &lit, &self.targets)?;
+        if let Some(blend) = &self.blend {
+            let lights = BlendLights {
+                lights: &self.direct.lights,
+                vpls: &self.vpls,
+                subsets: &self.vpls,
+                bvh_nodes: &self.direct.bvh_nodes,
+                bvh_triangles: &self.direct.bvh_triangles,
+                lists: Some(&self.lists),
+            };
+            let tested = if self.depth.is_some() { Access::DepthTest } else { Access::DepthWrite };
+            blend.record(cmd, NAME, frame, scene, &lights, depth.from(tested), drawn.from(Access::ColorWrite))?;
+        }
+        if let Some(plain) = resolved {
+            resolve::record(cmd, NAME, drawn.from(Access::ColorWrite), plain)?;
+        }
+        if let Some(accumulate) = &self.accumulate {
+            accumulate.record(cmd, frame, self.run_picture().from(Access::ColorWrite))?;
+        }
+        Ok(())
+    }
+
+    fn run_count(&self) -> u32 {
+        self.runs_per_side * self.runs_per_side
+    }
+
+    /// The middles of `runs_per_side` x `runs_per_side` equal parts of a pixel, in row order.
+    fn offset_px(&self, run: u32) -> Vec2 {
+        let place = |index: u32| (index as f32 + 0.5) / self.runs_per_side as f32 - 0.5;
+        Vec2::new(place(run % self.runs_per_side), place(run / self.runs_per_side))
+    }
+
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        let mut counters: BTreeMap<&'static str, f64> = self.list.counters().into();
+        counters.insert("draws", self.list.calls().count() as f64);
+        counters
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        match &self.accumulate {
+            Some(accumulate) => (&accumulate.color, Access::ComputeWrite),
+            None => (self.run_picture(), Access::ColorWrite),
+        }
+    }
+
+    /// Lights that were evaluated for the solid surfaces that are seen: pixels of several samples count with the mean.
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        let (picture, last) = self.picture();
+        let pixels = picture.description.extent.pixel_count() as f64;
+        let texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&readback::image(gpu, picture, last)?);
+        let evaluated: f64 = texels.iter().map(|[.., lights]| f64::from(*lights)).sum();
+        let every = pixels * f64::from(self.direct.light_count);
+        Ok(BTreeMap::from([
+            ("light_evaluations", evaluated),
+            ("light_evaluations_culled", every - evaluated),
+            ("lights_per_pixel", evaluated / pixels),
+        ]))
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        let depth = &self.targets.depth;
+        if depth.description.samples > 1 {
+            return Err(left_out(NAME, name, "with --msaa a pixel has several depths"));
+        }
+        let last = if self.depth.is_some() || self.blend.is_some() { Access::DepthTest } else { Access::DepthWrite };
+        let depths = bytemuck::pod_collect_to_vec(&readback::image(gpu, depth, last)?);
+        Ok(Aov { name: name.to_owned(), channels: AovChannels::Y(depths) })
+    }
+}
+
+impl ForwardFrame {
+    /// The plain picture of a run.
+    fn run_picture(&self) -> &Image {
+        self.targets.resolved.as_ref().unwrap_or(&self.targets.drawn)
+    }
+}

@@ -1,0 +1,85 @@
+//! What a frame needs: resources by arithmetic, and the passes that touch them.
+
+use super::accumulate::SUM_BYTES;
+use super::{Choices, NAME, depth};
+use crate::error::Result;
+use crate::gpu::Access;
+use crate::gpu::shader::structs::LightBlock;
+use crate::lights::object_lists::ObjectLists;
+use crate::memory::kinds::Use;
+use crate::passes::{blend, direct, resolve};
+use crate::plan::{PICTURE_FORMAT, Plan, Shape};
+use crate::techniques::Inputs;
+use ash::vk::{BufferUsageFlags, ImageUsageFlags as Usage};
+
+pub const DEPTH: &str = "forward.depth.reversed";
+/// The lights once more, where the material pass reads them as uniforms.
+pub const UNIFORM: &str = "forward.lights.uniform";
+/// material.frag's UNIFORM_LIGHT_COUNT.
+pub const UNIFORM_LIGHT_COUNT: usize = 1024;
+pub const UNIFORM_BYTES: u64 = (UNIFORM_LIGHT_COUNT * size_of::<LightBlock>()) as u64;
+pub const LISTS: &str = "forward.lights.lists";
+/// No virtual lights: what blended surfaces bind in their place.
+pub const VPLS: &str = "forward.vpls";
+/// What the material pass and blended surfaces draw into.
+pub const DRAWN: &str = "forward.material.color";
+/// The mean of its samples.
+pub const RESOLVED: &str = "forward.resolve.color";
+pub const SUMS: &str = "forward.accumulate.sums";
+/// The mean of all runs.
+pub const MEAN: &str = "forward.accumulate.color";
+
+/// Resources and passes of a frame.
+pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Result<Plan> {
+    let Choices { samples, runs_per_side, has_prepass, .. } = *choices;
+    let extent = inputs.view.extent;
+    let (is_resolved, is_mean) = (samples > 1, runs_per_side > 1);
+    let mut plan = Plan::default();
+    let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
+    direct::plan(&mut plan, NAME, inputs.lights.lights.len(), tree);
+    plan.buffer("lights", LISTS, 4 * lists.entries.len() as u64);
+    plan.buffer("lights", VPLS, 0);
+    if choices.is_uniform {
+        let flags =
+            BufferUsageFlags::UNIFORM_BUFFER | BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::TRANSFER_DST;
+        plan.push("lights", UNIFORM, Shape::Buffer { bytes: UNIFORM_BYTES, flags, usage: Use::Device });
+    }
+    // Images of several samples are only attached.
+    let read = |usage: Usage| if is_resolved { Usage::empty() } else { usage };
+    let usage = Usage::DEPTH_STENCIL_ATTACHMENT | read(Usage::TRANSFER_SRC);
+    plan.multisampled("depth", DEPTH, extent, depth::FORMAT, samples, usage);
+    let plain = Usage::COLOR_ATTACHMENT | Usage::STORAGE;
+    match (is_resolved, is_mean) {
+        (false, false) => plan.picture(DRAWN, extent),
+        (false, true) => plan.image("color", DRAWN, extent, PICTURE_FORMAT, plain),
+        (true, _) => plan.multisampled("color", DRAWN, extent, PICTURE_FORMAT, samples, Usage::COLOR_ATTACHMENT),
+    }
+    match (is_resolved, is_mean) {
+        (false, _) => {}
+        (true, false) => plan.picture(RESOLVED, extent),
+        (true, true) => plan.image("color", RESOLVED, extent, PICTURE_FORMAT, plain),
+    }
+    if is_mean {
+        plan.buffer("accumulation", SUMS, extent.pixel_count() * SUM_BYTES);
+        plan.picture(MEAN, extent);
+    }
+    let full = |pass: &str| format!("{NAME}.{pass}");
+    let touch = |name: &str, access| (name.to_owned(), access);
+    let mut depth_access = Access::DepthWrite;
+    if has_prepass {
+        plan.pass(full("depth"), [touch(DEPTH, Access::DepthWrite)]);
+        depth_access = Access::DepthTest;
+    }
+    plan.pass(full("material"), [touch(DEPTH, depth_access), touch(DRAWN, Access::ColorWrite)]);
+    if inputs.stats.has_blend {
+        plan.pass(full("blend"), blend::touches(DEPTH, DRAWN));
+    }
+    if is_resolved {
+        plan.pass(full("resolve"), resolve::touches(DRAWN, RESOLVED));
+    }
+    if is_mean {
+        let run = if is_resolved { RESOLVED } else { DRAWN };
+        plan.pass(full("accumulate"), [touch(run, Access::ComputeRead), touch(MEAN, Access::ComputeWrite)]);
+    }
+    Ok(plan)
+}

@@ -1,0 +1,48 @@
+//! The settings that only this technique reads.
+
+use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, Setting};
+
+pub const SETTINGS: &[Setting] = &[
+    Setting {
+        key: "light-lists",
+        symbol: "",
+        kind: Kind::Choice(&["object", "none"]),
+        default: "object",
+        unit: "",
+        paper: "Kircher 2009, 5",
+        help: "which lights a surface is shaded with: those whose range reaches the box around its object, or every light (the \
+               plain way to the same bits)",
+    },
+    Setting {
+        key: "light-buffer",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "uniform", "storage"]),
+        default: "auto",
+        unit: "",
+        paper: "",
+        help: "where solid surfaces read the lights from: a uniform buffer, which holds 1024, or a storage buffer; the same \
+               picture; auto: uniform where they fit",
+    },
+    Setting {
+        key: "depth-prepass",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "",
+        help: "depth is drawn first, so that no surface is shaded that another one hides; the same picture (with --msaa 1 to \
+               the bit)",
+    },
+    Setting {
+        key: "supersample",
+        symbol: "N",
+        kind: Kind::Integer { min: 1, max: 8 },
+        default: "1",
+        unit: "",
+        paper: "",
+        help: "N x N runs a picture, each moved by a part of a pixel, and averaged: the reference for edges",
+    },
+    BRDF,
+    GEOMETRY,
+    DIRECT_SHADOW,
+];
