@@ -1,9 +1,12 @@
 // Rays through the whole tree and nothing else: what `bench rays` times. Pass: src/bench/rays/mod.rs.
 //
-// WALK: plain, the walk of shadow rays (bvh_walk.glsl), which has no order and knows any hit only; ordered, that of path
-// tracing (bvh_trace.glsl), nearer child first.
-// variants: WALK=plain|ordered
+// WALK: plain, the walk of shadow rays (bvh_walk.glsl), which has no order and knows any hit only; two and four, that of path
+// tracing (bvh_trace.glsl), nearer child first, over nodes with as many children.
+// variants: WALK=plain|two|four
 #version 460
+#ifdef WALK_FOUR
+#define NODES_FOUR
+#endif
 #include "bvh.glsl"
 
 struct RayBlock {
@@ -14,14 +17,14 @@ struct RayBlock {
 
 struct RaysParams {
     uint ray_count;
-    // RAY_ bits of bvh_trace.glsl, for WALK=ordered.
+    // RAY_ bits of bvh_trace.glsl, for WALK=two and four.
     uint kind;
 };
 
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push { RaysParams params; };
-layout(std430, set = 0, binding = 0) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
+layout(std430, set = 0, binding = 0) readonly buffer BvhNodes { BVH_NODE bvh_nodes[]; };
 layout(std430, set = 0, binding = 1) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Rays { RayBlock rays[]; };
 // 0: nothing was met; else 1 for any hit, and for the nearest its triangle and 1.

@@ -5,11 +5,12 @@
 //! lavapipe would fetch lane by lane.
 
 use super::{limited, material_blocks};
+use crate::bvh::nodes::{Nodes, Walk};
 use crate::bvh::{Bvh, Source};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{
-    BvhNodeBlock, BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock,
-    TracedTangentsBlock, TracedTriangleBlock,
+    BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock, TracedTangentsBlock,
+    TracedTriangleBlock,
 };
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Resources};
@@ -62,7 +63,7 @@ struct Place {
 /// What a scene needs to be traced, by arithmetic.
 pub struct Layout {
     triangle_count: usize,
-    node_count: usize,
+    pub nodes: Nodes,
     material_count: usize,
     has_tangents: bool,
     has_extended: bool,
@@ -82,7 +83,7 @@ impl Layout {
     /// `most_bytes`: what a device binds of a buffer at once.
     ///
     /// Errors: the textures are more than the shader's buffers hold (exit code 4).
-    pub fn new(scene: &Scene, bvh: &Bvh, most_bytes: u64) -> Result<Self> {
+    pub fn new(scene: &Scene, bvh: &Bvh, walk: Walk, most_bytes: u64) -> Result<Self> {
         let mut places = vec![None; scene.images.len()];
         let mut texel_counts = Vec::new();
         let most_texels = (most_bytes / 4).min(u64::from(u32::MAX));
@@ -113,7 +114,7 @@ impl Layout {
         }
         Ok(Self {
             triangle_count: bvh.triangles.len(),
-            node_count: bvh.nodes.len(),
+            nodes: Nodes::new(bvh, walk),
             material_count: scene.materials.len(),
             has_tangents: scene.drawn_materials().any(|material| material.normal_texture.is_some()),
             has_extended: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty()),
@@ -128,7 +129,7 @@ impl Layout {
         let of = |count: usize, size: usize| count as u64 * size as u64;
         let when = |is_there: bool, bytes: u64| if is_there { bytes } else { 0 };
         let bytes = [
-            of(self.node_count, size_of::<BvhNodeBlock>()),
+            self.nodes.bytes().len() as u64,
             of(self.triangle_count, size_of::<BvhTriangleBlock>()),
             of(self.triangle_count, size_of::<TracedTriangleBlock>()),
             when(self.has_tangents, of(self.triangle_count, size_of::<TracedTangentsBlock>())),
@@ -249,7 +250,7 @@ impl TracedGpu {
             Result::Ok(())
         };
         let [nodes, planes, triangles, tangents, extended, materials, planes_closing, closing] = BUFFERS;
-        fill(nodes, bytemuck::cast_slice(&bvh.nodes))?;
+        fill(nodes, layout.nodes.bytes())?;
         fill(planes, bytemuck::cast_slice(&bvh.triangles))?;
         let of = |source: &Source| Corners::of(scene, source);
         let all: Vec<TracedTriangleBlock> = bvh.sources.iter().map(|source| of(source).triangle()).collect();

@@ -1,5 +1,5 @@
 // One path a pixel, added to those before it. Pass: src/techniques/path_traced/sample.rs.
-// variants: ALPHA=opaque|tested
+// variants: ALPHA=opaque|tested NODES=two|four
 #version 460
 #include "techniques/path_traced/path.glsl"
 #include "techniques/path_traced/airlight.glsl"

@@ -36,6 +36,7 @@ pub mod settings;
 
 use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
+use crate::bvh::nodes::Walk;
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
@@ -48,7 +49,7 @@ use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::resident::traced::Layout;
 use crate::scene::{AlphaMode, Light, Material};
-use crate::settings::{Setting, Values};
+use crate::settings::{Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
 use airlight::Air;
 use bytemuck::Zeroable;
@@ -82,7 +83,7 @@ impl Technique for PathTraced {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS]
+        &[settings::SETTINGS, TREE]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -123,7 +124,10 @@ impl Technique for PathTraced {
 }
 
 fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
-    Layout::new(inputs.scene, bvh, inputs.caps.limits.max_storage_buffer_range_bytes)
+    let (limits, walk) = (&inputs.caps.limits, Walk::from_values(inputs.values));
+    let layout = Layout::new(inputs.scene, bvh, walk, limits.max_storage_buffer_range_bytes)?;
+    layout.nodes.check(NAME, inputs.values.pair("workgroup").iter().product(), limits)?;
+    Ok(layout)
 }
 
 /// Where light comes from.
@@ -276,7 +280,11 @@ impl Prepared for PreparedPaths {
             sample,
             sample_count: self.sample_count,
             until_error: settings::until_error(inputs.values),
-            triangle_count: bvh.sources.len(),
+            tree: [
+                ("triangles_traced", bvh.sources.len() as f64),
+                ("tree_nodes", layout.nodes.count() as f64),
+                ("stack_entries", layout.nodes.stack_entries().into()),
+            ],
         }))
     }
 }
@@ -285,7 +293,8 @@ struct PathFrame {
     sample: Sample,
     sample_count: u32,
     until_error: Option<f64>,
-    triangle_count: usize,
+    /// Counters of what rays walk.
+    tree: [(&'static str, f64); 3],
 }
 
 impl Frame for PathFrame {
@@ -302,7 +311,7 @@ impl Frame for PathFrame {
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([("triangles_traced", self.triangle_count as f64)])
+        BTreeMap::from(self.tree)
     }
 
     fn picture(&self) -> (&Image, Access) {

@@ -80,7 +80,8 @@ impl Sample {
             ("MEDIUM", choices.air as u32),
             ("HAS_LENS", u32::from(choices.has_lens)),
         ];
-        let constants = [&own[..], &layout.constants()].concat();
+        let threads = choices.workgroup.iter().product();
+        let constants = [&own[..], &layout.constants(), &layout.nodes.constants(threads)].concat();
         let stage = Stage::begin("uploading what rays meet");
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
         drop(stage);
@@ -90,7 +91,7 @@ impl Sample {
             Result::Ok(buffer)
         };
         Ok(Self {
-            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha]), &constants)?,
+            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha, layout.nodes.variant()]), &constants)?,
             params: choices.params,
             traced,
             lights: filled("lights", bytemuck::cast_slice(lights))?,
