@@ -5,7 +5,7 @@
 //! lavapipe would fetch lane by lane.
 
 use super::{limited, material_blocks};
-use crate::bvh::nodes::{Nodes, Walk};
+use crate::bvh::nodes::Nodes;
 use crate::bvh::{Bvh, Source};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{
@@ -80,10 +80,10 @@ const SLOTS: [TextureSlot; 4] =
     [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Normal, TextureSlot::Emissive];
 
 impl Layout {
-    /// `most_bytes`: what a device binds of a buffer at once.
+    /// `nodes`: of `bvh`. `most_bytes`: what a device binds of a buffer at once.
     ///
     /// Errors: the textures are more than the shader's buffers hold (exit code 4).
-    pub fn new(scene: &Scene, bvh: &Bvh, walk: Walk, most_bytes: u64) -> Result<Self> {
+    pub fn new(scene: &Scene, bvh: &Bvh, nodes: Nodes, most_bytes: u64) -> Result<Self> {
         let mut places = vec![None; scene.images.len()];
         let mut texel_counts = Vec::new();
         let most_texels = (most_bytes / 4).min(u64::from(u32::MAX));
@@ -114,7 +114,7 @@ impl Layout {
         }
         Ok(Self {
             triangle_count: bvh.triangles.len(),
-            nodes: Nodes::new(bvh, walk),
+            nodes,
             material_count: scene.materials.len(),
             has_tangents: scene.drawn_materials().any(|material| material.normal_texture.is_some()),
             has_extended: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty()),

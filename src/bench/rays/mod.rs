@@ -10,7 +10,7 @@ mod host;
 pub mod report;
 
 use super::rounds::{self, Probe, Samples};
-use crate::bvh::nodes::{Nodes, Walk};
+use crate::bvh::nodes::{Nodes, Stack, Walk};
 use crate::bvh::{self, Bvh};
 use crate::error::{Error, Result};
 use crate::gpu::commands::{Submits, Traffic};
@@ -68,6 +68,8 @@ pub struct Variant {
 pub struct Size {
     pub node_count: usize,
     pub node_bytes: u64,
+    /// What `--stack` came to.
+    pub stack: &'static str,
     /// Nodes that a ray has room to let wait.
     pub stack_entries: u32,
 }
@@ -85,6 +87,8 @@ pub struct Measured {
     /// Of the plain walk of the same rays.
     pub plain: Samples,
     pub hit_count: usize,
+    /// BLAKE3, in hexadecimal, of what each ray met.
+    pub hits_hash: String,
     /// Rays that the host answers otherwise, but for triangles at the same distance.
     pub differing: usize,
 }
@@ -123,7 +127,7 @@ pub fn run(
     let triangles = Rc::new(filled(gpu, "triangles", &bvh.triangles)?);
     let plain = Rc::new(Tree::plain(gpu, &bvh, &triangles)?);
     let ordered = request.variants.iter().map(|variant| {
-        let nodes = Nodes::new(&bvh, Walk::from_values(&variant.values));
+        let nodes = Nodes::new(&bvh, Walk::from_values(&variant.values), THREADS, &gpu.caps.limits)?;
         Ok(Rc::new(Tree::ordered(gpu, &nodes, &triangles)?))
     });
     let ordered: Vec<Rc<Tree>> = ordered.collect::<Result<_>>()?;
@@ -159,6 +163,7 @@ pub fn run(
             device: samples[index].clone(),
             host: samples[device.len() + at].clone(),
             plain: samples[plain].clone(),
+            hits_hash: blake3::hash(bytemuck::cast_slice(&found)).to_hex().to_string(),
             hit_count: found.iter().filter(|hit| **hit > 0).count(),
             differing: host_walk.differing(&found),
         });
@@ -194,17 +199,17 @@ impl Tree {
     fn plain(gpu: &Arc<Gpu>, bvh: &Bvh, triangles: &Rc<Buffer>) -> Result<Self> {
         let nodes = filled(gpu, "nodes", &bvh.nodes)?;
         let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &["plain"]), &[("RAY_OFFSET", 0)])?;
-        let size = Size { node_count: bvh.nodes.len(), node_bytes: nodes.bytes, stack_entries: bvh::STACK as u32 };
+        let (stack, stack_entries) = (Stack::Private.name(), bvh::STACK as u32);
+        let size = Size { node_count: bvh.nodes.len(), node_bytes: nodes.bytes, stack, stack_entries };
         Ok(Self { pipeline, nodes, triangles: triangles.clone(), size })
     }
 
     fn ordered(gpu: &Arc<Gpu>, nodes: &Nodes, triangles: &Rc<Buffer>) -> Result<Self> {
-        nodes.check("bench rays", THREADS, &gpu.caps.limits)?;
         let shader = variant(COMP_VARIANTS, &[nodes.variant()]);
-        let pipeline = ComputePipeline::new(gpu, shader, &nodes.constants(THREADS))?;
-        let (node_count, stack_entries) = (nodes.count(), nodes.stack_entries());
+        let pipeline = ComputePipeline::new(gpu, shader, &nodes.constants())?;
+        let (node_count, stack, stack_entries) = (nodes.count(), nodes.stack.name(), nodes.stack_entries());
         let nodes = filled(gpu, "nodes", nodes.bytes())?;
-        let size = Size { node_count, node_bytes: nodes.bytes, stack_entries };
+        let size = Size { node_count, node_bytes: nodes.bytes, stack, stack_entries };
         Ok(Self { pipeline, nodes, triangles: triangles.clone(), size })
     }
 }

@@ -40,6 +40,7 @@ fn row(one: &Measured, gpu: &Gpu, scene: &Scene, request: &Request) -> Value {
         "settings": variant.map(|variant| variant.values.iter().collect::<BTreeMap<_, _>>()),
         "nodes": one.size.node_count,
         "node_bytes": one.size.node_bytes,
+        "stack": one.size.stack,
         "stack_entries": one.size.stack_entries,
         "ray_count": request.ray_count,
         "seed": request.seed,
@@ -52,6 +53,7 @@ fn row(one: &Measured, gpu: &Gpu, scene: &Scene, request: &Request) -> Value {
         "host_mrays_per_s": rate(&host),
         "speed_to_host": paired_ratio(&host, &device).json(),
         "hits": one.hit_count,
+        "hits_hash": one.hits_hash,
         "differing": one.differing,
     })
 }

@@ -36,7 +36,7 @@ pub mod settings;
 
 use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
-use crate::bvh::nodes::Walk;
+use crate::bvh::nodes::{Nodes, Walk};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
@@ -117,17 +117,19 @@ impl Technique for PathTraced {
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?)?;
+        let bvh = inputs.bvh.whole(inputs.scene)?;
+        let sources = Sources::new(inputs, bvh)?;
         let sample_count = settings::sample_count(inputs.values);
-        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources)?, sources, sample_count }))
+        let choices = choices(inputs, &sources)?;
+        Ok(Box::new(PreparedPaths { choices, sources, layout: layout(inputs, bvh)?, sample_count }))
     }
 }
 
 fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
-    let (limits, walk) = (&inputs.caps.limits, Walk::from_values(inputs.values));
-    let layout = Layout::new(inputs.scene, bvh, walk, limits.max_storage_buffer_range_bytes)?;
-    layout.nodes.check(NAME, inputs.values.pair("workgroup").iter().product(), limits)?;
-    Ok(layout)
+    let (limits, values) = (&inputs.caps.limits, inputs.values);
+    let threads = values.pair("workgroup").iter().product();
+    let nodes = Nodes::new(bvh, Walk::from_values(values), threads, limits).map_err(|error| error.within(NAME))?;
+    Layout::new(inputs.scene, bvh, nodes, limits.max_storage_buffer_range_bytes)
 }
 
 /// Where light comes from.
@@ -226,6 +228,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
 struct PreparedPaths {
     choices: Choices,
     sources: Sources,
+    layout: Layout,
     sample_count: u32,
 }
 
@@ -246,6 +249,7 @@ impl Prepared for PreparedPaths {
         let mut resolved = BTreeMap::from([
             ("emissive", emissive.to_owned()),
             ("spp", self.sample_count.to_string()),
+            ("stack", self.layout.nodes.stack.name().to_owned()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
         ]);
         if self.choices.has_lens {
@@ -273,9 +277,9 @@ impl Prepared for PreparedPaths {
         let closing: Vec<FrameBlock> = self.sources.closing.iter().map(|closing| closing.block(inputs)).collect();
         let density_of =
             |material: &Material| self.sources.emitters.as_ref().map_or(0.0, |emitters| emitters.density_of(material));
-        let (sources, layout) = (self.sources.all(), layout(inputs, bvh)?);
+        let (sources, layout) = (self.sources.all(), &self.layout);
         let lit = (&lights[..], &sources[..], &closing[..]);
-        let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, &layout), density_of)?;
+        let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, layout), density_of)?;
         Ok(Box::new(PathFrame {
             sample,
             sample_count: self.sample_count,

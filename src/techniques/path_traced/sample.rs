@@ -80,8 +80,7 @@ impl Sample {
             ("MEDIUM", choices.air as u32),
             ("HAS_LENS", u32::from(choices.has_lens)),
         ];
-        let threads = choices.workgroup.iter().product();
-        let constants = [&own[..], &layout.constants(), &layout.nodes.constants(threads)].concat();
+        let constants = [&own[..], &layout.constants(), &layout.nodes.constants()].concat();
         let stage = Stage::begin("uploading what rays meet");
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
         drop(stage);
