@@ -4,7 +4,7 @@
 //! software driver; no GPU was tried. Nodes of four with a stack in workgroup memory came first for every query and kind of
 //! ray, with 1.14 to 1.27 times the rays a second of nodes of two with a private stack. The two gain together only: with
 //! nodes of two the private stack is the faster one, with nodes of four and a private stack nothing is won. A short stack
-//! does 0.7 of a whole one's rays. Orders of nodes differ by no more than the measurement's noise.
+//! does 0.6 to 0.8 of a whole one's rays. Orders of nodes differ by no more than the measurement's noise.
 
 use super::{Kind, Setting};
 
