@@ -68,8 +68,8 @@ fn every_tree_and_stack_meets_the_same() {
         let [nodes, bytes, entries] = ["nodes", "node_bytes", "stack_entries"].map(|key| row[key].as_u64().unwrap());
         assert_eq!(bytes, nodes * if row["settings"]["node-width"] == "4" { 112 } else { 32 }, "{row:#}");
         assert_eq!(row["stack"], row["settings"]["stack"], "{row:#}");
-        let is_short = row["stack"] == "short";
-        assert_eq!(is_short, row["settings"]["stack-entries"] == entries.to_string(), "{row:#}");
+        let short_entries = row["settings"]["stack-entries"].as_str().and_then(|text| text.parse().ok());
+        assert_eq!(row["stack"] == "short", short_entries == Some(entries), "{row:#}");
     }
 }
 
