@@ -1,4 +1,4 @@
-// The tree that src/bvh.rs builds, as it lies in buffers. bvh_walk.glsl walks it.
+// The tree that src/bvh/ builds, as it lies in buffers. bvh_walk.glsl and bvh_trace.glsl walk it.
 #ifndef BVH_GLSL
 #define BVH_GLSL
 
@@ -9,6 +9,28 @@ struct BvhNodeBlock {
     // xyz: greatest corner; w as bits: the first of two neighbouring children, or the first triangle.
     vec4 max_first;
 };
+
+// Four children of a node, axis by axis, so that one reading tests all of them.
+struct BvhWideBlock {
+    // Corners of their boxes; a child that is not there lies where no ray comes to.
+    vec4 min_x;
+    vec4 min_y;
+    vec4 min_z;
+    vec4 max_x;
+    vec4 max_y;
+    vec4 max_z;
+    // From bit LEAF_SHIFT on 0 and below it a node's index, or a number of triangles and below it the first.
+    uvec4 children;
+};
+
+const uint LEAF_SHIFT = 26u;
+
+// What the nodes are, by the including shader's axis NODES, where it has one.
+#ifdef NODES_FOUR
+#define BVH_NODE BvhWideBlock
+#else
+#define BVH_NODE BvhNodeBlock
+#endif
 
 // One triangle, in the order in which leaves list them.
 struct BvhTriangleBlock {

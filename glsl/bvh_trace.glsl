@@ -1,15 +1,22 @@
 // A ray through the whole tree that asks alpha where a triangle says so: nearest hits and shadow rays, in one function so
-// that a shader holds it once. Twin: src/bvh.rs, `Bvh::closest_hit`.
+// that a shader holds it once. Twin: src/bvh/mod.rs, `Bvh::closest_hit`.
 //
 // The walk goes in two loops, down to a leaf and through its triangles, and looks at alpha outside both: a driver that runs
 // lanes side by side runs what any of them needs for all. With RAYS_QUERY the driver walks a structure of its own
-// (bvh_query.glsl). The including shader has the axis ALPHA and what bvh_walk.glsl,
-// bvh_moving.glsl and, with ALPHA=tested, shading/traced.glsl want.
+// (bvh_query.glsl). The including shader has the axis ALPHA and what bvh_stack.glsl, bvh_nodes.glsl, bvh_moving.glsl and, with
+// ALPHA=tested, shading/traced.glsl want.
+//
+// Of triangles at one distance the first in the tree's order is met, so that the answer does not hang on the way through the
+// tree. A box around another is entered wherever the inner one is, in floats too (each step of the test is monotonic), so
+// every way comes to the same leaves before the limit, and any hit is the same hit for all. The nearest could still differ
+// where two distances are within what rounding makes of a distance to a box: there a leaf may count as behind a triangle
+// that is behind one of its own.
 #ifndef BVH_TRACE_GLSL
 #define BVH_TRACE_GLSL
 
 #include "bvh_moving.glsl"
-#include "bvh_walk.glsl"
+#include "bvh_tests.glsl"
+#include "loops.glsl"
 #include "sampling/sobol.glsl"
 
 // Any hit will do.
@@ -46,45 +53,33 @@ bool stops(uint triangle, vec2 barycentric, uint kind, uint seed) {
 }
 #endif
 
-// `kind`: RAY_ bits; a `limit` of 0 or less meets nothing. `seed`: of this ray's decisions about BLEND surfaces.
+// Both trace a ray the same way to the caller.
 #ifdef RAYS_QUERY
 #include "bvh_query.glsl"
 #else
+#include "bvh_stack.glsl"
+
+// `kind`: RAY_ bits; a `limit` of 0 or less meets nothing. `seed`: of this ray's decisions about BLEND surfaces.
 TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
     TraceHit hit = TraceHit(false, limit, 0u, vec2(0.0));
     vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
-    uint stack[BVH_STACK];
-    int depth = 0;
     // A leaf's triangles that are still to be tried, and the node whose turn it is.
     uint triangle = 0u;
     uint end = 0u;
-    uint node_index = 0u;
-    bool has_node = limit > 0.0 && box_entry(bvh_nodes[0], origin, inverse, limit) >= 0.0;
+    uint node = ROOT;
+    bool has_node = enters_root(origin, inverse, limit);
+    stack_clear();
     while (has_node || triangle < end) {
         while (has_node && triangle >= end) {
-            BvhNodeBlock node = bvh_nodes[node_index];
-            uint count = floatBitsToUint(node.min_count.w);
-            uint first = floatBitsToUint(node.max_first.w);
-            float left = -1.0;
-            float right = -1.0;
-            if (count == 0u) {
-                left = box_entry(bvh_nodes[first], origin, inverse, hit.distance);
-                right = box_entry(bvh_nodes[first + 1u], origin, inverse, hit.distance);
+            uvec2 leaf = leaf_at(node);
+            Entered entered = NONE_ENTERED;
+            if (leaf.y == 0u) {
+                entered = entered_below(leaf.x, origin, inverse, hit.distance);
             } else {
-                triangle = first;
-                end = first + count;
+                triangle = leaf.x;
+                end = leaf.x + leaf.y;
             }
-            bool is_left_first = right < 0.0 || (left >= 0.0 && left <= right);
-            if (left >= 0.0 && right >= 0.0 && depth < BVH_STACK) {
-                stack[depth++] = is_left_first ? first + 1u : first;
-            }
-            if (left >= 0.0 || right >= 0.0) {
-                node_index = is_left_first ? first : first + 1u;
-            } else {
-                has_node = depth > 0;
-                depth = max(depth - 1, 0);
-                node_index = has_node ? stack[depth] : 0u;
-            }
+            has_node = walk_on(entered, node);
         }
 #ifdef ALPHA_TESTED
         bool is_asked = false;
@@ -93,7 +88,9 @@ TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
         while (triangle < end) {
             BvhTriangleBlock plane = triangle_at(triangle);
             vec3 met;
-            bool is_met = triangle_hit(plane, origin, direction, hit.distance, met);
+            float behind = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u);
+            bool is_met = triangle_hit(plane, origin, direction, behind, met)
+                && (met.x < hit.distance || triangle < hit.triangle);
             if ((kind & RAY_CAMERA) != 0u) {
                 is_met = is_met && is_drawn(plane, direction);
             }

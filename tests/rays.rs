@@ -43,6 +43,40 @@ fn every_walk_meets_what_the_host_meets() {
     }
 }
 
+/// Whatever the nodes are, wherever they lie and wait: the same triangle for each ray, to the bit.
+#[test]
+fn every_tree_and_stack_meets_the_same() {
+    let program = Program::new();
+    let sweeps =
+        ["node-width=2,4", "node-layout=depth-first,breadth-first,van-emde-boas", "stack=private,shared,short"];
+    let mut rows: Vec<Value> = Vec::new();
+    // With room for one nearly every turn begins at the root again.
+    for entries in ["8", "1"] {
+        let mut arguments =
+            [&HALL[..], &["--repeat", "1", "--json", "--quiet", "--validate", "--stack-entries", entries]].concat();
+        sweeps.iter().for_each(|sweep| arguments.extend(["--sweep", sweep]));
+        let ran = program.run(&arguments).fine();
+        rows.extend(ran.out.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()));
+    }
+    assert_eq!(rows.len(), 2 * 2 * (1 + 2 * 18));
+    for rays in ["incoherent", "coherent"] {
+        for query in ["any", "nearest"] {
+            let of: Vec<&Value> = rows.iter().filter(|row| row["rays"] == rays && row["query"] == query).collect();
+            for row in &of {
+                assert_eq!(row["hits_hash"], of[0]["hits_hash"], "{rays} {query}: {row:#}");
+                assert!(row["differing"].as_u64().unwrap() <= 20, "{row:#}");
+            }
+        }
+    }
+    for row in rows.iter().filter(|row| row["walk"] == "ordered") {
+        let [nodes, bytes, entries] = ["nodes", "node_bytes", "stack_entries"].map(|key| row[key].as_u64().unwrap());
+        assert_eq!(bytes, nodes * if row["settings"]["node-width"] == "4" { 112 } else { 32 }, "{row:#}");
+        assert_eq!(row["stack"], row["settings"]["stack"], "{row:#}");
+        let short_entries = row["settings"]["stack-entries"].as_str().and_then(|text| text.parse().ok());
+        assert_eq!(row["stack"] == "short", short_entries == Some(entries), "{row:#}");
+    }
+}
+
 #[test]
 fn a_person_reads_a_table() {
     let program = Program::new();
@@ -56,6 +90,8 @@ fn a_person_reads_a_table() {
 fn what_cannot_be_cast_is_refused() {
     let program = Program::new();
     program.fails(&["bench", "rays", "--rays", "0"], 2, &["--rays"]);
+    program.fails(&["bench", "rays", "--sweep", "pattern=2x2"], 2, &["--sweep pattern", "node-width"]);
+    program.fails(&["bench", "rays", "--sweep", "node-width=2,3"], 2, &["--node-width 3", "2|4"]);
     program.fails(&["bench", "rays", "missing.glb"], 2, &["missing.glb"]);
     program.fails(&["bench", "rays", "hall:triangles=8000", "--device", "no such thing"], 3, &["no such thing"]);
 }

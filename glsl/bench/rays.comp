@@ -1,9 +1,13 @@
 // Rays through the whole tree and nothing else: what `bench rays` times. Pass: src/bench/rays/mod.rs.
 //
-// WALK: plain, the walk of shadow rays (bvh_walk.glsl), which has no order and knows any hit only; ordered, that of path
-// tracing (bvh_trace.glsl), nearer child first; query, the driver's, through a structure of its own.
-// variants: WALK=plain|ordered|query
+// WALK: plain, the walk of shadow rays (bvh_walk.glsl), which has no order and knows any hit only; two and four, that of path
+// tracing (bvh_trace.glsl), nearer child first, over nodes with as many children; query, the driver's, through a structure of
+// its own.
+// variants: WALK=plain|two|four|query
 #version 460
+#ifdef WALK_FOUR
+#define NODES_FOUR
+#endif
 #ifdef WALK_QUERY
 #extension GL_EXT_ray_query : require
 #define RAYS_QUERY
@@ -18,7 +22,7 @@ struct RayBlock {
 
 struct RaysParams {
     uint ray_count;
-    // RAY_ bits of bvh_trace.glsl, for WALK=ordered and query.
+    // RAY_ bits of bvh_trace.glsl, for every walk but the plain one.
     uint kind;
 };
 
@@ -27,8 +31,9 @@ layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { RaysParams params; };
 #ifdef WALK_QUERY
 layout(set = 0, binding = 4) uniform accelerationStructureEXT structure;
+#else
+layout(std430, set = 0, binding = 0) readonly buffer BvhNodes { BVH_NODE bvh_nodes[]; };
 #endif
-layout(std430, set = 0, binding = 0) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 1) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Rays { RayBlock rays[]; };
 // 0: nothing was met; else 1 for any hit, and for the nearest its triangle and 1.

@@ -62,7 +62,8 @@ fn all_settings() -> Vec<(String, &'static Setting)> {
     all
 }
 
-fn flag(setting: &'static Setting) -> Arg {
+/// A setting as a flag, whose value is checked where it is set.
+pub fn flag(setting: &'static Setting) -> Arg {
     let mut help = format!("{} [{}] [default: {}]", setting.help, setting.range(), setting.default);
     if !setting.unit.is_empty() {
         help = format!("{help}, in {}", setting.unit);

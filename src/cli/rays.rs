@@ -1,12 +1,14 @@
 //! `quincunx bench rays`: what the walks of the tree do on a device, beside the host.
 
-use super::progress;
-use crate::bench::rays::{self, Request, report};
-use crate::error::Result;
+use super::{job_args, progress};
+use crate::bench::rays::{self, Request, Variant, report};
+use crate::bench::sweep::{self, Point};
+use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::job::judge;
 use crate::progress::Stage;
 use crate::scene;
+use crate::settings::{TREE, Values};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 pub const NAME: &str = "rays";
@@ -19,7 +21,7 @@ pub fn command() -> Command {
         Arg::new(name).long(name).value_name("N").value_parser(parser).default_value(default)
     };
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
-    Command::new(NAME)
+    let command = Command::new(NAME)
         .about("Millions of rays a second of each walk of the tree, beside the same tree walked on the host's threads")
         .arg(
             Arg::new("scene")
@@ -34,12 +36,54 @@ pub fn command() -> Command {
         .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
         .arg(flag("quiet").help("Print nothing but errors"))
         .arg(flag("json").help("Print a JSON line a walk on standard output"))
+        .arg(
+            Arg::new("sweep")
+                .long("sweep")
+                .value_name("KEY=V,V,...")
+                .action(ArgAction::Append)
+                .help("An axis of a grid of the settings below; may be repeated"),
+        );
+    TREE.iter().fold(command, |command, setting| {
+        command.arg(job_args::flag(setting).help_heading("Settings of walks in order"))
+    })
+}
+
+/// Every combination of the swept settings, the others as the flags have them.
+///
+/// Errors: a key that is none of them, an impossible value (exit code 2).
+fn variants(matches: &ArgMatches) -> Result<Vec<Variant>> {
+    let mut values = Values::defaults(TREE);
+    for setting in TREE {
+        if let Some(text) = matches.get_one::<String>(setting.key) {
+            values.set(setting, text)?;
+        }
+    }
+    let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
+    let variant = |point: &Point| {
+        let mut values = values.clone();
+        for (key, text) in point {
+            let setting = TREE.iter().find(|setting| setting.key == key).ok_or_else(|| {
+                let keys: Vec<&str> = TREE.iter().map(|setting| setting.key).collect();
+                Error::request(format!("--sweep {key}: walks of the tree have no such setting"))
+                    .note(format!("there are {}", keys.join(", ")))
+            })?;
+            values.set(setting, text)?;
+        }
+        let label = if point.is_empty() { String::new() } else { sweep::label(point) };
+        Ok(Variant { label, values })
+    };
+    sweep::grid(&sweep::axes(&sweeps)?).iter().map(variant).collect()
 }
 
 /// Measures and prints; hits that differ from the host's by more than edges explain fail it.
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let number = |name: &str| *matches.get_one::<u64>(name).expect("it has a default");
-    let request = Request { ray_count: number("rays") as u32, seed: number("seed"), repeat: number("repeat") as usize };
+    let request = Request {
+        ray_count: number("rays") as u32,
+        seed: number("seed"),
+        repeat: number("repeat") as usize,
+        variants: variants(matches)?,
+    };
     progress::install(matches.get_flag("quiet"));
     let spec = matches.get_one::<String>("scene").expect("it has a default");
     let scene = scene::load(spec, request.seed)?;

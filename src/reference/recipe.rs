@@ -26,6 +26,10 @@ pub(crate) const NOT_OF_THE_PICTURE: &[&str] = &[
     "texels",
     "geometry",
     "cull",
+    "node-width",
+    "node-layout",
+    "stack",
+    "stack-entries",
     SAMPLES,
     "until-error",
 ];

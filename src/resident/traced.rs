@@ -6,11 +6,12 @@
 
 use super::structure::{self, SceneStructure};
 use super::{limited, material_blocks};
+use crate::bvh::nodes::Nodes;
 use crate::bvh::{Bvh, Source};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{
-    BvhNodeBlock, BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock,
-    TracedTangentsBlock, TracedTriangleBlock,
+    BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock, TracedTangentsBlock,
+    TracedTriangleBlock,
 };
 use crate::gpu::structure::Over;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
@@ -53,10 +54,9 @@ const TEXELS: [(&str, &str); TEXEL_BUFFERS] = [
 ];
 
 /// What rays go through.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rays {
     /// The tree's nodes, walked by the shader.
-    Tree,
+    Tree(Nodes),
     /// The driver's structure, by ray queries. `is_opaque`: alpha decides about no triangle.
     Query { is_opaque: bool },
 }
@@ -73,7 +73,7 @@ struct Place {
 /// What a scene needs to be traced, by arithmetic.
 pub struct Layout {
     triangle_count: usize,
-    node_count: usize,
+    rays: Rays,
     material_count: usize,
     has_tangents: bool,
     has_extended: bool,
@@ -92,11 +92,11 @@ const SLOTS: [TextureSlot; 4] =
     [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Normal, TextureSlot::Emissive];
 
 impl Layout {
-    /// `most_bytes`: what a device binds of a buffer at once.
+    /// `rays`: nodes are of `bvh`. `most_bytes`: what a device binds of a buffer at once.
     ///
     /// Errors: the textures are more than the shader's buffers hold (exit code 4); structures of what moves (2).
     pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, most_bytes: u64) -> Result<Self> {
-        if rays != Rays::Tree && !bvh.closing.is_empty() {
+        if matches!(rays, Rays::Query { .. }) && !bvh.closing.is_empty() {
             return Err(Error::request(format!(
                 "--rays query: {} moves while its --shutter is open, and what ray queries go through stands still",
                 scene.name
@@ -133,15 +133,15 @@ impl Layout {
         }
         Ok(Self {
             triangle_count: bvh.triangles.len(),
-            node_count: bvh.nodes.len(),
             material_count: scene.materials.len(),
             has_tangents: scene.drawn_materials().any(|material| material.normal_texture.is_some()),
             has_extended: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty()),
             is_moving: !bvh.closing.is_empty(),
             structures: match rays {
-                Rays::Tree => None,
+                Rays::Tree(_) => None,
                 Rays::Query { is_opaque } => Some(structure::over(bvh, is_opaque)),
             },
+            rays,
             places,
             texel_counts,
         })
@@ -153,11 +153,11 @@ impl Layout {
     pub fn plan(&self, plan: &mut Plan, technique: &str, requirements: Requirements<'_>) -> Result<()> {
         let of = |count: usize, size: usize| count as u64 * size as u64;
         let when = |is_there: bool, bytes: u64| if is_there { bytes } else { 0 };
-        match self.structures {
-            None => {
-                plan.buffer("bvh", format!("{technique}.{}", NODES.0), of(self.node_count, size_of::<BvhNodeBlock>()));
-            }
-            Some(over) => structure::plan(plan, technique, over, requirements)?,
+        if let Rays::Tree(nodes) = &self.rays {
+            plan.buffer("bvh", format!("{technique}.{}", NODES.0), nodes.bytes().len() as u64);
+        }
+        if let Some(over) = self.structures {
+            structure::plan(plan, technique, over, requirements)?;
         }
         let bytes = [
             of(self.triangle_count, size_of::<BvhTriangleBlock>()),
@@ -177,6 +177,22 @@ impl Layout {
             plan.buffer("traced", format!("{technique}.{name}"), 4 * count);
         }
         Ok(())
+    }
+
+    /// The value of the shader's axis RAYS.
+    pub fn variant(&self) -> &'static str {
+        match &self.rays {
+            Rays::Tree(nodes) => nodes.variant(),
+            Rays::Query { .. } => "query",
+        }
+    }
+
+    /// The tree's nodes, where rays walk them.
+    pub fn nodes(&self) -> Option<&Nodes> {
+        match &self.rays {
+            Rays::Tree(nodes) => Some(nodes),
+            Rays::Query { .. } => None,
+        }
     }
 
     /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, MOVES.
@@ -282,8 +298,8 @@ impl TracedGpu {
             Result::Ok(())
         };
         let [planes, triangles, tangents, extended, materials, planes_closing, closing] = BUFFERS;
-        if layout.structures.is_none() {
-            fill(NODES, bytemuck::cast_slice(&bvh.nodes))?;
+        if let Rays::Tree(nodes) = &layout.rays {
+            fill(NODES, nodes.bytes())?;
         }
         fill(planes, bytemuck::cast_slice(&bvh.triangles))?;
         let of = |source: &Source| Corners::of(scene, source);

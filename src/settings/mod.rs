@@ -5,9 +5,11 @@
 
 mod optics;
 mod tables;
+mod tree;
 
 pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
 pub use tables::{BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, SHADING, TEXELS, VPL_CLAMP, WORKGROUP};
+pub use tree::TREE;
 
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};
@@ -400,7 +402,7 @@ mod tests {
 
     #[test]
     fn every_default_of_the_table_is_possible() {
-        for setting in COMMON.iter().chain(SHADING).chain(MULTISAMPLE) {
+        for setting in COMMON.iter().chain(SHADING).chain(MULTISAMPLE).chain(TREE) {
             setting.check(setting.default).unwrap();
         }
     }

@@ -66,8 +66,9 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; }
 layout(std430, set = 0, binding = 1) readonly buffer Lights { LightBlock lights[]; };
 #ifdef RAYS_QUERY
 layout(set = 0, binding = 18) uniform accelerationStructureEXT structure;
+#else
+layout(std430, set = 0, binding = 2) readonly buffer BvhNodes { BVH_NODE bvh_nodes[]; };
 #endif
-layout(std430, set = 0, binding = 2) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 3) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 layout(std430, set = 0, binding = 4) readonly buffer TracedTriangles { TracedTriangleBlock surfaces[]; };
 layout(std430, set = 0, binding = 5) readonly buffer TracedTangents { TracedTangentsBlock tangents[]; };

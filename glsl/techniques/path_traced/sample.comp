@@ -1,6 +1,9 @@
 // One path a pixel, added to those before it. Pass: src/techniques/path_traced/sample.rs.
-// variants: ALPHA=opaque|tested RAYS=tree|query
+// variants: ALPHA=opaque|tested RAYS=two|four|query
 #version 460
+#ifdef RAYS_FOUR
+#define NODES_FOUR
+#endif
 #ifdef RAYS_QUERY
 #extension GL_EXT_ray_query : require
 #endif

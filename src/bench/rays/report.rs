@@ -1,13 +1,15 @@
 //! Rows of `bench rays`, and the table of them.
 
-use super::{Measured, Request};
+use super::{Measured, Request, WalkKind};
 use crate::bench::stats::{median, paired_ratio};
 use crate::bench::table::{self, Table};
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::report::run::spread;
 use crate::scene::Scene;
+use crate::units::Bytes;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Number of the set of keys.
 const SCHEMA: u32 = 1;
@@ -24,6 +26,10 @@ fn row(one: &Measured, gpu: &Gpu, scene: &Scene, request: &Request) -> Value {
     let [device, host, plain] = [&one.device, &one.host, &one.plain].map(|samples| samples.totals_ms());
     // Thousands a millisecond are millions a second.
     let rate = |samples: &[f64]| f64::from(request.ray_count) / median(samples) / 1e3;
+    let variant = match one.kind {
+        WalkKind::Ordered(index) => Some(&request.variants[index]),
+        WalkKind::Plain | WalkKind::Query => None,
+    };
     json!({
         "schema": SCHEMA,
         "bench": "rays",
@@ -32,7 +38,13 @@ fn row(one: &Measured, gpu: &Gpu, scene: &Scene, request: &Request) -> Value {
         "scene": { "name": scene.name, "hash": scene.hash, "triangles": scene.triangle_count() },
         "rays": one.rays.name(),
         "query": one.query.name(),
-        "walk": one.walk,
+        "walk": one.walk(),
+        "variant": variant.map_or("", |variant| &variant.label),
+        "settings": variant.map(|variant| variant.values.iter().collect::<BTreeMap<_, _>>()),
+        "nodes": one.size.node_count,
+        "node_bytes": one.size.node_bytes,
+        "stack": one.size.stack,
+        "stack_entries": one.size.stack_entries,
         "ray_count": request.ray_count,
         "seed": request.seed,
         "repeat": request.repeat,
@@ -44,6 +56,7 @@ fn row(one: &Measured, gpu: &Gpu, scene: &Scene, request: &Request) -> Value {
         "host_mrays_per_s": rate(&host),
         "speed_to_host": paired_ratio(&host, &device).json(),
         "hits": one.hit_count,
+        "hits_hash": one.hits_hash,
         "differing": one.differing,
     })
 }
@@ -55,13 +68,14 @@ pub fn text(rows: &[Value]) -> String {
         let number = |key: &str| row[key].as_f64().map_or_else(String::new, |value| format!("{value:.3}"));
         let ratio = |key: &str| table::ratio(&row[key]).unwrap_or_default();
         vec![
-            format!("{} {} {}", word("rays"), word("query"), word("walk")),
+            format!("{} {} {} {}", word("rays"), word("query"), word("walk"), word("variant")).trim_end().to_owned(),
             number("mrays_per_s"),
             ratio("speed_to_plain"),
             number("host_mrays_per_s"),
             ratio("speed_to_host"),
             row["hits"].to_string(),
             row["differing"].to_string(),
+            Bytes(row["node_bytes"].as_u64().unwrap_or_default()).to_string(),
         ]
     };
     let titles = [
@@ -72,6 +86,7 @@ pub fn text(rows: &[Value]) -> String {
         "speed to host (95 %)",
         "hits",
         "differing",
+        "nodes",
     ];
     let first = rows.first().unwrap_or(&Value::Null);
     let software = if first["device"]["type"] == "cpu" { ", software driver" } else { "" };
@@ -96,7 +111,7 @@ pub fn judge(measured: &[Measured], request: &Request) -> Result<()> {
         None => Ok(()),
         Some(one) => Err(Error::gate(format!(
             "bench rays: the {} walk for the {} hit of {} rays differs from the host's for {} of {} rays: edges explain {most:.0}",
-            one.walk,
+            one.walk(),
             one.query.name(),
             one.rays.name(),
             one.differing,

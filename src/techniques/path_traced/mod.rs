@@ -38,6 +38,7 @@ pub mod settings;
 
 use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
+use crate::bvh::nodes::{Nodes, Walk};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::{Ability, Access, Buffer, Caps, Commands, Gpu, Image, Need};
@@ -50,7 +51,7 @@ use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays};
 use crate::scene::{AlphaMode, Light, Material};
-use crate::settings::{Setting, Values};
+use crate::settings::{Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
 use airlight::Air;
 use bytemuck::Zeroable;
@@ -84,7 +85,7 @@ impl Technique for PathTraced {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS]
+        &[settings::SETTINGS, TREE]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -120,18 +121,24 @@ impl Technique for PathTraced {
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let sources = Sources::new(inputs, inputs.bvh.whole(inputs.scene)?)?;
+        let bvh = inputs.bvh.whole(inputs.scene)?;
+        let sources = Sources::new(inputs, bvh)?;
         let sample_count = settings::sample_count(inputs.values);
-        Ok(Box::new(PreparedPaths { choices: choices(inputs, &sources)?, sources, sample_count }))
+        let choices = choices(inputs, &sources)?;
+        Ok(Box::new(PreparedPaths { choices, sources, layout: layout(inputs, bvh)?, sample_count }))
     }
 }
 
 fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
-    let rays = match inputs.values.text("rays") {
-        "query" => Rays::Query { is_opaque: !is_tested(inputs) },
-        _ => Rays::Tree,
+    let (limits, values) = (&inputs.caps.limits, inputs.values);
+    let rays = if values.text("rays") == "query" {
+        Rays::Query { is_opaque: !is_tested(inputs) }
+    } else {
+        let threads = values.pair("workgroup").iter().product();
+        let walk = Walk::from_values(values);
+        Rays::Tree(Nodes::new(bvh, walk, threads, limits).map_err(|error| error.within(NAME))?)
     };
-    Layout::new(inputs.scene, bvh, rays, inputs.caps.limits.max_storage_buffer_range_bytes)
+    Layout::new(inputs.scene, bvh, rays, limits.max_storage_buffer_range_bytes)
 }
 
 /// The scene has MASK or BLEND surfaces.
@@ -235,6 +242,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
 struct PreparedPaths {
     choices: Choices,
     sources: Sources,
+    layout: Layout,
     sample_count: u32,
 }
 
@@ -257,6 +265,9 @@ impl Prepared for PreparedPaths {
             ("spp", self.sample_count.to_string()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
         ]);
+        if let Some(nodes) = self.layout.nodes() {
+            resolved.insert("stack", nodes.stack.name().to_owned());
+        }
         if self.choices.has_lens {
             resolved.insert("focus", format!("{}", self.choices.params.focus));
         }
@@ -282,14 +293,18 @@ impl Prepared for PreparedPaths {
         let closing: Vec<FrameBlock> = self.sources.closing.iter().map(|closing| closing.block(inputs)).collect();
         let density_of =
             |material: &Material| self.sources.emitters.as_ref().map_or(0.0, |emitters| emitters.density_of(material));
-        let (sources, layout) = (self.sources.all(), layout(inputs, bvh)?);
+        let (sources, layout) = (self.sources.all(), &self.layout);
         let lit = (&lights[..], &sources[..], &closing[..]);
-        let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, &layout), density_of)?;
+        let mut tree = vec![("triangles_traced", bvh.sources.len() as f64)];
+        if let Some(nodes) = layout.nodes() {
+            tree.extend([("tree_nodes", nodes.count() as f64), ("stack_entries", nodes.stack_entries().into())]);
+        }
+        let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, layout), density_of)?;
         Ok(Box::new(PathFrame {
             sample,
             sample_count: self.sample_count,
             until_error: settings::until_error(inputs.values),
-            triangle_count: bvh.sources.len(),
+            tree,
         }))
     }
 }
@@ -298,7 +313,8 @@ struct PathFrame {
     sample: Sample,
     sample_count: u32,
     until_error: Option<f64>,
-    triangle_count: usize,
+    /// Counters of what rays walk.
+    tree: Vec<(&'static str, f64)>,
 }
 
 impl Frame for PathFrame {
@@ -315,7 +331,7 @@ impl Frame for PathFrame {
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([("triangles_traced", self.triangle_count as f64)])
+        self.tree.iter().copied().collect()
     }
 
     fn picture(&self) -> (&Image, Access) {

@@ -5,6 +5,7 @@
 use super::airlight::Air;
 use super::{COLOR, NAME, SUMS};
 use crate::bvh::Bvh;
+use crate::bvh::nodes::Nodes;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
@@ -66,7 +67,6 @@ impl Sample {
         density_of: impl Fn(&crate::scene::Material) -> f32,
     ) -> Result<Self> {
         let alpha = if choices.is_tested { "tested" } else { "opaque" };
-        let rays = inputs.values.text("rays");
         let own = [
             ("WORKGROUP_X", choices.workgroup[0]),
             ("WORKGROUP_Y", choices.workgroup[1]),
@@ -81,7 +81,8 @@ impl Sample {
             ("MEDIUM", choices.air as u32),
             ("HAS_LENS", u32::from(choices.has_lens)),
         ];
-        let constants = [&own[..], &layout.constants()].concat();
+        let mut constants = [&own[..], &layout.constants()].concat();
+        constants.extend(layout.nodes().into_iter().flat_map(Nodes::constants));
         let stage = Stage::begin("uploading what rays meet");
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
         drop(stage);
@@ -91,7 +92,7 @@ impl Sample {
             Result::Ok(buffer)
         };
         Ok(Self {
-            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha, rays]), &constants)?,
+            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha, layout.variant()]), &constants)?,
             params: choices.params,
             traced,
             lights: filled("lights", bytemuck::cast_slice(lights))?,

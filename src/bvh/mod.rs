@@ -5,6 +5,8 @@
 //! take them as solid. BLEND surfaces stop no light of the techniques that rasterise, and are in the whole tree only,
 //! whose triangles say what a ray must ask of them (TRIANGLE_ bits).
 
+pub mod nodes;
+
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
 use crate::progress::Stage;
@@ -17,8 +19,8 @@ use obvhs::triangle::Triangle;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// A walk's stack: the shader's BVH_STACK.
-const STACK: usize = 64;
+/// Room of a plain walk's stack: bvh_walk.glsl's BVH_STACK.
+pub const STACK: usize = 64;
 
 /// Its tree takes some 16 GiB.
 const MOST_TRIANGLES: u64 = 1 << 26;
