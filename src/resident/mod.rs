@@ -10,6 +10,7 @@
 mod clusters;
 mod geometry;
 mod material_blocks;
+mod raster;
 mod relief;
 pub mod structure;
 mod textures;
@@ -18,9 +19,10 @@ mod visible;
 
 pub use clusters::Cluster;
 pub use geometry::Geometry;
+pub use raster::{Coverage, Raster};
 pub use relief::advise;
 pub use textures::Textures;
-pub use visible::{Coverage, DrawList, GeometryChoice};
+pub use visible::{DrawList, GeometryChoice};
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;

@@ -11,10 +11,10 @@
 //! order (ten pixels of the picture of `hall:triangles=80000` at 1024x768). So `--geometry all` draws everything in the
 //! same order, in which what was left out has no say: the same bits on every device.
 
+use super::raster::{Coverage, Raster};
 use super::{Cluster, DrawCall, SceneGpu};
 use crate::frame::View;
 use crate::scene::{AlphaMode, Bounds, Projection, Scene};
-use crate::units::Extent;
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 
 /// What is drawn of the solid draws, front to back (`--geometry`).
@@ -37,15 +37,6 @@ impl GeometryChoice {
     }
 }
 
-/// Where in a pixel the device asks whether a triangle covers it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coverage {
-    /// In its middle.
-    Middle,
-    /// Anywhere: at several samples, or in a middle that moves from run to run.
-    Anywhere,
-}
-
 /// Rounding of a clip-space number that two products with a matrix made in 32 bits, as a part of the sum of its terms'
 /// magnitudes: eight roundings of 2^-24 each, doubled.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
@@ -62,31 +53,22 @@ pub struct DrawList {
 }
 
 impl DrawList {
-    /// `raster`: the extent of the images that are drawn into, which need not be the picture's.
-    pub fn new(
-        scene: &Scene,
-        resident: &SceneGpu,
-        view: &View,
-        raster: Extent,
-        choice: GeometryChoice,
-        coverage: Coverage,
-    ) -> Self {
+    pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, raster: Raster, choice: GeometryChoice) -> Self {
         let drawn = (&resident.calls[..], &resident.clusters[..], &resident.host_indices[..]);
-        Self::of(scene, drawn, view, raster, choice, coverage)
+        Self::of(scene, drawn, view, raster, choice)
     }
 
     fn of(
         scene: &Scene,
         (calls, clusters, indices): (&[DrawCall], &[Cluster], &[u32]),
         view: &View,
-        raster: Extent,
+        raster: Raster,
         choice: GeometryChoice,
-        coverage: Coverage,
     ) -> Self {
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
-            let lens = Lens::new(scene, call, view, raster, coverage);
+            let lens = Lens::new(scene, call, view, raster);
             for cluster in &clusters[call.clusters()] {
                 if choice == GeometryChoice::Culled && lens.sees_nothing_of(cluster, &indices[cluster.indices()]) {
                     clusters_culled += 1;
@@ -170,7 +152,7 @@ impl Clipped {
 }
 
 impl<'a> Lens<'a> {
-    fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Extent, coverage: Coverage) -> Self {
+    fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Raster) -> Self {
         let draw = &scene.draws[call.draw as usize];
         let (clip_from_world, world_from_object) =
             (view.clip_from_world().as_dmat4(), draw.world_from_object.as_dmat4());
@@ -183,8 +165,8 @@ impl<'a> Lens<'a> {
             positions: &scene.meshes[draw.mesh].positions,
             double_sided: call.double_sided,
             mirrored: call.mirrored,
-            coverage,
-            extent_px: DVec2::new(f64::from(raster.width), f64::from(raster.height)),
+            coverage: raster.coverage,
+            extent_px: DVec2::new(f64::from(raster.extent.width), f64::from(raster.extent.height)),
             clip_from_object: clip_from_world * world_from_object,
             magnitude_from_object: magnitudes(clip_from_world) * magnitudes(world_from_object),
             world_from_object,
@@ -224,8 +206,8 @@ impl<'a> Lens<'a> {
         })
     }
 
-    /// True: the triangle's back is seen, or it is too small to hold a pixel's middle, where middles count. Every corner must be inside the
-    /// planes that clip: what is clipped falls into thin pieces, which a device may snap to another facing.
+    /// True: the triangle's back is seen, or it is too small to hold a pixel's middle, where middles count. Every corner
+    /// must be inside the planes that clip: what is clipped falls into thin pieces, which a device may snap to another facing.
     fn faces_away(&self, corners: &[Clipped; 3]) -> bool {
         let surely_inside = |corner: &Clipped| {
             let errors = corner.errors();
@@ -315,7 +297,7 @@ mod tests {
     fn list(scene: &Scene, view: &View, choice: GeometryChoice, coverage: Coverage) -> DrawList {
         let geometry = Geometry::of(scene);
         let drawn = (&geometry.calls(scene)[..], &geometry.clusters[..], &geometry.indices[..]);
-        DrawList::of(scene, drawn, view, view.extent, choice, coverage)
+        DrawList::of(scene, drawn, view, Raster { extent: view.extent, coverage }, choice)
     }
 
     fn view(eye: Vec3, at: Vec3, projection: Projection) -> View {
@@ -449,7 +431,9 @@ mod tests {
                 for coverage in [Coverage::Middle, Coverage::Anywhere] {
                     let left_out = |z: f32| require_nothing_lost(&scene, &from(z), coverage);
                     assert_eq!(left_out(3.0), 0, "its front");
-                    assert_eq!(left_out(-3.0), if double_sided { 0 } else { 4 }, "its back");
+                    // Small triangles may be turned round by snapping: only where they hold no middle they are left out.
+                    let expected = if double_sided { 0..=0 } else { 4 * u64::from(coverage == Coverage::Middle)..=4 };
+                    assert!(expected.contains(&left_out(-3.0)), "its back");
                 }
                 // Behind the eye, beside the view, nearer than the near plane.
                 for (eye, at) in [

@@ -166,6 +166,7 @@ mod tests {
             let expected: &[&str] = match technique.name() {
                 "path_traced" => &[],
                 "forward" => &["the depth buffer"],
+                "inferred_lighting" => &["the geometry pass"],
                 _ => &["the G-buffer"],
             };
             assert_eq!(of(&fitness(*technique, &caps).stopped_by), expected);

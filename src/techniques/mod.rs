@@ -18,10 +18,9 @@ use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::{Coverage, DrawList, GeometryChoice, SceneGpu, SceneStats};
+use crate::resident::{Coverage, DrawList, GeometryChoice, Raster, SceneGpu, SceneStats};
 use crate::scene::Scene;
 use crate::settings::{Setting, Values};
-use crate::units::Extent;
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -42,13 +41,13 @@ pub struct Inputs<'a> {
 impl Inputs<'_> {
     /// What is drawn of the solid surfaces.
     fn draw_list(&self, scene: &SceneGpu, coverage: Coverage) -> DrawList {
-        self.draw_list_into(scene, self.view.extent, coverage)
+        self.draw_list_into(scene, Raster { extent: self.view.extent, coverage })
     }
 
     /// The same, drawn into images of another extent than the picture's.
-    fn draw_list_into(&self, scene: &SceneGpu, raster: Extent, coverage: Coverage) -> DrawList {
+    fn draw_list_into(&self, scene: &SceneGpu, raster: Raster) -> DrawList {
         let choice = GeometryChoice::from_setting(self.values.text("geometry"));
-        DrawList::new(self.scene, scene, self.view, raster, choice, coverage)
+        DrawList::new(self.scene, scene, self.view, raster, choice)
     }
 }
 

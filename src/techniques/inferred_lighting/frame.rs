@@ -17,7 +17,7 @@ use crate::passes::blend;
 use crate::passes::direct::DirectGpu;
 use crate::plan::{PICTURE_FORMAT, Resources};
 use crate::report::image_file::Aov;
-use crate::resident::{Coverage, DrawList, SceneGpu};
+use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
 use crate::techniques::{Frame, Inputs};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -79,8 +79,10 @@ impl InferredFrame {
         let [first_m, last_m] = inputs.view.depth_range(&bounds);
         let depth_range_m = [first_m, last_m - first_m];
         let coverage = if choices.samples > 1 { Coverage::Anywhere } else { Coverage::Middle };
-        let mut lists =
-            [inputs.draw_list_into(scene, light_extent, Coverage::Middle), inputs.draw_list(scene, coverage)];
+        let mut lists = [
+            inputs.draw_list_into(scene, Raster { extent: light_extent, coverage: Coverage::Middle }),
+            inputs.draw_list(scene, coverage),
+        ];
         let blended = blend::back_to_front(scene, inputs.view);
         let (stippled, shares) = if choices.tests_alpha {
             lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));
