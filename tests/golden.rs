@@ -103,6 +103,11 @@ fn lamps_deferred() {
     require_golden("lamps_deferred", "lamps", "deferred", &[("direct-shadow", "ray")]);
 }
 
+#[test]
+fn lamps_forward() {
+    require_golden("lamps_forward", "lamps", "forward", &[("msaa", "4")]);
+}
+
 /// By its panel alone, as photographs of the box are.
 #[test]
 fn cornell_path_traced() {
