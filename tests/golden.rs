@@ -113,6 +113,11 @@ fn hall_inferred() {
     require_golden("hall_inferred", "hall:triangles=8000", "inferred_lighting", &[("msaa", "4")]);
 }
 
+#[test]
+fn lamps_forward() {
+    require_golden("lamps_forward", "lamps", "forward", &[("msaa", "4")]);
+}
+
 /// By its panel alone, as photographs of the box are.
 #[test]
 fn cornell_path_traced() {
