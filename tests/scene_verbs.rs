@@ -3,8 +3,9 @@
 mod support;
 
 use glam::Vec3;
+use quincunx::scene::procedural::{self, Made};
 use quincunx::scene::{self, Scene, glb, gltf};
-use quincunx::scene::{LightKind, Texture};
+use quincunx::scene::{AnimationChoice, LightKind, Texture};
 use serde_json::{Value, json};
 use support::gltf_file::{GltfFile, U8};
 use support::program::Program;
@@ -141,14 +142,11 @@ fn export_writes_a_whole_glb_or_nothing() {
     let said = program.run(&["scene", "export", "cornell", "-o", &path]).fine().out;
     assert!(said.contains("32 triangles"), "{said}");
     let bytes = std::fs::read(&path).unwrap();
-    assert_eq!(bytes, glb::encode(&scene::load("cornell", 1).unwrap()).unwrap());
+    assert_eq!(bytes, encoded("cornell"));
     assert_eq!(inspected(&program, &path)["triangles"], 32);
     let other = program.path("other.glb");
     program.run(&["scene", "export", "lamps:objects=3,lights=2", "-o", &other, "--seed", "9"]).fine();
-    assert_ne!(
-        std::fs::read(&other).unwrap(),
-        glb::encode(&scene::load("lamps:objects=3,lights=2", 1).unwrap()).unwrap()
-    );
+    assert_ne!(std::fs::read(&other).unwrap(), encoded("lamps:objects=3,lights=2"));
 
     for (arguments, words) in [
         (["cornell", "-o", "box.gltf"], ["box.gltf", "written as .glb"]),
@@ -162,12 +160,18 @@ fn export_writes_a_whole_glb_or_nothing() {
     }
 }
 
+/// The bytes of a built-in scene of seed 1.
+fn encoded(spec: &str) -> Vec<u8> {
+    let Made { scene, spins } = procedural::open(spec, 1).unwrap().unwrap();
+    glb::encode(&scene, &spins).unwrap()
+}
+
 /// The scene, written and read.
 fn read_back(spec: &str) -> (Scene, Scene) {
     let made = scene::load(spec, 1).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.glb");
-    std::fs::write(&path, glb::encode(&made).unwrap()).unwrap();
+    std::fs::write(&path, encoded(spec)).unwrap();
     let read = gltf::load(&path).unwrap();
     (made, read)
 }
@@ -181,7 +185,7 @@ fn uses_texture(scene: &Scene, material: usize) -> bool {
 
 #[test]
 fn what_is_read_back_is_what_was_written() {
-    for spec in ["cornell", "lamps:objects=40,lights=30", "hall:triangles=20000"] {
+    for spec in ["cornell", "lamps:objects=40,lights=30", "hall:triangles=20000", "fence:alpha=mask"] {
         let (made, read) = read_back(spec);
         let textured: Vec<bool> = (0..read.materials.len()).map(|material| uses_texture(&read, material)).collect();
         assert_eq!(read.warnings, [] as [&str; 0], "{spec}");
@@ -235,11 +239,33 @@ fn what_is_read_back_is_what_was_written() {
     }
 }
 
+#[test]
+fn an_exported_animation_turns_as_the_scene_does() {
+    let spec = "fence:lights=9";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fence.glb");
+    std::fs::write(&path, encoded(spec)).unwrap();
+    let made = scene::open(spec, 1, &AnimationChoice::All).unwrap();
+    let read = gltf::Model::open(&path, &AnimationChoice::All).unwrap();
+    let places = |scene: Scene| scene.draws.iter().map(|draw| draw.world_from_object).collect::<Vec<_>>();
+    let rest = places(made.pose(0.0).unwrap());
+    for (time_s, moved) in [(0.0, 0), (0.7, 1), (3.0, 1), (59.9, 1), (100.0, 1)] {
+        let [made, read] = [places(made.pose(time_s).unwrap()), places(read.pose(time_s).unwrap())];
+        assert_eq!(made, read, "{time_s} s");
+        assert_eq!(made.iter().zip(&rest).filter(|(now, rest)| now != rest).count(), moved, "{time_s} s");
+    }
+    let still = scene::open(spec, 1, &AnimationChoice::None).unwrap();
+    assert_eq!(places(still.pose(0.7).unwrap()), rest);
+    assert_eq!(scene::open(spec, 1, &AnimationChoice::One("door".to_owned())).unwrap_err().exit_code(), 2);
+}
+
 /// The box's camera and normals lie along the axes, where making unit length changes nothing: the same bits. The others'
 /// last bits move a normal by one of its 65535 steps here and there, or an edge into another pixel.
 #[test]
 fn an_exported_scene_gives_the_same_picture() {
-    for (spec, most_pixels) in [("cornell", 0), ("lamps:objects=40,lights=30", 10), ("hall:triangles=20000", 10)] {
+    for (spec, most_pixels) in
+        [("cornell", 0), ("lamps:objects=40,lights=30", 10), ("hall:triangles=20000", 10), ("fence", 10)]
+    {
         let (made, read) = read_back(spec);
         let changes = [("size", "160x90"), ("vpls", "64")];
         let [made, read] = [made, read].map(|scene| {

@@ -98,6 +98,11 @@ impl Curve {
         self.times_s[self.times_s.len() - 1]
     }
 
+    /// When the keys are, seconds, ascending.
+    pub fn times_s(&self) -> &[f32] {
+        &self.times_s
+    }
+
     /// The values at the keys, without tangents.
     pub fn key_values(&self) -> impl Iterator<Item = &[f32]> {
         (0..self.times_s.len()).map(|key| self.key_value(key))

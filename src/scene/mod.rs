@@ -34,8 +34,7 @@ pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 /// What a name or a path stands for, read once; a scene at any time.
 #[derive(Debug)]
 pub enum Model {
-    /// A built-in scene: the same at all times.
-    BuiltIn(Box<Scene>),
+    BuiltIn(Box<procedural::Made>),
     File(Box<gltf::Model>),
 }
 
@@ -78,11 +77,8 @@ pub struct Scene {
 ///
 /// Errors: no such scene, impossible parameters, a broken file, no such animation (exit code 2).
 pub fn open(spec: &str, seed: u64, choice: &AnimationChoice) -> Result<Model> {
-    if let Some(scene) = Stage::begin("making the scene").over(|| procedural::build(spec, seed)) {
-        return match choice {
-            AnimationChoice::One(name) => Err(gltf::no_such_animation(name, [].into_iter())),
-            AnimationChoice::All | AnimationChoice::None => Ok(Model::BuiltIn(Box::new(scene?))),
-        };
+    if let Some(made) = Stage::begin("making the scene").over(|| procedural::open(spec, seed)) {
+        return Ok(Model::BuiltIn(Box::new(made?.playing(choice)?)));
     }
     Ok(Model::File(Box::new(gltf::Model::open(file(spec)?, choice)?)))
 }
@@ -125,7 +121,7 @@ impl Model {
     /// Errors: something leaves the range of 32-bit floats then (exit code 2).
     pub fn pose(&self, time_s: f64) -> Result<Scene> {
         match self {
-            Self::BuiltIn(scene) => Ok(scene.as_ref().clone()),
+            Self::BuiltIn(made) => Ok(made.as_ref().clone().into_pose(time_s)),
             Self::File(model) => model.pose(time_s),
         }
     }
@@ -135,10 +131,7 @@ impl Model {
     /// Errors: as `pose`; what is drawn changes meanwhile, not only its place (exit code 2).
     pub fn exposed(&self, [open_s, close_s]: [f64; 2]) -> Result<Scene> {
         let scene = self.pose(open_s)?;
-        match self {
-            Self::File(_) if open_s < close_s => scene.closing_as(self.pose(close_s)?),
-            _ => Ok(scene),
-        }
+        if open_s < close_s { scene.closing_as(self.pose(close_s)?) } else { Ok(scene) }
     }
 
     /// `pose` of a model that is not needed any more, without copies.
@@ -146,7 +139,7 @@ impl Model {
     /// Errors: as `pose`.
     pub fn into_pose(self, time_s: f64) -> Result<Scene> {
         match self {
-            Self::BuiltIn(scene) => Ok(*scene),
+            Self::BuiltIn(made) => Ok(made.into_pose(time_s)),
             Self::File(model) => model.into_pose(time_s),
         }
     }

@@ -3,7 +3,8 @@
 use crate::cli;
 use crate::error::{Error, Result};
 use crate::report::whole_file::write_whole;
-use crate::scene::{glb, procedural};
+use crate::scene::glb;
+use crate::scene::procedural::{self, Made};
 use crate::units::Bytes;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::io::Write;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 /// The sub-verb with its arguments.
 pub fn command() -> Command {
     Command::new("export")
-        .about("Write a built-in scene as a .glb, with its materials, textures, lights and cameras")
+        .about("Write a built-in scene as a .glb, with its materials, textures, lights, cameras and animations")
         .arg(
             Arg::new("scene")
                 .value_name("NAME")
@@ -40,12 +41,12 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb")) {
         return Err(Error::request(format!("-o {}: scenes are written as .glb", path.display())));
     }
-    let scene = procedural::build(spec, super::seed(matches)).unwrap_or_else(|| {
+    let Made { scene, spins } = procedural::open(spec, super::seed(matches)).unwrap_or_else(|| {
         let names: Vec<&str> = procedural::ALL.iter().map(|built_in| built_in.name).collect();
         Err(Error::request(format!("scene {spec}: there is no built-in scene of that name"))
             .note(format!("built-in scenes: {}", names.join(", "))))
     })?;
-    let bytes = glb::encode(&scene).map_err(|error| error.within(spec))?;
+    let bytes = glb::encode(&scene, &spins).map_err(|error| error.within(spec))?;
     write_whole(path, |out| out.write_all(&bytes))?;
     cli::print(&format!("{}: {}, {} triangles\n", path.display(), Bytes(bytes.len() as u64), scene.triangle_count()))
 }

@@ -1,7 +1,7 @@
 //! `quincunx scene list`: the scenes that the program makes itself.
 
 use crate::error::Result;
-use crate::scene::procedural;
+use crate::scene::procedural::{self, Parameter};
 use clap::Command;
 use std::fmt::Write;
 
@@ -16,9 +16,8 @@ pub fn run() -> Result<()> {
     for scene in procedural::ALL {
         writeln!(text, "{:<8} {}", scene.name, scene.description).expect("writing to a string");
         for parameter in scene.parameters {
-            let [least, greatest] = parameter.range;
-            let (key, default, description) = (parameter.key, parameter.default, parameter.description);
-            writeln!(text, "         {}:{key}=N  {description}; {least} to {greatest}, default {default}", scene.name)
+            let Parameter { key, description, choice } = parameter;
+            writeln!(text, "         {}:{key}=  {description}; {}", scene.name, choice.described())
                 .expect("writing to a string");
         }
     }

@@ -58,6 +58,16 @@ impl Binary {
         accessor
     }
 
+    /// The times of keyframes, ascending, whose ends glTF wants to know.
+    pub fn times(&mut self, times_s: &[f32]) -> usize {
+        let view = self.view(bytemuck::cast_slice(times_s), None);
+        let mut accessor =
+            json!({ "bufferView": view, "componentType": FLOAT, "count": times_s.len(), "type": "SCALAR" });
+        (accessor["min"], accessor["max"]) = (json!([times_s.first()]), json!([times_s.last()]));
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
     pub fn indices(&mut self, indices: &[u32]) -> usize {
         let view = self.view(bytemuck::cast_slice(indices), Some(ELEMENT_ARRAY_BUFFER));
         self.accessors.push(

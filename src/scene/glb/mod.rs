@@ -12,6 +12,7 @@ mod materials;
 
 use self::binary::Binary;
 use crate::error::{Error, Result};
+use crate::scene::procedural::Spin;
 use crate::scene::{Camera, Light, LightKind, Mesh, Projection, Scene};
 use crate::units::Bytes;
 use glam::{Mat4, Vec3};
@@ -19,10 +20,10 @@ use serde_json::{Map, Value, json};
 
 const LIGHTS: &str = "KHR_lights_punctual";
 
-/// `scene`, which a generator made, as the bytes of a .glb.
+/// `scene`, which a generator made, and what turns in it, each as an animation, as the bytes of a .glb.
 ///
 /// Errors: more than the 4 GiB that the format can hold, or an image that cannot be encoded (exit code 2).
-pub fn encode(scene: &Scene) -> Result<Vec<u8>> {
+pub fn encode(scene: &Scene, spins: &[Spin]) -> Result<Vec<u8>> {
     let mut binary = Binary::default();
     let meshes: Vec<Value> = scene.meshes.iter().map(|mesh| mesh_json(scene, mesh, &mut binary)).collect();
     let looks = materials::encode(scene, &mut binary)?;
@@ -30,8 +31,12 @@ pub fn encode(scene: &Scene) -> Result<Vec<u8>> {
     let mut nodes: Vec<Value> = scene
         .draws
         .iter()
-        .map(|draw| {
-            let mut node = placed(draw.world_from_object);
+        .enumerate()
+        .map(|(index, draw)| {
+            let mut node = match spins.iter().find(|spin| spin.draw == index) {
+                Some(spin) => turning(spin),
+                None => placed(draw.world_from_object),
+            };
             node.insert("mesh".to_owned(), json!(draw.mesh));
             node.insert("name".to_owned(), json!(scene.meshes[draw.mesh].name));
             Value::Object(node)
@@ -63,6 +68,7 @@ pub fn encode(scene: &Scene) -> Result<Vec<u8>> {
     }
     let all_nodes: Vec<usize> = (0..nodes.len()).collect();
     let cameras = scene.cameras.iter().map(camera_json).collect();
+    let animations = spins.iter().map(|spin| animation_json(spin, &mut binary)).collect();
     let Binary { bytes, views, accessors } = binary;
     // glTF has no empty arrays.
     for (key, array) in [
@@ -75,6 +81,7 @@ pub fn encode(scene: &Scene) -> Result<Vec<u8>> {
         ("samplers", looks.samplers),
         ("images", looks.images),
         ("cameras", cameras),
+        ("animations", animations),
         ("accessors", accessors),
         ("bufferViews", views),
         ("buffers", vec![json!({ "byteLength": bytes.len() })]),
@@ -136,6 +143,24 @@ fn placed(world_from_node: Mat4) -> Map<String, Value> {
         node.insert("matrix".to_owned(), json!(world_from_node.to_cols_array()));
     }
     node
+}
+
+/// A node that an animation turns: it may have no matrix (glTF 2.0, section 3.5.3).
+fn turning(spin: &Spin) -> Map<String, Value> {
+    let rotation = spin.curve.rotation_at(0.0).to_array();
+    let parts = json!({ "translation": spin.translation.to_array(), "rotation": rotation });
+    if let Value::Object(node) = parts { node } else { unreachable!("it is an object") }
+}
+
+/// `Spin::draw` is the index of its node too: draws come first.
+fn animation_json(spin: &Spin, binary: &mut Binary) -> Value {
+    let rotations: Vec<f32> = spin.curve.key_values().flatten().copied().collect();
+    let (input, output) = (binary.times(spin.curve.times_s()), binary.vectors(&rotations, "VEC4"));
+    json!({
+        "name": spin.name,
+        "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
+        "channels": [{ "sampler": 0, "target": { "node": spin.draw, "path": "rotation" } }],
+    })
 }
 
 /// A light shines along its node's -z.

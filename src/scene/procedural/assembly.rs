@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
+use super::made::Spin;
 use super::patch::{self, Patch};
 use super::pictures::{Sheet, Texel};
 use crate::scene::{Camera, ColorSpace, Draw, Image, Light, LightKind, Material, Projection, Sampler, Scene, Texture};
@@ -20,6 +21,8 @@ pub struct Maps {
 #[derive(Default)]
 pub struct Assembly {
     pub scene: Scene,
+    /// What turns in it.
+    pub spins: Vec<Spin>,
 }
 
 impl Assembly {
@@ -69,6 +72,12 @@ impl Assembly {
     /// Puts a mesh somewhere.
     pub fn draw(&mut self, mesh: usize, world_from_object: Mat4) {
         self.scene.draws.push(Draw { mesh, world_from_object });
+    }
+
+    /// Puts a mesh somewhere where it turns about an axis upward, once in `turn_s` seconds.
+    pub fn spin(&mut self, name: &'static str, mesh: usize, at: DVec3, turn_s: u32) {
+        self.spins.push(Spin::new(name, self.scene.draws.len(), at.as_vec3(), turn_s));
+        self.draw(mesh, shifted(at));
     }
 
     /// Adds a point light: candela per channel, metres.

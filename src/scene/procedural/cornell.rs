@@ -15,7 +15,7 @@ use super::Values;
 use super::assembly::Assembly;
 use super::patch::{Detail, Patch};
 use super::shapes::{Mapping, face};
-use crate::scene::{Material, Scene};
+use crate::scene::Material;
 
 const WIDTH_CM: f64 = 556.0;
 const HEIGHT_CM: f64 = 548.8;
@@ -45,7 +45,7 @@ fn block(height: f64, top: [[f64; 2]; 4]) -> Vec<Patch> {
 }
 
 /// The box; it has no parameters and the seed changes nothing.
-pub fn make(_values: &Values, _seed: u64) -> Scene {
+pub fn make(_values: &Values, _seed: u64) -> Assembly {
     let mut assembly = Assembly::default();
     let white = assembly.material(Material::diffuse("white", vec3(0.73, 0.73, 0.71)));
     let red = assembly.material(Material::diffuse("red", vec3(0.63, 0.065, 0.05)));
@@ -83,5 +83,5 @@ pub fn make(_values: &Values, _seed: u64) -> Scene {
     // The published lens: 35 mm in front of a film of 25 mm.
     let y_fov = 0.686_43;
     assembly.camera("camera", metres(278.0, 273.0, -800.0), metres(278.0, 273.0, 0.0), y_fov);
-    assembly.scene
+    assembly
 }

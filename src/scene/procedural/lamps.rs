@@ -12,7 +12,7 @@ use super::patch::{Detail, Patch, sin_cos_turns};
 use super::patterns;
 use super::shapes::{Curve, Mapping, Turning, arch, cuboid, face_of, prism, sphere, torus, turned, turned_with};
 use crate::sampling::pcg::Pcg32;
-use crate::scene::{Material, Scene};
+use crate::scene::Material;
 
 /// Side of the square that an object has for itself.
 const CELL_M: f64 = 1.6;
@@ -22,7 +22,7 @@ const RANGE_M: f32 = 4.0;
 const INTENSITY_CD: f32 = 7.0;
 
 /// The scene for `objects` and `lights`.
-pub fn make(values: &Values, seed: u64) -> Scene {
+pub fn make(values: &Values, seed: u64) -> Assembly {
     let (object_count, light_count) = (values.get("objects") as u32, values.get("lights") as u32);
     let mut random = Pcg32::new(seed, 1);
     let mut assembly = Assembly::default();
@@ -53,7 +53,7 @@ pub fn make(values: &Values, seed: u64) -> Scene {
     assembly.camera("raised", dvec3(-0.25 * far, 0.62 * far + 1.2, far + 3.0), dvec3(0.0, 0.2, 0.12 * far), 0.72);
     assembly.camera("above", dvec3(0.0, 2.6 * far, 0.01), DVec3::ZERO, 0.8);
     assembly.camera("low", dvec3(0.35 * far, 0.9, far + 2.0), dvec3(0.0, 0.5, 0.0), 0.8);
-    assembly.scene
+    assembly
 }
 
 /// Centres of `count` different cells of the smallest square that has so many, each coordinate -0.5 to 0.5.

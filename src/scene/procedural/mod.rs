@@ -2,8 +2,10 @@
 
 mod assembly;
 mod cornell;
+mod fence;
 mod hall;
 mod lamps;
+mod made;
 mod patch;
 mod patterns;
 mod pictures;
@@ -13,20 +15,61 @@ mod shapes;
 mod checks;
 
 use crate::error::{Error, Result};
-use crate::scene::{Scene, normal_groups};
+use crate::scene::{AnimationChoice, Scene, normal_groups};
+use assembly::Assembly;
 use rayon::prelude::*;
+
+pub use made::{Made, Spin};
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
 
-/// One number that a scene can be asked for.
+/// One thing that a scene can be asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     pub key: &'static str,
     pub description: &'static str,
-    pub default: u64,
-    /// Least and greatest value.
-    pub range: [u64; 2],
+    pub choice: Choice,
+}
+
+/// What a parameter may be.
+#[derive(Clone, Copy, Debug)]
+pub enum Choice {
+    /// A whole number between the least and the greatest.
+    Number { default: u64, range: [u64; 2] },
+    /// One of these; the first by default.
+    Word(&'static [&'static str]),
+}
+
+impl Choice {
+    /// What may stand for it, and what does where nothing is said.
+    pub fn described(&self) -> String {
+        match self {
+            Self::Number { default, range: [least, greatest] } => format!("{least} to {greatest}, default {default}"),
+            Self::Word(words) => format!("{}, default {}", words.join(" or "), words[0]),
+        }
+    }
+
+    /// The number, or the place of the word.
+    fn default(&self) -> u64 {
+        if let Self::Number { default, .. } = self { *default } else { 0 }
+    }
+
+    fn parse(&self, text: &str) -> Option<u64> {
+        match self {
+            Self::Number { range: [least, greatest], .. } => {
+                text.parse().ok().filter(|value| (least..=greatest).contains(&value))
+            }
+            Self::Word(words) => words.iter().position(|word| *word == text).map(|place| place as u64),
+        }
+    }
+
+    fn text(&self, value: u64) -> String {
+        match self {
+            Self::Number { .. } => value.to_string(),
+            Self::Word(words) => words[value as usize].to_owned(),
+        }
+    }
 }
 
 /// A scene that the program can make.
@@ -35,7 +78,7 @@ pub struct BuiltIn {
     /// One line.
     pub description: &'static str,
     pub parameters: &'static [Parameter],
-    make: fn(&Values, u64) -> Scene,
+    make: fn(&Values, u64) -> Assembly,
 }
 
 /// All of them, in the order in which help lists them.
@@ -52,8 +95,7 @@ pub const ALL: &[BuiltIn] = &[
         parameters: &[Parameter {
             key: "triangles",
             description: "how many triangles all draws have together, within 5 %",
-            default: 256_000,
-            range: [hall::LEAST_TRIANGLES, 4_000_000],
+            choice: Choice::Number { default: 256_000, range: [hall::LEAST_TRIANGLES, 4_000_000] },
         }],
         make: hall::make,
     },
@@ -61,10 +103,32 @@ pub const ALL: &[BuiltIn] = &[
         name: "lamps",
         description: "objects on a plane under many coloured lamps (after Kircher & Lawrance 2009, figure 8)",
         parameters: &[
-            Parameter { key: "objects", description: "how many objects stand there", default: 101, range: [1, 5000] },
-            Parameter { key: "lights", description: "how many point lights hang there", default: 81, range: [1, 5000] },
+            Parameter {
+                key: "objects",
+                description: "how many objects stand there",
+                choice: Choice::Number { default: 101, range: [1, 5000] },
+            },
+            Parameter {
+                key: "lights",
+                description: "how many point lights hang there",
+                choice: Choice::Number { default: 81, range: [1, 5000] },
+            },
         ],
         make: lamps::make,
+    },
+    BuiltIn {
+        name: "fence",
+        description: "a yard at night behind chain-link and barbed wire: strings of lamps, handrails, layers of glass, a \
+                      rotor that turns (after Kircher & Lawrance 2009, figures 6, 9 and 10)",
+        parameters: &[
+            Parameter {
+                key: "lights",
+                description: "how many point lights hang there",
+                choice: Choice::Number { default: 122, range: [1, 5000] },
+            },
+            Parameter { key: "alpha", description: "how wire is drawn", choice: Choice::Word(&["blend", "mask"]) },
+        ],
+        make: fence::make,
     },
 ];
 
@@ -80,7 +144,8 @@ impl Values {
 
 impl BuiltIn {
     fn values(&self, arguments: Option<&str>) -> Result<Values> {
-        let mut values: Vec<_> = self.parameters.iter().map(|parameter| (parameter.key, parameter.default)).collect();
+        let mut values: Vec<_> =
+            self.parameters.iter().map(|parameter| (parameter.key, parameter.choice.default())).collect();
         for argument in arguments.into_iter().flat_map(|arguments| arguments.split(',')) {
             let Some((key, text)) = argument.split_once('=') else {
                 return Err(self.refusal(&format!("'{argument}' is not key=value")));
@@ -88,11 +153,12 @@ impl BuiltIn {
             let Some(index) = self.parameters.iter().position(|parameter| parameter.key == key) else {
                 return Err(self.refusal(&format!("there is no parameter '{key}'")));
             };
-            let [least, greatest] = self.parameters[index].range;
-            match text.parse::<u64>() {
-                Ok(value) if (least..=greatest).contains(&value) => values[index].1 = value,
-                _ => return Err(self.refusal(&format!("{key}={text}: must be a whole number, {least} to {greatest}"))),
-            }
+            let choice = self.parameters[index].choice;
+            let Some(value) = choice.parse(text) else {
+                let kind = if let Choice::Number { .. } = choice { "a whole number, " } else { "" };
+                return Err(self.refusal(&format!("{key}={text}: must be {kind}{}", choice.described())));
+            };
+            values[index].1 = value;
         }
         Ok(Values(values))
     }
@@ -103,32 +169,44 @@ impl BuiltIn {
             return error.note(format!("{} takes no parameters", self.name));
         }
         self.parameters.iter().fold(error, |error, parameter| {
-            let Parameter { key, description, default, range: [least, greatest] } = parameter;
-            error.note(format!("{key}={least} to {greatest}, default {default}: {description}"))
+            let Parameter { key, description, choice } = parameter;
+            error.note(format!("{key}={}: {description}", choice.described()))
         })
+    }
+
+    /// What stands after the colon of a scene's name: every parameter.
+    fn settings(&self, values: &Values) -> String {
+        let one =
+            |parameter: &Parameter| format!("{}={}", parameter.key, parameter.choice.text(values.get(parameter.key)));
+        self.parameters.iter().map(one).collect::<Vec<_>>().join(",")
     }
 }
 
 /// Makes the scene that `spec` names: `name` or `name:key=value,key=value`.
 ///
-/// None where no built-in scene has that name: it may be a file. The error lists the parameters with their ranges where
-/// one is unknown, out of range or not a number. The same spec and seed give the same bytes everywhere.
-pub fn build(spec: &str, seed: u64) -> Option<Result<Scene>> {
+/// None where no built-in scene has that name: it may be a file. The error lists the parameters with what they may be
+/// where one is unknown or not that. The same spec and seed give the same bytes everywhere.
+pub fn open(spec: &str, seed: u64) -> Option<Result<Made>> {
     let (name, arguments) = match spec.split_once(':') {
         Some((name, arguments)) => (name, Some(arguments)),
         None => (spec, None),
     };
     let built_in = ALL.iter().find(|built_in| built_in.name == name)?;
-    Some(built_in.values(arguments).map(|values| {
-        let mut scene = (built_in.make)(&values, seed);
+    let made = built_in.values(arguments).and_then(|values| {
+        let Assembly { mut scene, spins } = (built_in.make)(&values, seed);
         scene.meshes.par_iter_mut().for_each(normal_groups::assign);
-        let settings: Vec<_> = values.0.iter().map(|(key, value)| format!("{key}={value}")).collect();
-        let settings = settings.join(",");
+        let settings = built_in.settings(&values);
         scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };
         let identity = format!("{} seed={seed} version={GENERATOR_VERSION}", scene.name);
         scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
-        scene
-    }))
+        Made { scene, spins }.playing(&AnimationChoice::All)
+    });
+    Some(made)
+}
+
+/// The scene of `open` at 0 s.
+pub fn build(spec: &str, seed: u64) -> Option<Result<Scene>> {
+    Some(open(spec, seed)?.map(|made| made.into_pose(0.0)))
 }
 
 #[cfg(test)]
@@ -136,6 +214,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::scene::shell::Shell;
     use crate::scene::{AlphaMode, Material};
 
     fn made(spec: &str, seed: u64) -> Scene {
@@ -204,15 +283,35 @@ mod tests {
     }
 
     #[test]
+    fn the_fence_has_its_lamps_its_wire_its_glass_and_a_rotor_that_casts_shadows() {
+        let Made { scene, spins } = open("fence", 1).expect("the name is known").expect("it needs no parameters");
+        assert_eq!((scene.lights.len(), scene.name.as_str()), (122, "fence:lights=122,alpha=blend"));
+        let count = |scene: &Scene, is: fn(&AlphaMode) -> bool| {
+            scene.materials.iter().filter(|material| is(&material.alpha)).count()
+        };
+        let is_mask = |alpha: &AlphaMode| matches!(alpha, AlphaMode::Mask { .. });
+        assert_eq!((count(&scene, |alpha| *alpha == AlphaMode::Blend), count(&scene, is_mask)), (9, 0));
+        let masked = made("fence:alpha=mask,lights=1", 1);
+        assert_eq!((count(&masked, |alpha| *alpha == AlphaMode::Blend), count(&masked, is_mask)), (7, 2));
+        assert_eq!(masked.lights.len(), 1);
+        checks::assert_scene_is_sound(&masked);
+        let [spin] = spins.as_slice() else { panic!("{} things turn", spins.len()) };
+        assert!(Shell::of(&scene.meshes[scene.draws[spin.draw].mesh]).is_closed());
+        // Above the rotor, so that its shadow falls on what is below.
+        assert!(scene.lights[0].position.y > spin.translation.y + 1.0);
+    }
+
+    #[test]
     fn bad_parameters_are_refused_with_what_would_work() {
         assert!(build("sponza.glb", 1).is_none());
         for (spec, said) in [
-            ("lamps:lights=0", "lights=0: must be a whole number, 1 to 5000"),
+            ("lamps:lights=0", "lights=0: must be a whole number, 1 to 5000, default 81"),
             ("lamps:lights=", "lights=: must be"),
             ("lamps:lamp=3", "no parameter 'lamp'"),
             ("hall:80000", "'80000' is not key=value"),
             ("hall:triangles=1", "triangles=1: must be"),
             ("cornell:width=3", "no parameter 'width'"),
+            ("fence:alpha=solid", "alpha=solid: must be blend or mask, default blend"),
         ] {
             let error = build(spec, 1).expect("the name is known").expect_err(spec);
             assert_eq!(error.exit_code(), 2);

@@ -278,3 +278,54 @@ pub fn checker([u, v]: [f32; 2], tiles: u32, colors: [[f32; 3]; 2], seed: u32) -
         ..Texel::default()
     }
 }
+
+/// Part of a texel, 0 to 1, that a line covers: `distance` from its middle, `half` as wide, both in units of which the
+/// picture has `texels`.
+fn covered(distance: f32, half: f32, texels: f32) -> f32 {
+    ((half - distance) * texels + 0.5).clamp(0.0, 1.0)
+}
+
+/// Chain-link of galvanised wire: four lozenges in each direction, alpha 0 between; `size_px` of the picture, for smooth
+/// edges.
+pub fn chain_link([u, v]: [f32; 2], size_px: u32) -> Texel {
+    const HALF_WIRE: f32 = 0.055;
+    let (x, y) = (4.0 * u, 4.0 * v);
+    // Distances across both diagonals to the nearest wire.
+    let across = |along: f32| ((along - along.floor()) - 0.5).abs() * std::f32::consts::FRAC_1_SQRT_2;
+    let (rising, falling) = (across(x + y), across(x - y));
+    let distance = rising.min(falling);
+    // A wire is round: brightest along its middle; where two cross, one lies in the other's shade.
+    let round = 1.0 - (distance / HALF_WIRE).min(1.0) * 0.55;
+    let crossed = if rising.max(falling) < 1.8 * HALF_WIRE { 0.8 } else { 1.0 };
+    let shade = 0.78 * round * crossed;
+    Texel {
+        color: [shade, shade * 1.01, shade * 1.03],
+        alpha: covered(distance, HALF_WIRE, size_px as f32 * 0.25),
+        roughness: 0.45,
+        ..Texel::default()
+    }
+}
+
+/// Three strands of barbed wire along u, alpha 0 between; twice as wide as high.
+pub fn barbed_wire([u, v]: [f32; 2], size_px: u32) -> Texel {
+    // In heights of the picture.
+    let x = 2.0 * u;
+    let mut distance = f32::INFINITY;
+    for (strand, middle) in [0.2_f32, 0.5, 0.8].into_iter().enumerate() {
+        // Two wires wound about each other, six times in the picture, and a knot of four points every quarter.
+        let wave = 0.012 * (triangle_wave(6.0 * u + 0.3 * strand as f32) * 2.0 - 1.0);
+        distance = distance.min((v - middle - wave).abs()).min((v - middle + wave).abs());
+        let along = (4.0 * u + 0.37 * strand as f32).fract() * 0.5 - 0.25;
+        let (p, q) = (along + (v - middle), along - (v - middle));
+        if along.abs() < 0.065 && (v - middle).abs() < 0.085 {
+            distance = distance.min(0.6 * p.abs()).min(0.6 * q.abs());
+        }
+    }
+    let shade = 0.66 + 0.12 * triangle_wave(12.0 * x);
+    Texel {
+        color: [shade, shade * 0.97, shade * 0.93],
+        alpha: covered(distance, 0.013, size_px as f32),
+        roughness: 0.5,
+        ..Texel::default()
+    }
+}

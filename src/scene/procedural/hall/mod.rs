@@ -19,7 +19,6 @@ use super::Values;
 use super::assembly::{Assembly, place};
 use super::patch::{Detail, Patch, triangle_count};
 use super::shapes::{Mapping, face_of};
-use crate::scene::Scene;
 
 /// With fewer the arches would not be round.
 pub const LEAST_TRIANGLES: u64 = 5000;
@@ -160,7 +159,7 @@ pub fn planned_triangle_count(wanted: u64) -> u64 {
 }
 
 /// The hall for `triangles`; the seed chooses the grain of its stones.
-pub fn make(values: &Values, seed: u64) -> Scene {
+pub fn make(values: &Values, seed: u64) -> Assembly {
     let mut assembly = Assembly::default();
     let materials = materials::add(&mut assembly, seed as u32);
     for piece in plan(&materials, values.get("triangles")) {
@@ -179,7 +178,7 @@ pub fn make(values: &Values, seed: u64) -> Scene {
     ] {
         assembly.camera(name, eye, target, y_fov);
     }
-    assembly.scene
+    assembly
 }
 
 /// Every lamp has its light a little outside of its glass, which would else stand in the way of every shadow ray.
