@@ -134,6 +134,8 @@ struct Lens<'a> {
 struct Clipped {
     at: DVec4,
     error: DVec4,
+    /// How far a picture that is moved moves x and y: all points alike, which turns no triangle round.
+    reach: DVec2,
 }
 
 impl Clipped {
@@ -147,6 +149,7 @@ impl Clipped {
     /// By how much each of them may be wrong.
     fn errors(&self) -> [f64; 6] {
         let [x, y, z, w] = self.error.to_array();
+        let [x, y] = [x + self.reach.x, y + self.reach.y];
         [w + x, w + x, w + y, w + y, w + z, z]
     }
 }
@@ -177,13 +180,16 @@ impl<'a> Lens<'a> {
 
     fn clipped(&self, position: Vec3) -> Clipped {
         let position = position.as_dvec3().extend(1.0);
-        let at = self.clip_from_object * position;
-        let mut error = ROUNDING * (self.magnitude_from_object * position.abs());
-        if self.coverage == Coverage::Anywhere {
-            // Half a pixel: a frame that is moved by less is clipped elsewhere.
-            error += (at.w.abs() / self.extent_px).extend(0.0).extend(0.0);
-        }
-        Clipped { at, error }
+        self.point(self.clip_from_object * position, ROUNDING * (self.magnitude_from_object * position.abs()))
+    }
+
+    fn point(&self, at: DVec4, error: DVec4) -> Clipped {
+        let reach = match self.coverage {
+            Coverage::Middle => DVec2::ZERO,
+            // Half a pixel.
+            Coverage::Anywhere => at.w.abs() / self.extent_px,
+        };
+        Clipped { at, error, reach }
     }
 
     /// True: no triangle of the cluster can make a fragment. `indices`: the cluster's.
@@ -200,7 +206,7 @@ impl<'a> Lens<'a> {
         indices.chunks_exact(3).all(|triangle| {
             let corners = [0, 1, 2].map(|corner| {
                 let position = self.positions[triangle[corner] as usize];
-                Clipped { at: self.clip_from_object * position.as_dvec3().extend(1.0), error }
+                self.point(self.clip_from_object * position.as_dvec3().extend(1.0), error)
             });
             outside_one_plane(&corners) || self.faces_away(&corners)
         })
@@ -334,7 +340,7 @@ mod tests {
         }
         let clip = view.clip_from_world().as_dmat4() * draw.world_from_object.as_dmat4();
         let mut polygon: Vec<DVec4> = [a, b, c].map(|corner| clip * corner.extend(1.0)).to_vec();
-        let inside = |at: DVec4, plane: usize| Clipped { at, error: DVec4::ZERO }.inside()[plane];
+        let inside = |at: DVec4, plane: usize| Clipped { at, error: DVec4::ZERO, reach: DVec2::ZERO }.inside()[plane];
         for plane in 0..6 {
             let corners = std::mem::take(&mut polygon);
             for (index, here) in corners.iter().enumerate() {
