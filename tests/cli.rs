@@ -345,7 +345,7 @@ fn devices_and_scenes_are_listed() {
     }
     assert!(program.run(&["devices"]).fine().out.starts_with("0: "));
     let scenes = program.run(&["scene", "list"]).fine().out;
-    for name in ["cornell", "hall", "lamps", "hall:triangles=N"] {
+    for name in ["cornell", "hall", "lamps", "hall:triangles=N", "fence:alpha=WORD"] {
         assert!(scenes.contains(name), "{scenes}");
     }
     assert_eq!(program.files(), [] as [&str; 0]);

@@ -1,7 +1,7 @@
 //! `quincunx scene list`: the scenes that the program makes itself.
 
 use crate::error::Result;
-use crate::scene::procedural::{self, Parameter};
+use crate::scene::procedural::{self, Choice, Parameter};
 use clap::Command;
 use std::fmt::Write;
 
@@ -17,7 +17,8 @@ pub fn run() -> Result<()> {
         writeln!(text, "{:<8} {}", scene.name, scene.description).expect("writing to a string");
         for parameter in scene.parameters {
             let Parameter { key, description, choice } = parameter;
-            writeln!(text, "         {}:{key}=  {description}; {}", scene.name, choice.described())
+            let kind = if let Choice::Number { .. } = choice { "N" } else { "WORD" };
+            writeln!(text, "         {}:{key}={kind}  {description}; {}", scene.name, choice.described())
                 .expect("writing to a string");
         }
     }

@@ -118,8 +118,7 @@ pub const ALL: &[BuiltIn] = &[
     },
     BuiltIn {
         name: "fence",
-        description: "a yard at night behind chain-link and barbed wire: strings of lamps, handrails, layers of glass, a \
-                      rotor that turns (after Kircher & Lawrance 2009, figures 6, 9 and 10)",
+        description: "a yard at night behind chain-link: lamps, handrails, layers of glass, a rotor that turns",
         parameters: &[
             Parameter {
                 key: "lights",
