@@ -10,6 +10,8 @@ layout(constant_id = 63) const uint HAS_TANGENTS = 1;
 layout(constant_id = 64) const uint HAS_EXTENDED = 1;
 // Texel buffers that hold anything.
 layout(constant_id = 65) const uint TEXEL_BUFFERS = 1;
+// 1: buffers hold every level of a picture, and rays read the one that their cone's width asks for; 0: the finest alone.
+layout(constant_id = 68) const uint TEXTURE_CONE = 0;
 
 // Where a material finds one of its textures.
 struct TexelsBlock {
@@ -18,7 +20,7 @@ struct TexelsBlock {
     vec4 v;
     // Word of the first texel in its buffer.
     uint first;
-    // Width and height in pixels; 0: there is no texture, which is white.
+    // Width and height of the finest level in pixels; 0: there is no texture, which is white.
     uint width_px;
     uint height_px;
     // TEXELS_ bits.
@@ -28,6 +30,10 @@ struct TexelsBlock {
 // Bits 0 and 1: the buffer. 2 and 3: how u is wrapped, 4 and 5: how v is (WRAP_).
 const uint TEXELS_NEAREST = 64u;
 const uint TEXELS_SRGB = 128u;
+// The sampler chooses among levels, blends two of them, takes the nearest texel of a level that is not the finest.
+const uint TEXELS_LEVELS = 256u;
+const uint TEXELS_BETWEEN_LEVELS = 512u;
+const uint TEXELS_NEAREST_SMALL = 1024u;
 
 const uint WRAP_REPEAT = 0u;
 const uint WRAP_MIRRORED = 1u;

@@ -111,6 +111,15 @@ impl View {
         }
     }
 
+    /// What a pixel sees as a cone, from the eye on: its width there, metres, and by how much it grows a metre along the view.
+    pub fn pixel_cone(&self) -> [f32; 2] {
+        let rows = self.extent.height as f32;
+        match self.camera.projection {
+            Projection::Perspective { y_fov, .. } => [0.0, 2.0 * (0.5 * y_fov).tan() / rows],
+            Projection::Orthographic { y_mag, .. } => [2.0 * y_mag / rows, 0.0],
+        }
+    }
+
     /// The block that shaders read.
     pub fn block(
         &self,

@@ -5,7 +5,7 @@ mod support;
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use quincunx::sampling::sobol;
 use quincunx::scene::{
-    Camera, ColorSpace, Image, Material, Placement, Projection, Sampler, Scene, Texture, TextureSlot, Wrap,
+    Camera, ColorSpace, Image, Material, Placement, Projection, Sampler, Scene, Texture, TextureSlot, Wrap, mipmaps,
 };
 use quincunx::shading::material::{self, MeshPoint};
 use support::boxes::rectangle;
@@ -90,5 +90,48 @@ fn textures_say_what_they_say_on_the_host() {
         }
         // Between two texels a float decides for one or the other.
         assert!(far <= if mag_linear { 0 } else { 2 }, "{wrap_u:?} {wrap_v:?} {color_space:?}: {far} pixels differ");
+    }
+}
+
+/// A cone as wide as two texels reads the second level, as if that were the picture; one as wide as one and a half in the mean of
+/// both sides reads what lies between two levels; one that is narrower than a texel, and a sampler without levels, the finest.
+#[test]
+fn a_cone_reads_the_level_whose_texels_are_as_wide() {
+    let original = |width: u32, height: u32| {
+        let rgba8 = (0..4 * width * height).map(|at| (at * 37 % 251) as u8).collect();
+        Image { name: String::new(), width, height, rgba8 }
+    };
+    let coarser = |image: &Image, level: u32| {
+        let [width, height] = [image.width, image.height].map(|side| (side >> level).max(1));
+        let mut rgba8 = vec![0; 4 * (width * height) as usize];
+        mipmaps::write(image, ColorSpace::Srgb, level..level + 1, &mut rgba8);
+        Image { name: String::new(), width, height, rgba8 }
+    };
+    let seen = |image: Image, sampler: Sampler, level: &str| {
+        let watched = Watched::with_scene(unlit_square(|scene| {
+            scene.images = vec![image.into()];
+            scene.textures = vec![Texture { image: 0, sampler, color_space: ColorSpace::Srgb }];
+            scene.materials[0].base_color_texture = Some(0);
+        }));
+        rendered(&watched, &[("spp", "1"), ("texture-level", level)])
+    };
+    let blended = Sampler { mip_linear: Some(true), ..Sampler::default() };
+    let nearest = Sampler { mip_linear: Some(false), ..Sampler::default() };
+    let finest = Sampler { mip_linear: None, ..Sampler::default() };
+    let (square, wide, small) = (original(2 * SIDE, 2 * SIDE), original(2 * SIDE, SIDE), original(SIDE / 2, SIDE - 1));
+    let of = |image: &Image, level: u32| seen(coarser(image, level), blended, "0");
+    let between = |a: Vec<Vec3>, b: Vec<Vec3>| a.iter().zip(&b).map(|(a, b)| 0.5 * (*a + *b)).collect();
+    let expected: [(&Image, Sampler, Vec<Vec3>); 6] = [
+        (&square, blended, of(&square, 1)),
+        (&square, nearest, of(&square, 1)),
+        (&square, finest, of(&square, 0)),
+        (&wide, blended, between(of(&wide, 0), of(&wide, 1))),
+        (&small, blended, of(&small, 0)),
+        (&original(8 * SIDE, 8 * SIDE), nearest, of(&original(8 * SIDE, 8 * SIDE), 3)),
+    ];
+    for (image, sampler, expected) in expected {
+        let found = seen(image.clone(), sampler, "cone");
+        let off = found.iter().zip(&expected).map(|(a, b)| (*a - *b).abs().max_element()).fold(0f32, f32::max);
+        assert!(off < 1e-4, "{}x{}, {sampler:?}: {off} off", image.width, image.height);
     }
 }

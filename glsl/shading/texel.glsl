@@ -1,6 +1,6 @@
-// Textures for shaders that choose one by material: their finest levels as words of RGBA8, one picture after the other, in
-// storage buffers, because a driver need not index sampled images (lavapipe of Mesa 22 does not). Twin:
-// src/shading/material.rs.
+// Textures for shaders that choose one by material: their finest levels, or with TEXTURE_CONE all, as words of RGBA8, one
+// level and one picture after the other, in storage buffers, because a driver need not index sampled images (lavapipe of
+// Mesa 22 does not). Twin of the finest level: src/shading/material.rs.
 //
 // The including shader declares texels_0[] to texels_3[].
 #ifndef SHADING_TEXEL_GLSL
@@ -42,15 +42,9 @@ vec4 texel_at(TexelsBlock texels, int x, int y) {
     return value;
 }
 
-// `uvs`: the two UV sets of the point. Bilinear, or nearest where the sampler magnifies so.
-vec4 texel_of(TexelsBlock texels, vec4 uvs) {
-    if (texels.width_px == 0u) {
-        return vec4(1.0);
-    }
-    vec2 uv = texels.u.w > 0.5 ? uvs.zw : uvs.xy;
-    vec2 size = vec2(texels.width_px, texels.height_px);
-    vec2 at = vec2(dot(texels.u.xy, uv) + texels.u.z, dot(texels.v.xy, uv) + texels.v.z) * size;
-    bool is_nearest = (texels.flags & TEXELS_NEAREST) != 0u;
+// `place`: on the picture, whose sides are 1. Bilinear or nearest.
+vec4 filtered(TexelsBlock texels, vec2 place, bool is_nearest) {
+    vec2 at = place * vec2(texels.width_px, texels.height_px);
     at -= is_nearest ? 0.0 : 0.5;
     // Integers end at 2^31: a coordinate that is farther out is nowhere in particular.
     at = clamp(at, vec2(-1e9), vec2(1e9));
@@ -65,6 +59,50 @@ vec4 texel_of(TexelsBlock texels, vec4 uvs) {
     vec4 upper = mix(texel_at(texels, x0, y0), texel_at(texels, x1, y0), fraction.x);
     vec4 lower = mix(texel_at(texels, x0, y1), texel_at(texels, x1, y1), fraction.x);
     return mix(upper, lower, fraction.y);
+}
+
+// A coarser level, 0 the finest.
+TexelsBlock level_of(TexelsBlock texels, int level) {
+    for (int finer = 0; finer < level; finer++) {
+        texels.first += texels.width_px * texels.height_px;
+        texels.width_px = max(texels.width_px >> 1, 1u);
+        texels.height_px = max(texels.height_px >> 1, 1u);
+    }
+    return texels;
+}
+
+// The level of which a texel is as wide as the ray's cone. `footprint`: the cone's width where it meets the surface, in
+// units of the UV set.
+float level_at(TexelsBlock texels, float footprint) {
+    float turned = abs(texels.u.x * texels.v.y - texels.u.y * texels.v.x);
+    float width_px = footprint * sqrt(turned * float(texels.width_px) * float(texels.height_px));
+    float last = float(findMSB(max(texels.width_px, texels.height_px)));
+    float level = clamp(log2(max(width_px, 1e-30)), 0.0, last);
+    // As Vulkan rounds.
+    return (texels.flags & TEXELS_BETWEEN_LEVELS) != 0u ? level : max(ceil(level - 0.5), 0.0);
+}
+
+// `uvs`: the two UV sets of the point; `footprints`: the cone's width in units of each, of TEXTURE_CONE. Bilinear, or nearest
+// where the sampler says so.
+vec4 texel_of(TexelsBlock texels, vec4 uvs, vec2 footprints) {
+    if (texels.width_px == 0u) {
+        return vec4(1.0);
+    }
+    bool is_second = texels.u.w > 0.5;
+    vec2 uv = is_second ? uvs.zw : uvs.xy;
+    vec2 place = vec2(dot(texels.u.xy, uv) + texels.u.z, dot(texels.v.xy, uv) + texels.v.z);
+    float level = 0.0;
+    if (TEXTURE_CONE != 0u && (texels.flags & TEXELS_LEVELS) != 0u) {
+        level = level_at(texels, is_second ? footprints.y : footprints.x);
+    }
+    if (TEXTURE_CONE == 0u || level <= 0.0) {
+        return filtered(texels, place, (texels.flags & TEXELS_NEAREST) != 0u);
+    }
+    bool is_nearest = (texels.flags & TEXELS_NEAREST_SMALL) != 0u;
+    TexelsBlock finer = level_of(texels, int(level));
+    vec4 value = filtered(finer, place, is_nearest);
+    float between = fract(level);
+    return between > 0.0 ? mix(value, filtered(level_of(finer, 1), place, is_nearest), between) : value;
 }
 
 #endif

@@ -1,5 +1,6 @@
 // The surface that a ray meets: attributes between a triangle's corners, and its material with its textures. The same as
-// the G-buffer pass makes of a fragment, but for textures, whose finest level is read: a pixel is many rays.
+// the G-buffer pass makes of a fragment, but for textures: a pixel is many rays, and their finest level is read, or that of the
+// ray's cone (TEXTURE_CONE), which what a surface lets through and what it emits are not dimmed or spread by.
 //
 // The including shader declares bvh_triangles[], bvh_closing[], surfaces[], closings[], tangents[], extended[],
 // traced_materials[] and what texel.glsl wants.
@@ -50,15 +51,39 @@ Corners corners_of(TracedTriangleBlock triangle, uint index, vec2 barycentric) {
     return point;
 }
 
-vec4 textured(vec4 factor, TexelsBlock texels, vec4 uvs) {
-    return HAS_TEXTURES != 0u ? factor * texel_of(texels, uvs) : factor;
+// The finest level, whatever ray comes.
+const vec2 FINEST = vec2(0.0);
+
+vec4 textured(vec4 factor, TexelsBlock texels, vec4 uvs, vec2 footprints) {
+    return HAS_TEXTURES != 0u ? factor * texel_of(texels, uvs, footprints) : factor;
+}
+
+// Twice the area of a triangle in a UV set.
+float uv_area(vec2 a, vec2 b, vec2 c) {
+    vec2 first = b - a;
+    vec2 second = c - a;
+    return abs(first.x * second.y - first.y * second.x);
+}
+
+// Width of a cone in units of both UV sets, where it meets a triangle. `width`: across the ray, metres; `slope`: cosine between
+// the ray and the plane's normal; `area`: twice the triangle's, square metres. Akenine-Moeller et al. 2019, equation 34.
+vec2 footprints_of(TracedTriangleBlock triangle, uint index, float width, float slope, float area) {
+    vec3 v = triangle.v_material.xyz;
+    vec2 first = vec2(triangle.corners[0].w, v.x);
+    vec2 second = vec2(triangle.corners[1].w, v.y);
+    vec2 areas = vec2(uv_area(first, second, vec2(triangle.corners[2].w, v.z)), 0.0);
+    if (HAS_EXTENDED != 0u) {
+        TracedExtendedBlock more = extended[index];
+        areas.y = uv_area(more.uvs_01.xy, more.uvs_01.zw, more.uv_2.xy);
+    }
+    return sqrt(areas / max(area, 1e-30)) * (width / max(abs(slope), 1e-4));
 }
 
 // How much of a ray this point stops, 0 to 1.
 float coverage_at(uint index, vec2 barycentric) {
     Corners point = corners_of(surfaces[index], index, barycentric);
     TracedMaterialBlock traced = traced_materials[point.material];
-    float alpha = textured(traced.material.base_color * point.color, traced.base_color, point.uvs).a;
+    float alpha = textured(traced.material.base_color * point.color, traced.base_color, point.uvs, FINEST).a;
     if (traced.alpha == ALPHA_IS_MASK) {
         return alpha < traced.material.alpha_cutoff ? 0.0 : 1.0;
     }
@@ -69,7 +94,7 @@ float coverage_at(uint index, vec2 barycentric) {
 vec3 emitted_at(uint index, vec2 barycentric) {
     Corners point = corners_of(surfaces[index], index, barycentric);
     TracedMaterialBlock traced = traced_materials[point.material];
-    vec3 radiance = textured(vec4(traced.material.emissive.rgb, 1.0), traced.emissive, point.uvs).rgb;
+    vec3 radiance = textured(vec4(traced.material.emissive.rgb, 1.0), traced.emissive, point.uvs, FINEST).rgb;
     return traced.alpha == ALPHA_IS_OPAQUE ? radiance : radiance * coverage_at(index, barycentric);
 }
 
@@ -79,7 +104,8 @@ bool is_front_of(BvhTriangleBlock triangle, vec3 direction_ws) {
     return (dot(cross(triangle.edge1.xyz, triangle.edge2.xyz), direction_ws) < 0.0) != is_mirrored;
 }
 
-SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws) {
+// `cone_width`: of the ray's cone here, across it, metres; of TEXTURE_CONE.
+SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws, float cone_width) {
     BvhTriangleBlock plane = triangle_at(index);
     TracedTriangleBlock triangle = surfaces[index];
     if (MOVES != 0u) {
@@ -95,6 +121,11 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws) {
     point.position_ws = plane.corner.xyz + plane.edge1.xyz * barycentric.x + plane.edge2.xyz * barycentric.y;
     vec3 plane_ws = normalize(cross(plane.edge1.xyz, plane.edge2.xyz));
     point.plane_ws = dot(plane_ws, direction_ws) < 0.0 ? plane_ws : -plane_ws;
+    vec2 footprints = FINEST;
+    if (TEXTURE_CONE != 0u) {
+        float area = length(cross(plane.edge1.xyz, plane.edge2.xyz));
+        footprints = footprints_of(triangle, index, cone_width, dot(plane_ws, direction_ws), area);
+    }
     bool is_front = is_front_of(plane, direction_ws);
     bool is_double_sided = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
     vec3 sum = triangle.corners[0].xyz * corners.weights.x + triangle.corners[1].xyz * corners.weights.y
@@ -114,23 +145,23 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws) {
         if (tangent.xyz != vec3(0.0)) {
             vec3 along = normalize(tangent.xyz);
             vec3 bitangent = cross(normal, along) * tangent.w;
-            vec3 mapped = texel_of(traced.normal, corners.uvs).xyz * 2.0 - 1.0;
+            vec3 mapped = texel_of(traced.normal, corners.uvs, footprints).xyz * 2.0 - 1.0;
             mapped.xy *= material.emissive.a;
             vec3 bent = along * mapped.x + bitangent * mapped.y + normal * mapped.z;
             normal = dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
         }
     }
     point.normal_ws = is_double_sided && !is_front ? -normal : normal;
-    vec3 base_color = textured(material.base_color * corners.color, traced.base_color, corners.uvs).rgb;
-    vec4 metallic_roughness =
-        textured(vec4(1.0, material.roughness, material.metallic, 1.0), traced.metallic_roughness, corners.uvs);
+    vec3 base_color = textured(material.base_color * corners.color, traced.base_color, corners.uvs, footprints).rgb;
+    vec4 factors = vec4(1.0, material.roughness, material.metallic, 1.0);
+    vec4 metallic_roughness = textured(factors, traced.metallic_roughness, corners.uvs, footprints);
     point.surface = Surface(base_color, metallic_roughness.b, metallic_roughness.g, DEFAULT_DIELECTRIC_F0);
     point.is_unlit = (material.flags & MATERIAL_UNLIT) != 0u;
     point.is_back = !is_front && !is_double_sided;
     if (SURFACE_EXTRAS != 0u) {
         point.surface.dielectric_f0 = f0_of_code((material.flags >> 8) & 0xffu);
     }
-    point.emitted = textured(vec4(material.emissive.rgb, 1.0), traced.emissive, corners.uvs).rgb;
+    point.emitted = textured(vec4(material.emissive.rgb, 1.0), traced.emissive, corners.uvs, FINEST).rgb;
     point.emitted = point.is_unlit ? base_color : point.emitted;
     point.emitter_density = traced.emitter_density;
     if (MOVES != 0u) {

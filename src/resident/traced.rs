@@ -27,6 +27,9 @@ const WRAP_U_SHIFT: u32 = 2;
 const WRAP_V_SHIFT: u32 = 4;
 const NEAREST: u32 = 64;
 const SRGB: u32 = 128;
+const LEVELS: u32 = 256;
+const BETWEEN_LEVELS: u32 = 512;
+const NEAREST_SMALL: u32 = 1024;
 /// glsl/shading/traced.glsl's kinds.
 const ALPHA_OPAQUE: u32 = 0;
 const ALPHA_MASK: u32 = 1;
@@ -61,6 +64,21 @@ pub enum Rays {
     Query { is_opaque: bool },
 }
 
+/// Levels of a texture that rays read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TexelLevels {
+    Finest,
+    /// All, by the width of the ray's cone.
+    Cone,
+}
+
+impl TexelLevels {
+    /// Of a picture whose finest level is number `first`, and which has `all`.
+    fn of(self, first: u32, all: u32) -> std::ops::Range<u32> {
+        first..if self == Self::Cone { all } else { first + 1 }
+    }
+}
+
 /// Where the first texel of a picture lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
@@ -85,6 +103,7 @@ pub struct Layout {
     places: Vec<Option<Place>>,
     /// Texels of each buffer.
     texel_counts: Vec<u64>,
+    levels: TexelLevels,
 }
 
 /// Textures that rays read: occlusion is found by rays.
@@ -92,10 +111,10 @@ const SLOTS: [TextureSlot; 4] =
     [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Normal, TextureSlot::Emissive];
 
 impl Layout {
-    /// `rays`: nodes are of `bvh`. `most_bytes`: what a device binds of a buffer at once.
+    /// `rays`: nodes are of `bvh`. `levels`: of textures. `most_bytes`: what a device binds of a buffer at once.
     ///
     /// Errors: the textures are more than the shader's buffers hold (exit code 4); structures of what moves (2).
-    pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, most_bytes: u64) -> Result<Self> {
+    pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, levels: TexelLevels, most_bytes: u64) -> Result<Self> {
         if matches!(rays, Rays::Query { .. }) && !bvh.closing.is_empty() {
             return Err(Error::request(format!(
                 "--rays query: {} moves while its --shutter is open, and what ray queries go through stands still",
@@ -112,7 +131,8 @@ impl Layout {
                 continue;
             }
             let extent = limited(&scene.images[index], scene.texture_limit_px);
-            let count = extent.pixel_count();
+            let all = mipmaps::level_count(extent.width, extent.height);
+            let count = mipmaps::texel_count(extent.width, extent.height, levels.of(0, all));
             let fits = |used: &u64| used + count <= most_texels;
             let buffer = texel_counts.iter().position(fits).unwrap_or(texel_counts.len());
             if buffer == TEXEL_BUFFERS || count > most_texels {
@@ -144,6 +164,7 @@ impl Layout {
             rays,
             places,
             texel_counts,
+            levels,
         })
     }
 
@@ -195,13 +216,14 @@ impl Layout {
         }
     }
 
-    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, MOVES.
-    pub fn constants(&self) -> [(&'static str, u32); 5] {
+    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, TEXTURE_CONE, MOVES.
+    pub fn constants(&self) -> [(&'static str, u32); 6] {
         [
             ("HAS_TEXTURES", u32::from(!self.texel_counts.is_empty())),
             ("HAS_TANGENTS", u32::from(self.has_tangents)),
             ("HAS_EXTENDED", u32::from(self.has_extended)),
             ("TEXEL_BUFFERS", self.texel_counts.len().max(1) as u32),
+            ("TEXTURE_CONE", u32::from(self.levels == TexelLevels::Cone)),
             ("MOVES", u32::from(self.is_moving)),
         ]
     }
@@ -228,7 +250,10 @@ impl Layout {
                 | wrap(texture.sampler.wrap_u) << WRAP_U_SHIFT
                 | wrap(texture.sampler.wrap_v) << WRAP_V_SHIFT
                 | bit(!texture.sampler.mag_linear, NEAREST)
-                | bit(texture.color_space == ColorSpace::Srgb, SRGB),
+                | bit(texture.color_space == ColorSpace::Srgb, SRGB)
+                | bit(texture.sampler.mip_linear.is_some(), LEVELS)
+                | bit(texture.sampler.mip_linear == Some(true), BETWEEN_LEVELS)
+                | bit(!texture.sampler.min_linear, NEAREST_SMALL),
         }
     }
 
@@ -256,8 +281,6 @@ impl Layout {
     fn write_words(&self, scene: &Scene, buffer: usize, words: &mut [u8]) {
         for (image, place) in scene.images.iter().zip(&self.places) {
             let Some(place) = place.filter(|place| place.buffer as usize == buffer) else { continue };
-            let start = 4 * place.first as usize;
-            let target = &mut words[start..start + 4 * place.width_px as usize * place.height_px as usize];
             let color_space = scene
                 .textures
                 .iter()
@@ -265,8 +288,10 @@ impl Layout {
                 .map_or(ColorSpace::Linear, |texture| texture.color_space);
             let levels = [(image.width, image.height), (place.width_px, place.height_px)]
                 .map(|(width, height)| mipmaps::level_count(width, height));
-            let level = levels[0] - levels[1];
-            mipmaps::write(image, color_space, level..level + 1, target);
+            let written = self.levels.of(levels[0] - levels[1], levels[0]);
+            let start = 4 * place.first as usize;
+            let bytes = 4 * mipmaps::texel_count(image.width, image.height, written.clone()) as usize;
+            mipmaps::write(image, color_space, written, &mut words[start..start + bytes]);
         }
     }
 }

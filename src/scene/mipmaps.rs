@@ -14,9 +14,14 @@ fn size_of_level(image: &Image, level: u32) -> [usize; 2] {
     [image.width, image.height].map(|side| (side >> level).max(1) as usize)
 }
 
-/// Bytes of these levels, 0 the finest.
+/// Texels of these levels of a picture of this size, 0 the finest.
+pub fn texel_count(width: u32, height: u32, levels: Range<u32>) -> u64 {
+    let side = |side: u32, level: u32| u64::from((side >> level).max(1));
+    levels.map(|level| side(width, level) * side(height, level)).sum()
+}
+
 fn bytes_of(image: &Image, levels: Range<u32>) -> usize {
-    levels.map(|level| size_of_level(image, level)).map(|[width, height]| 4 * width * height).sum()
+    4 * texel_count(image.width, image.height, levels) as usize
 }
 
 /// Writes these levels, 0 the finest, one after the other: RGBA8, each a box filter of the one before. Colour is averaged

@@ -93,7 +93,7 @@ vec3 walked_irradiance(SurfacePoint point) {
         TraceHit hit = trace(origin, direction, 4.0 * params.sphere_ws.w, RAY_SOLID, 0u);
         goes_on = hit.is_hit;
         if (goes_on) {
-            SurfacePoint landed = surface_point(hit.triangle, hit.barycentric, direction);
+            SurfacePoint landed = surface_point(hit.triangle, hit.barycentric, direction, 0.0);
             bool is_black = landed.is_back || landed.is_unlit;
             flux = is_black ? vec3(0.0) : flux * albedo_of(landed.surface);
             vec4 intensity = vec4(flux / PI, 0.0);

@@ -41,6 +41,9 @@ struct SampleParams {
     // Of the lens, in metres, and how far before it the plane in focus lies.
     float lens_radius;
     float focus;
+    // Of TEXTURE_CONE: width of a pixel at the eye, metres, and by how much it grows a metre.
+    float cone_width;
+    float cone_spread;
     // Square of --vpl-clamp, in square metres.
     float least_squared;
     // How likely a light walk starts on a punctual light and not on an emitter.

@@ -28,6 +28,9 @@ struct Path {
     // Surfaces and places of the medium that have scattered it.
     uint bounce;
     bool goes_on;
+    // Of the ray's cone: its width at the origin, metres, and by how much it grows a metre.
+    float cone_width;
+    float cone_spread;
 };
 
 // Moves a ray of `view` from the lens's middle to another point of the lens; both meet in the plane in focus. `near`: how
@@ -62,7 +65,8 @@ Path view_path(FrameBlock view, vec2 at_px, vec2 lens) {
     // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
     vec3 origin = is_perspective ? view.eye_ws.xyz + direction * behind : start;
     float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
-    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true);
+    float width = params.cone_width + params.cone_spread * behind;
+    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true, width, params.cone_spread);
     if (HAS_LENS != 0u) {
         through_lens(view, path, lens, dot(start - view.eye_ws.xyz, view.forward_ws.xyz));
     }
@@ -92,7 +96,15 @@ bool finds_more(Path path) {
         || largest(frame.background.rgb + frame.ambient.rgb) > 0.0;
 }
 
-void turn(inout Path path, vec3 origin, vec3 direction, float survivor) {
+// Width of the path's cone at a distance from its origin.
+float cone_width_at(Path path, float distance) {
+    return path.cone_width + path.cone_spread * distance;
+}
+
+// `distance`: from the path's origin to the new one. `spread`: by how much more its cone grows a metre from there on.
+void turn(inout Path path, float distance, float spread, vec3 origin, vec3 direction, float survivor) {
+    path.cone_width = cone_width_at(path, distance);
+    path.cone_spread += spread;
     if (ROULETTE != 0u && path.bounce >= ROULETTE_FROM) {
         float survival = clamp(largest(path.throughput), 0.05, 0.95);
         path.throughput = survivor < survival ? path.throughput / survival : vec3(0.0);
@@ -105,16 +117,17 @@ void turn(inout Path path, vec3 origin, vec3 direction, float survivor) {
     path.bounce++;
 }
 
-void scatter_in_medium(inout Path path, vec3 place_ws) {
+void scatter_in_medium(inout Path path, float distance) {
+    vec3 place_ws = path.origin + path.direction * distance;
     vec2 numbers = next_pair();
     vec2 choice = next_pair();
     vec3 scattered = phase_direction(params.asymmetry, path.direction, numbers);
     path.density = phase(params.asymmetry, dot(scattered, path.direction));
     path.throughput *= params.scattering / params.extinction;
-    turn(path, place_ws, scattered, choice.y);
+    turn(path, distance, 1.0, place_ws, scattered, choice.y);
 }
 
-void scatter_at(inout Path path, SurfacePoint point) {
+void scatter_at(inout Path path, SurfacePoint point, float distance) {
     vec3 to_eye = -path.direction;
     vec2 numbers = next_pair();
     vec2 choice = next_pair();
@@ -123,7 +136,8 @@ void scatter_at(inout Path path, SurfacePoint point) {
     vec3 reflected = reflected_by(point, scattered, to_eye);
     bool leaves = dot(scattered, point.plane_ws) > 0.0 && path.density > 0.0;
     path.throughput *= leaves ? reflected / max(path.density, 1e-20) : vec3(0.0);
-    turn(path, off_surface(point), scattered, choice.y);
+    float spread = BRDF_KIND == BRDF_LAMBERT ? 1.0 : point.surface.roughness * point.surface.roughness;
+    turn(path, distance, spread, off_surface(point), scattered, choice.y);
 }
 
 // What a surface sends along the path by itself.
@@ -190,7 +204,7 @@ vec3 radiance_along(vec2 at_px) {
             break;
         }
         bool is_in_medium = false;
-        vec3 place_ws = path.origin;
+        float place = 0.0;
         if (MEDIUM != MEDIUM_NONE) {
             vec2 ends = in_medium(path.origin, path.direction, -path.behind, hit.distance);
             bool scatters = MEDIUM == MEDIUM_SCATTERS && path.bounce < BOUNCES;
@@ -200,21 +214,20 @@ vec3 radiance_along(vec2 at_px) {
                 is_waiting = air.distance > 0.0;
             }
             if (scatters && finds_more(path)) {
-                float place = ends.x - log(1.0 - next_pair().x) / params.extinction;
+                place = ends.x - log(1.0 - next_pair().x) / params.extinction;
                 is_in_medium = place < ends.y;
-                place_ws = path.origin + path.direction * place;
             } else {
                 path.throughput *= passed_by(ends);
             }
         }
         if (is_in_medium) {
-            scatter_in_medium(path, place_ws);
+            scatter_in_medium(path, place);
         } else if (!hit.is_hit) {
             vec3 around_all = path.bounce == 0u ? frame.background.rgb : frame.background.rgb + frame.ambient.rgb;
             radiance += path.throughput * around_all;
             path.goes_on = false;
         } else {
-            SurfacePoint point = surface_point(hit.triangle, hit.barycentric, path.direction);
+            SurfacePoint point = surface_point(hit.triangle, hit.barycentric, path.direction, cone_width_at(path, hit.distance));
             path.goes_on = !point.is_back && (!point.is_unlit || path.bounce == 0u);
             if (path.goes_on) {
                 radiance += emitted_along(path, point, hit.distance);
@@ -232,7 +245,7 @@ vec3 radiance_along(vec2 at_px) {
                 if (IS_WALKED != 0u) {
                     radiance += path.throughput * albedo_of(point.surface) / PI * walked_irradiance(point);
                 }
-                scatter_at(path, point);
+                scatter_at(path, point, hit.distance);
             }
         }
     }

@@ -21,6 +21,10 @@
 //!   same triangles; the two pictures differ where a ray grazes an edge or meets two triangles at one distance
 //! - occlusion maps: not read, because rays find what they stand for
 //! - unlit surfaces: seen in their colour, black for all other rays
+//! - textures: `--texture-level cone` reads the level that a cone through the pixel asks for, by the triangle's constant of
+//!   Akenine-Moeller et al. (2019, Texture level of detail strategies for real-time ray tracing). From a surface on the cone
+//!   grows by its roughness squared a metre, by one from `--brdf lambert` and in a medium (ours); bent surfaces and the lens
+//!   widen it no more. Alpha and emission stay at the finest level, so that nothing thins out and both ways to an emitter agree
 //! - `--aperture`: a thin lens, whose points rays leave evenly
 //! - `--shutter`: corners, normals, tangents, camera and lights on straight lines between their places when it opens and
 //!   when it closes, one moment a path; chances of emitters are those of the opening
@@ -49,7 +53,7 @@ use crate::passes::direct;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::resident::traced::{Layout, Rays};
+use crate::resident::traced::{Layout, Rays, TexelLevels};
 use crate::scene::{AlphaMode, Light, Material};
 use crate::settings::{Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
@@ -138,7 +142,8 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
         let walk = Walk::from_values(values);
         Rays::Tree(Nodes::new(bvh, walk, threads, limits).map_err(|error| error.within(NAME))?)
     };
-    Layout::new(inputs.scene, bvh, rays, limits.max_storage_buffer_range_bytes)
+    let levels = if values.text("texture-level") == "cone" { TexelLevels::Cone } else { TexelLevels::Finest };
+    Layout::new(inputs.scene, bvh, rays, levels, limits.max_storage_buffer_range_bytes)
 }
 
 /// The scene has MASK or BLEND surfaces.
@@ -215,6 +220,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         seed: values.integer("seed") as u32,
         ..SampleParams::zeroed()
     };
+    [params.cone_width, params.cone_spread] = inputs.view.pixel_cone();
     if let Some(medium) = medium {
         airlight::write(&mut params, &medium, inputs, sources.all_lights());
     }

@@ -95,6 +95,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "what rays go through: a tree of this program's, walked by the shader; or the driver's own acceleration structure, by \
                ray queries, where the device has them. The same picture, but for rays that graze an edge",
     },
+    Setting {
+        key: "texture-level",
+        symbol: "",
+        kind: Kind::Choice(&["0", "cone"]),
+        default: "0",
+        unit: "",
+        paper: "",
+        help: "which level of a texture rays read: 0, the finest, which the paths of a pixel average; or the one whose texels are as \
+               wide as the ray's cone, which wants fewer paths, blurs where surfaces are seen at a slant, and takes a third more memory",
+    },
     APERTURE,
     FOCUS,
     SHUTTER,
