@@ -10,8 +10,9 @@ use serde_json::json;
 use super::gate_args;
 use crate::error::{Error, Result};
 use crate::metrics::gate::{self, Gate};
-use crate::metrics::{self, Comparison, Metrics};
+use crate::metrics::{self, Comparison, Metrics, Part};
 use crate::report::image_file;
+use crate::units::Extent;
 
 /// The verb with its arguments.
 pub fn command() -> Command {
@@ -28,6 +29,10 @@ pub fn command() -> Command {
         .arg(path_arg("b", "B").required(true).help("The reference"))
         .arg(path_arg("diff", "FILE.png").long("diff").help("Write FLIP's error map in the magma colours"))
         .arg(path_arg("hdr-diff", "FILE.png").long("hdr-diff").help("Write HDR-FLIP's error map in the same colours"))
+        .arg(Arg::new("where").long("where").value_name("CHANNEL=FILE.exr[,FILE.exr]").help(
+            "Also measure the pixels in which this channel differs between two EXR files, such as \
+             geometry.dsf.id.Y=low.exr,high.exr; of one file, in which it is not 0; and the other pixels",
+        ))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"));
     gate_args::with_gate_args(command)
 }
@@ -59,6 +64,7 @@ fn outcome(matches: &ArgMatches) -> Result<Outcome> {
     let (diff, hdr_diff) = (path("diff"), path("hdr-diff"));
     // Everything that can be refused without reading a picture is refused first.
     let (gates, threshold) = (gate_args::gates(matches)?, gate_args::threshold(matches)?);
+    let place = matches.get_one::<String>("where").map(|argument| Where::parse(argument)).transpose()?;
     [diff, hdr_diff].into_iter().flatten().try_for_each(image_file::require_png)?;
     let (actual, reference) = (image_file::read(a)?, image_file::read(b)?);
     let context = format!("comparing {} with {}", a.display(), b.display());
@@ -69,9 +75,51 @@ fn outcome(matches: &ArgMatches) -> Result<Outcome> {
             image_file::write_srgb8(path, &draw(&comparison))?;
         }
     }
-    let seen = Seen { a, b, comparison: &comparison, threshold, gates: &gates };
+    let parts = match place {
+        None => Vec::new(),
+        Some(place) => {
+            let chosen = place.chosen(comparison.extent)?;
+            let others: Vec<bool> = chosen.iter().map(|is_chosen| !is_chosen).collect();
+            let part = |chosen: &[bool]| comparison.part(&actual, &reference, threshold, chosen);
+            vec![("where", part(&chosen)), ("elsewhere", part(&others))]
+        }
+    };
+    let seen = Seen { a, b, comparison: &comparison, parts: &parts, threshold, gates: &gates };
     let text = if matches.get_flag("json") { seen.json() } else { seen.table() };
     Ok(Outcome { text, gates: gate::judge(&gates, &comparison.metrics, context) })
+}
+
+/// Which pixels are measured apart: `--where`.
+struct Where<'a> {
+    channel: &'a str,
+    files: Vec<&'a Path>,
+}
+
+impl<'a> Where<'a> {
+    /// Errors: no channel, or not one or two files (exit code 2).
+    fn parse(argument: &'a str) -> Result<Self> {
+        let example = "for example --where geometry.dsf.id.Y=low.exr,high.exr";
+        let refused = |cause: &str| Error::request(format!("--where {argument}: {cause}")).note(example);
+        let (channel, files) = argument.split_once('=').ok_or_else(|| refused("it has no ="))?;
+        let files: Vec<&Path> = files.split(',').map(Path::new).collect();
+        if channel.is_empty() || files.len() > 2 || files.iter().any(|file| file.as_os_str().is_empty()) {
+            return Err(refused("it must name a channel and one EXR file or two"));
+        }
+        Ok(Self { channel, files })
+    }
+
+    /// A flag for each pixel of a picture of `extent`.
+    ///
+    /// Errors: a file that cannot be read, is of another size or has no such channel (exit code 2).
+    fn chosen(&self, extent: Extent) -> Result<Vec<bool>> {
+        let read = |file: &&Path| image_file::read_exr_channels(file, extent, [self.channel]).map(|(values, _)| values);
+        let values = self.files.iter().map(read).collect::<Result<Vec<_>>>()?;
+        Ok(match &values[..] {
+            [first, second] => first.iter().zip(second).map(|(a, b)| a != b).collect(),
+            [only, ..] => only.iter().map(|[value]| *value != 0.0).collect(),
+            [] => unreachable!("parse wants a file"),
+        })
+    }
 }
 
 /// What is printed.
@@ -79,6 +127,8 @@ struct Seen<'a> {
     a: &'a Path,
     b: &'a Path,
     comparison: &'a Comparison,
+    /// What `--where` chooses, and the rest.
+    parts: &'a [(&'static str, Part)],
     threshold: f64,
     gates: &'a [Gate],
 }
@@ -95,6 +145,15 @@ impl Seen<'_> {
             let line = metrics::line(name, value, self.threshold, self.is_cut());
             writeln!(text, "{line}").expect("a string takes any text");
         }
+        for (name, part) in self.parts {
+            let percent = 100.0 * part.pixels as f64 / comparison.extent.pixel_count() as f64;
+            writeln!(text, "{name}: {} pixels, {percent:.2} %", part.pixels).expect("a string takes any text");
+            for (name, value) in Part::NAMES.into_iter().zip(part.values()) {
+                let Some(value) = value else { continue };
+                let line = metrics::line(name, value, self.threshold, self.is_cut());
+                writeln!(text, "{line}").expect("a string takes any text");
+            }
+        }
         for gate in self.gates {
             writeln!(text, "  {}", gate.text(&comparison.metrics)).expect("a string takes any text");
         }
@@ -104,7 +163,7 @@ impl Seen<'_> {
     /// One document on one line. What is infinite (the PSNR of equal pictures, or a bound) is null.
     fn json(&self) -> String {
         let Self { a, b, comparison, .. } = self;
-        let document = json!({
+        let mut document = json!({
             "schema": 1,
             "a": a.display().to_string(),
             "b": b.display().to_string(),
@@ -115,6 +174,9 @@ impl Seen<'_> {
             "cut": if self.is_cut() { &Metrics::OF_LIGHT[..] } else { &[] },
             "gates": self.gates.iter().map(|gate| gate.json(&comparison.metrics)).collect::<Vec<_>>(),
         });
+        for (name, part) in self.parts {
+            document[name] = json!(part);
+        }
         format!("{document}\n")
     }
 }
@@ -122,9 +184,8 @@ impl Seen<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::image_file::WriteOptions;
+    use crate::report::image_file::{Aov, AovChannels, WriteOptions};
     use crate::report::picture::Picture;
-    use crate::units::Extent;
 
     /// A folder with `a.exr` (0.5 everywhere) and `b.exr` (0.25 everywhere): the RMSE is 0.25.
     fn folder() -> tempfile::TempDir {
@@ -217,6 +278,41 @@ mod tests {
         }
         let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--diff", "d.exr"]).err().unwrap();
         assert!(error.message().contains("name it .png"), "{error}");
+    }
+
+    #[test]
+    fn pixels_are_measured_apart_by_a_channel_of_one_file_or_of_two() {
+        let folder = folder();
+        let extent = Extent::new(16, 12);
+        for (name, limit) in [("low.exr", 3), ("high.exr", 5)] {
+            let values = (0..extent.pixel_count() as u32).map(|at| u32::from(at % 16 < limit)).collect();
+            let aovs = [Aov { name: "id".to_owned(), channels: AovChannels::YU32(values) }];
+            let options = WriteOptions { aovs: &aovs, ..WriteOptions::default() };
+            image_file::write(&folder.path().join(name), &Picture::filled(extent, [0.0; 3]), &options).unwrap();
+        }
+        let [low, high] = ["low.exr", "high.exr"].map(|name| folder.path().join(name).display().to_string());
+        for (argument, count) in [(format!("id.Y={low},{high}"), 24), (format!("id.Y={high}"), 60)] {
+            let text = compare(folder.path(), "a.exr", "b.exr", &["--json", "--where", &argument]).unwrap().text;
+            let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+            let pixels = ["where", "elsewhere"].map(|part| document[part]["pixels"].as_u64().unwrap());
+            assert_eq!(pixels, [count, 192 - count]);
+            assert_eq!(document["where"]["rmse"], 0.25);
+            let text = compare(folder.path(), "a.exr", "b.exr", &["--where", &argument]).unwrap().text;
+            let found = format!("where: {count} pixels, {:.2} %", count as f64 / 1.92);
+            assert!(text.contains(&found), "{text}");
+        }
+        for (argument, cause) in [
+            ("id.Y", "it has no ="),
+            ("=a.exr", "it must name a channel and one EXR file or two"),
+            ("id.Y=a.exr,", "it must name a channel and one EXR file or two"),
+            ("id.Y=a,b,c", "it must name a channel and one EXR file or two"),
+        ] {
+            let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--where", argument]).err().unwrap();
+            assert!(error.exit_code() == 2 && error.message().ends_with(cause), "{error}");
+        }
+        let missing = format!("depth.Y={low}");
+        let error = compare(folder.path(), "a.exr", "b.exr", &["--where", &missing]).err().unwrap();
+        assert!(error.exit_code() == 2 && error.message().contains("depth.Y"), "{error}");
     }
 
     #[test]

@@ -8,8 +8,11 @@ mod flip;
 pub mod gate;
 mod linear;
 pub mod noise;
+mod part;
 mod psnr;
 mod ssim;
+
+pub use part::Part;
 
 use serde::Serialize;
 
