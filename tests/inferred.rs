@@ -133,11 +133,13 @@ fn the_filter_keeps_another_surface_s_light_out() {
     let ids = dark.integers(&renderer, "geometry.dsf.id");
     let is_square = |index: &usize| ids[*index] >> 8 == 1;
     assert!((0..ids.len()).filter(is_square).count() > 1000);
-    for (dsf, leaks) in [("on", false), ("off", true)] {
-        let changes = both(&common, &[("dsf", dsf)]);
+    for (filter, leaks) in
+        [("dsf", false), ("discontinuity", false), ("bilateral", false), ("bilinear", true), ("nearest", true)]
+    {
+        let changes = both(&common, &[("light-filter", filter)]);
         let [a, b] = [&dark, &bright].map(|watched| watched.picture(NAME, &changes).pixels);
         let changed = (0..ids.len()).filter(is_square).filter(|index| a[*index] != b[*index]).count();
-        assert_eq!(changed > 0, leaks, "--dsf {dsf}: {changed} pixels of the square changed");
+        assert_eq!(changed > 0, leaks, "--light-filter {filter}: {changed} pixels of the square changed");
         let wall = (0..ids.len()).filter(|index| !is_square(index)).filter(|index| a[*index] != b[*index]).count();
         assert!(wall > 1000, "the light reaches the wall");
     }
@@ -218,5 +220,59 @@ fn no_light_one_and_many() {
             let lit = picture.pixels.iter().filter(|pixel| pixel.iter().any(|channel| *channel > 0.0)).count();
             assert_eq!(lit == 0, is_dark, "{lights} lights, {volumes}: {lit} pixels are lit");
         }
+    }
+}
+
+/// Where the light buffer's nearest texel shows another surface than the pixel does, the filter is nearer to what many samples a
+/// pixel come to than plain filtering is.
+#[test]
+fn on_edges_the_filter_is_nearer_to_the_supersampled_picture() {
+    let (size, common) = ("200x112", [("brdf", "lambert"), ("size", "200x112")]);
+    for spec in ["lamps:objects=101,lights=81", "fence:lights=20", "hall:triangles=8000"] {
+        let watched = Watched::open(spec);
+        let reference = watched.picture("forward", &both(&common, &[("supersample", "8")]));
+        let ids = |light_size: &str| {
+            let changes = both(&common, &[("light-size", light_size)]);
+            let renderer = watched.render_stages(NAME, &changes, &["geometry.dsf.id"]);
+            watched.integers(&renderer, "geometry.dsf.id")
+        };
+        let (low, high) = (ids("auto"), ids(size));
+        let chosen: Vec<usize> = (0..low.len()).filter(|index| low[*index] != high[*index]).collect();
+        assert!(chosen.len() > 500, "{spec}: {} pixels", chosen.len());
+        let rmse = |filter: &str| {
+            let picture = watched.picture(NAME, &both(&common, &[("msaa", "4"), ("light-filter", filter)]));
+            let square = |index: &usize| {
+                let channels = picture.pixels[*index].into_iter().zip(reference.pixels[*index]);
+                channels.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / 3.0
+            };
+            (chosen.iter().map(square).sum::<f64>() / chosen.len() as f64).sqrt()
+        };
+        let [dsf, bilinear, nearest] = ["dsf", "bilinear", "nearest"].map(rmse);
+        println!("{spec}: {} pixels, dsf {dsf:.4}, bilinear {bilinear:.4}, nearest {nearest:.4}", chosen.len());
+        assert!(dsf < bilinear && bilinear < nearest, "{spec}: {dsf}, {bilinear}, {nearest}");
+    }
+}
+
+/// The sampler places a fetch among 256 steps from texel to texel at the least: a pixel is off by at most a 512th of what the
+/// light of four neighbouring texels differs by along each side, and a half float has 1024 steps from one power of two to the next.
+#[test]
+fn a_single_fetch_blends_as_four_do_but_for_the_sampler_s_steps() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [("size", "160x90"), ("brdf", "lambert")];
+    let picture = |fetch: &str, filter: &str| {
+        watched.picture(NAME, &both(&common, &[("light-fetch", fetch), ("light-filter", filter)])).pixels
+    };
+    for filter in ["dsf", "bilinear"] {
+        let (four, single) = (picture("texels", filter), picture("sampler", filter));
+        let step = |value: f32| 2f32.powi(value.max(1e-6).log2().floor() as i32 - 10);
+        let steps = four.as_flattened().iter().zip(single.as_flattened()).map(|(a, b)| (a - b).abs() / step(a.max(*b)));
+        let (mut most, mut sum) = (0f32, 0f64);
+        for steps in steps {
+            most = most.max(steps);
+            sum += f64::from(steps);
+        }
+        println!("{filter}: {most} half-float steps at most, {} in the mean", sum / (3 * four.len()) as f64);
+        assert!(most > 0.0, "{filter}: it is another way");
+        assert!(most < 8.0, "{filter}: {most} half-float steps");
     }
 }

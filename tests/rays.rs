@@ -58,6 +58,8 @@ fn every_tree_and_stack_meets_the_same() {
         let ran = program.run(&arguments).fine();
         rows.extend(ran.out.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()));
     }
+    // Where the device has ray queries, they walk the driver's own structure.
+    rows.retain(|row| row["walk"] != "query");
     assert_eq!(rows.len(), 2 * 2 * (1 + 2 * 18));
     for rays in ["incoherent", "coherent"] {
         for query in ["any", "nearest"] {

@@ -8,7 +8,10 @@ mod tables;
 mod tree;
 
 pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
-pub use tables::{BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, SHADING, TEXELS, VPL_CLAMP, WORKGROUP};
+pub use tables::{
+    BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, NORMAL_THRESHOLD, SHADING, TEXELS, VPL_CLAMP,
+    WORKGROUP,
+};
 pub use tree::TREE;
 
 use crate::error::{Error, Result};

@@ -239,6 +239,17 @@ pub const DIRECT_SHADOW: Setting = Setting {
     help: "shadow rays to no light, to directional lights, or to every punctual light",
 };
 
+/// What two normals of one surface differ by.
+pub const NORMAL_THRESHOLD: Setting = Setting {
+    key: "normal-threshold",
+    symbol: "",
+    kind: Kind::Number { min: 0.0, max: 2.0 },
+    default: "0.3",
+    unit: "",
+    paper: "Segovia 2006, 4.5",
+    help: "a neighbour is across a discontinuity where 1 - cos of the angle between the normals is greater",
+};
+
 /// How many pixels a thread works on.
 pub const TEXELS: Setting = Setting {
     key: "texels",

@@ -1,6 +1,6 @@
-// The material pass: full materials, lit by the L-buffer through the discontinuity sensitive filter. Kircher 2009, sections
+// The material pass: full materials, lit by the L-buffer through a filter that tells surfaces apart. Kircher 2009, sections
 // 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
-// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended
+// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals
 #version 460
 #include "frame.glsl"
 #include "resident.glsl"
@@ -38,14 +38,14 @@ layout(std430, set = 0, binding = 2) buffer Rejections { uint rejected_counts[2]
 
 #define INTERPOLATION centroid
 #include "shading/material.glsl"
-#include "techniques/inferred_lighting/dsf.glsl"
+#include "techniques/inferred_lighting/light_filter.glsl"
 
 layout(location = 0) out vec4 out_color;
 
-vec4 lighting_here() {
+vec4 lighting_here(MaterialBlock material) {
     float depth_m = linear_depth(frame, in_position_ws);
     int side = int(params.stipple_side);
-    DsfQuery query;
+    LightQuery query;
     query.at = gl_FragCoord.xy * vec2(params.light_scale_x, params.light_scale_y);
     query.id = in_ids.y;
     query.depth_m = depth_m;
@@ -53,7 +53,11 @@ vec4 lighting_here() {
     query.range_m = vec2(params.first_depth_m, params.depth_range_m);
     query.spacing = side;
     query.offset = ivec2(int(params.stipple_layer) % side, int(params.stipple_layer) / side);
-    DsfResult result = filtered_lighting(query);
+#ifdef GUIDE_NORMALS
+    query.position_ws = in_position_ws;
+    query.normal_ws = normal_at(material);
+#endif
+    FilteredLight result = filtered_light(query);
     if (result.is_rejected) {
 #ifdef ALPHA_BLEND
         atomicAdd(rejected_counts[1], 1u);
@@ -74,7 +78,7 @@ vec3 lit(MaterialBlock material, vec3 base_color) {
         surface.dielectric_f0 = f0_of_extras(extras);
         openness = openness_of_extras(extras);
     }
-    vec4 lighting = lighting_here();
+    vec4 lighting = lighting_here(material);
     vec3 f0 = BRDF_KIND == BRDF_LAMBERT ? vec3(0.0) : f0_of(surface);
     vec3 ambient = frame.ambient.rgb;
     // The L-buffer has the whole ambient light: what is hidden of it is taken off.

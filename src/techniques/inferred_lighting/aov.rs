@@ -28,7 +28,7 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
     let last = Access::FragmentSample;
     let channels = match name {
         "geometry.normal" => {
-            let bytes = readback::image(gpu, &geometry.normal, frame.surface_access())?;
+            let bytes = readback::image(gpu, &geometry.normal, frame.normal_access())?;
             AovChannels::Rgb(spread(frame, &words(&bytes).map(normal).collect::<Vec<_>>()))
         }
         // Object and normal group as a number, as figure 2 shows them.

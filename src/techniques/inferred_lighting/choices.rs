@@ -13,6 +13,35 @@ use crate::units::Extent;
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
 
+/// What tells the texels of one surface from those of another: light_filter.glsl's FILTER_ values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightFilter {
+    Bilinear,
+    Dsf,
+    Nearest,
+    Bilateral,
+    Discontinuity,
+}
+
+impl LightFilter {
+    /// The value of `--light-filter`.
+    fn from_setting(text: &str) -> Self {
+        match text {
+            "bilinear" => Self::Bilinear,
+            "dsf" => Self::Dsf,
+            "nearest" => Self::Nearest,
+            "bilateral" => Self::Bilateral,
+            "discontinuity" => Self::Discontinuity,
+            other => panic!("--light-filter {other} was checked"),
+        }
+    }
+
+    /// It compares normals instead of ids.
+    pub fn reads_normals(self) -> bool {
+        matches!(self, Self::Bilateral | Self::Discontinuity)
+    }
+}
+
 /// The settings, checked against each other.
 #[derive(Clone, Debug)]
 pub struct Choices {
@@ -25,7 +54,10 @@ pub struct Choices {
     pub least_counted_texels: u64,
     /// The L-buffer is blended in half floats.
     pub in_halves: bool,
-    pub filters: bool,
+    pub filter: LightFilter,
+    /// The sampler blends four texels of one surface.
+    sampler_blends: bool,
+    normal_threshold: f32,
     pub depth_threshold: f32,
     pub tests_alpha: bool,
     pub stipple_side: u32,
@@ -60,7 +92,9 @@ impl Choices {
             volumes,
             least_counted_texels: values.integer("stencil-least"),
             in_halves,
-            filters: values.is_on("dsf"),
+            filter: LightFilter::from_setting(values.text("light-filter")),
+            sampler_blends: values.text("light-fetch") == "sampler",
+            normal_threshold: values.number("normal-threshold") as f32,
             depth_threshold: values.number("depth-threshold") as f32,
             tests_alpha: values.text("alpha") == "test",
             stipple_side,
@@ -82,11 +116,13 @@ impl Choices {
     }
 
     /// Constants of the material pass.
-    pub fn material_constants(&self) -> [(&'static str, u32); 4] {
+    pub fn material_constants(&self) -> [(&'static str, u32); 6] {
         [
             ("BRDF_KIND", self.shading.direct.brdf as u32),
             ("SURFACE_EXTRAS", u32::from(self.shading.direct.extras)),
-            ("DSF", u32::from(self.filters)),
+            ("LIGHT_FILTER", self.filter as u32),
+            ("SAMPLER_BLENDS", u32::from(self.sampler_blends)),
+            ("NORMAL_THRESHOLD", self.normal_threshold.to_bits()),
             ("CONE_RADIUS", self.cone_radius.to_bits()),
         ]
     }

@@ -1,6 +1,6 @@
 //! A frame of inferred lighting on the device: the passes in the order of figure 2.
 
-use super::choices::Choices;
+use super::choices::{Choices, LightFilter};
 use super::cull::Cull;
 use super::geometry::{Geometry, LowGeometry};
 use super::light::pack::Pack;
@@ -51,6 +51,7 @@ pub struct InferredFrame {
     light_frame: Buffer,
     shares: Shares,
     in_halves: bool,
+    filter: LightFilter,
 }
 
 impl InferredFrame {
@@ -115,6 +116,7 @@ impl InferredFrame {
             }
         };
         let filter = FilterSettings {
+            kind: choices.filter,
             depth_range_m,
             depth_threshold: choices.depth_threshold,
             light_extent,
@@ -143,14 +145,20 @@ impl InferredFrame {
             light_frame,
             shares,
             in_halves: choices.in_halves,
+            filter: choices.filter,
         })
     }
 }
 
 impl InferredFrame {
     /// How the light pass left what it read.
-    pub(super) fn surface_access(&self) -> Access {
+    fn lit_access(&self) -> Access {
         if matches!(self.road, Road::Tiled(_)) { Access::ComputeSample } else { Access::FragmentSample }
+    }
+
+    /// Who read the normals last.
+    pub(super) fn normal_access(&self) -> Access {
+        if self.filter.reads_normals() { Access::FragmentSample } else { self.lit_access() }
     }
 }
 
@@ -176,7 +184,7 @@ impl Frame for InferredFrame {
             }
         }
         let last = light::last_access(self.in_halves);
-        self.material.record(cmd, frame, scene, geometry, &self.l_buffer, last)
+        self.material.record(cmd, frame, scene, geometry, self.l_buffer.from(last), self.lit_access())
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

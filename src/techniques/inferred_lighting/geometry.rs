@@ -65,9 +65,10 @@ pub fn placed(access: Access) -> Touches {
     vec![(full("depth"), access)]
 }
 
-/// What a pass touches that filters by its DSF data.
-pub fn filtered() -> (String, Access) {
-    (full("dsf"), Access::FragmentSample)
+/// What a pass touches that filters by its DSF data, and by its normals where it compares them.
+pub fn filtered(reads_normals: bool) -> Touches {
+    let normal = reads_normals.then_some("normal");
+    ["dsf"].into_iter().chain(normal).map(|what| (full(what), Access::FragmentSample)).collect()
 }
 
 /// The value of the shaders' axis EXTRAS.
@@ -82,6 +83,7 @@ pub struct LowGeometry {
     pub extras: Option<Image>,
     pub depth: Image,
     nearest: Sampler,
+    linear: Sampler,
 }
 
 impl LowGeometry {
@@ -93,6 +95,7 @@ impl LowGeometry {
             extras: has_extras.then(|| resources.image(&full("extras"))),
             depth: resources.image(&full("depth")),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            linear: Sampler::clamped(gpu, vk::Filter::LINEAR)?,
         })
     }
 
@@ -112,6 +115,11 @@ impl LowGeometry {
 
     pub fn sampled<'a>(&'a self, image: &'a Image, access: Access) -> Bound<'a> {
         Bound::Sampled(image, self.nearest.handle, access)
+    }
+
+    /// The same, blended by the sampler where it does not fetch texels.
+    pub fn blended<'a>(&'a self, image: &'a Image, access: Access) -> Bound<'a> {
+        Bound::Sampled(image, self.linear.handle, access)
     }
 
     /// What surface.glsl binds.

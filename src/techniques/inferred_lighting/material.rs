@@ -1,11 +1,12 @@
-//! Material: the scene at full size with full materials, lit by the L-buffer through the discontinuity sensitive filter.
-//! Kircher 2009, sections 2.3, 3, 4. Shaders: mesh.vert, material.frag; the filter: dsf.glsl.
-//! reads   the scene, light.l_buffer, geometry.dsf
+//! Material: the scene at full size with full materials, lit by the L-buffer through a filter.
+//! Kircher 2009, sections 2.3, 3, 4. Shaders: mesh.vert, material.frag; the filter: light_filter.glsl.
+//! reads   the scene, light.l_buffer, geometry.dsf, and geometry.normal where the filter compares normals
 //! writes  material.color       image, RGBA32F, frame extent; with --msaa material.samples, which `resolve` averages
 //!         material.depth       image, 4 B a sample, reversed
 //!         material.rejections  buffer: fragments, solid and BLEND, that none of the four samples belonged to
 
 use super::NAME;
+use super::choices::LightFilter;
 use super::geometry::LowGeometry;
 use super::light;
 use super::stipple::Stippled;
@@ -14,7 +15,7 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::InferredMaterialParams;
 use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Traffic, readback};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::passes::{mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
@@ -46,29 +47,31 @@ pub fn plan(plan: &mut Plan, extent: Extent, samples: u32) {
 }
 
 /// Plans its pass, and the one that resolves it.
-pub fn plan_passes(plan: &mut Plan, samples: u32) {
+pub fn plan_passes(plan: &mut Plan, samples: u32, filter: LightFilter) {
     let drawn = full(if samples > 1 { "samples" } else { "color" });
-    plan.pass(format!("{NAME}.material"), touches(&drawn));
+    plan.pass(format!("{NAME}.material"), touches(&drawn, filter));
     if samples > 1 {
         plan.pass(format!("{NAME}.resolve"), resolve::touches(&drawn, &full("color")));
     }
 }
 
 /// What the pass touches. `drawn`: the picture that it draws into.
-fn touches(drawn: &str) -> Vec<(String, Access)> {
-    vec![
+fn touches(drawn: &str, filter: LightFilter) -> Vec<(String, Access)> {
+    let mut touches = super::geometry::filtered(filter.reads_normals());
+    touches.extend([
         (light::l_buffer(), Access::FragmentSample),
-        super::geometry::filtered(),
         (drawn.to_owned(), Access::ColorWrite),
         (full("depth"), Access::DepthWrite),
         (full("rejections"), Access::TransferWrite),
         (full("rejections"), Access::FragmentWrite),
-    ]
+    ]);
+    touches
 }
 
 /// What the filter is told of every surface.
 #[derive(Clone, Copy, Debug)]
 pub struct FilterSettings {
+    pub kind: LightFilter,
     /// Linear depth of the first step, and of all of them, metres.
     pub depth_range_m: [f32; 2],
     /// Part of its depth by which a sample's may be off.
@@ -95,8 +98,8 @@ pub struct Material {
 }
 
 impl Material {
-    /// `list`: the solid surfaces. `stippled`: the others, farthest first. `constants`: BRDF_KIND, SURFACE_EXTRAS, DSF and
-    /// CONE_RADIUS.
+    /// `list`: the solid surfaces. `stippled`: the others, farthest first. `constants`: BRDF_KIND, SURFACE_EXTRAS and
+    /// light_filter.glsl's.
     #[allow(clippy::too_many_arguments)]
     pub fn new(
         gpu: &Arc<Gpu>,
@@ -108,12 +111,13 @@ impl Material {
         constants: &[(&str, u32)],
         background: Vec3,
     ) -> Result<Self> {
+        let guide = if filter.kind.reads_normals() { "normals" } else { "ids" };
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene)])),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide])),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
@@ -157,15 +161,15 @@ impl Material {
         }
     }
 
-    /// `l_buffer_from`: who wrote it last.
+    /// `normal_from`: who read the normals last.
     pub fn record(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
         scene: &SceneGpu,
         geometry: &LowGeometry,
-        l_buffer: &Image,
-        l_buffer_from: Access,
+        l_buffer: Edge<'_, Image>,
+        normal_from: Access,
     ) -> Result<()> {
         let extent = self.color.description.extent;
         let drawn = self.samples.as_ref().unwrap_or(&self.color);
@@ -181,11 +185,14 @@ impl Material {
             cmd.clear(&self.rejections);
             cmd.barriers([
                 self.rejections.from(Access::TransferWrite).to(Access::FragmentWrite),
-                l_buffer.from(l_buffer_from).to(Access::FragmentSample),
+                l_buffer.to(Access::FragmentSample),
                 geometry.dsf.from(Access::ColorWrite).to(Access::FragmentSample),
                 drawn.discard(Access::ColorWrite),
                 self.depth.discard(Access::DepthWrite),
             ]);
+            if self.filter.kind.reads_normals() {
+                cmd.barriers([geometry.normal.from(normal_from).to(Access::FragmentSample)]);
+            }
             let [r, g, b] = self.background.to_array();
             let colors = [ColorTarget::new(drawn, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))];
             cmd.begin_rendering(extent, &colors, Some((&self.depth, Some(0.0), Access::DepthWrite)));
@@ -193,9 +200,12 @@ impl Material {
             let mut bound = mesh::bound(frame, scene);
             bound.extend([
                 ("Rejections", Bound::Buffer(&self.rejections)),
-                ("l_buffer", geometry.sampled(l_buffer, Access::FragmentSample)),
+                ("l_buffer", geometry.blended(l_buffer.resource, Access::FragmentSample)),
                 ("geometry_dsf", geometry.sampled(&geometry.dsf, Access::FragmentSample)),
             ]);
+            if self.filter.kind.reads_normals() {
+                bound.push(("geometry_normal", geometry.sampled(&geometry.normal, Access::FragmentSample)));
+            }
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
                 let Some(first) = calls.first() else { continue };
                 let first = self.params(scene, first.material);

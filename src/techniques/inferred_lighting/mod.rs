@@ -141,7 +141,7 @@ impl Technique for InferredLighting {
                 plan.pass(format!("{NAME}.pack"), touches);
             }
         }
-        material::plan_passes(&mut plan, choices.samples);
+        material::plan_passes(&mut plan, choices.samples, choices.filter);
         Ok(plan)
     }
 

@@ -1,6 +1,6 @@
 //! The settings of inferred lighting.
 
-use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, Setting, TEXELS, WORKGROUP};
+use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, NORMAL_THRESHOLD, Setting, TEXELS, WORKGROUP};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -9,6 +9,7 @@ pub const SETTINGS: &[Setting] = &[
     DIRECT_SHADOW,
     TEXELS,
     WORKGROUP,
+    NORMAL_THRESHOLD,
     Setting {
         key: "light-size",
         symbol: "",
@@ -67,13 +68,25 @@ pub const SETTINGS: &[Setting] = &[
         help: "how lights sum up: in 32 bits, packed to half floats once, or blended in half floats as in the paper",
     },
     Setting {
-        key: "dsf",
+        key: "light-filter",
         symbol: "",
-        kind: Kind::Choice(&["on", "off"]),
-        default: "on",
+        kind: Kind::Choice(&["dsf", "bilinear", "nearest", "bilateral", "discontinuity"]),
+        default: "dsf",
         unit: "",
         paper: "Kircher 2009, 3",
-        help: "the discontinuity sensitive filter; off: the light buffer is filtered bilinearly, whatever its texels show",
+        help: "how four texels of the light buffer become the light of a pixel: the discontinuity sensitive filter, which takes those \
+               of its object and normal group; bilinear, or the nearest one, whatever they show; by normal and distance from the \
+               tangent plane, in weights that fall off (joint bilateral), or yes or no (discontinuity: Segovia 2006, 4.5)",
+    },
+    Setting {
+        key: "light-fetch",
+        symbol: "",
+        kind: Kind::Choice(&["texels", "sampler"]),
+        default: "texels",
+        unit: "",
+        paper: "Kircher 2009, 7.2",
+        help: "of a solid surface's pixel whose four texels all belong to it: they are read one by one, or blended by the sampler in a \
+               single fetch, as finely as the device places it",
     },
     Setting {
         key: "depth-threshold",
@@ -82,7 +95,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "0.05",
         unit: "",
         paper: "Kircher 2009, 3.1",
-        help: "of the filter: by what part of its depth a sample's may be off",
+        help: "of the filter: by what part of its depth a sample's may be off, or, where normals decide, its place off the tangent plane",
     },
     Setting {
         key: "alpha",

@@ -1,6 +1,6 @@
 //! The settings of interleaved deferred shading.
 
-use crate::settings::{EMISSIVE, Kind, Setting, VPL_CLAMP};
+use crate::settings::{EMISSIVE, Kind, NORMAL_THRESHOLD, Setting, VPL_CLAMP};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -171,15 +171,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "what ends a walk of the filter: a discontinuity in its own direction, or in any of the three (the paper's \
                one flag, which leaves pixels along an edge unfiltered)",
     },
-    Setting {
-        key: "normal-threshold",
-        symbol: "",
-        kind: Kind::Number { min: 0.0, max: 2.0 },
-        default: "0.3",
-        unit: "",
-        paper: "Segovia 2006, 4.5",
-        help: "a neighbour is across a discontinuity where 1 - cos of the angle between the normals is greater",
-    },
+    NORMAL_THRESHOLD,
     Setting {
         key: "position-threshold",
         symbol: "",
