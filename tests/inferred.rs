@@ -145,65 +145,76 @@ fn the_filter_keeps_another_surface_s_light_out() {
     }
 }
 
-/// A sheet of glass whose texels all survive is lit as a forward renderer lights it, however many sheets lie over each other.
+/// Sheets of glass one behind the other before a wall. `lit`: the only one that is not black, where it is one.
+fn glass(count: usize, lit: Option<usize>) -> Scene {
+    let mut scene = Scene { name: format!("glass {count} {lit:?}"), ..Scene::default() };
+    let wall = Material::diffuse("wall", Vec3::splat(if lit.is_some() { 0.0 } else { 0.5 }));
+    rectangle(&mut scene, vec3(0.0, 0.0, -6.0), 6.0 * Vec3::X, 6.0 * Vec3::Y, wall);
+    for sheet in 0..count {
+        let color = vec3(0.9, 0.5, 0.3).lerp(vec3(0.2, 0.4, 0.9), sheet as f32 / 2.0).max(Vec3::splat(0.1));
+        let color = if lit.is_none_or(|lit| lit == sheet) { color } else { Vec3::ZERO };
+        let glass = Material {
+            base_color: color.extend(0.4),
+            alpha: AlphaMode::Blend,
+            double_sided: true,
+            ..Material::diffuse("glass", color)
+        };
+        let z = -3.0 - 0.5 * sheet as f32;
+        rectangle(&mut scene, vec3(0.3 * sheet as f32 - 0.3, 0.0, z), Vec3::X, 0.8 * Vec3::Y, glass);
+    }
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    // Far enough that light changes little from sample to sample.
+    scene.lights.push(point_light(vec3(2.0, 3.0, 2.0), 100.0));
+    scene
+}
+
+/// Each sheet by itself, the others black: what it sends is what a forward renderer gives it, neither twice nor nothing, as long
+/// as the stipple has a layer for each. A fourth sheet shares one of the three layers of a stipple of 2x2 with another: where the
+/// nearer one has the texels, the farther one is lit by what is there.
 #[test]
 fn glass_is_lit_as_forward_lights_it() {
-    for count in 1..=3 {
-        let mut scene = Scene { name: format!("glass {count}"), ..Scene::default() };
-        rectangle(
-            &mut scene,
-            vec3(0.0, 0.0, -6.0),
-            6.0 * Vec3::X,
-            6.0 * Vec3::Y,
-            Material::diffuse("wall", Vec3::splat(0.5)),
-        );
-        for sheet in 0..count {
-            let color = vec3(0.9, 0.5, 0.3).lerp(vec3(0.2, 0.4, 0.9), sheet as f32 / 2.0);
-            let glass = Material {
-                base_color: color.extend(0.4),
-                alpha: AlphaMode::Blend,
-                double_sided: true,
-                ..Material::diffuse("glass", color)
-            };
-            let z = -3.0 - 0.5 * sheet as f32;
-            rectangle(&mut scene, vec3(0.3 * sheet as f32 - 0.3, 0.0, z), Vec3::X, 0.8 * Vec3::Y, glass);
-        }
-        scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
-        // Far enough that light changes little from sample to sample.
-        scene.lights.push(point_light(vec3(2.0, 3.0, 2.0), 100.0));
-        let watched = Watched::with_scene(scene);
-        let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
-        let forward = watched.picture("deferred", &common);
-        for stipple in ["2x2", "4x4"] {
-            for filter in ["cone", "bilinear"] {
+    let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    for count in 1..=4 {
+        for lit in (0..count).map(Some).chain([None]) {
+            let watched = Watched::with_scene(glass(count, lit));
+            let forward = watched.picture("deferred", &common);
+            let brightest = |pixel: &[f32; 3]| pixel.iter().fold(0f32, |most, channel| most.max(*channel));
+            for stipple in ["2x2", "4x4"] {
                 for assignment in ["overlap", "depth", "static"] {
-                    let changes = [
-                        ("light-size", "160x120"),
-                        ("stipple", stipple),
-                        ("alpha-filter", filter),
-                        ("assignment", assignment),
-                    ];
-                    let renderer = watched.render(NAME, &both(&common, &changes));
-                    let found = greatest_part(&renderer.picture().unwrap(), &forward);
-                    println!("{count} sheets, {changes:?}: {found}");
-                    assert!(found < 0.03, "{count} sheets, {changes:?}: {found}");
+                    for filter in ["cone", "bilinear"] {
+                        let changes = [("stipple", stipple), ("alpha-filter", filter), ("assignment", assignment)];
+                        let size = [("light-size", "160x120")];
+                        let picture = watched.picture(NAME, &both(&both(&common, &changes), &size));
+                        let found = greatest_part(&picture, &forward);
+                        println!("{lit:?} of {count} sheets, {stipple} {assignment} {filter}: {found}");
+                        let shares = count == 4 && stipple == "2x2" && lit.is_none_or(|lit| lit == 3);
+                        let bound = if shares { 0.4 } else { 0.03 };
+                        assert!(found < bound, "{lit:?} of {count} sheets, {changes:?}: {found}");
+                        let dark = |(a, b): (&[f32; 3], &[f32; 3])| brightest(a) < 0.5 * brightest(b);
+                        let black = picture.pixels.iter().zip(&forward.pixels).filter(|pair| dark(*pair)).count();
+                        assert_eq!(black, 0, "{lit:?} of {count} sheets, {changes:?}");
+                    }
                 }
             }
         }
     }
 }
 
-/// Kircher 2009 blended in half floats; lavapipe rounds towards zero there, so light is lost, and more with more lights.
+/// Sums that are rounded after each light are off by more the more lights there are, and by what rounding a driver has: to the
+/// nearest half float, or towards 0, which darkens.
 #[test]
 fn blending_in_halves_is_near_the_float_sum() {
-    let watched = Watched::open("lamps:objects=30,lights=81");
     let common = [("size", "160x90"), ("brdf", "lambert"), ("volumes", "scissor")];
-    let mean = |picture: &Picture| picture.pixels.iter().flatten().map(|value| f64::from(*value)).sum::<f64>();
-    let sums = watched.picture(NAME, &common);
-    let halves = watched.picture(NAME, &both(&common, &[("l-buffer", "half")]));
-    let bias = mean(&halves) / mean(&sums) - 1.0;
-    println!("half against float: {bias:e}");
-    assert!(bias.abs() < 0.1 && bias != 0.0, "{bias}");
+    for (lights, bound) in [(1, 1e-3), (81, 0.02), (287, 0.06)] {
+        let watched = Watched::open(&format!("lamps:objects=30,lights={lights}"));
+        let mean = |picture: &Picture| picture.pixels.iter().flatten().map(|value| f64::from(*value)).sum::<f64>();
+        let sums = watched.picture(NAME, &common);
+        let halves = watched.picture(NAME, &both(&common, &[("l-buffer", "half")]));
+        let bias = mean(&halves) / mean(&sums) - 1.0;
+        println!("{lights} lights, blended in half floats against float sums: {bias:e}");
+        assert!(bias.abs() < bound && (bias != 0.0 || lights == 1), "{lights} lights: {bias}");
+    }
+    let watched = Watched::open("lamps:objects=9,lights=1");
     let error = watched.try_renderer(NAME, &[("l-buffer", "half")], &[], quincunx::gpu::commands::Submits::One);
     assert_eq!(error.err().unwrap().exit_code(), 2);
 }
@@ -253,8 +264,8 @@ fn on_edges_the_filter_is_nearer_to_the_supersampled_picture() {
     }
 }
 
-/// The sampler places a fetch among 256 steps from texel to texel at the least: a pixel is off by at most a 512th of what the
-/// light of four neighbouring texels differs by along each side, and a half float has 1024 steps from one power of two to the next.
+/// A sampler may round a fetch's place: to one of 16 from texel to texel at the coarsest that Vulkan allows, of 256 on most GPUs,
+/// not at all on lavapipe. A half float has 1024 steps from one power of two to the next.
 #[test]
 fn a_single_fetch_blends_as_four_do_but_for_the_sampler_s_steps() {
     let watched = Watched::open("hall:triangles=8000");

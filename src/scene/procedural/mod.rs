@@ -111,7 +111,7 @@ pub const ALL: &[BuiltIn] = &[
             Parameter {
                 key: "lights",
                 description: "how many point lights hang there",
-                choice: Choice::Number { default: 81, range: [1, 5000] },
+                choice: Choice::Number { default: 81, range: [0, 5000] },
             },
         ],
         make: lamps::make,
@@ -304,7 +304,7 @@ mod tests {
     fn bad_parameters_are_refused_with_what_would_work() {
         assert!(build("sponza.glb", 1).is_none());
         for (spec, said) in [
-            ("lamps:lights=0", "lights=0: must be a whole number, 1 to 5000, default 81"),
+            ("lamps:lights=5001", "lights=5001: must be a whole number, 0 to 5000, default 81"),
             ("lamps:lights=", "lights=: must be"),
             ("lamps:lamp=3", "no parameter 'lamp'"),
             ("hall:80000", "'80000' is not key=value"),
