@@ -53,6 +53,10 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
         ("forward", &[("size", "97x53")]),
         ("forward", &[("size", "161x91"), ("msaa", "4"), ("direct-shadow", "ray"), ("light-buffer", "storage")]),
         ("forward", &[("size", "97x53"), ("msaa", "4"), ("supersample", "2"), ("depth-prepass", "off")]),
+        ("inferred_lighting", &[("size", "161x91")]),
+        ("inferred_lighting", &[("size", "97x53"), ("volumes", "both"), ("extras", "off"), ("msaa", "4")]),
+        ("inferred_lighting", &[("size", "161x91"), ("volumes", "scissor"), ("l-buffer", "half")]),
+        ("inferred_lighting", &[("size", "97x53"), ("light-size", "97x53"), ("light-filter", "bilateral")]),
         ("interleaved_deferred", &[("size", "161x91")]),
         ("interleaved_deferred", &[("size", "161x91"), ("filter", "gauss-fast"), ("pattern", "5x7")]),
         ("interleaved_deferred", &[("size", "97x53"), ("split", "subsample"), ("position", "float")]),
@@ -67,6 +71,35 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
     for spec in &specs {
         for (technique, changes) in settings {
             require_made_as_planned(known, spec, technique, changes);
+        }
+    }
+}
+
+/// Kircher 2009: 4 bytes a texel of the light buffer's normals, 4 of its ids and linear depth, 4 of its depth (D32_SFLOAT; the
+/// paper's has a stencil of a byte among the 4) and 8 of its light. What a driver adds is said to be padding.
+#[test]
+fn the_buffers_of_inferred_lighting_are_as_large_as_its_texels() {
+    let Some(known) = known_driver() else { return };
+    for (light_size, texels) in [("800x450", 800 * 450), ("1280x720", 1280 * 720)] {
+        let changes = [("size", "1280x720"), ("light-size", light_size), ("extras", "off")];
+        let job = job("lamps:objects=10,lights=24", "inferred_lighting", &changes);
+        let tables = [study::planned(&job, known, &known::caps(known).unwrap()).unwrap(), study::made(&job).unwrap()];
+        for table in tables.map(|study| study.table.json()) {
+            let rows: Vec<&Value> = table["resources"].as_array().unwrap().iter().collect();
+            for (name, format, bytes) in [
+                ("geometry.normal", "R32_UINT", 4),
+                ("geometry.dsf", "R32_UINT", 4),
+                ("geometry.depth", "D32_SFLOAT", 4),
+                ("light.l_buffer", "R16G16B16A16_SFLOAT", 8),
+            ] {
+                let name = format!("inferred_lighting.{name}");
+                let row = rows.iter().find(|row| row["name"] == name.as_str()).unwrap();
+                assert_eq!((&row["format"], &row["bytes"]), (&Value::from(format), &Value::from(bytes * texels)));
+                assert!(row["bound_bytes"].as_u64().unwrap() >= bytes * texels, "{row:#}");
+            }
+            let groups = ["g-buffer", "l-buffer"];
+            let asked = rows.iter().filter(|row| groups.contains(&row["group"].as_str().unwrap()));
+            assert_eq!(asked.map(|row| row["bytes"].as_u64().unwrap()).sum::<u64>(), 20 * texels, "{light_size}");
         }
     }
 }
