@@ -145,6 +145,59 @@ fn the_filter_keeps_another_surface_s_light_out() {
     }
 }
 
+/// The paper's figure 4, pixel by pixel: the light of a pixel is the bilinear mean of those of its four texels that show its
+/// surface, by their ids; of all four where none does, which is counted. The sliver is too narrow to reach many texels.
+#[test]
+fn a_pixel_takes_the_texels_of_its_own_surface() {
+    const RATIO: usize = 4;
+    let (extent, texels) = ([160, 120], [40, 30]);
+    let mut scene = edge(300.0);
+    let gray = Material::diffuse("gray", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.9, 0.3, -2.9), vec3(0.02, 0.0, 0.0), vec3(0.1, 0.7, 0.0), gray);
+    let watched = Watched::with_scene(scene);
+    let common = [("size", "160x120"), ("light-size", "40x30"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    let stages = ["geometry.dsf.id", "light.l_buffer.irradiance"];
+    let low = watched.render_stages(NAME, &common, &stages);
+    let full = watched.render_stages(NAME, &both(&common, &[("light-size", "160x120")]), &stages[..1]);
+    let (low_ids, ids) = (watched.integers(&low, stages[0]), watched.integers(&full, stages[0]));
+    let light = watched.rgb(&low, stages[1]);
+    let picture = low.picture().unwrap();
+    // Any pixel of a texel shows the texel.
+    let shown = |[x, y]: [usize; 2]| (y * RATIO + RATIO / 2) * extent[0] + x * RATIO + RATIO / 2;
+    let mut found = [0; 5];
+    for (pixel, id) in ids.iter().enumerate() {
+        let at = [pixel % extent[0], pixel / extent[0]].map(|at| (at as f32 + 0.5) / RATIO as f32 - 0.5);
+        let [mut own, mut all] = [(Vec3::ZERO, 0.0, 0); 2];
+        for corner in 0..4usize {
+            let step = [corner & 1, corner >> 1];
+            let texel = [0, 1].map(|side| {
+                let place = at[side].floor() as i32 + step[side] as i32;
+                place.clamp(0, texels[side] - 1) as usize
+            });
+            let weigh = |side: usize| {
+                let part = at[side] - at[side].floor();
+                if step[side] == 1 { part } else { 1.0 - part }
+            };
+            let (weight, irradiance) = (weigh(0) * weigh(1), Vec3::from_array(light[shown(texel)]));
+            let add = |sum: &mut (Vec3, f32, usize)| {
+                *sum = (sum.0 + irradiance * weight, sum.1 + weight, sum.2 + 1);
+            };
+            add(&mut all);
+            if low_ids[shown(texel)] == *id {
+                add(&mut own);
+            }
+        }
+        found[own.2] += 1;
+        let (sum, weights, _) = if own.2 > 0 { own } else { all };
+        let expected = sum / weights * (0.5 / std::f32::consts::PI);
+        let off = (Vec3::from_array(picture.pixels[pixel]) - expected).abs().max_element();
+        assert!(off <= 1e-4 * expected.max_element() + 1e-6, "pixel {pixel}: {off} off {expected}, {} texels", own.2);
+    }
+    println!("pixels by how many of their four texels are their own: {found:?}");
+    assert!(found.iter().all(|count| *count > 20), "{found:?}");
+    assert_eq!(low.measured_counters().unwrap()["rejected_fragments"], f64::from(found[0]), "{found:?}");
+}
+
 /// Sheets of glass one behind the other before a wall. `lit`: the only one that is not black, where it is one.
 fn glass(count: usize, lit: Option<usize>) -> Scene {
     let mut scene = Scene { name: format!("glass {count} {lit:?}"), ..Scene::default() };
