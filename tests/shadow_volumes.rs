@@ -8,6 +8,7 @@ use quincunx::gpu::commands::Submits;
 use quincunx::scene::{self, AlphaMode, Camera, Draw, Light, LightKind, Material, Mesh, Projection, Scene};
 use quincunx::session::Renderer;
 use support::boxes::{camera, point_light, rectangle};
+use support::program::Program;
 use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "inferred_lighting";
@@ -275,6 +276,16 @@ fn a_mesh_that_is_not_closed_is_counted_and_casts_nothing() {
         let (with, without) = (irradiance(&watched, COUNTED), irradiance(&watched, &[("direct-shadow", "none")]));
         assert_eq!(with != without, volume_count > 0.0);
     }
+}
+
+#[test]
+fn who_casts_nothing_is_said() {
+    let program = Program::new();
+    let common = ["render", "cornell", "--technique", NAME, "--size", "16x16", "--volumes", "scissor"];
+    let said = |more: &[&str]| program.run(&[&common[..], more].concat()).fine().out;
+    let note = "note: draws that cast no shadow volumes, because their meshes are not closed: ";
+    assert!(said(&["--shadow-volumes", "1"]).contains(note));
+    assert!(!said(&[]).contains(note));
 }
 
 #[test]

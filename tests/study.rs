@@ -53,6 +53,8 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
         ("forward", &[("size", "97x53")]),
         ("forward", &[("size", "161x91"), ("msaa", "4"), ("direct-shadow", "ray"), ("light-buffer", "storage")]),
         ("forward", &[("size", "97x53"), ("msaa", "4"), ("supersample", "2"), ("depth-prepass", "off")]),
+        ("inferred_lighting", &[("size", "161x91")]),
+        ("inferred_lighting", &[("size", "161x91"), ("volumes", "scissor"), ("shadow-volumes", "3")]),
         ("interleaved_deferred", &[("size", "161x91")]),
         ("interleaved_deferred", &[("size", "161x91"), ("filter", "gauss-fast"), ("pattern", "5x7")]),
         ("interleaved_deferred", &[("size", "97x53"), ("split", "subsample"), ("position", "float")]),
