@@ -165,6 +165,19 @@ fn shadows_fall_on_solid_surfaces_and_on_layers_of_glass_as_rays_cast_them() {
     }
 }
 
+/// A closed scan of 202,520 triangles, most smaller than a texel: what faces the light is not shadowed by itself.
+#[test]
+fn a_fine_surface_casts_on_itself_as_rays_do() {
+    let Some(folder) = support::shared_scenes() else { return };
+    let watched = Watched::open(folder.join("meshes/dragon.glb").to_str().unwrap());
+    let lit = irradiance(&watched, &[("direct-shadow", "none")]);
+    let [by_volumes, by_rays] = [COUNTED, TRACED].map(|changes| irradiance(&watched, changes));
+    let differing = |a: &[[f32; 3]], b: &[[f32; 3]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+    let (shadowed, other) = (differing(&by_rays, &lit), differing(&by_volumes, &by_rays));
+    println!("{shadowed} texels in shadow, {other} otherwise");
+    assert!(shadowed > 300 && other * 10 < shadowed, "{other} texels of {shadowed} in shadow");
+}
+
 /// The eye in the shadow of the block, its near plane cut by the volume's sides, and a far plane that cuts volumes off. A
 /// count of the faces before a surface would be wrong in all of these.
 #[test]
