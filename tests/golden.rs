@@ -113,6 +113,13 @@ fn hall_inferred() {
     require_golden("hall_inferred", "hall:triangles=8000", "inferred_lighting", &[("msaa", "4")]);
 }
 
+/// The shadow of a rotor on three sheets of glass: the paper's figure 6.
+#[test]
+fn fence_shadows() {
+    let changes = [("camera", "rotor"), ("volumes", "scissor"), ("shadow-volumes", "1")];
+    require_golden("fence_shadows", "fence", "inferred_lighting", &changes);
+}
+
 #[test]
 fn lamps_forward() {
     require_golden("lamps_forward", "lamps", "forward", &[("msaa", "4")]);

@@ -163,6 +163,14 @@ fn a_transport_without_a_reference_says_so() {
     has(settings("interleaved_deferred", &[]), "transport", "one-bounce");
     has(settings("interleaved_deferred", &[("vpl-bounces", "3")]), "bounces", "4");
     has(settings("interleaved_deferred", &[("direct", "interleaved")]), "brdf", "lambert");
+    // Of its three lamps none, all and one cast by volumes.
+    let by_volumes = |count| settings("inferred_lighting", &[("direct-shadow", "none"), ("shadow-volumes", count)]);
+    has(by_volumes("0"), "light-visibility", "off");
+    has(by_volumes("9"), "light-visibility", "on");
+    has(settings("inferred_lighting", &[("direct-shadow", "ray"), ("shadow-volumes", "1")]), "light-visibility", "on");
+    let error = by_volumes("1").unwrap_err();
+    let words = "--shadow-volumes: 1 of 3 lights cast shadows";
+    assert!(error.exit_code() == 2 && error.message().contains(words), "{error}");
     let error = settings("interleaved_deferred", &[("direct", "none")]).unwrap_err();
     assert!(error.exit_code() == 2 && error.message().contains("--direct none"), "{error}");
 }

@@ -57,6 +57,7 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
         ("inferred_lighting", &[("size", "97x53"), ("volumes", "both"), ("extras", "off"), ("msaa", "4")]),
         ("inferred_lighting", &[("size", "161x91"), ("volumes", "scissor"), ("l-buffer", "half")]),
         ("inferred_lighting", &[("size", "97x53"), ("light-size", "97x53"), ("light-filter", "bilateral")]),
+        ("inferred_lighting", &[("size", "161x91"), ("volumes", "scissor"), ("shadow-volumes", "3")]),
         ("interleaved_deferred", &[("size", "161x91")]),
         ("interleaved_deferred", &[("size", "161x91"), ("filter", "gauss-fast"), ("pattern", "5x7")]),
         ("interleaved_deferred", &[("size", "97x53"), ("split", "subsample"), ("position", "float")]),

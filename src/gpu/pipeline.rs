@@ -241,6 +241,8 @@ pub struct GraphicsDescription<'a> {
     pub depth_compare: vk::CompareOp,
     /// What lies before the near plane or beyond the far one is drawn there instead of being cut off.
     pub depth_clamp: bool,
+    /// What is added to depth: parts of what it changes by from a pixel to the next where the surface is steepest.
+    pub depth_slope_bias: f32,
     /// None: no stencil test. Reference and write mask are set by commands.
     pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
@@ -293,6 +295,8 @@ pub enum StencilUse {
     CountBehind,
     /// Draw only where the stencil differs from the reference, and set it to 0 there.
     TakeUnequal,
+    /// Draw only where the stencil holds the reference, and set it to 0 everywhere else.
+    LeaveUnequal,
 }
 
 impl StencilUse {
@@ -300,7 +304,7 @@ impl StencilUse {
     fn states(self) -> [vk::StencilOpState; 2] {
         let (compare_op, pass_op) = match self {
             Self::Replace => (vk::CompareOp::ALWAYS, vk::StencilOp::REPLACE),
-            Self::RequireEqual => (vk::CompareOp::EQUAL, vk::StencilOp::KEEP),
+            Self::RequireEqual | Self::LeaveUnequal => (vk::CompareOp::EQUAL, vk::StencilOp::KEEP),
             Self::CountBehind => (vk::CompareOp::ALWAYS, vk::StencilOp::KEEP),
             Self::TakeUnequal => (vk::CompareOp::NOT_EQUAL, vk::StencilOp::ZERO),
         };
@@ -310,6 +314,7 @@ impl StencilUse {
             Self::CountBehind => {
                 [counting(vk::StencilOp::DECREMENT_AND_WRAP), counting(vk::StencilOp::INCREMENT_AND_WRAP)]
             }
+            Self::LeaveUnequal => [vk::StencilOpState { fail_op: vk::StencilOp::ZERO, ..state }; 2],
             Self::Replace | Self::RequireEqual | Self::TakeUnequal => [state; 2],
         }
     }
@@ -373,7 +378,9 @@ impl GraphicsPipeline {
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .line_width(1.0)
-            .depth_clamp_enable(description.depth_clamp);
+            .depth_clamp_enable(description.depth_clamp)
+            .depth_bias_enable(description.depth_slope_bias != 0.0)
+            .depth_bias_slope_factor(description.depth_slope_bias);
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(description.samples));
         let [front, back] = description.stencil.map(StencilUse::states).unwrap_or_default();

@@ -114,6 +114,7 @@ impl Blend {
                 depth_write: false,
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
                 depth_clamp: false,
+                depth_slope_bias: 0.0,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

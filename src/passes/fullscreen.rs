@@ -20,6 +20,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         depth_write: false,
         depth_compare: vk::CompareOp::ALWAYS,
         depth_clamp: false,
+        depth_slope_bias: 0.0,
         stencil: None,
         foreign_sets: &[],
     }

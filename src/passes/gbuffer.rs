@@ -320,6 +320,7 @@ impl GBufferPass {
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
+                    depth_slope_bias: 0.0,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

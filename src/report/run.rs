@@ -282,6 +282,9 @@ impl Report {
                 "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
             ));
         }
+        if let Some(open) = counter("shadow_casters_not_closed").filter(|open| *open > 0.0) {
+            line(format!("  note: draws that cast no shadow volumes, because their meshes are not closed: {open}"));
+        }
         if let Some(samples) = counter("samples") {
             let (error, plural) = (counter("estimated_error"), if samples == 1.0 { "" } else { "s" });
             let words = error.map_or(String::new(), |error| format!(", estimated error {error:.5}"));

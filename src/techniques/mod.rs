@@ -190,23 +190,26 @@ pub fn find(name: &str) -> Result<&'static dyn Technique> {
     })
 }
 
-/// Whether path tracing must let the scene's own lights cast shadows to compute what `--direct-shadow` does.
+/// Whether path tracing must let the scene's own lights cast shadows to compute what `--direct-shadow` does, and
+/// `by_volumes`: how many of them, directional ones first, cast in another way.
 ///
 /// Errors: some of the lights would, and others not (exit code 2).
-fn light_visibility(values: &Values, lights: &LightSet) -> Result<String> {
-    let shadowed = match values.text("direct-shadow") {
+fn light_visibility(values: &Values, lights: &LightSet, by_volumes: usize) -> Result<String> {
+    let all = lights.lights.len();
+    let traced = match values.text("direct-shadow") {
         "none" => 0,
         "sun" => lights.sun_count(),
-        _ => lights.lights.len(),
+        _ => all,
     };
-    match shadowed {
+    match traced.max(by_volumes.min(all)) {
         0 => Ok("off".to_owned()),
-        all if all == lights.lights.len() => Ok("on".to_owned()),
-        some => Err(Error::request(format!(
-            "--direct-shadow sun: {some} of {} lights cast shadows, and path tracing lets all of them or none",
-            lights.lights.len()
-        ))
-        .note("--direct-shadow ray and none have a reference")),
+        shadowed if shadowed == all => Ok("on".to_owned()),
+        some => {
+            let key = if traced == some { "--direct-shadow sun" } else { "--shadow-volumes" };
+            let why = "path tracing lets all of them or none";
+            Err(Error::request(format!("{key}: {some} of {all} lights cast shadows, and {why}"))
+                .note("--direct-shadow ray and none have a reference"))
+        }
     }
 }
 

@@ -61,7 +61,7 @@ impl Technique for Deferred {
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         Ok(vec![
             ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights)?),
+            ("light-visibility", light_visibility(values, lights, 0)?),
             ("emissive", "off".to_owned()),
         ])
     }

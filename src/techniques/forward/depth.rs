@@ -38,6 +38,7 @@ impl Depth {
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
+                    depth_slope_bias: 0.0,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

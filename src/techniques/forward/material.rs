@@ -59,6 +59,7 @@ impl Material {
                     depth_write: !has_prepass,
                     depth_compare: if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER },
                     depth_clamp: false,
+                    depth_slope_bias: 0.0,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -3,12 +3,14 @@
 use super::light::Volumes;
 use super::stipple::Assignment;
 use crate::error::{Error, Result};
+use crate::lights::shadow_casters;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::PositionStorage;
 use crate::passes::resolve;
 use crate::shading::brdf::Brdf;
 use crate::techniques::Inputs;
 use crate::units::Extent;
+use ash::vk;
 
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
@@ -52,6 +54,8 @@ pub struct Choices {
     pub volumes: Volumes,
     /// Texels of a rectangle from which on --volumes auto counts a light.
     pub least_counted_texels: u64,
+    /// Lights that cast shadow volumes, ascending.
+    pub casting_lights: Vec<usize>,
     /// The L-buffer is blended in half floats.
     pub in_halves: bool,
     pub filter: LightFilter,
@@ -78,6 +82,12 @@ impl Choices {
             return Err(Error::request("--l-buffer half with --volumes tiled: sums of one dispatch are not blended")
                 .note("--volumes scissor blends in half floats; --volumes tiled takes --l-buffer float"));
         }
+        let casting_count = values.integer("shadow-volumes") as usize;
+        if casting_count > 0 && volumes == Volumes::Tiled {
+            let why = "shadows are counted into a stencil, which one dispatch for all lights has not";
+            return Err(Error::request(format!("--shadow-volumes {casting_count} with --volumes tiled: {why}"))
+                .note("--volumes scissor draws a light at a time, as quad, stencil, both and auto do"));
+        }
         let stipple_side = if values.text("stipple") == "4x4" { 4 } else { 2 };
         let cone_radius = match values.text("alpha-filter") {
             "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
@@ -91,6 +101,7 @@ impl Choices {
             light_roughness: values.number("light-roughness") as f32,
             volumes,
             least_counted_texels: values.integer("stencil-least"),
+            casting_lights: shadow_casters::strongest(&inputs.lights.lights, casting_count),
             in_halves,
             filter: LightFilter::from_setting(values.text("light-filter")),
             sampler_blends: values.text("light-fetch") == "sampler",
@@ -102,6 +113,16 @@ impl Choices {
             assignment: Assignment::from_setting(values.text("assignment")),
             cone_radius,
         })
+    }
+
+    /// Whether the light pass counts into a stencil.
+    pub fn has_stencil(&self) -> bool {
+        self.volumes.counts() || !self.casting_lights.is_empty()
+    }
+
+    /// Of the geometry pass.
+    pub fn depth_format(&self) -> vk::Format {
+        if self.has_stencil() { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT }
     }
 
     /// Constants of the light pass: those of lights that are not of materials, and ROUGHNESS without extras.

@@ -13,6 +13,7 @@ use super::{NAME, aov, light_frame};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, upload};
+use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::blend;
 use crate::passes::direct::DirectGpu;
 use crate::plan::{PICTURE_FORMAT, Resources};
@@ -63,6 +64,7 @@ impl InferredFrame {
         resources: &mut Resources,
         choices: &Choices,
         lights: &[LightBlock],
+        casters: &ShadowCasters,
     ) -> Result<Self> {
         let light_extent = choices.light_extent;
         let bounds = inputs.scene.bounds();
@@ -93,26 +95,28 @@ impl InferredFrame {
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();
-        let volumes = |target_format| {
+        let volumes = |target_format, resources: &mut Resources| {
             let settings = VolumeSettings {
                 constants: &constants,
                 has_extras: choices.has_extras,
                 volumes: choices.volumes,
+                depth_format: choices.has_stencil().then_some(choices.depth_format()),
+                casters,
                 least_counted_texels: choices.least_counted_texels,
                 target_format,
                 ambient,
             };
-            LightVolumes::new(gpu, &settings, lights, inputs.view, light_extent)
+            LightVolumes::new(gpu, &settings, resources, lights, inputs.view, light_extent)
         };
         let road = match (choices.volumes, choices.in_halves) {
             (Volumes::Tiled, _) => {
                 Road::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
             }
-            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::L_BUFFER_FORMAT)?), packed: None },
+            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::L_BUFFER_FORMAT, resources)?), packed: None },
             (_, false) => {
                 let pack = Pack::new(gpu, &choices.shading.workgroup_constants())?;
                 let packed = Packed { pack, sums: resources.image(&light::sums()) };
-                Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT)?), packed: Some(Box::new(packed)) }
+                Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT, resources)?), packed: Some(Box::new(packed)) }
             }
         };
         let filter = FilterSettings {
@@ -136,7 +140,7 @@ impl InferredFrame {
                 choices.stipple_side,
                 depth_range_m,
                 choices.has_extras,
-                choices.volumes.depth_format(),
+                choices.depth_format(),
             )?,
             material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
             l_buffer: resources.image(&light::l_buffer()),

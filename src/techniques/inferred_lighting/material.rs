@@ -127,6 +127,7 @@ impl Material {
                     depth_write: alpha != "blend",
                     depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
                     depth_clamp: false,
+                    depth_slope_bias: 0.0,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

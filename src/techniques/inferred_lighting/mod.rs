@@ -6,9 +6,10 @@
 //!
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
 //! default road is one dispatch with light lists for tiles (`--volumes quad`, `scissor`, `stencil`, `both` and `auto` are
-//! draws); depth is reversed and a float; specular power travels in a third target by default (`--extras`), because
-//! materials of glTF have a roughness each; a highlight's Fresnel factor is that of normal incidence, because the L-buffer
-//! keeps no directions (that of the angle to the eye is worse: `fence` against `forward`, FLIP 0.195 instead of 0.131).
+//! draws, and only lights that are drawn have `--shadow-volumes`); depth is reversed and a float; specular power travels in
+//! a third target by default (`--extras`), because materials of glTF have a roughness each; a highlight's Fresnel factor is
+//! that of normal incidence, because the L-buffer keeps no directions (that of the angle to the eye is worse: `fence` against
+//! `forward`, FLIP 0.195 instead of 0.131).
 //!
 //! Equals `deferred` within the rounding of normals, depth and L-buffer with `--light-size` at the frame's size, without
 //! BLEND surfaces, with `--brdf lambert` (tests/inferred.rs has the bound).
@@ -28,6 +29,7 @@ use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::gpu::{Ability, Access, Caps, Gpu, Need};
+use crate::lights::shadow_casters::ShadowCasters;
 use crate::lights::{LightSet, cull as light_masks};
 use crate::passes::{blend, direct, resolve};
 use crate::plan::{Plan, Resources};
@@ -35,9 +37,10 @@ use crate::resident::SceneGpu;
 use crate::settings::{MULTISAMPLE, Setting, Values};
 use choices::Choices;
 use frame::InferredFrame;
-use light::Volumes;
+use light::{Volumes, shadow_volumes};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 const NAME: &str = "inferred_lighting";
 
@@ -83,8 +86,14 @@ impl Technique for InferredLighting {
                 ability: Ability::BlendFloats,
                 instead: "--volumes tiled works without it",
             });
-            if Volumes::from_setting(values.text("volumes")).counts() {
-                let instead = "--volumes scissor works without it";
+            let casts = values.integer("shadow-volumes") > 0;
+            if casts || Volumes::from_setting(values.text("volumes")).counts() {
+                let (of, instead) = match casts {
+                    true => {
+                        ("--shadow-volumes".to_owned(), "--shadow-volumes 0 with --volumes scissor works without it")
+                    }
+                    false => (of, "--volumes scissor works without it"),
+                };
                 needs.push(Need { of: of.clone(), ability: Ability::DepthWithStencil, instead });
                 needs.push(Need { of, ability: Ability::DepthClamp, instead });
             }
@@ -101,9 +110,10 @@ impl Technique for InferredLighting {
 
     /// Punctual lights, straight.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        let by_volumes = values.integer("shadow-volumes") as usize;
         Ok(vec![
             ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights)?),
+            ("light-visibility", light_visibility(values, lights, by_volumes)?),
             ("emissive", "off".to_owned()),
         ])
     }
@@ -112,11 +122,14 @@ impl Technique for InferredLighting {
         let choices = Choices::new(inputs)?;
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
-        geometry::plan(&mut plan, choices.light_extent, choices.has_extras, choices.volumes.depth_format());
+        geometry::plan(&mut plan, choices.light_extent, choices.has_extras, choices.depth_format());
         let tree = choices.shading.direct.tree(inputs.bvh, inputs.scene)?;
         direct::plan_with_masks(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
         light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves);
+        if !choices.casting_lights.is_empty() {
+            shadow_volumes::plan(&mut plan, &casters(inputs, &choices)?);
+        }
         material::plan(&mut plan, inputs.view.extent, choices.samples);
         plan.pass(format!("{NAME}.geometry"), geometry::written(choices.has_extras));
         let masks = choices.shading.culls(light_count);
@@ -131,7 +144,7 @@ impl Technique for InferredLighting {
             touches.push((light::l_buffer(), Access::ComputeWrite));
             plan.pass(format!("{NAME}.light"), touches);
         } else {
-            let depth_access = if choices.volumes.counts() { Access::StencilWrite } else { Access::FragmentSample };
+            let depth_access = if choices.has_stencil() { Access::StencilWrite } else { Access::FragmentSample };
             let mut touches = geometry::lit(choices.has_extras, Access::FragmentSample, depth_access);
             let target = if choices.in_halves { light::l_buffer() } else { light::sums() };
             touches.push((target, Access::ColorWrite));
@@ -147,22 +160,41 @@ impl Technique for InferredLighting {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
-        Ok(Box::new(PreparedInferred { choices, lights: direct::light_blocks(inputs.lights, inputs.values) }))
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        let started = Instant::now();
+        let casters = casters(inputs, &choices)?;
+        let casters_ns = started.elapsed().as_nanos() as u64;
+        Ok(Box::new(PreparedInferred { choices, lights, casters, casters_ns }))
     }
+}
+
+/// What the lights of `--shadow-volumes` cast.
+fn casters(inputs: &Inputs<'_>, choices: &Choices) -> Result<ShadowCasters> {
+    ShadowCasters::of(inputs.scene, &inputs.lights.lights, &choices.casting_lights)
 }
 
 struct PreparedInferred {
     choices: Choices,
     lights: Vec<LightBlock>,
+    casters: ShadowCasters,
+    casters_ns: u64,
 }
 
 impl Prepared for PreparedInferred {
     fn host_passes(&self) -> Vec<(String, u64)> {
-        Vec::new()
+        let has_casters = !self.choices.casting_lights.is_empty();
+        has_casters.then(|| (shadow_volumes::pass(), self.casters_ns)).into_iter().collect()
     }
 
     fn counters(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([("lights", self.lights.len() as f64)])
+        let mut counters = BTreeMap::from([("lights", self.lights.len() as f64)]);
+        if !self.choices.casting_lights.is_empty() {
+            counters.insert("shadow_volume_lights", self.casters.lights.len() as f64);
+            counters.insert("shadow_volumes", self.casters.volume_count as f64);
+            counters.insert("shadow_volume_triangles", self.casters.triangles.len() as f64);
+            counters.insert("shadow_casters_not_closed", self.casters.open_count as f64);
+        }
+        counters
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -182,6 +214,6 @@ impl Prepared for PreparedInferred {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        Ok(Box::new(InferredFrame::new(gpu, inputs, scene, resources, &self.choices, &self.lights)?))
+        Ok(Box::new(InferredFrame::new(gpu, inputs, scene, resources, &self.choices, &self.lights, &self.casters)?))
     }
 }

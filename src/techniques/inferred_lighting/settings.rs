@@ -59,6 +59,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "of --volumes auto: a light whose rectangle has fewer texels is drawn without the stencil",
     },
     Setting {
+        key: "shadow-volumes",
+        symbol: "",
+        kind: Kind::Integer { min: 0, max: 65_536 },
+        default: "0",
+        unit: "lights",
+        paper: "Kircher 2009, 4, 7",
+        help: "how many lights cast stencil shadow volumes of all closed opaque and MASK surfaces, instead of the rays of \
+               --direct-shadow: directional lights first, then those of most flux; not with --volumes tiled",
+    },
+    Setting {
         key: "l-buffer",
         symbol: "",
         kind: Kind::Choice(&["float", "half"]),

@@ -5,10 +5,12 @@
 //! half floats as the paper did, which loses light (drivers round towards zero).
 //!
 //! roads  tiled      one dispatch, a list of lights a tile
-//!        volumes    a draw a light, into float sums that `pack` rounds once, or into the L-buffer itself
+//!        volumes    a draw a light, into float sums that `pack` rounds once, or into the L-buffer itself; lights may
+//!                   cast `shadow_volumes` before
 
 pub mod pack;
 pub mod reach;
+pub mod shadow_volumes;
 pub mod tiled;
 pub mod volumes;
 
@@ -49,11 +51,6 @@ impl Volumes {
     /// Whether lights are counted into a stencil.
     pub fn counts(self) -> bool {
         matches!(self, Self::Stencil | Self::Both | Self::Auto)
-    }
-
-    /// Of the geometry pass.
-    pub fn depth_format(self) -> vk::Format {
-        if self.counts() { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT }
     }
 }
 

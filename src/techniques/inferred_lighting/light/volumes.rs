@@ -5,11 +5,15 @@
 //! Beyond its range a light adds exactly 0, so what a rectangle or a volume leaves out changes no bit of a float sum. A volume
 //! is counted into the stencil by the depth-fail test, which is right with the eye inside of it too; depth is clamped, so
 //! that it may reach beyond the far plane. The draw that lights what was counted sets the stencil back to 0.
+//!
+//! A light that casts shadow volumes (shadow_volumes.rs) has the stencil for these alone: of `--volumes` it keeps the
+//! rectangle.
 
 use super::super::NAME;
 use super::super::geometry::{LowGeometry, extras_name};
 use super::Volumes;
 use super::reach::{self, Rectangle};
+use super::shadow_volumes::ShadowVolumes;
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline, StencilUse};
@@ -17,8 +21,10 @@ use crate::gpu::shader::structs::{LightBlock, VolumesParams};
 use crate::gpu::shader::techniques::inferred_lighting::light::volumes::{FRAG_VARIANTS, VERT};
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
+use crate::lights::shadow_casters::{CastingLight, ShadowCasters};
 use crate::passes::direct::DirectGpu;
 use crate::passes::fullscreen;
+use crate::plan::Resources;
 use crate::units::Extent;
 use ash::vk;
 use glam::Vec3;
@@ -28,12 +34,21 @@ use std::sync::Arc;
 const VOLUME_VERTICES: u32 = 60;
 
 /// What a light's draw is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct LightDraw {
     light: u32,
     rectangle: Rectangle,
-    /// Only where its volume meets a surface.
-    is_counted: bool,
+    mask: Mask,
+}
+
+/// Which texels of its rectangle a light is drawn at.
+#[derive(Clone, Debug)]
+enum Mask {
+    All,
+    /// Where its volume meets a surface.
+    Volume,
+    /// Outside of the shadows that it casts.
+    Shadows(CastingLight),
 }
 
 /// The pipelines of volumes in the stencil.
@@ -45,6 +60,7 @@ struct Counted {
 pub struct LightVolumes {
     plain: GraphicsPipeline,
     counted: Option<Counted>,
+    shadows: Option<ShadowVolumes>,
     /// The lights that reach something on the screen, in their order.
     draws: Vec<LightDraw>,
     ambient: Vec3,
@@ -56,6 +72,9 @@ pub struct VolumeSettings<'a> {
     pub constants: &'a [(&'static str, u32)],
     pub has_extras: bool,
     pub volumes: Volumes,
+    /// Of the geometry pass, where lights or shadows are counted into its stencil.
+    pub depth_format: Option<vk::Format>,
+    pub casters: &'a ShadowCasters,
     /// `--volumes auto`: lights whose rectangle has fewer texels go without the stencil.
     pub least_counted_texels: u64,
     /// What lights are summed in.
@@ -69,22 +88,21 @@ impl LightVolumes {
     pub fn new(
         gpu: &Arc<Gpu>,
         settings: &VolumeSettings<'_>,
+        resources: &mut Resources,
         lights: &[LightBlock],
         view: &View,
         extent: Extent,
     ) -> Result<Self> {
         let shader = variant(FRAG_VARIANTS, &[extras_name(settings.has_extras)]);
         let formats = [settings.target_format];
-        let depth_format = settings.volumes.depth_format();
-        let is_counting = settings.volumes.counts();
         let light = |stencil| GraphicsDescription {
             constants: settings.constants,
             blending: Blending::Add,
-            depth_format: is_counting.then_some(depth_format),
+            depth_format: settings.depth_format,
             stencil,
             ..fullscreen::description(shader, &formats)
         };
-        let counted = if is_counting {
+        let counted = if settings.volumes.counts() {
             let count = GraphicsDescription {
                 vertex: &VERT,
                 fragment: None,
@@ -101,6 +119,12 @@ impl LightVolumes {
         } else {
             None
         };
+        let casting = &settings.casters.lights;
+        let shadows = if casting.is_empty() {
+            None
+        } else {
+            Some(ShadowVolumes::new(gpu, resources, settings.casters, &light(None))?)
+        };
         let draw = |(index, light): (usize, &LightBlock)| {
             let bounds = reach::rectangle(light, view, extent)?;
             let whole = Rectangle { corner_px: [0, 0], extent };
@@ -113,10 +137,17 @@ impl LightVolumes {
                 Volumes::Both => (bounds, has_end),
                 Volumes::Auto => (bounds, has_end && is_large),
             };
-            Some(LightDraw { light: index as u32, rectangle, is_counted })
+            let light = index as u32;
+            let mask = match casting.binary_search_by_key(&light, |casting| casting.light) {
+                Ok(found) => Mask::Shadows(casting[found].clone()),
+                Err(_) if is_counted => Mask::Volume,
+                Err(_) => Mask::All,
+            };
+            Some(LightDraw { light, rectangle, mask })
         };
         let draws = lights.iter().enumerate().filter_map(draw).collect();
-        Ok(Self { plain: GraphicsPipeline::new(gpu, &light(None))?, counted, draws, ambient: settings.ambient })
+        let plain = GraphicsPipeline::new(gpu, &light(None))?;
+        Ok(Self { plain, counted, shadows, draws, ambient: settings.ambient })
     }
 
     /// Texels times lights that are drawn, whatever the stencil leaves of them.
@@ -126,7 +157,7 @@ impl LightVolumes {
 
     /// Lights whose volumes are counted.
     pub fn counted_lights(&self) -> usize {
-        self.draws.iter().filter(|draw| draw.is_counted).count()
+        self.draws.iter().filter(|draw| matches!(draw.mask, Mask::Volume)).count()
     }
 
     /// `frame`: the block of the light buffer's extent. `target`: where lights are summed.
@@ -146,13 +177,14 @@ impl LightVolumes {
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {
-            let depth_access = if self.counted.is_some() { Access::StencilWrite } else { Access::FragmentSample };
+            let has_stencil = self.counted.is_some() || self.shadows.is_some();
+            let depth_access = if has_stencil { Access::StencilWrite } else { Access::FragmentSample };
             cmd.barriers(geometry.lit_with_depth_to(Access::FragmentSample, depth_access));
             cmd.barriers([target.discard(Access::ColorWrite)]);
             // As lighting.glsl's ambient_lighting: a float times a float, rounded once.
             let [r, g, b] = (std::f32::consts::PI * self.ambient).to_array();
             let ambient = Some(vk::ClearColorValue { float32: [r, g, b, 0.0] });
-            let depth = self.counted.is_some().then_some((&geometry.resource.depth, None, depth_access));
+            let depth = has_stencil.then_some((&geometry.resource.depth, None, depth_access));
             cmd.begin_rendering(extent, &[ColorTarget::new(target, ambient)], depth);
             let mut bound = geometry.resource.bound_with_depth(Access::FragmentSample, depth_access);
             bound.extend(lights.bound());
@@ -179,12 +211,16 @@ impl LightVolumes {
             }
             None => None,
         };
-        for LightDraw { light, rectangle, is_counted } in &self.draws {
+        let shadow_sets = self.shadows.as_ref().map(|shadows| shadows.sets(cmd, bound, frame, lights)).transpose()?;
+        for LightDraw { light, rectangle, mask } in &self.draws {
             let params = VolumesParams { light: *light };
             let params = bytemuck::bytes_of(&params);
             cmd.set_scissor(rectangle.corner_px, rectangle.extent);
-            match counted_sets {
-                Some((count, count_set, light, light_set)) if *is_counted => {
+            match (mask, counted_sets, &self.shadows, shadow_sets) {
+                (Mask::Shadows(casting), _, Some(shadows), Some(sets)) => {
+                    shadows.draw(cmd, casting, sets, params);
+                }
+                (Mask::Volume, Some((count, count_set, light, light_set)), ..) => {
                     cmd.bind_with_set(count, params, count_set);
                     cmd.set_stencil(0, 0xff);
                     draw_volume(cmd);
