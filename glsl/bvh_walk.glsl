@@ -11,7 +11,15 @@ const int BVH_STACK = 64;
 
 // Whether anything lies between a surface point and a light `distance` away in the unit direction.
 bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distance) {
-    vec3 origin = position_ws + normal_ws * RAY_OFFSET;
+    vec3 offset = normal_ws * RAY_OFFSET;
+    vec3 origin = position_ws + offset;
+    // Off the surface the light lies another way: the shadow of what is close to a lamp would fall beside its place. A sun is
+    // too far for squares of floats, and for this.
+    if (offset != vec3(0.0) && distance < 1e15) {
+        vec3 to_light = direction_ws * distance - offset;
+        distance = length(to_light);
+        direction_ws = to_light / max(distance, 1e-12);
+    }
     float limit = distance - 2.0 * RAY_OFFSET;
     vec3 inverse = 1.0 / mix(direction_ws, vec3(1e-20), equal(direction_ws, vec3(0.0)));
     vec3 met;
