@@ -1,6 +1,8 @@
 //! What the settings come to, before there is a device: sizes, roads, the constants of the shaders.
 
+use super::encoding::Packing;
 use super::light::Volumes;
+use super::light::store::Store;
 use super::stipple::Assignment;
 use crate::error::{Error, Result};
 use crate::passes::direct::ShadingSettings;
@@ -25,6 +27,10 @@ pub struct Choices {
     pub least_counted_texels: u64,
     /// The L-buffer is blended in half floats.
     pub in_halves: bool,
+    pub store: Store,
+    /// Light at which losses of the L-buffer are told.
+    pub light_range: f32,
+    pub packing: Packing,
     pub filters: bool,
     pub depth_threshold: f32,
     pub tests_alpha: bool,
@@ -51,6 +57,7 @@ impl Choices {
             "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
             _ => 0.0,
         };
+        let light_range = values.number("light-range") as f32;
         let (position, cull) = (PositionStorage::Depth, volumes == Volumes::Tiled);
         Ok(Self {
             shading: ShadingSettings::with(values, inputs.lights, inputs.scene, inputs.caps, position, cull),
@@ -60,6 +67,9 @@ impl Choices {
             volumes,
             least_counted_texels: values.integer("stencil-least"),
             in_halves,
+            store: if values.text("l-buffer") == "fixed" { Store::Fixed { range: light_range } } else { Store::Halves },
+            light_range,
+            packing: Packing::from_settings(values),
             filters: values.is_on("dsf"),
             depth_threshold: values.number("depth-threshold") as f32,
             tests_alpha: values.text("alpha") == "test",
@@ -72,7 +82,7 @@ impl Choices {
 
     /// Constants of the light pass: those of lights that are not of materials, and ROUGHNESS without extras.
     pub fn light_constants(&self) -> Vec<(&'static str, u32)> {
-        let mut constants = vec![("BRDF_KIND", self.shading.direct.brdf as u32)];
+        let mut constants = vec![("BRDF_KIND", self.shading.direct.brdf as u32), self.fixed_constant()];
         constants.push(self.shading.direct.kinds_constant());
         constants.extend(self.shading.direct.shadow_constants());
         if !self.has_extras && self.shading.direct.brdf != Brdf::Lambert {
@@ -81,9 +91,16 @@ impl Choices {
         constants
     }
 
+    /// The constant of the packing.
+    pub fn fixed_constant(&self) -> (&'static str, u32) {
+        ("FIXED_STEPS", self.packing.fixed_steps())
+    }
+
     /// Constants of the material pass.
-    pub fn material_constants(&self) -> [(&'static str, u32); 4] {
+    pub fn material_constants(&self) -> [(&'static str, u32); 6] {
         [
+            self.fixed_constant(),
+            self.store.constant(),
             ("BRDF_KIND", self.shading.direct.brdf as u32),
             ("SURFACE_EXTRAS", u32::from(self.shading.direct.extras)),
             ("DSF", u32::from(self.filters)),

@@ -2,8 +2,10 @@
 
 use super::choices::Choices;
 use super::cull::Cull;
+use super::encoding::Packing;
 use super::geometry::{Geometry, LowGeometry};
 use super::light::pack::Pack;
+use super::light::store::Store;
 use super::light::tiled::Tiled;
 use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, Volumes};
@@ -51,6 +53,8 @@ pub struct InferredFrame {
     light_frame: Buffer,
     shares: Shares,
     in_halves: bool,
+    pub(super) store: Store,
+    pub(super) packing: Packing,
 }
 
 impl InferredFrame {
@@ -105,11 +109,13 @@ impl InferredFrame {
         };
         let road = match (choices.volumes, choices.in_halves) {
             (Volumes::Tiled, _) => {
+                let constants = [&constants[..], &[choices.store.constant()]].concat();
                 Road::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
             }
-            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::L_BUFFER_FORMAT)?), packed: None },
+            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::HALF_FORMAT)?), packed: None },
             (_, false) => {
-                let pack = Pack::new(gpu, &choices.shading.workgroup_constants())?;
+                let constants = [&choices.shading.workgroup_constants()[..], &[choices.store.constant()]].concat();
+                let pack = Pack::new(gpu, &constants)?;
                 let packed = Packed { pack, sums: resources.image(&light::sums()) };
                 Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT)?), packed: Some(Box::new(packed)) }
             }
@@ -125,17 +131,8 @@ impl InferredFrame {
         Ok(Self {
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu)).transpose()?,
             road,
-            geometry: LowGeometry::new(gpu, resources, choices.has_extras)?,
-            geometry_pass: Geometry::new(
-                gpu,
-                scene,
-                low_list,
-                stippled.clone(),
-                choices.stipple_side,
-                depth_range_m,
-                choices.has_extras,
-                choices.volumes.depth_format(),
-            )?,
+            geometry: LowGeometry::new(gpu, resources, choices)?,
+            geometry_pass: Geometry::new(gpu, scene, low_list, stippled.clone(), depth_range_m, choices)?,
             material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
             l_buffer: resources.image(&light::l_buffer()),
             depth_range_m,
@@ -143,6 +140,8 @@ impl InferredFrame {
             light_frame,
             shares,
             in_halves: choices.in_halves,
+            store: choices.store,
+            packing: choices.packing,
         })
     }
 }
@@ -193,6 +192,9 @@ impl Frame for InferredFrame {
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.material.counters(gpu)?;
+        if let Store::Fixed { .. } = self.store {
+            counters.insert("light_texels_cut", aov::cut_texels(self, gpu)? as f64);
+        }
         match &self.road {
             Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
             Road::Drawn { volumes, .. } => {

@@ -6,9 +6,13 @@
 //!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id
 //!         geometry.depth    image, 4 B a texel, reversed; with a stencil where lights are counted into one
 //!
+//! Targets hold words of two 16-bit numbers as `--packing` says; they are always read as words (section 5).
+//!
 //! BLEND surfaces are drawn last, each into its own texels of the stipple.
 
 use super::NAME;
+use super::choices::Choices;
+use super::encoding::Packing;
 use super::stipple::Stippled;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -27,6 +31,15 @@ use std::sync::Arc;
 
 const WORD: vk::Format = vk::Format::R32_UINT;
 
+/// What a word is drawn as.
+fn target_format(packing: Packing) -> vk::Format {
+    match packing {
+        Packing::Words => WORD,
+        Packing::Bytes => vk::Format::R8G8B8A8_UNORM,
+        Packing::Fixed { .. } => vk::Format::R16G16_UNORM,
+    }
+}
+
 /// What a pass touches.
 pub type Touches = Vec<(String, Access)>;
 
@@ -39,18 +52,20 @@ fn color_images(has_extras: bool) -> Vec<&'static str> {
 }
 
 /// Plans its images.
-pub fn plan(plan: &mut Plan, extent: Extent, has_extras: bool, depth_format: vk::Format) {
+pub fn plan(plan: &mut Plan, choices: &Choices) {
     use vk::ImageUsageFlags as Usage;
-    let read = Usage::SAMPLED | Usage::TRANSFER_SRC;
-    for what in color_images(has_extras) {
-        plan.image("g-buffer", full(what), extent, WORD, Usage::COLOR_ATTACHMENT | read);
+    let (extent, read) = (choices.light_extent, Usage::SAMPLED | Usage::TRANSFER_SRC);
+    for what in color_images(choices.has_extras) {
+        let formats = [target_format(choices.packing), WORD];
+        plan.reinterpreted("g-buffer", full(what), extent, formats, Usage::COLOR_ATTACHMENT | read);
     }
+    let depth_format = choices.volumes.depth_format();
     plan.image("g-buffer", full("depth"), extent, depth_format, Usage::DEPTH_STENCIL_ATTACHMENT | read);
 }
 
 /// What the pass that fills them touches.
-pub fn written(has_extras: bool) -> Touches {
-    let images = color_images(has_extras).into_iter().map(|what| (full(what), Access::ColorWrite));
+pub fn written(choices: &Choices) -> Touches {
+    let images = color_images(choices.has_extras).into_iter().map(|what| (full(what), Access::ColorWrite));
     images.chain([(full("depth"), Access::DepthWrite)]).collect()
 }
 
@@ -86,11 +101,11 @@ pub struct LowGeometry {
 
 impl LowGeometry {
     /// Takes the images out that `plan` put in.
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, has_extras: bool) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         Ok(Self {
             normal: resources.image(&full("normal")),
             dsf: resources.image(&full("dsf")),
-            extras: has_extras.then(|| resources.image(&full("extras"))),
+            extras: choices.has_extras.then(|| resources.image(&full("extras"))),
             depth: resources.image(&full("depth")),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
         })
@@ -156,37 +171,36 @@ pub struct Geometry {
     list: DrawList,
     stippled: Vec<Stippled>,
     stipple_side: u32,
+    packing: Packing,
     /// Linear depth of the first step, and of all of them, metres.
     pub depth_range_m: [f32; 2],
 }
 
 impl Geometry {
     /// `list`: the solid surfaces that it draws. `stippled`: the others.
-    #[allow(clippy::too_many_arguments)]
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
         list: DrawList,
         stippled: Vec<Stippled>,
-        stipple_side: u32,
         depth_range_m: [f32; 2],
-        has_extras: bool,
-        depth_format: vk::Format,
+        choices: &Choices,
     ) -> Result<Self> {
-        let formats = vec![WORD; color_images(has_extras).len()];
+        let formats = vec![target_format(choices.packing); color_images(choices.has_extras).len()];
+        let packing = if choices.packing == Packing::Words { "words" } else { "channels" };
         let pipeline = |alpha: &str| {
-            let names = [alpha, extras_name(has_extras), mesh::vertex_name(scene)];
+            let names = [alpha, extras_name(choices.has_extras), packing, mesh::vertex_name(scene)];
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     fragment: Some(variant(FRAG_VARIANTS, &names)),
-                    constants: &[],
+                    constants: &[choices.fixed_constant()],
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     samples: 1,
                     blending: Blending::Replace,
-                    depth_format: Some(depth_format),
+                    depth_format: Some(choices.volumes.depth_format()),
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
@@ -201,7 +215,8 @@ impl Geometry {
             blend: pipeline("blend")?,
             list,
             stippled,
-            stipple_side,
+            stipple_side: choices.stipple_side,
+            packing: choices.packing,
             depth_range_m,
         })
     }
@@ -232,8 +247,15 @@ impl Geometry {
         cmd.pass(&format!("{NAME}.geometry"), traffic, |cmd| {
             cmd.barriers(attachments.iter().map(|image| image.discard(Access::ColorWrite)));
             cmd.barriers([geometry.depth.discard(Access::DepthWrite)]);
-            // encoding.glsl's NO_SURFACE.
-            let clear = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
+            let nothing = match self.packing {
+                Packing::Words => vk::ClearColorValue { uint32: [u32::MAX; 4] },
+                Packing::Bytes => vk::ClearColorValue { float32: [1.0; 4] },
+                // A quarter of a step more, as channels_of of encoding.glsl.
+                Packing::Fixed { .. } => {
+                    vk::ClearColorValue { float32: [(self.packing.nothing() as f32 + 0.25) / 65535.0; 4] }
+                }
+            };
+            let clear = Some(nothing);
             let colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
             cmd.begin_rendering(geometry.extent(), &colors, Some((&geometry.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
