@@ -3,10 +3,10 @@
 
 mod support;
 
-use glam::{Vec3, vec3};
+use glam::{Vec2, Vec3, vec3};
 use quincunx::report::image_file::AovChannels;
 use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AlphaMode, Light, Material, Projection, Scene, object_ids};
+use quincunx::scene::{self, AlphaMode, AnimationChoice, Light, Material, Model, Projection, Scene, object_ids};
 use quincunx::techniques::inferred_lighting::encoding::Packing;
 use support::boxes::{camera, point_light, rectangle};
 use support::watched::{Changes, Watched, both};
@@ -339,6 +339,75 @@ fn light_in_fixed_point_is_near_half_floats_and_what_is_cut_is_counted() {
             assert_eq!(found < 0.02, !is_cut, "{volumes}, {part} of the most: {found}");
         }
     }
+}
+
+/// The rotor of `fence` turns evenly: each of its texels was where the closed form of its turn has been, up to the 2^-11 of a
+/// half float and what rounded depth and interpolation leave, a hundredth of a texel. All that stands has exactly 0, everything
+/// has 0 in a scene that stands, and the picture is the same bits with vectors and without.
+#[test]
+fn motion_vectors_are_where_the_rotor_was() {
+    let Model::BuiltIn(made) = scene::open("fence:lights=5", 1, &AnimationChoice::All).unwrap() else {
+        panic!("fence is built in")
+    };
+    let [time_s, earlier_s] = [1.0, 1.0 - 1.0 / 30.0];
+    let (rotor, name) = (made.spins[0].draw, made.spins[0].name);
+    let scene = made.as_ref().clone().into_pose(time_s);
+    let earlier = made.as_ref().clone().into_pose(earlier_s);
+    let [now_place, earlier_place] = [&scene, &earlier].map(|scene| scene.draws[rotor].world_from_object);
+    let (ids, rotor_bounds) =
+        (object_ids::of(&scene), scene.draws[rotor].bounds(&scene.meshes[scene.draws[rotor].mesh]));
+    let changes = [
+        ("size", "240x180"),
+        ("light-size", "240x180"),
+        ("camera", "rotor"),
+        ("motion-vectors", "on"),
+        ("direct-shadow", "none"),
+        ("alpha", "test"),
+    ];
+    let stages = ["geometry.motion", "geometry.dsf.depth", "geometry.dsf.id"];
+    let still = Watched::with_scene(scene.clone());
+    let resting = still.render_stages(NAME, &changes, &stages);
+    assert!(
+        still.rgb(&resting, "geometry.motion").iter().all(|vector| *vector == [0.0; 3]),
+        "one moment has no motion"
+    );
+    let moving = Watched::with_scene(scene.moved_from(earlier).unwrap());
+    let renderer = moving.render_stages(NAME, &changes, &stages);
+    assert!(renderer.picture().unwrap().pixels == resting.picture().unwrap().pixels, "{name} moves the picture");
+    let vectors = moving.rgb(&renderer, "geometry.motion");
+    let found_ids = moving.integers(&renderer, "geometry.dsf.id");
+    let AovChannels::Y(depths) = renderer.aov("geometry.dsf.depth").unwrap().channels else {
+        panic!("it has a number")
+    };
+    let view = &renderer.view;
+    let clip_from_world = view.clip_from_world();
+    let px = |point: Vec3| {
+        let at = clip_from_world.project_point3(point);
+        Vec2::new(0.5 + 0.5 * at.x, 0.5 + 0.5 * at.y) * Vec2::new(240.0, 180.0)
+    };
+    let forward = -view.camera.world_from_view.z_axis.truncate();
+    let (mut turning, mut largest) = (0, 0f32);
+    for (index, vector) in vectors.iter().enumerate() {
+        let middle = Vec2::new((index % 240) as f32 + 0.5, (index / 240) as f32 + 0.5);
+        let ndc = 2.0 * middle / Vec2::new(240.0, 180.0) - 1.0;
+        let ray = clip_from_world.inverse().project_point3(ndc.extend(0.5)) - view.eye();
+        let point = view.eye() + ray * (depths[index] / ray.dot(forward));
+        let is_near =
+            (point - rotor_bounds.center()).abs().cmple(0.5 * (rotor_bounds.max - rotor_bounds.min) + 0.01).all();
+        let vector = Vec2::new(vector[0], vector[1]);
+        if found_ids[index] >> 8 == u32::from(ids[rotor]) && depths[index] > 0.0 && is_near {
+            let earlier_point = (earlier_place * now_place.inverse()).transform_point3(point);
+            let expected = px(point) - px(earlier_point);
+            let off = (vector - expected).length();
+            assert!(off < 0.02 + expected.length() / 500.0, "texel {index}: {vector}, not {expected}");
+            turning += 1;
+            largest = largest.max(expected.length());
+        } else {
+            assert_eq!(vector, Vec2::ZERO, "texel {index} of what stands");
+        }
+    }
+    println!("{turning} texels of {name} moved by up to {largest} texels");
+    assert!(turning > 300 && largest > 1.5, "{turning} texels, up to {largest}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The buffers of the paper's figure 2, read back after a frame. They have the light buffer's size: a pixel of the frame
 //! shows the texel that it lies in.
 
-use super::NAME;
 use super::frame::InferredFrame;
+use super::{NAME, motion};
 use crate::error::Result;
 use crate::gpu::{Access, Gpu, readback};
 use crate::report::image_file::{Aov, AovChannels};
@@ -15,6 +15,7 @@ pub const AOVS: &[&str] = &[
     "geometry.normal",
     "geometry.dsf.id",
     "geometry.dsf.depth",
+    "geometry.motion",
     "light.l_buffer.irradiance",
     "light.l_buffer.highlight",
 ];
@@ -40,6 +41,15 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
             let bytes = readback::image(gpu, &geometry.dsf, last)?;
             let depth = |word| frame.packing.depth_m(word, frame.depth_range_m).unwrap_or(0.0);
             AovChannels::Y(spread(frame, &words(&bytes).map(depth).collect::<Vec<_>>()))
+        }
+        // Texels of the light buffer, right and down; 0 where no surface is.
+        "geometry.motion" => {
+            let Some(image) = &geometry.motion else {
+                return Err(left_out(NAME, name, "--motion-vectors on makes it"));
+            };
+            let bytes = readback::image(gpu, image, Access::ColorWrite)?;
+            let vectors: Vec<_> = words(&bytes).map(|word| motion::vector_px(word).extend(0.0).to_array()).collect();
+            AovChannels::Rgb(spread(frame, &vectors))
         }
         "light.l_buffer.irradiance" => {
             let texels = l_buffer(frame, gpu)?;

@@ -21,6 +21,8 @@ pub struct Choices {
     pub shading: ShadingSettings,
     pub light_extent: Extent,
     pub has_extras: bool,
+    /// The geometry pass writes motion vectors.
+    pub has_motion: bool,
     light_roughness: f32,
     pub volumes: Volumes,
     /// Texels of a rectangle from which on --volumes auto counts a light.
@@ -63,6 +65,7 @@ impl Choices {
             shading: ShadingSettings::with(values, inputs.lights, inputs.scene, inputs.caps, position, cull),
             light_extent: light_extent(values.text("light-size"), inputs.view.extent),
             has_extras: values.is_on("extras") && values.text("brdf") != "lambert",
+            has_motion: values.is_on("motion-vectors"),
             light_roughness: values.number("light-roughness") as f32,
             volumes,
             least_counted_texels: values.integer("stencil-least"),

@@ -10,6 +10,7 @@ use super::light::tiled::Tiled;
 use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, Volumes};
 use super::material::{FilterSettings, Material};
+use super::motion::Earlier;
 use super::stipple::{self, Shares};
 use super::{NAME, aov, light_frame};
 use crate::error::Result;
@@ -120,6 +121,7 @@ impl InferredFrame {
                 Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT)?), packed: Some(Box::new(packed)) }
             }
         };
+        let earlier = choices.has_motion.then(|| Earlier::new(gpu, inputs, resources)).transpose()?;
         let filter = FilterSettings {
             depth_range_m,
             depth_threshold: choices.depth_threshold,
@@ -132,7 +134,7 @@ impl InferredFrame {
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu)).transpose()?,
             road,
             geometry: LowGeometry::new(gpu, resources, choices)?,
-            geometry_pass: Geometry::new(gpu, scene, low_list, stippled.clone(), depth_range_m, choices)?,
+            geometry_pass: Geometry::new(gpu, scene, low_list, stippled.clone(), depth_range_m, choices, earlier)?,
             material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
             l_buffer: resources.image(&light::l_buffer()),
             depth_range_m,

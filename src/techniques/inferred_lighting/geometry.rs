@@ -4,6 +4,7 @@
 //! writes  geometry.normal   image, 4 B a texel: view-space normal through the map of the sphere to the hemisphere
 //!         geometry.dsf      image, 4 B a texel: linear depth, ids of object and normal group
 //!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id
+//!         geometry.motion   image, 4 B a texel, with --motion-vectors on: texels on the screen (motion.rs)
 //!         geometry.depth    image, 4 B a texel, reversed; with a stencil where lights are counted into one
 //!
 //! Targets hold words of two 16-bit numbers as `--packing` says; they are always read as words (section 5).
@@ -13,6 +14,7 @@
 use super::NAME;
 use super::choices::Choices;
 use super::encoding::Packing;
+use super::motion::{self, Earlier};
 use super::stipple::Stippled;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -59,13 +61,17 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         let formats = [target_format(choices.packing), WORD];
         plan.reinterpreted("g-buffer", full(what), extent, formats, Usage::COLOR_ATTACHMENT | read);
     }
+    if choices.has_motion {
+        plan.image("g-buffer", full("motion"), extent, WORD, Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC);
+    }
     let depth_format = choices.volumes.depth_format();
     plan.image("g-buffer", full("depth"), extent, depth_format, Usage::DEPTH_STENCIL_ATTACHMENT | read);
 }
 
 /// What the pass that fills them touches.
 pub fn written(choices: &Choices) -> Touches {
-    let images = color_images(choices.has_extras).into_iter().map(|what| (full(what), Access::ColorWrite));
+    let all = color_images(choices.has_extras).into_iter().chain(choices.has_motion.then_some("motion"));
+    let images = all.map(|what| (full(what), Access::ColorWrite));
     images.chain([(full("depth"), Access::DepthWrite)]).collect()
 }
 
@@ -95,6 +101,7 @@ pub struct LowGeometry {
     pub normal: Image,
     pub dsf: Image,
     pub extras: Option<Image>,
+    pub motion: Option<Image>,
     pub depth: Image,
     nearest: Sampler,
 }
@@ -106,6 +113,7 @@ impl LowGeometry {
             normal: resources.image(&full("normal")),
             dsf: resources.image(&full("dsf")),
             extras: choices.has_extras.then(|| resources.image(&full("extras"))),
+            motion: choices.has_motion.then(|| resources.image(&full("motion"))),
             depth: resources.image(&full("depth")),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
         })
@@ -142,7 +150,7 @@ impl LowGeometry {
         ("geometry_depth", self.sampled(&self.depth, access))
     }
 
-    /// Colour attachments in the order of geometry.frag's locations.
+    /// Colour attachments of words in the order of geometry.frag's locations; after them comes the motion.
     fn attachments(&self) -> Vec<&Image> {
         [Some(&self.normal), Some(&self.dsf), self.extras.as_ref()].into_iter().flatten().collect()
     }
@@ -172,12 +180,13 @@ pub struct Geometry {
     stippled: Vec<Stippled>,
     stipple_side: u32,
     packing: Packing,
+    earlier: Option<Earlier>,
     /// Linear depth of the first step, and of all of them, metres.
     pub depth_range_m: [f32; 2],
 }
 
 impl Geometry {
-    /// `list`: the solid surfaces that it draws. `stippled`: the others.
+    /// `list`: the solid surfaces that it draws. `stippled`: the others. `earlier`: with motion vectors.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
@@ -185,15 +194,19 @@ impl Geometry {
         stippled: Vec<Stippled>,
         depth_range_m: [f32; 2],
         choices: &Choices,
+        earlier: Option<Earlier>,
     ) -> Result<Self> {
-        let formats = vec![target_format(choices.packing); color_images(choices.has_extras).len()];
+        let mut formats = vec![target_format(choices.packing); color_images(choices.has_extras).len()];
+        formats.extend(earlier.as_ref().map(|_| WORD));
+        let vertex = if earlier.is_some() { motion::vertex_shader(scene) } else { mesh::vertex_shader(scene) };
+        let motion = if earlier.is_some() { "on" } else { "off" };
         let packing = if choices.packing == Packing::Words { "words" } else { "channels" };
         let pipeline = |alpha: &str| {
-            let names = [alpha, extras_name(choices.has_extras), packing, mesh::vertex_name(scene)];
+            let names = [alpha, extras_name(choices.has_extras), motion, packing, mesh::vertex_name(scene)];
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
-                    vertex: mesh::vertex_shader(scene),
+                    vertex,
                     fragment: Some(variant(FRAG_VARIANTS, &names)),
                     constants: &[choices.fixed_constant()],
                     vertex_buffers: mesh::vertex_buffers(scene),
@@ -217,6 +230,7 @@ impl Geometry {
             stippled,
             stipple_side: choices.stipple_side,
             packing: choices.packing,
+            earlier,
             depth_range_m,
         })
     }
@@ -237,11 +251,12 @@ impl Geometry {
     /// `frame`: the block of the light buffer's extent.
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, scene: &SceneGpu, geometry: &LowGeometry) -> Result<()> {
         let attachments = geometry.attachments();
+        let image_count = (attachments.len() + usize::from(geometry.motion.is_some()) + 1) as u64;
         let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
             read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)),
             // Each texel once: overdraw depends on the view.
-            written_bytes: geometry.extent().pixel_count() * 4 * (attachments.len() as u64 + 1),
+            written_bytes: geometry.extent().pixel_count() * 4 * image_count,
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.geometry"), traffic, |cmd| {
@@ -256,13 +271,19 @@ impl Geometry {
                 }
             };
             let clear = Some(nothing);
-            let colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
+            let mut colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
+            if let Some(motion) = &geometry.motion {
+                cmd.barriers([motion.discard(Access::ColorWrite)]);
+                colors.push(ColorTarget::new(motion, Some(vk::ClearColorValue { uint32: [u32::MAX; 4] })));
+            }
             cmd.begin_rendering(geometry.extent(), &colors, Some((&geometry.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
+            let mut bound = mesh::bound(frame, scene);
+            bound.extend(self.earlier.iter().flat_map(Earlier::bound));
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
                 let Some(first) = calls.first() else { continue };
                 let first = self.params(scene, first.material);
-                cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &mesh::bound(frame, scene))?;
+                cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &bound)?;
                 let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
                 mesh::draw_with(cmd, pipeline, scene, calls, push);
             }
@@ -272,7 +293,7 @@ impl Geometry {
                     stipple_layer: stippled.layer,
                     ..self.params(scene, stippled.call.material)
                 };
-                cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params(first)), &mesh::bound(frame, scene))?;
+                cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params(first)), &bound)?;
                 let mut next = self.stippled.iter();
                 let calls = self.stippled.iter().map(|stippled| &stippled.call);
                 mesh::draw_each(cmd, &self.blend, scene, calls, |_| {

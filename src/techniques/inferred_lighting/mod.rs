@@ -21,6 +21,7 @@ mod frame;
 mod geometry;
 mod light;
 mod material;
+mod motion;
 mod settings;
 mod stipple;
 
@@ -122,6 +123,9 @@ impl Technique for InferredLighting {
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
         geometry::plan(&mut plan, &choices);
+        if choices.has_motion {
+            motion::plan(&mut plan, inputs.stats);
+        }
         let tree = choices.shading.direct.tree(inputs.bvh, inputs.scene)?;
         direct::plan_with_masks(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);

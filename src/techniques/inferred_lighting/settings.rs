@@ -1,7 +1,9 @@
 //! The settings of inferred lighting.
 
 use super::encoding::FIXED_LIMIT;
-use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, Setting, TEXELS, WORKGROUP};
+use crate::settings::{
+    BRDF, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, Setting, TEXELS, WORKGROUP,
+};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -38,6 +40,8 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.2",
         help: "of every surface in the light pass, with --extras off",
     },
+    MOTION_VECTORS,
+    MOTION_INTERVAL,
     Setting {
         key: "volumes",
         symbol: "",
