@@ -410,6 +410,47 @@ fn motion_vectors_are_where_the_rotor_was() {
     assert!(turning > 300 && largest > 1.5, "{turning} texels, up to {largest}");
 }
 
+/// Sheets of glass before a wall, each of which fills the screen, nearest first at `z_m` meters.
+fn sheets(z_m: &[f32]) -> Scene {
+    let mut scene = Scene { name: format!("sheets {z_m:?}"), ..Scene::default() };
+    let gray = Material::diffuse("wall", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.0, 0.0, -6.0), 9.0 * Vec3::X, 9.0 * Vec3::Y, gray);
+    for z in z_m {
+        let glass = Material {
+            base_color: Vec3::splat(0.5).extend(0.3),
+            alpha: AlphaMode::Blend,
+            ..Material::diffuse("glass", Vec3::ONE)
+        };
+        rectangle(&mut scene, vec3(0.0, 0.0, *z), 12.0 * Vec3::X, 12.0 * Vec3::Y, glass);
+    }
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    scene.lights.push(point_light(vec3(0.0, 0.0, -1.0), 10.0));
+    scene
+}
+
+/// Of sheets that fill the screen the three nearest have a layer of a 2x2 stipple each; those behind them share it and are left
+/// without a texel, as is one behind the wall. One behind the eye is not on the screen and is not counted.
+#[test]
+fn the_report_counts_layers_that_are_lit_and_draws_that_are_not() {
+    let behind_wall = -7.0;
+    for (z_m, lit, unlit, shared) in [
+        (&[-2.0][..], 1.0, 0.0, 0.0),
+        (&[-2.0, -2.5, -3.0], 3.0, 0.0, 0.0),
+        (&[-2.0, -2.5, -3.0, -3.5, -4.0], 3.0, 2.0, 2.0),
+        (&[-2.0, behind_wall], 1.0, 1.0, 0.0),
+        (&[-2.0, 3.0], 1.0, 0.0, 0.0),
+    ] {
+        let watched = Watched::with_scene(sheets(z_m));
+        for (packing, extras) in [("words", "on"), ("words", "off"), ("fixed", "on"), ("rgba8", "on")] {
+            let changes = [("size", "80x60"), ("light-size", "50x38"), ("packing", packing), ("extras", extras)];
+            let renderer = watched.render(NAME, &changes);
+            let found = renderer.measured_counters().unwrap();
+            let names = ["stipple_layers_lit", "stipple_draws_lit", "stipple_draws_unlit", "stipple_layers_shared"];
+            assert_eq!(names.map(|name| found[name]), [lit, lit, unlit, shared], "{z_m:?}, {packing}: {names:?}");
+        }
+    }
+}
+
 #[test]
 fn no_light_one_and_many() {
     for (lights, is_dark) in [("0", true), ("1", false), ("2000", false)] {

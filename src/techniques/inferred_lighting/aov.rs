@@ -2,6 +2,7 @@
 //! shows the texel that it lies in.
 
 use super::frame::InferredFrame;
+use super::survivors::{Lit, Survivors};
 use super::{NAME, motion};
 use crate::error::Result;
 use crate::gpu::{Access, Gpu, readback};
@@ -62,6 +63,14 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
         _ => return Err(left_out(NAME, name, "no pass of it has that name")),
     };
     Ok(Aov { name: name.to_owned(), channels })
+}
+
+/// What the frame left of the BLEND draws on the screen.
+///
+/// Errors: memory for the copy (exit code 4).
+pub fn lit(frame: &InferredFrame, gpu: &Arc<Gpu>, survivors: &Survivors) -> Result<Lit> {
+    let bytes = readback::image(gpu, &frame.geometry.dsf, Access::FragmentSample)?;
+    Ok(survivors.count(words(&bytes), frame.geometry.extent()))
 }
 
 fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {

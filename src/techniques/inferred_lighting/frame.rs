@@ -12,6 +12,7 @@ use super::light::{self, Volumes};
 use super::material::{FilterSettings, Material};
 use super::motion::Earlier;
 use super::stipple::{self, Shares};
+use super::survivors::{Lit, Survivors};
 use super::{NAME, aov, light_frame};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
@@ -53,6 +54,8 @@ pub struct InferredFrame {
     /// The frame's block at the light buffer's extent.
     light_frame: Buffer,
     shares: Shares,
+    /// Where the scene has BLEND draws that are stippled.
+    survivors: Option<Survivors>,
     in_halves: bool,
     pub(super) store: Store,
     pub(super) packing: Packing,
@@ -121,6 +124,9 @@ impl InferredFrame {
                 Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT)?), packed: Some(Box::new(packed)) }
             }
         };
+        let survivors = (!stippled.is_empty()).then(|| {
+            Survivors::new(inputs.scene, inputs.view, &stippled, choices.stipple_side, choices.packing, depth_range_m)
+        });
         let earlier = choices.has_motion.then(|| Earlier::new(gpu, inputs, resources)).transpose()?;
         let filter = FilterSettings {
             depth_range_m,
@@ -141,6 +147,7 @@ impl InferredFrame {
             lights: direct,
             light_frame,
             shares,
+            survivors,
             in_halves: choices.in_halves,
             store: choices.store,
             packing: choices.packing,
@@ -184,6 +191,7 @@ impl Frame for InferredFrame {
         BTreeMap::from([
             ("triangles_drawn", self.geometry_pass.triangles_drawn() as f64),
             ("stipple_layers_used", self.shares.layers_used as f64),
+            ("stipple_layers_shared", self.shares.layers_shared as f64),
             ("stipple_draws_sharing", self.shares.draws_sharing as f64),
         ])
     }
@@ -194,6 +202,12 @@ impl Frame for InferredFrame {
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.material.counters(gpu)?;
+        if let Some(survivors) = &self.survivors {
+            let Lit { layers, draws, unlit_draws } = aov::lit(self, gpu, survivors)?;
+            counters.insert("stipple_layers_lit", layers as f64);
+            counters.insert("stipple_draws_lit", draws as f64);
+            counters.insert("stipple_draws_unlit", unlit_draws as f64);
+        }
         if let Store::Fixed { .. } = self.store {
             counters.insert("light_texels_cut", aov::cut_texels(self, gpu)? as f64);
         }

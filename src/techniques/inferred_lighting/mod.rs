@@ -24,6 +24,7 @@ mod material;
 mod motion;
 mod settings;
 mod stipple;
+mod survivors;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::error::Result;
@@ -131,6 +132,10 @@ impl Technique for InferredLighting {
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
         light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves, choices.store);
         material::plan(&mut plan, inputs.view.extent, choices.samples);
+        if inputs.stats.has_blend && !choices.tests_alpha {
+            // The texels that are left of BLEND draws are counted.
+            plan.read_back(&geometry::filtered().0);
+        }
         plan.pass(format!("{NAME}.geometry"), geometry::written(&choices));
         let masks = choices.shading.culls(light_count);
         if masks {
