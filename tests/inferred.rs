@@ -8,7 +8,10 @@ use quincunx::report::image_file::AovChannels;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AlphaMode, AnimationChoice, Light, Material, Model, Projection, Scene, object_ids};
 use quincunx::techniques::inferred_lighting::encoding::Packing;
+use serde_json::json;
+use std::collections::BTreeSet;
 use support::boxes::{camera, point_light, rectangle};
+use support::gltf_file::GltfFile;
 use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "inferred_lighting";
@@ -448,6 +451,72 @@ fn the_report_counts_layers_that_are_lit_and_draws_that_are_not() {
             let names = ["stipple_layers_lit", "stipple_draws_lit", "stipple_draws_unlit", "stipple_layers_shared"];
             assert_eq!(names.map(|name| found[name]), [lit, lit, unlit, shared], "{z_m:?}, {packing}: {names:?}");
         }
+    }
+}
+
+/// Two panes side by side of one material each, from a file.
+fn panes() -> GltfFile {
+    let mut file = GltfFile::empty();
+    for (index, (name, x)) in [("amber", -2.5f32), ("blue", 0.1)].into_iter().enumerate() {
+        let corners =
+            [x, -1.0, -4.0, x + 2.0, -1.0, -4.0, x, 1.0, -4.0, x + 2.0, -1.0, -4.0, x + 2.0, 1.0, -4.0, x, 1.0, -4.0];
+        let positions = file.floats("VEC3", &corners);
+        let surface = json!({"baseColorFactor": [0.5, 0.5, 0.5, 0.5]});
+        file.push("materials", json!({"name": name, "alphaMode": "BLEND", "pbrMetallicRoughness": surface}));
+        file.push("meshes", json!({"primitives": [{"attributes": {"POSITION": positions}, "material": index}]}));
+        file.root(json!({"mesh": index, "name": format!("{name} pane")}));
+    }
+    let eye = json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}});
+    file.push("cameras", eye);
+    file.root(json!({"camera": 0}));
+    file
+}
+
+/// Extras of a material or a node, and the flag, say which texels a surface is lit at; what is not said goes by turns.
+#[test]
+fn the_user_names_layers_in_the_file_or_by_flag() {
+    let layer = |layer: u32| json!({"quincunx_stipple_layer": layer, "other": [1]});
+    let mut by_material = panes();
+    by_material.json["materials"][0]["extras"] = layer(3);
+    let mut by_node = by_material.clone();
+    by_node.json["nodes"][0]["extras"] = layer(2);
+    for (file, flag, expected) in [
+        (panes(), "none", [1, 2]),
+        (by_material.clone(), "none", [3, 1]),
+        (by_node.clone(), "none", [2, 1]),
+        (by_node.clone(), "amber=1", [1, 2]),
+        (by_node.clone(), "blue pane=2,amber pane=2", [2, 2]),
+    ] {
+        let watched = Watched::with_scene(file.load().unwrap());
+        let size = [("size", "64x48"), ("light-size", "64x48")];
+        let changes = both(&size, &[("assignment", "static"), ("stipple-layers", flag)]);
+        let renderer = watched.render_stages(NAME, &changes, &["geometry.dsf.id", "geometry.dsf.depth"]);
+        let ids = watched.integers(&renderer, "geometry.dsf.id");
+        let AovChannels::Y(depths) = renderer.aov("geometry.dsf.depth").unwrap().channels else { panic!("a number") };
+        for draw in 0..2 {
+            let texels = (0..ids.len()).filter(|index| depths[*index] > 0.0 && ids[*index] >> 8 == draw);
+            let layers: BTreeSet<usize> = texels.map(|index| index / 64 % 2 * 2 + index % 64 % 2).collect();
+            assert_eq!(layers, BTreeSet::from([expected[draw as usize]]), "pane {draw} with {flag}");
+        }
+    }
+    let watched = Watched::with_scene(by_node.load().unwrap());
+    for (changes, said) in [
+        (&[("assignment", "static"), ("stipple-layers", "green=1")][..], "amber, amber pane, blue, blue pane"),
+        (&[("assignment", "static"), ("stipple-layers", "blue=4")], "layers 1 to 3"),
+        (&[("stipple-layers", "blue=2")], "--assignment static takes them"),
+    ] {
+        let error = watched.try_renderer(NAME, changes, &[], quincunx::gpu::commands::Submits::One).err().unwrap();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains(said), "{changes:?}: {error}");
+    }
+    for (wrong, said) in
+        [(json!(0), "from 1 to 15"), (json!("3"), "is \"3\""), (json!(16), "is 16"), (json!(1.5), "is 1.5")]
+    {
+        let mut file = panes();
+        file.json["materials"][1]["extras"] = json!({"quincunx_stipple_layer": wrong});
+        let error = file.load().unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains(said), "{error}");
+        assert!(error.to_string().contains("material 1 \"blue\""), "{error}");
     }
 }
 

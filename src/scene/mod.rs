@@ -28,7 +28,7 @@ pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, TextureSlot};
-pub use mesh::{Bounds, Draw, Mesh};
+pub use mesh::{Bounds, Draw, Mesh, Node};
 pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 
 /// What a name or a path stands for, read once; a scene at any time.
@@ -49,6 +49,10 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Which mesh stands where. Several draws may share a mesh.
     pub draws: Vec<Draw>,
+    /// What a file calls its nodes; empty for built-in scenes.
+    pub nodes: Vec<Node>,
+    /// Index into `nodes` of each draw; empty for built-in scenes.
+    pub draw_nodes: Vec<u32>,
     /// At least one where there is a mesh; `Mesh::material` points here.
     pub materials: Vec<Material>,
     /// An image seen through a sampler in a colour space; materials point here.

@@ -1,6 +1,7 @@
 //! What the settings come to, before there is a device: sizes, roads, the constants of the shaders.
 
 use super::encoding::Packing;
+use super::layer_names;
 use super::light::Volumes;
 use super::light::store::Store;
 use super::stipple::Assignment;
@@ -11,6 +12,7 @@ use crate::passes::resolve;
 use crate::shading::brdf::Brdf;
 use crate::techniques::Inputs;
 use crate::units::Extent;
+use std::collections::BTreeMap;
 
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
@@ -40,6 +42,8 @@ pub struct Choices {
     /// Samples a pixel of the material pass.
     pub samples: u32,
     pub assignment: Assignment,
+    /// Of `Assignment::Static`: the layers that the user gives to draws.
+    pub named_layers: BTreeMap<u32, u32>,
     /// In texels; 0: bilinear.
     cone_radius: f32,
 }
@@ -58,6 +62,17 @@ impl Choices {
         let cone_radius = match values.text("alpha-filter") {
             "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
             _ => 0.0,
+        };
+        let assignment = Assignment::from_setting(values.text("assignment"));
+        let named = values.text("stipple-layers");
+        let named_layers = match assignment {
+            Assignment::Static => layer_names::layers(inputs.scene, named, stipple_side)?,
+            _ if named == layer_names::NONE => BTreeMap::new(),
+            _ => {
+                let (assignment, error) = (values.text("assignment"), "layers are given out otherwise");
+                return Err(Error::request(format!("--stipple-layers with --assignment {assignment}: {error}"))
+                    .note("--assignment static takes them"));
+            }
         };
         let light_range = values.number("light-range") as f32;
         let (position, cull) = (PositionStorage::Depth, volumes == Volumes::Tiled);
@@ -78,7 +93,8 @@ impl Choices {
             tests_alpha: values.text("alpha") == "test",
             stipple_side,
             samples: resolve::samples(values),
-            assignment: Assignment::from_setting(values.text("assignment")),
+            assignment,
+            named_layers,
             cone_radius,
         })
     }

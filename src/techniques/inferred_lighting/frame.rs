@@ -96,7 +96,7 @@ impl InferredFrame {
             lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));
             (Vec::new(), Shares::default())
         } else {
-            stipple::assign(inputs.scene, inputs.view, blended, choices.stipple_side, choices.assignment)
+            stipple::assign(inputs.scene, inputs.view, blended, choices)
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();

@@ -19,6 +19,7 @@ mod cull;
 pub mod encoding;
 mod frame;
 mod geometry;
+mod layer_names;
 mod light;
 mod material;
 mod motion;

@@ -1,6 +1,7 @@
 //! The settings of inferred lighting.
 
 use super::encoding::FIXED_LIMIT;
+use super::layer_names;
 use crate::settings::{
     BRDF, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, Setting, TEXELS, WORKGROUP,
 };
@@ -145,7 +146,17 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Kircher 2009, 4, 7.1",
         help: "how BLEND surfaces share the layers of the stipple: those that overlap on screen get different ones, nearest \
-               first (ours); by turns from the nearest on; or by turns in the order of the file",
+               first (ours); by turns from the nearest on; or as the user says, the rest by turns in the order of the file",
+    },
+    Setting {
+        key: "stipple-layers",
+        symbol: "",
+        kind: Kind::Text("NAME=LAYER,...|none"),
+        default: layer_names::NONE,
+        unit: "",
+        paper: "Kircher 2009, 4",
+        help: "of --assignment static: layers of the stipple, 1 to 3 or 15, for BLEND surfaces by the name of their node or \
+               material; before quincunx_stipple_layer in the extras of a file's nodes and materials",
     },
     Setting {
         key: "alpha-filter",

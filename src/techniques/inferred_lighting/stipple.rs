@@ -5,6 +5,7 @@
 //! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
 //! a greedy colouring, nearest first, of the graph of draws whose boxes overlap on screen.
 
+use super::choices::Choices;
 use crate::frame::View;
 use crate::resident::DrawCall;
 use crate::scene::{Bounds, Scene};
@@ -14,7 +15,7 @@ use std::collections::BTreeSet;
 /// How layers are given out (`--assignment`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Assignment {
-    /// By turns, in the order of the file.
+    /// As the user says; the rest by turns, in the order of the file.
     Static,
     /// By turns, from the nearest on.
     Depth,
@@ -32,6 +33,11 @@ impl Assignment {
             other => panic!("--assignment {other} was checked"),
         }
     }
+}
+
+/// Layers of a stipple of `side` texels a side that BLEND draws can have.
+pub fn layer_count(side: u32) -> u32 {
+    side * side - 1
 }
 
 /// A BLEND draw and its layer.
@@ -103,14 +109,8 @@ fn corners(bounds: &Bounds, clip_from_object: Mat4) -> impl Iterator<Item = Vec4
     })
 }
 
-/// Layers for `calls`, which are sorted farthest first, as they are drawn. `side`: 2 or 4.
-pub fn assign(
-    scene: &Scene,
-    view: &View,
-    calls: Vec<DrawCall>,
-    side: u32,
-    assignment: Assignment,
-) -> (Vec<Stippled>, Shares) {
+/// Layers for `calls`, which are sorted farthest first, as they are drawn.
+pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choices) -> (Vec<Stippled>, Shares) {
     let of_call = |call: &DrawCall| {
         let draw = &scene.draws[call.draw as usize];
         let mut bounds = Bounds::EMPTY;
@@ -122,25 +122,41 @@ pub fn assign(
         (footprint, footprint.is_some() && is_before_eye)
     };
     let (footprints, on_screen): (Vec<_>, Vec<_>) = calls.iter().map(of_call).unzip();
-    let places: Vec<u32> = match assignment {
-        Assignment::Static => calls.iter().map(|call| call.draw).collect(),
+    let static_place = |call: &DrawCall| (call.draw, choices.named_layers.get(&call.draw).copied());
+    let places: Vec<_> = match choices.assignment {
+        Assignment::Static => calls.iter().map(static_place).collect(),
         _ => Vec::new(),
     };
-    let layers = layers(&footprints, &places, side * side - 1, assignment);
+    let layers = layers(&footprints, &places, layer_count(choices.stipple_side), choices.assignment);
     let shares = shares(&footprints, &layers);
     let all = calls.into_iter().zip(layers).zip(on_screen);
     let stippled = |((call, layer), is_on_screen): ((DrawCall, u32), bool)| Stippled { call, layer, is_on_screen };
     (all.map(stippled).collect(), shares)
 }
 
-/// A layer, 1 to `count`, for each footprint, farthest first. `places`: in the file, of `Assignment::Static`.
-fn layers(footprints: &[Option<Footprint>], places: &[u32], count: u32, assignment: Assignment) -> Vec<u32> {
+/// A layer, 1 to `count`, for each footprint, farthest first. `places`: of `Assignment::Static`, in the file, with the layer
+/// that the user says.
+fn layers(
+    footprints: &[Option<Footprint>],
+    places: &[(u32, Option<u32>)],
+    count: u32,
+    assignment: Assignment,
+) -> Vec<u32> {
     let mut layers = vec![0; footprints.len()];
     match assignment {
         Assignment::Static => {
+            let mut free: Vec<u32> =
+                (1..=count).filter(|layer| places.iter().all(|(_, said)| *said != Some(*layer))).collect();
+            if free.is_empty() {
+                free.extend(1..=count);
+            }
             let mut order: Vec<usize> = (0..places.len()).collect();
-            order.sort_by_key(|index| places[*index]);
-            order.into_iter().enumerate().for_each(|(turn, index)| layers[index] = 1 + turn as u32 % count);
+            order.sort_by_key(|index| places[*index].0);
+            let mut turns = free.iter().cycle();
+            for index in order {
+                let said = places[index].1;
+                layers[index] = said.unwrap_or_else(|| *turns.next().expect("a stipple has a layer for alpha"));
+            }
         }
         Assignment::Depth => {
             layers.iter_mut().rev().enumerate().for_each(|(turn, layer)| *layer = 1 + turn as u32 % count);
@@ -189,7 +205,11 @@ mod tests {
     fn turns_run_from_the_nearest_or_in_the_order_of_the_file() {
         let four = [footprint(0.0, 0.0, 0.5); 4];
         assert_eq!(layers(&four, &[], 3, Assignment::Depth), [1, 3, 2, 1]);
-        assert_eq!(layers(&four, &[7, 2, 9, 4], 3, Assignment::Static), [3, 1, 1, 2]);
+        assert_eq!(layers(&four, &[7, 2, 9, 4].map(|place| (place, None)), 3, Assignment::Static), [3, 1, 1, 2]);
+        let said = [(7, None), (2, Some(3)), (9, None), (4, None)];
+        assert_eq!(layers(&four, &said, 3, Assignment::Static), [2, 3, 1, 1], "3 is taken, 1 and 2 go by turns");
+        let all = [(7, Some(1)), (2, Some(3)), (9, Some(2)), (4, None)];
+        assert_eq!(layers(&four, &all, 3, Assignment::Static), [1, 3, 2, 1], "none is free");
     }
 
     /// Two piles side by side: turns by depth make neighbours share where colouring needs two layers.
