@@ -22,7 +22,7 @@ use crate::report::whole_file::write_whole;
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
-use crate::settings::{COMMON, Setting, Values, exposure_s};
+use crate::settings::{COMMON, Setting, Values, earlier_s, exposure_s};
 use crate::techniques::Technique;
 use serde_json::Value;
 use std::io::Write;
@@ -236,7 +236,8 @@ impl Job {
     pub fn load_scene(&self) -> Result<Scene> {
         let [open_s, close_s] = exposure_s(&self.values)?;
         let model = self.open_model()?;
-        if open_s == close_s { model.into_pose(open_s) } else { model.exposed([open_s, close_s]) }
+        let is_one_moment = open_s == close_s && earlier_s(&self.values).is_none();
+        if is_one_moment { model.into_pose(open_s) } else { scene_of(&model, &self.values) }
     }
 
     /// `scene` with its textures as the request wants them on a device of `caps`.
@@ -340,6 +341,17 @@ impl Job {
             }
         }
         Ok(())
+    }
+}
+
+/// `model` at the time of `values`, or while their shutter is open, with the moment before where motion vectors are asked for.
+///
+/// Errors: as `Job::load_scene`.
+pub(crate) fn scene_of(model: &Model, values: &Values) -> Result<Scene> {
+    let scene = model.exposed(exposure_s(values)?)?;
+    match earlier_s(values) {
+        Some(earlier_s) => scene.moved_from(model.pose(earlier_s)?),
+        None => Ok(scene),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
-use crate::job::{Job, Outcome, Unfinished, judge};
+use crate::job::{Job, Outcome, Unfinished, judge, scene_of};
 use crate::reference::Asked;
 use crate::report::run::Report;
 use crate::report::whole_file::write_whole;
 use crate::session::Session;
-use crate::settings::{Values, exposure_s};
+use crate::settings::Values;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::ops::RangeInclusive;
@@ -98,7 +98,7 @@ impl Job {
                 break;
             }
             let values = frames.values(self, frame)?;
-            let scene = model.exposed(exposure_s(&values)?)?;
+            let scene = scene_of(&model, &values)?;
             let path = frames.path_of(&self.output_path(&scene), frame);
             let shown = match session.take() {
                 None => self.open_session(&self.device_request(), scene)?,

@@ -17,7 +17,7 @@ const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 fn description(format: vk::Format, samples: u32) -> ImageDescription {
     let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
     let usage = if samples == 1 { usage | vk::ImageUsageFlags::TRANSFER_SRC } else { usage };
-    ImageDescription { extent: EXTENT, format, level_count: 1, layer_count: None, samples, usage }
+    ImageDescription::plain(EXTENT, format, samples, usage)
 }
 
 fn image(gpu: &Arc<Gpu>, name: &str, format: vk::Format, samples: u32) -> Image {

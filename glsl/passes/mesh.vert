@@ -2,48 +2,8 @@
 // portable: yes
 // variants: VERTEX=plain|extended
 #version 460
-#include "frame.glsl"
-#include "resident.glsl"
-
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 tangent;
-layout(location = 3) in vec2 uv;
-#ifdef VERTEX_EXTENDED
-layout(location = 4) in vec4 color;
-layout(location = 5) in vec2 uv_1;
-#endif
-
-layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
-layout(std430, set = 0, binding = 1) readonly buffer Draws { DrawBlock draws[]; };
-
-layout(location = 0) out vec3 out_position_ws;
-layout(location = 1) out vec3 out_normal_ws;
-layout(location = 2) out vec4 out_tangent_ws;
-layout(location = 3) out vec2 out_uv;
-// x: material; y: object id times 256 plus normal group (Kircher 2009, section 3.1).
-layout(location = 4) flat out uvec2 out_ids;
-#ifdef VERTEX_EXTENDED
-layout(location = 5) out vec4 out_color;
-layout(location = 6) out vec2 out_uv_1;
-#endif
-
-// Two passes over the same triangles must agree on depth to the bit.
-invariant gl_Position;
+#include "passes/mesh_vertex.glsl"
 
 void main() {
-    // The first instance is the draw's index: no push constants between draws.
-    DrawBlock draw = draws[gl_InstanceIndex];
-    vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
-    out_position_ws = position_ws.xyz;
-    out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
-    // w carries the normal group's id too.
-    out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, sign(tangent.w));
-    out_uv = uv;
-    out_ids = uvec2(draw.material, draw.object_id << 8 | normal_group(tangent));
-#ifdef VERTEX_EXTENDED
-    out_color = color;
-    out_uv_1 = uv_1;
-#endif
-    gl_Position = frame.clip_from_world * position_ws;
+    write_vertex();
 }

@@ -180,6 +180,12 @@ pub struct Formats {
     pub float_depth_with_stencil: bool,
     /// R32G32B32A32_SFLOAT blends as colour attachment.
     pub float_color_blend: bool,
+    /// R16G16_UNORM as colour attachment. Data from before it was looked up has not.
+    #[serde(default)]
+    pub fixed_pair_color: bool,
+    /// R16G16B16A16_UNORM sampled. The same.
+    #[serde(default)]
+    pub fixed_quad_sampled: bool,
     /// Samples a pixel of R32G32B32A32_SFLOAT as colour attachment. Data from before it was looked up has none but 1.
     #[serde(default = "one_sample")]
     pub float_color_sample_counts: Vec<u32>,

@@ -15,6 +15,8 @@ use std::sync::Arc;
 pub struct ImageDescription {
     pub extent: Extent,
     pub format: vk::Format,
+    /// What shaders sample its texels as, of as many bytes each; None: as they are.
+    pub sampled_as: Option<vk::Format>,
     pub level_count: u32,
     /// None: a plain image. Some: an array of so many layers, whose views are arrays, of one layer too.
     pub layer_count: Option<u32>,
@@ -24,6 +26,11 @@ pub struct ImageDescription {
 }
 
 impl ImageDescription {
+    /// An image of one level and one layer, sampled as it is.
+    pub fn plain(extent: Extent, format: vk::Format, samples: u32, usage: vk::ImageUsageFlags) -> Self {
+        Self { extent, format, sampled_as: None, level_count: 1, layer_count: None, samples, usage }
+    }
+
     /// Layers, of a plain image one.
     pub fn layers(&self) -> u32 {
         self.layer_count.unwrap_or(1)
@@ -43,7 +50,8 @@ impl ImageDescription {
 
     fn create_info(&self) -> vk::ImageCreateInfo<'static> {
         let Self { extent, format, level_count, samples, usage, .. } = *self;
-        let reinterpreted = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
+        let is_stored_otherwise = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
+        let reinterpreted = is_stored_otherwise || self.sampled_as.is_some();
         vk::ImageCreateInfo::default()
             .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
             .image_type(vk::ImageType::TYPE_2D)
@@ -70,20 +78,22 @@ impl ImageDescription {
 /// Bytes of a texel of the formats that this program uses.
 pub fn texel_bytes(format: vk::Format) -> u32 {
     match format {
-        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB | vk::Format::R16G16_UINT => 4,
+        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => 4,
+        vk::Format::R16G16_UINT | vk::Format::R16G16_UNORM => 4,
         vk::Format::R32_UINT | vk::Format::D32_SFLOAT => 4,
         // Some drivers hold depth and stencil in 8: that is theirs to say.
         vk::Format::D32_SFLOAT_S8_UINT => 5,
-        vk::Format::R32G32_UINT | vk::Format::R16G16B16A16_SFLOAT => 8,
+        vk::Format::R32G32_UINT | vk::Format::R16G16B16A16_SFLOAT | vk::Format::R16G16B16A16_UNORM => 8,
         vk::Format::R32G32B32A32_SFLOAT | vk::Format::R32G32B32A32_UINT => 16,
         other => panic!("format {other:?} is not in the program's vocabulary"),
     }
 }
 
-/// The format through which shaders store into an image: halves as integers, because drivers round them differently.
+/// The format through which shaders store into an image: halves and fractions as integers, because drivers round them
+/// differently.
 fn storage_format(format: vk::Format) -> vk::Format {
     match format {
-        vk::Format::R16G16B16A16_SFLOAT => vk::Format::R32G32_UINT,
+        vk::Format::R16G16B16A16_SFLOAT | vk::Format::R16G16B16A16_UNORM => vk::Format::R32G32_UINT,
         other => other,
     }
 }
@@ -95,7 +105,7 @@ pub struct Image {
     pub view: vk::ImageView,
     /// The same texels as shaders store them; `view` itself where the formats are one.
     pub storage_view: vk::ImageView,
-    /// What shaders sample: of depth with stencil the depth alone; else `view` itself.
+    /// What shaders sample: of depth with stencil the depth alone; the texels as another format; else `view` itself.
     pub sampled_view: vk::ImageView,
     pub name: String,
     pub description: ImageDescription,
@@ -211,10 +221,17 @@ impl Image {
         let is_stored_otherwise = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
         let is_sampled_in_part =
             usage.contains(vk::ImageUsageFlags::SAMPLED) && format == vk::Format::D32_SFLOAT_S8_UINT;
-        let own_usage = if is_stored_otherwise { usage & !vk::ImageUsageFlags::STORAGE } else { usage };
+        let mut own_usage = if is_stored_otherwise { usage & !vk::ImageUsageFlags::STORAGE } else { usage };
+        if description.sampled_as.is_some() {
+            assert!(!is_stored_otherwise, "{name}: an image is drawn or stored and sampled as another format, not all");
+            own_usage &= !vk::ImageUsageFlags::SAMPLED;
+        }
         let view = view_as(format, own_usage, whole)?;
         let other = if is_stored_otherwise {
             view_as(storage_format(format), vk::ImageUsageFlags::STORAGE, whole)
+        } else if let Some(sampled_as) = description.sampled_as {
+            assert_eq!(texel_bytes(sampled_as), texel_bytes(format), "{name} is sampled as texels of another size");
+            view_as(sampled_as, vk::ImageUsageFlags::SAMPLED, whole)
         } else if is_sampled_in_part {
             view_as(format, vk::ImageUsageFlags::SAMPLED, whole.aspect_mask(vk::ImageAspectFlags::DEPTH))
         } else {
@@ -223,7 +240,7 @@ impl Image {
         match other {
             Ok(other) => {
                 let storage = if is_stored_otherwise { other } else { view };
-                let sampled = if is_sampled_in_part { other } else { view };
+                let sampled = if is_sampled_in_part || description.sampled_as.is_some() { other } else { view };
                 Ok((allocation, Views { view, storage, sampled }))
             }
             Err(error) => {

@@ -14,6 +14,10 @@ pub enum Ability {
     DepthWithStencil,
     /// Surfaces blend over a picture of floats.
     BlendFloats,
+    /// Surfaces are drawn into pairs of 16-bit fractions.
+    FixedPairs,
+    /// Shaders sample four 16-bit fractions a texel.
+    FixedQuads,
     /// Shaders store two words a texel into an image.
     StoreWordPairs,
     /// Fragment shaders count in storage buffers.
@@ -35,6 +39,8 @@ impl Ability {
             Self::FloatDepth => caps.formats.float_depth,
             Self::DepthWithStencil => caps.formats.float_depth_with_stencil,
             Self::BlendFloats => caps.formats.float_color_blend,
+            Self::FixedPairs => caps.formats.fixed_pair_color,
+            Self::FixedQuads => caps.formats.fixed_quad_sampled,
             Self::StoreWordPairs => caps.features.storage_image_extended_formats,
             Self::FragmentAtomics => caps.features.fragment_stores_and_atomics,
             Self::DepthClamp => caps.features.depth_clamp,
@@ -50,6 +56,8 @@ impl Ability {
             Self::FloatDepth => "D32_SFLOAT as sampled depth attachment",
             Self::DepthWithStencil => "D32_SFLOAT_S8_UINT as depth and stencil attachment",
             Self::BlendFloats => "R32G32B32A32_SFLOAT as blended colour attachment",
+            Self::FixedPairs => "R16G16_UNORM as colour attachment",
+            Self::FixedQuads => "R16G16B16A16_UNORM as sampled image",
             Self::StoreWordPairs => "shaderStorageImageExtendedFormats",
             Self::FragmentAtomics => "fragmentStoresAndAtomics",
             Self::DepthClamp => "depthClamp",

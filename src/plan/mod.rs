@@ -159,7 +159,20 @@ impl Plan {
         samples: u32,
         usage: vk::ImageUsageFlags,
     ) {
-        let description = ImageDescription { extent, format, level_count: 1, layer_count: None, samples, usage };
+        self.push(group, name, Shape::Image(ImageDescription::plain(extent, format, samples, usage)));
+    }
+
+    /// An image of one level that is drawn as `format` and that shaders sample as `sampled_as`.
+    pub fn reinterpreted(
+        &mut self,
+        group: &'static str,
+        name: impl Into<String>,
+        extent: Extent,
+        [format, sampled_as]: [vk::Format; 2],
+        usage: vk::ImageUsageFlags,
+    ) {
+        let sampled_as = (sampled_as != format).then_some(sampled_as);
+        let description = ImageDescription { sampled_as, ..ImageDescription::plain(extent, format, 1, usage) };
         self.push(group, name, Shape::Image(description));
     }
 

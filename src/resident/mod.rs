@@ -205,6 +205,7 @@ fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
     Shape::Image(ImageDescription {
         extent,
         format,
+        sampled_as: None,
         level_count: mipmaps::level_count(extent.width, extent.height),
         layer_count: None,
         samples: 1,

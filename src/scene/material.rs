@@ -67,6 +67,8 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// Also seen and lit from behind, with the normal turned around.
     pub double_sided: bool,
+    /// Of a BLEND surface: the layer of a stipple, 1 to 15, that the file gives it (Kircher 2009, section 4).
+    pub stipple_layer: Option<u32>,
 }
 
 impl Default for Material {
@@ -90,6 +92,7 @@ impl Default for Material {
             unlit: false,
             alpha: AlphaMode::Opaque,
             double_sided: false,
+            stipple_layer: None,
         }
     }
 }

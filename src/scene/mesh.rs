@@ -77,6 +77,15 @@ pub struct Draw {
     pub world_from_object: Mat4,
 }
 
+/// What a file says of the draws of one of its nodes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Node {
+    /// Empty where it has none.
+    pub name: String,
+    /// As `Material::stipple_layer`, before which it is heard.
+    pub stipple_layer: Option<u32>,
+}
+
 impl Draw {
     /// The box around the vertices of `mesh`, which is the one drawn, in world space.
     pub fn bounds(&self, mesh: &Mesh) -> Bounds {

@@ -28,7 +28,7 @@ pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, TextureSlot};
-pub use mesh::{Bounds, Draw, Mesh};
+pub use mesh::{Bounds, Draw, Mesh, Node};
 pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 
 /// What a name or a path stands for, read once; a scene at any time.
@@ -49,6 +49,10 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Which mesh stands where. Several draws may share a mesh.
     pub draws: Vec<Draw>,
+    /// What a file calls its nodes; empty for built-in scenes.
+    pub nodes: Vec<Node>,
+    /// Index into `nodes` of each draw; empty for built-in scenes.
+    pub draw_nodes: Vec<u32>,
     /// At least one where there is a mesh; `Mesh::material` points here.
     pub materials: Vec<Material>,
     /// An image seen through a sampler in a colour space; materials point here.
@@ -69,6 +73,8 @@ pub struct Scene {
     /// The scene when the shutter closes, where it is open while things move: other places of the same meshes, lights and
     /// cameras, without pictures. None: all stands as it stands here.
     pub closing: Option<Box<Scene>>,
+    /// The scene a moment before, where it was another one and motion vectors are asked for: as `closing`.
+    pub earlier: Option<Box<Scene>>,
     /// What was ignored or replaced on import, one sentence each, for the user to read.
     pub warnings: Vec<String>,
 }
@@ -153,24 +159,40 @@ impl Scene {
         if self.hash == closing.hash {
             return Ok(self);
         }
-        let shape = |scene: &Scene| {
-            let meshes = scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.material)).collect::<Vec<_>>();
-            let draws = scene.draws.iter().map(|draw| draw.mesh).collect::<Vec<_>>();
-            (meshes, draws, scene.lights.len(), scene.cameras.len())
-        };
-        let has_same_indices = || self.meshes.iter().zip(&closing.meshes).all(|(a, b)| a.indices == b.indices);
-        if shape(&self) != shape(&closing) || !has_same_indices() {
-            return Err(Error::request(format!(
-                "{}: what it draws changes while the shutter is open, not only its place",
-                self.name
-            ))
-            .note("--shutter none draws one moment"));
-        }
+        self.require_same_shape(&closing, "while the shutter is open", "--shutter none draws one moment")?;
         let both = format!("{} {}", self.hash, closing.hash);
         self.hash = blake3::hash(both.as_bytes()).to_hex().to_string();
         closing.images = Vec::new();
         self.closing = Some(Box::new(closing));
         Ok(self)
+    }
+
+    /// This scene, which was `earlier` a moment before; where the two are one, it stands still. Its pictures are the same.
+    ///
+    /// Errors: they have not the same triangles, lights and cameras (exit code 2).
+    pub fn moved_from(mut self, mut earlier: Scene) -> Result<Self> {
+        if self.hash == earlier.hash {
+            return Ok(self);
+        }
+        self.require_same_shape(&earlier, "since --motion-interval before", "--motion-vectors off needs one moment")?;
+        earlier.images = Vec::new();
+        self.earlier = Some(Box::new(earlier));
+        Ok(self)
+    }
+
+    /// Errors: `other` has not the same triangles, lights and cameras (exit code 2).
+    fn require_same_shape(&self, other: &Scene, when: &str, instead: &str) -> Result<()> {
+        let shape = |scene: &Scene| {
+            let meshes = scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.material)).collect::<Vec<_>>();
+            let draws = scene.draws.iter().map(|draw| draw.mesh).collect::<Vec<_>>();
+            (meshes, draws, scene.lights.len(), scene.cameras.len())
+        };
+        let has_same_indices = || self.meshes.iter().zip(&other.meshes).all(|(a, b)| a.indices == b.indices);
+        if shape(self) != shape(other) || !has_same_indices() {
+            return Err(Error::request(format!("{}: what it draws changes {when}, not only its place", self.name))
+                .note(instead));
+        }
+        Ok(())
     }
 
     /// What its vertices, indices, draws and pictures take in memory.

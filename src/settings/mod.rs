@@ -7,7 +7,7 @@ mod optics;
 mod tables;
 mod tree;
 
-pub use optics::{APERTURE, FOCUS, MEDIUM, SHUTTER, exposure_s};
+pub use optics::{APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, earlier_s, exposure_s};
 pub use tables::{
     BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, NORMAL_THRESHOLD, SHADING, TEXELS, VPL_CLAMP,
     WORKGROUP,

@@ -38,6 +38,36 @@ pub const SHUTTER: Setting = Setting {
            from its place at the one to that at the other; none: one moment",
 };
 
+/// Whether a G-buffer holds how surfaces move on the screen.
+pub const MOTION_VECTORS: Setting = Setting {
+    key: "motion-vectors",
+    symbol: "",
+    kind: Kind::Choice(&["off", "on"]),
+    default: "off",
+    unit: "",
+    paper: "Kircher 2009, 2.1",
+    help: "the geometry pass writes how far each surface has moved on the screen since --motion-interval before --time, in \
+           texels right and down, two half floats in 4 bytes a texel (--aov geometry.motion)",
+};
+
+/// How long before `--time` motion vectors begin.
+pub const MOTION_INTERVAL: Setting = Setting {
+    key: "motion-interval",
+    symbol: "",
+    kind: Kind::Number { min: 0.0, max: 1e6 },
+    default: "0.0333333333",
+    unit: "s",
+    paper: "Kircher 2009, 2.1",
+    help: "of --motion-vectors: the time of one frame; what moves begins at 0 s",
+};
+
+/// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads no
+/// such setting.
+pub fn earlier_s(values: &Values) -> Option<f64> {
+    let is_asked = values.iter().any(|(key, text)| key == MOTION_VECTORS.key && text == "on");
+    is_asked.then(|| (values.number("time") - values.number("motion-interval")).max(0.0))
+}
+
 /// The moments of `--time` and `--shutter` at which the shutter opens and closes, seconds; the same one where there is no
 /// shutter, or the technique reads none.
 ///

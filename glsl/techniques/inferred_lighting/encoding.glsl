@@ -4,24 +4,75 @@
 // normal  xy of the view-space normal after the map of the sphere to the hemisphere, 16-bit snorm each
 // dsf     16 bits of linear depth, 65535 where no surface is; above them the object's id and the normal group's, 8 bits each
 // extras  8 bits each of roughness and of the material's id, where the light pass has the specular power
+//
+// A texel is a word of two 16-bit numbers. Its target is that word, or the word's bytes in four channels, or its numbers in
+// two channels of fixed point (section 5); all are read as the word. In fixed point a number has FIXED_STEPS steps of the
+// 65535, those in the middle.
 #ifndef INFERRED_LIGHTING_ENCODING_GLSL
 #define INFERRED_LIGHTING_ENCODING_GLSL
 
 #include "frame.glsl"
 
-const uint NO_SURFACE = 0xffffffffu;
-// Steps of linear depth.
-const float DEPTH_STEPS = 65534.0;
+// Odd; 0: the target is not fixed point, and numbers are whole words' halves.
+layout(constant_id = 20) const uint FIXED_STEPS = 0;
+
+// The least number that is used. Branches, because the build cannot evaluate a choice of constants.
+uint first_number() {
+    if (FIXED_STEPS == 0u) {
+        return 0u;
+    }
+    return (0xffffu - FIXED_STEPS) / 2u;
+}
+
+// A 16-bit number as fixed point has it, and back.
+uint fixed_code(uint number) {
+    if (FIXED_STEPS == 0u) {
+        return number;
+    }
+    return first_number() + (number * FIXED_STEPS + 0x7fffu) / 0xffffu;
+}
+
+// Steps of linear depth: the last of all is where no surface is.
+uint depth_steps() {
+    if (FIXED_STEPS == 0u) {
+        return 65534u;
+    }
+    return FIXED_STEPS - 1u;
+}
+
+// What stands in the target of a word.
+vec4 channels_of(uint word) {
+    // A quarter of a step more: a driver that rounds and one that cuts find the same number.
+    if (FIXED_STEPS == 0u) {
+        return (vec4(word & 0xffu, (word >> 8) & 0xffu, (word >> 16) & 0xffu, word >> 24) + 0.25) / 255.0;
+    }
+    return vec4((vec2(word & 0xffffu, word >> 16) + 0.25) / 65535.0, 0.0, 0.0);
+}
 
 // Equation 1; the singular direction is away from the eye.
 uint pack_view_normal(vec3 normal_vs) {
     vec3 halfway = normal_vs + vec3(0.0, 0.0, 1.0);
-    return packSnorm2x16(halfway.xy * inversesqrt(max(dot(halfway, halfway), 1e-12)));
+    vec2 mapped = halfway.xy * inversesqrt(max(dot(halfway, halfway), 1e-12));
+    if (FIXED_STEPS == 0u) {
+        return packSnorm2x16(mapped);
+    }
+    // 0 has a code of its own, in the middle.
+    float most = float(FIXED_STEPS / 2u);
+    uvec2 codes = first_number() + uvec2(clamp(mapped, vec2(-1.0), vec2(1.0)) * most + most + 0.5);
+    return codes.x | (codes.y << 16);
+}
+
+vec2 mapped_normal(uint word) {
+    if (FIXED_STEPS == 0u) {
+        return unpackSnorm2x16(word);
+    }
+    float most = float(FIXED_STEPS / 2u);
+    return (vec2(uvec2(word & 0xffffu, word >> 16) - first_number()) - most) / most;
 }
 
 // Equations 2 and 3.
 vec3 unpack_view_normal(uint word) {
-    precise vec2 mapped = unpackSnorm2x16(word);
+    precise vec2 mapped = mapped_normal(word);
     precise float z = sqrt(max(1.0 - dot(mapped, mapped), 0.0));
     precise vec3 normal_vs = vec3(2.0 * z * mapped, 2.0 * z * z - 1.0);
     return normal_vs;
@@ -46,23 +97,33 @@ float linear_depth(FrameBlock frame, vec3 position_ws) {
 // `range_m`: depth of the first step, and of all of them.
 uint pack_dsf(float depth_m, vec2 range_m, uint id) {
     float fraction = clamp((depth_m - range_m.x) / range_m.y, 0.0, 1.0);
-    return uint(fraction * DEPTH_STEPS + 0.5) | (id << 16);
+    uint steps = uint(fraction * float(depth_steps()) + 0.5);
+    return (first_number() + steps) | (fixed_code(id) << 16);
 }
 
 float depth_of_dsf(uint word, vec2 range_m) {
-    return range_m.x + float(word & 0xffffu) * (range_m.y / DEPTH_STEPS);
+    return range_m.x + float((word & 0xffffu) - first_number()) * (range_m.y / float(depth_steps()));
 }
 
 bool dsf_has_surface(uint word) {
-    return (word & 0xffffu) != 0xffffu;
+    return (word & 0xffffu) != first_number() + depth_steps() + 1u;
 }
 
+// In fixed point roughness and material have a number each.
 uint pack_extras_word(float roughness, uint material) {
-    return uint(clamp(roughness, 0.0, 1.0) * 255.0 + 0.5) | ((material & 0xffu) << 8);
+    float held = clamp(roughness, 0.0, 1.0);
+    if (FIXED_STEPS == 0u) {
+        return uint(held * 255.0 + 0.5) | ((material & 0xffu) << 8);
+    }
+    uint code = first_number() + uint(held * float(FIXED_STEPS) + 0.5);
+    return code | (fixed_code(material & 0xffffu) << 16);
 }
 
 float roughness_of_extras(uint word) {
-    return float(word & 0xffu) / 255.0;
+    if (FIXED_STEPS == 0u) {
+        return float(word & 0xffu) / 255.0;
+    }
+    return float((word & 0xffffu) - first_number()) / float(FIXED_STEPS);
 }
 
 #endif

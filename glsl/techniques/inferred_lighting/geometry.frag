@@ -1,6 +1,6 @@
 // The geometry pass: normal, DSF data and, where the light pass has it, specular power. Kircher 2009, sections 2.1, 3.1, 4.
 // Pass: src/techniques/inferred_lighting/geometry.rs.
-// variants: ALPHA=opaque|mask|blend EXTRAS=off|on VERTEX=plain|extended
+// variants: ALPHA=opaque|mask|blend EXTRAS=off|on MOTION=off|on PACKING=words|channels VERTEX=plain|extended
 #version 460
 #include "techniques/inferred_lighting/encoding.glsl"
 #include "resident.glsl"
@@ -24,10 +24,42 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 
 #include "shading/material.glsl"
 
-layout(location = 0) out uint out_normal;
-layout(location = 1) out uint out_dsf;
+// Targets have as many bits a texel all, in every packing (section 5.2).
+#ifdef PACKING_WORDS
+#define TARGET uint
+#define target_of(word) (word)
+#else
+#define TARGET vec4
+#define target_of(word) channels_of(word)
+#endif
+
+layout(location = 0) out TARGET out_normal;
+layout(location = 1) out TARGET out_dsf;
 #ifdef EXTRAS_ON
-layout(location = 2) out uint out_extras;
+layout(location = 2) out TARGET out_extras;
+#endif
+
+#ifdef MOTION_ON
+#ifdef EXTRAS_ON
+layout(location = 3) out uint out_motion;
+#else
+layout(location = 2) out uint out_motion;
+#endif
+layout(location = 7) in vec4 in_clip;
+layout(location = 8) in vec4 in_earlier_clip;
+
+const float MOST_MOTION_PX = 65504.0;
+
+// Texels from where the surface was to where it is, right and down; 0 where it was not before the eye.
+vec2 motion_px() {
+    if (in_clip.w <= 0.0 || in_earlier_clip.w <= 0.0) {
+        return vec2(0.0);
+    }
+    precise vec2 now = in_clip.xy / in_clip.w;
+    precise vec2 earlier = in_earlier_clip.xy / in_earlier_clip.w;
+    vec2 moved = (now - earlier) * 0.5 * vec2(frame.width_px, frame.height_px);
+    return clamp(moved, vec2(-MOST_MOTION_PX), vec2(MOST_MOTION_PX));
+}
 #endif
 
 // Below this a texel is taken for empty: no lit sample belongs there (section 6).
@@ -49,10 +81,13 @@ void main() {
         discard;
     }
 #endif
-    out_normal = pack_view_normal(view_from_world(frame, normal_at(material)));
+    out_normal = target_of(pack_view_normal(view_from_world(frame, normal_at(material))));
     float depth_m = linear_depth(frame, in_position_ws);
-    out_dsf = pack_dsf(depth_m, vec2(params.first_depth_m, params.depth_range_m), in_ids.y);
+    out_dsf = target_of(pack_dsf(depth_m, vec2(params.first_depth_m, params.depth_range_m), in_ids.y));
 #ifdef EXTRAS_ON
-    out_extras = pack_extras_word(metallic_roughness_at(material).y, in_material);
+    out_extras = target_of(pack_extras_word(metallic_roughness_at(material).y, in_material));
+#endif
+#ifdef MOTION_ON
+    out_motion = packHalf2x16(motion_px());
 #endif
 }

@@ -74,6 +74,8 @@ pub struct Shapes {
     /// Those that bend, after those that stand still.
     pub meshes: Vec<Mesh>,
     pub draws: Vec<Draw>,
+    /// The node of each draw.
+    pub draw_nodes: Vec<u32>,
     /// Nodes whose draws are left out: their transform has no inverse, at any time.
     pub flat: Vec<usize>,
 }
@@ -206,7 +208,7 @@ impl Bodies {
         };
         let bent: Vec<Vec<Mesh>> = self.bodies.par_iter().map(bend).collect::<Result<_>>()?;
 
-        let mut shapes = Shapes { meshes: Vec::new(), draws: Vec::new(), flat: Vec::new() };
+        let mut shapes = Shapes { meshes: Vec::new(), draws: Vec::new(), draw_nodes: Vec::new(), flat: Vec::new() };
         for (body, own) in self.bodies.iter().zip(bent) {
             let place = placed.binary_search_by_key(&body.node_index, |placed| placed.node_index);
             let world_from_node = placed[place.expect("a body's node is shown")].world_from_node;
@@ -223,6 +225,7 @@ impl Bodies {
             };
             match world_from_object {
                 Some(world_from_object) => {
+                    shapes.draw_nodes.extend(meshes.clone().map(|_| body.node_index as u32));
                     shapes.draws.extend(meshes.map(|mesh| Draw { mesh, world_from_object }));
                 }
                 None => shapes.flat.push(body.node_index),

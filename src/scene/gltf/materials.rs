@@ -14,8 +14,8 @@ use gltf::json::extensions::texture::{
 use gltf::material::AlphaMode as GltfAlphaMode;
 use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 
-use super::label;
 use super::lights::MAX_INTENSITY;
+use super::{label, marks};
 use crate::error::{Error, Result};
 use crate::scene::material::DEFAULT_DIELECTRIC_F0;
 use crate::scene::{AlphaMode, ColorSpace, Material, Placement, Sampler, Texture, TextureSlot, Wrap};
@@ -103,6 +103,7 @@ impl Reader {
             alpha,
             double_sided: material.double_sided(),
             unlit: material.unlit(),
+            stipple_layer: marks::stipple_layer(material.extras())?,
             ..Material::default()
         };
         if let Some(info) = surface.base_color_texture() {

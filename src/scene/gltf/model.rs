@@ -20,7 +20,7 @@ use super::document::Parsed;
 use super::materials::{self, Materials};
 use super::nodes::Hierarchy;
 use super::source::Source;
-use super::{cameras, deform, document, images, label, lights, primitives};
+use super::{cameras, deform, document, images, label, lights, marks, primitives};
 use crate::error::{Error, Result};
 use crate::progress::Stage;
 use crate::scene::animation::AnimationChoice;
@@ -88,7 +88,8 @@ impl Model {
         let pieces = primitives::read(&document, &shown, &buffers, &mut materials, &mut warnings)?;
         let (meshes, bodies) = Bodies::new(&document, &hierarchy, &channels, &buffers, pieces)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let still = Scene { name, meshes, materials, textures, images, warnings, ..Scene::default() };
+        let nodes = marks::nodes(&document)?;
+        let still = Scene { name, nodes, meshes, materials, textures, images, warnings, ..Scene::default() };
         let mut model = Self { path: path.to_owned(), document, hasher, hierarchy, channels, bodies, still };
         model.still.reach = model.reach()?;
         Ok(model)
@@ -182,6 +183,7 @@ impl Moment {
         let mut scene = Scene { hash: self.hash, lights: self.lights, cameras: self.cameras, ..still };
         scene.meshes.extend(self.shapes.meshes);
         scene.draws = self.shapes.draws;
+        scene.draw_nodes = self.shapes.draw_nodes;
         scene.warnings.extend(self.warnings);
         scene
     }

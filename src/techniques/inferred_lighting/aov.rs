@@ -2,13 +2,13 @@
 //! shows the texel that it lies in.
 
 use super::frame::InferredFrame;
-use super::{NAME, encoding};
+use super::survivors::{Lit, Survivors};
+use super::{NAME, motion};
 use crate::error::Result;
-use crate::gpu::{Access, Gpu, Image, readback};
+use crate::gpu::{Access, Gpu, readback};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::techniques::{Frame, left_out};
 use crate::units::Extent;
-use half::f16;
 use std::sync::Arc;
 
 /// Names that `--aov` takes.
@@ -16,6 +16,7 @@ pub const AOVS: &[&str] = &[
     "geometry.normal",
     "geometry.dsf.id",
     "geometry.dsf.depth",
+    "geometry.motion",
     "light.l_buffer.irradiance",
     "light.l_buffer.highlight",
 ];
@@ -29,25 +30,34 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
     let channels = match name {
         "geometry.normal" => {
             let bytes = readback::image(gpu, &geometry.normal, frame.normal_access())?;
-            AovChannels::Rgb(spread(frame, &words(&bytes).map(normal).collect::<Vec<_>>()))
+            AovChannels::Rgb(spread(frame, &words(&bytes).map(|word| normal(frame, word)).collect::<Vec<_>>()))
         }
         // Object and normal group as a number, as figure 2 shows them.
         "geometry.dsf.id" => {
             let bytes = readback::image(gpu, &geometry.dsf, last)?;
-            AovChannels::YU32(spread(frame, &words(&bytes).map(encoding::id).collect::<Vec<_>>()))
+            AovChannels::YU32(spread(frame, &words(&bytes).map(|word| frame.packing.id(word)).collect::<Vec<_>>()))
         }
         // Metres from the eye's plane, 0 where no surface is.
         "geometry.dsf.depth" => {
             let bytes = readback::image(gpu, &geometry.dsf, last)?;
-            let depth = |word| encoding::depth_m(word, frame.depth_range_m).unwrap_or(0.0);
+            let depth = |word| frame.packing.depth_m(word, frame.depth_range_m).unwrap_or(0.0);
             AovChannels::Y(spread(frame, &words(&bytes).map(depth).collect::<Vec<_>>()))
         }
+        // Texels of the light buffer, right and down; 0 where no surface is.
+        "geometry.motion" => {
+            let Some(image) = &geometry.motion else {
+                return Err(left_out(NAME, name, "--motion-vectors on makes it"));
+            };
+            let bytes = readback::image(gpu, image, Access::ColorWrite)?;
+            let vectors: Vec<_> = words(&bytes).map(|word| motion::vector_px(word).extend(0.0).to_array()).collect();
+            AovChannels::Rgb(spread(frame, &vectors))
+        }
         "light.l_buffer.irradiance" => {
-            let texels = l_buffer(gpu, &frame.l_buffer)?;
+            let texels = l_buffer(frame, gpu)?;
             AovChannels::Rgb(spread(frame, &texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>()))
         }
         "light.l_buffer.highlight" => {
-            let texels = l_buffer(gpu, &frame.l_buffer)?;
+            let texels = l_buffer(frame, gpu)?;
             AovChannels::Y(spread(frame, &texels.iter().map(|[.., a]| *a).collect::<Vec<_>>()))
         }
         _ => return Err(left_out(NAME, name, "no pass of it has that name")),
@@ -55,19 +65,41 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
     Ok(Aov { name: name.to_owned(), channels })
 }
 
+/// What the frame left of the BLEND draws on the screen.
+///
+/// Errors: memory for the copy (exit code 4).
+pub fn lit(frame: &InferredFrame, gpu: &Arc<Gpu>, survivors: &Survivors) -> Result<Lit> {
+    let bytes = readback::image(gpu, &frame.geometry.dsf, Access::FragmentSample)?;
+    Ok(survivors.count(words(&bytes), frame.geometry.extent()))
+}
+
 fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
 }
 
 /// In view space; 0 where no surface is.
-fn normal(word: u32) -> [f32; 3] {
-    if word == u32::MAX { [0.0; 3] } else { encoding::view_normal(word).to_array() }
+fn normal(frame: &InferredFrame, word: u32) -> [f32; 3] {
+    if frame.packing.has_normal(word) { frame.packing.view_normal(word).to_array() } else { [0.0; 3] }
 }
 
-fn l_buffer(gpu: &Arc<Gpu>, image: &Image) -> Result<Vec<[f32; 4]>> {
-    let bytes = readback::image(gpu, image, Access::FragmentSample)?;
-    let half = |texel: &[u8], at: usize| f16::from_le_bytes([texel[2 * at], texel[2 * at + 1]]).to_f32();
-    Ok(bytes.chunks_exact(8).map(|texel| [0, 1, 2, 3].map(|at| half(texel, at))).collect())
+/// Four channels of 16 bits a texel.
+fn l_buffer_bits(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<Vec<[u16; 4]>> {
+    let bytes = readback::image(gpu, &frame.l_buffer, Access::FragmentSample)?;
+    let bits = |texel: &[u8], at: usize| u16::from_le_bytes([texel[2 * at], texel[2 * at + 1]]);
+    Ok(bytes.chunks_exact(8).map(|texel| [0, 1, 2, 3].map(|at| bits(texel, at))).collect())
+}
+
+fn l_buffer(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<Vec<[f32; 4]>> {
+    let texels = l_buffer_bits(frame, gpu)?;
+    Ok(texels.into_iter().map(|texel| texel.map(|bits| frame.store.read(bits))).collect())
+}
+
+/// Texels of the L-buffer of which a channel holds the most that it can.
+///
+/// Errors: memory for the copy (exit code 4).
+pub fn cut_texels(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<usize> {
+    let texels = l_buffer_bits(frame, gpu)?;
+    Ok(texels.iter().filter(|texel| texel.iter().any(|bits| frame.store.is_cut(*bits))).count())
 }
 
 /// The texel of each pixel.

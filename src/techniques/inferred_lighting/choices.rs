@@ -1,6 +1,9 @@
 //! What the settings come to, before there is a device: sizes, roads, the constants of the shaders.
 
+use super::encoding::Packing;
+use super::layer_names;
 use super::light::Volumes;
+use super::light::store::Store;
 use super::stipple::Assignment;
 use crate::error::{Error, Result};
 use crate::lights::shadow_casters;
@@ -11,6 +14,7 @@ use crate::shading::brdf::Brdf;
 use crate::techniques::Inputs;
 use crate::units::Extent;
 use ash::vk;
+use std::collections::BTreeMap;
 
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
@@ -50,6 +54,8 @@ pub struct Choices {
     pub shading: ShadingSettings,
     pub light_extent: Extent,
     pub has_extras: bool,
+    /// The geometry pass writes motion vectors.
+    pub has_motion: bool,
     light_roughness: f32,
     pub volumes: Volumes,
     /// Texels of a rectangle from which on --volumes auto counts a light.
@@ -62,12 +68,18 @@ pub struct Choices {
     /// The sampler blends four texels of one surface.
     sampler_blends: bool,
     normal_threshold: f32,
+    pub store: Store,
+    /// Light at which losses of the L-buffer are told.
+    pub light_range: f32,
+    pub packing: Packing,
     pub depth_threshold: f32,
     pub tests_alpha: bool,
     pub stipple_side: u32,
     /// Samples a pixel of the material pass.
     pub samples: u32,
     pub assignment: Assignment,
+    /// Of `Assignment::Static`: the layers that the user gives to draws.
+    pub named_layers: BTreeMap<u32, u32>,
     /// In texels; 0: bilinear.
     cone_radius: f32,
 }
@@ -93,11 +105,24 @@ impl Choices {
             "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
             _ => 0.0,
         };
+        let assignment = Assignment::from_setting(values.text("assignment"));
+        let named = values.text("stipple-layers");
+        let named_layers = match assignment {
+            Assignment::Static => layer_names::layers(inputs.scene, named, stipple_side)?,
+            _ if named == layer_names::NONE => BTreeMap::new(),
+            _ => {
+                let (assignment, error) = (values.text("assignment"), "layers are given out otherwise");
+                return Err(Error::request(format!("--stipple-layers with --assignment {assignment}: {error}"))
+                    .note("--assignment static takes them"));
+            }
+        };
+        let light_range = values.number("light-range") as f32;
         let (position, cull) = (PositionStorage::Depth, volumes == Volumes::Tiled);
         Ok(Self {
             shading: ShadingSettings::with(values, inputs.lights, inputs.scene, inputs.caps, position, cull),
             light_extent: light_extent(values.text("light-size"), inputs.view.extent),
             has_extras: values.is_on("extras") && values.text("brdf") != "lambert",
+            has_motion: values.is_on("motion-vectors"),
             light_roughness: values.number("light-roughness") as f32,
             volumes,
             least_counted_texels: values.integer("stencil-least"),
@@ -106,11 +131,15 @@ impl Choices {
             filter: LightFilter::from_setting(values.text("light-filter")),
             sampler_blends: values.text("light-fetch") == "sampler",
             normal_threshold: values.number("normal-threshold") as f32,
+            store: if values.text("l-buffer") == "fixed" { Store::Fixed { range: light_range } } else { Store::Halves },
+            light_range,
+            packing: Packing::from_settings(values),
             depth_threshold: values.number("depth-threshold") as f32,
             tests_alpha: values.text("alpha") == "test",
             stipple_side,
             samples: resolve::samples(values),
-            assignment: Assignment::from_setting(values.text("assignment")),
+            assignment,
+            named_layers,
             cone_radius,
         })
     }
@@ -127,7 +156,7 @@ impl Choices {
 
     /// Constants of the light pass: those of lights that are not of materials, and ROUGHNESS without extras.
     pub fn light_constants(&self) -> Vec<(&'static str, u32)> {
-        let mut constants = vec![("BRDF_KIND", self.shading.direct.brdf as u32)];
+        let mut constants = vec![("BRDF_KIND", self.shading.direct.brdf as u32), self.fixed_constant()];
         constants.push(self.shading.direct.kinds_constant());
         constants.extend(self.shading.direct.shadow_constants());
         if !self.has_extras && self.shading.direct.brdf != Brdf::Lambert {
@@ -136,9 +165,16 @@ impl Choices {
         constants
     }
 
+    /// The constant of the packing.
+    pub fn fixed_constant(&self) -> (&'static str, u32) {
+        ("FIXED_STEPS", self.packing.fixed_steps())
+    }
+
     /// Constants of the material pass.
-    pub fn material_constants(&self) -> [(&'static str, u32); 6] {
+    pub fn material_constants(&self) -> [(&'static str, u32); 8] {
         [
+            self.fixed_constant(),
+            self.store.constant(),
             ("BRDF_KIND", self.shading.direct.brdf as u32),
             ("SURFACE_EXTRAS", u32::from(self.shading.direct.extras)),
             ("LIGHT_FILTER", self.filter as u32),

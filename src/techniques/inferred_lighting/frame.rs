@@ -2,13 +2,17 @@
 
 use super::choices::{Choices, LightFilter};
 use super::cull::Cull;
+use super::encoding::Packing;
 use super::geometry::{Geometry, LowGeometry};
 use super::light::pack::Pack;
+use super::light::store::Store;
 use super::light::tiled::Tiled;
 use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, Volumes};
 use super::material::{FilterSettings, Material};
+use super::motion::Earlier;
 use super::stipple::{self, Shares};
+use super::survivors::{Lit, Survivors};
 use super::{NAME, aov, light_frame};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
@@ -51,8 +55,12 @@ pub struct InferredFrame {
     /// The frame's block at the light buffer's extent.
     light_frame: Buffer,
     shares: Shares,
+    /// Where the scene has BLEND draws that are stippled.
+    survivors: Option<Survivors>,
     in_halves: bool,
     filter: LightFilter,
+    pub(super) store: Store,
+    pub(super) packing: Packing,
 }
 
 impl InferredFrame {
@@ -91,7 +99,7 @@ impl InferredFrame {
             lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));
             (Vec::new(), Shares::default())
         } else {
-            stipple::assign(inputs.scene, inputs.view, blended, choices.stipple_side, choices.assignment)
+            stipple::assign(inputs.scene, inputs.view, blended, choices)
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();
@@ -110,15 +118,21 @@ impl InferredFrame {
         };
         let road = match (choices.volumes, choices.in_halves) {
             (Volumes::Tiled, _) => {
+                let constants = [&constants[..], &[choices.store.constant()]].concat();
                 Road::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
             }
-            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::L_BUFFER_FORMAT, resources)?), packed: None },
+            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::HALF_FORMAT, resources)?), packed: None },
             (_, false) => {
-                let pack = Pack::new(gpu, &choices.shading.workgroup_constants())?;
+                let constants = [&choices.shading.workgroup_constants()[..], &[choices.store.constant()]].concat();
+                let pack = Pack::new(gpu, &constants)?;
                 let packed = Packed { pack, sums: resources.image(&light::sums()) };
                 Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT, resources)?), packed: Some(Box::new(packed)) }
             }
         };
+        let survivors = (!stippled.is_empty()).then(|| {
+            Survivors::new(inputs.scene, inputs.view, &stippled, choices.stipple_side, choices.packing, depth_range_m)
+        });
+        let earlier = choices.has_motion.then(|| Earlier::new(gpu, inputs, resources)).transpose()?;
         let filter = FilterSettings {
             kind: choices.filter,
             depth_range_m,
@@ -131,25 +145,19 @@ impl InferredFrame {
         Ok(Self {
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu)).transpose()?,
             road,
-            geometry: LowGeometry::new(gpu, resources, choices.has_extras)?,
-            geometry_pass: Geometry::new(
-                gpu,
-                scene,
-                low_list,
-                stippled.clone(),
-                choices.stipple_side,
-                depth_range_m,
-                choices.has_extras,
-                choices.depth_format(),
-            )?,
+            geometry: LowGeometry::new(gpu, resources, choices)?,
+            geometry_pass: Geometry::new(gpu, scene, low_list, stippled.clone(), depth_range_m, choices, earlier)?,
             material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
             l_buffer: resources.image(&light::l_buffer()),
             depth_range_m,
             lights: direct,
             light_frame,
             shares,
+            survivors,
             in_halves: choices.in_halves,
             filter: choices.filter,
+            store: choices.store,
+            packing: choices.packing,
         })
     }
 }
@@ -195,6 +203,7 @@ impl Frame for InferredFrame {
         BTreeMap::from([
             ("triangles_drawn", self.geometry_pass.triangles_drawn() as f64),
             ("stipple_layers_used", self.shares.layers_used as f64),
+            ("stipple_layers_shared", self.shares.layers_shared as f64),
             ("stipple_draws_sharing", self.shares.draws_sharing as f64),
         ])
     }
@@ -205,6 +214,15 @@ impl Frame for InferredFrame {
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.material.counters(gpu)?;
+        if let Some(survivors) = &self.survivors {
+            let Lit { layers, draws, unlit_draws } = aov::lit(self, gpu, survivors)?;
+            counters.insert("stipple_layers_lit", layers as f64);
+            counters.insert("stipple_draws_lit", draws as f64);
+            counters.insert("stipple_draws_unlit", unlit_draws as f64);
+        }
+        if let Store::Fixed { .. } = self.store {
+            counters.insert("light_texels_cut", aov::cut_texels(self, gpu)? as f64);
+        }
         match &self.road {
             Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
             Road::Drawn { volumes, .. } => {

@@ -4,11 +4,17 @@
 //! writes  geometry.normal   image, 4 B a texel: view-space normal through the map of the sphere to the hemisphere
 //!         geometry.dsf      image, 4 B a texel: linear depth, ids of object and normal group
 //!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id
+//!         geometry.motion   image, 4 B a texel, with --motion-vectors on: texels on the screen (motion.rs)
 //!         geometry.depth    image, 4 B a texel, reversed; with a stencil where lights are counted into one
+//!
+//! Targets hold words of two 16-bit numbers as `--packing` says; they are always read as words (section 5).
 //!
 //! BLEND surfaces are drawn last, each into its own texels of the stipple.
 
 use super::NAME;
+use super::choices::Choices;
+use super::encoding::Packing;
+use super::motion::{self, Earlier};
 use super::stipple::Stippled;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -27,6 +33,15 @@ use std::sync::Arc;
 
 const WORD: vk::Format = vk::Format::R32_UINT;
 
+/// What a word is drawn as.
+fn target_format(packing: Packing) -> vk::Format {
+    match packing {
+        Packing::Words => WORD,
+        Packing::Bytes => vk::Format::R8G8B8A8_UNORM,
+        Packing::Fixed { .. } => vk::Format::R16G16_UNORM,
+    }
+}
+
 /// What a pass touches.
 pub type Touches = Vec<(String, Access)>;
 
@@ -39,18 +54,24 @@ fn color_images(has_extras: bool) -> Vec<&'static str> {
 }
 
 /// Plans its images.
-pub fn plan(plan: &mut Plan, extent: Extent, has_extras: bool, depth_format: vk::Format) {
+pub fn plan(plan: &mut Plan, choices: &Choices) {
     use vk::ImageUsageFlags as Usage;
-    let read = Usage::SAMPLED | Usage::TRANSFER_SRC;
-    for what in color_images(has_extras) {
-        plan.image("g-buffer", full(what), extent, WORD, Usage::COLOR_ATTACHMENT | read);
+    let (extent, read) = (choices.light_extent, Usage::SAMPLED | Usage::TRANSFER_SRC);
+    for what in color_images(choices.has_extras) {
+        let formats = [target_format(choices.packing), WORD];
+        plan.reinterpreted("g-buffer", full(what), extent, formats, Usage::COLOR_ATTACHMENT | read);
     }
+    if choices.has_motion {
+        plan.image("g-buffer", full("motion"), extent, WORD, Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC);
+    }
+    let depth_format = choices.depth_format();
     plan.image("g-buffer", full("depth"), extent, depth_format, Usage::DEPTH_STENCIL_ATTACHMENT | read);
 }
 
 /// What the pass that fills them touches.
-pub fn written(has_extras: bool) -> Touches {
-    let images = color_images(has_extras).into_iter().map(|what| (full(what), Access::ColorWrite));
+pub fn written(choices: &Choices) -> Touches {
+    let all = color_images(choices.has_extras).into_iter().chain(choices.has_motion.then_some("motion"));
+    let images = all.map(|what| (full(what), Access::ColorWrite));
     images.chain([(full("depth"), Access::DepthWrite)]).collect()
 }
 
@@ -81,6 +102,7 @@ pub struct LowGeometry {
     pub normal: Image,
     pub dsf: Image,
     pub extras: Option<Image>,
+    pub motion: Option<Image>,
     pub depth: Image,
     nearest: Sampler,
     linear: Sampler,
@@ -88,11 +110,12 @@ pub struct LowGeometry {
 
 impl LowGeometry {
     /// Takes the images out that `plan` put in.
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, has_extras: bool) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         Ok(Self {
             normal: resources.image(&full("normal")),
             dsf: resources.image(&full("dsf")),
-            extras: has_extras.then(|| resources.image(&full("extras"))),
+            extras: choices.has_extras.then(|| resources.image(&full("extras"))),
+            motion: choices.has_motion.then(|| resources.image(&full("motion"))),
             depth: resources.image(&full("depth")),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
             linear: Sampler::clamped(gpu, vk::Filter::LINEAR)?,
@@ -135,7 +158,7 @@ impl LowGeometry {
         ("geometry_depth", self.sampled(&self.depth, access))
     }
 
-    /// Colour attachments in the order of geometry.frag's locations.
+    /// Colour attachments of words in the order of geometry.frag's locations; after them comes the motion.
     fn attachments(&self) -> Vec<&Image> {
         [Some(&self.normal), Some(&self.dsf), self.extras.as_ref()].into_iter().flatten().collect()
     }
@@ -164,37 +187,41 @@ pub struct Geometry {
     list: DrawList,
     stippled: Vec<Stippled>,
     stipple_side: u32,
+    packing: Packing,
+    earlier: Option<Earlier>,
     /// Linear depth of the first step, and of all of them, metres.
     pub depth_range_m: [f32; 2],
 }
 
 impl Geometry {
-    /// `list`: the solid surfaces that it draws. `stippled`: the others.
-    #[allow(clippy::too_many_arguments)]
+    /// `list`: the solid surfaces that it draws. `stippled`: the others. `earlier`: with motion vectors.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
         list: DrawList,
         stippled: Vec<Stippled>,
-        stipple_side: u32,
         depth_range_m: [f32; 2],
-        has_extras: bool,
-        depth_format: vk::Format,
+        choices: &Choices,
+        earlier: Option<Earlier>,
     ) -> Result<Self> {
-        let formats = vec![WORD; color_images(has_extras).len()];
+        let mut formats = vec![target_format(choices.packing); color_images(choices.has_extras).len()];
+        formats.extend(earlier.as_ref().map(|_| WORD));
+        let vertex = if earlier.is_some() { motion::vertex_shader(scene) } else { mesh::vertex_shader(scene) };
+        let motion = if earlier.is_some() { "on" } else { "off" };
+        let packing = if choices.packing == Packing::Words { "words" } else { "channels" };
         let pipeline = |alpha: &str| {
-            let names = [alpha, extras_name(has_extras), mesh::vertex_name(scene)];
+            let names = [alpha, extras_name(choices.has_extras), motion, packing, mesh::vertex_name(scene)];
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
-                    vertex: mesh::vertex_shader(scene),
+                    vertex,
                     fragment: Some(variant(FRAG_VARIANTS, &names)),
-                    constants: &[],
+                    constants: &[choices.fixed_constant()],
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     samples: 1,
                     blending: Blending::Replace,
-                    depth_format: Some(depth_format),
+                    depth_format: Some(choices.depth_format()),
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
@@ -210,7 +237,9 @@ impl Geometry {
             blend: pipeline("blend")?,
             list,
             stippled,
-            stipple_side,
+            stipple_side: choices.stipple_side,
+            packing: choices.packing,
+            earlier,
             depth_range_m,
         })
     }
@@ -231,25 +260,39 @@ impl Geometry {
     /// `frame`: the block of the light buffer's extent.
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, scene: &SceneGpu, geometry: &LowGeometry) -> Result<()> {
         let attachments = geometry.attachments();
+        let image_count = (attachments.len() + usize::from(geometry.motion.is_some()) + 1) as u64;
         let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
             read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)),
             // Each texel once: overdraw depends on the view.
-            written_bytes: geometry.extent().pixel_count() * 4 * (attachments.len() as u64 + 1),
+            written_bytes: geometry.extent().pixel_count() * 4 * image_count,
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.geometry"), traffic, |cmd| {
             cmd.barriers(attachments.iter().map(|image| image.discard(Access::ColorWrite)));
             cmd.barriers([geometry.depth.discard(Access::DepthWrite)]);
-            // encoding.glsl's NO_SURFACE.
-            let clear = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
-            let colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
+            let nothing = match self.packing {
+                Packing::Words => vk::ClearColorValue { uint32: [u32::MAX; 4] },
+                Packing::Bytes => vk::ClearColorValue { float32: [1.0; 4] },
+                // A quarter of a step more, as channels_of of encoding.glsl.
+                Packing::Fixed { .. } => {
+                    vk::ClearColorValue { float32: [(self.packing.nothing() as f32 + 0.25) / 65535.0; 4] }
+                }
+            };
+            let clear = Some(nothing);
+            let mut colors: Vec<_> = attachments.iter().map(|image| ColorTarget::new(image, clear)).collect();
+            if let Some(motion) = &geometry.motion {
+                cmd.barriers([motion.discard(Access::ColorWrite)]);
+                colors.push(ColorTarget::new(motion, Some(vk::ClearColorValue { uint32: [u32::MAX; 4] })));
+            }
             cmd.begin_rendering(geometry.extent(), &colors, Some((&geometry.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
+            let mut bound = mesh::bound(frame, scene);
+            bound.extend(self.earlier.iter().flat_map(Earlier::bound));
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
                 let Some(first) = calls.first() else { continue };
                 let first = self.params(scene, first.material);
-                cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &mesh::bound(frame, scene))?;
+                cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &bound)?;
                 let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
                 mesh::draw_with(cmd, pipeline, scene, calls, push);
             }
@@ -259,7 +302,7 @@ impl Geometry {
                     stipple_layer: stippled.layer,
                     ..self.params(scene, stippled.call.material)
                 };
-                cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params(first)), &mesh::bound(frame, scene))?;
+                cmd.bind_graphics(&self.blend, bytemuck::bytes_of(&params(first)), &bound)?;
                 let mut next = self.stippled.iter();
                 let calls = self.stippled.iter().map(|stippled| &stippled.call);
                 mesh::draw_each(cmd, &self.blend, scene, calls, |_| {

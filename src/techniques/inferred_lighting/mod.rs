@@ -20,10 +20,13 @@ mod cull;
 pub mod encoding;
 mod frame;
 mod geometry;
+mod layer_names;
 mod light;
 mod material;
+mod motion;
 mod settings;
 mod stipple;
+mod survivors;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::error::Result;
@@ -36,6 +39,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{MULTISAMPLE, Setting, Values};
 use choices::Choices;
+use encoding::Loss;
 use frame::InferredFrame;
 use light::{Volumes, shadow_volumes};
 use std::collections::BTreeMap;
@@ -79,6 +83,14 @@ impl Technique for InferredLighting {
         let of = "the material pass".to_owned();
         needs.push(Need { of, ability: Ability::FragmentAtomics, instead: "" });
         needs.extend(resolve::needs(values));
+        if values.text("packing") == "fixed" {
+            let of = "--packing fixed".to_owned();
+            needs.push(Need { of, ability: Ability::FixedPairs, instead: "--packing words works without it" });
+        }
+        if values.text("l-buffer") == "fixed" {
+            let of = "--l-buffer fixed".to_owned();
+            needs.push(Need { of, ability: Ability::FixedQuads, instead: "--l-buffer float works without it" });
+        }
         if values.text("volumes") != "tiled" {
             let of = format!("--volumes {}", values.text("volumes"));
             needs.push(Need {
@@ -122,16 +134,23 @@ impl Technique for InferredLighting {
         let choices = Choices::new(inputs)?;
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
-        geometry::plan(&mut plan, choices.light_extent, choices.has_extras, choices.depth_format());
+        geometry::plan(&mut plan, &choices);
+        if choices.has_motion {
+            motion::plan(&mut plan, inputs.stats);
+        }
         let tree = choices.shading.direct.tree(inputs.bvh, inputs.scene)?;
         direct::plan_with_masks(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
-        light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves);
+        light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves, choices.store);
         if !choices.casting_lights.is_empty() {
             shadow_volumes::plan(&mut plan, &casters(inputs, &choices)?);
         }
         material::plan(&mut plan, inputs.view.extent, choices.samples);
-        plan.pass(format!("{NAME}.geometry"), geometry::written(choices.has_extras));
+        if inputs.stats.has_blend && !choices.tests_alpha {
+            // The texels that are left of BLEND draws are counted.
+            plan.read_back(&geometry::filtered(false)[0].0);
+        }
+        plan.pass(format!("{NAME}.geometry"), geometry::written(&choices));
         let masks = choices.shading.culls(light_count);
         if masks {
             let written = light_masks::masks(NAME, Access::ComputeWrite);
@@ -187,7 +206,14 @@ impl Prepared for PreparedInferred {
     }
 
     fn counters(&self) -> BTreeMap<&'static str, f64> {
-        let mut counters = BTreeMap::from([("lights", self.lights.len() as f64)]);
+        let loss = Loss::of(self.choices.packing);
+        let mut counters = BTreeMap::from([
+            ("lights", self.lights.len() as f64),
+            ("normal_error_most_deg", loss.normal_most_deg),
+            ("normal_error_mean_deg", loss.normal_mean_deg),
+            ("depth_error_most", loss.depth_most),
+            ("light_error_most", self.choices.store.loss(self.choices.light_range)),
+        ]);
         if !self.choices.casting_lights.is_empty() {
             counters.insert("shadow_volume_lights", self.casters.lights.len() as f64);
             counters.insert("shadow_volumes", self.casters.volume_count as f64);

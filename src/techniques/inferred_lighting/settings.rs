@@ -1,6 +1,10 @@
 //! The settings of inferred lighting.
 
-use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, NORMAL_THRESHOLD, Setting, TEXELS, WORKGROUP};
+use super::encoding::FIXED_LIMIT;
+use super::layer_names;
+use crate::settings::{
+    BRDF, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD, Setting, TEXELS, WORKGROUP,
+};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -38,6 +42,8 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.2",
         help: "of every surface in the light pass, with --extras off",
     },
+    MOTION_VECTORS,
+    MOTION_INTERVAL,
     Setting {
         key: "volumes",
         symbol: "",
@@ -71,11 +77,41 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "l-buffer",
         symbol: "",
-        kind: Kind::Choice(&["float", "half"]),
+        kind: Kind::Choice(&["float", "half", "fixed"]),
         default: "float",
         unit: "",
-        paper: "Kircher 2009, 2.2",
-        help: "how lights sum up: in 32 bits, packed to half floats once, or blended in half floats as in the paper",
+        paper: "Kircher 2009, 2.2, 5.1",
+        help: "how lights sum up: in 32 bits, packed once, to half floats (float) or to 16 bits of fixed point (fixed); or \
+               blended in half floats as in the paper (half)",
+    },
+    Setting {
+        key: "light-range",
+        symbol: "",
+        kind: Kind::Number { min: 0.001, max: 65504.0 },
+        default: "32",
+        unit: "lx",
+        paper: "Kircher 2009, 5.1",
+        help: "of --l-buffer fixed: the most light; what is brighter is held there, and counted",
+    },
+    Setting {
+        key: "packing",
+        symbol: "",
+        kind: Kind::Choice(&["words", "rgba8", "fixed"]),
+        default: "words",
+        unit: "",
+        paper: "Kircher 2009, 5",
+        help: "what the geometry pass draws a texel's two 16-bit numbers into: one word, the bytes of four channels, or two \
+               channels of fixed point",
+    },
+    Setting {
+        key: "fixed-range",
+        symbol: "",
+        kind: Kind::Number { min: 1.0, max: FIXED_LIMIT },
+        default: "32",
+        unit: "",
+        paper: "Kircher 2009, 5.1",
+        help: "of --packing fixed, whose format goes from -32 to 32: how far numbers from -1 to 1 are scaled; 32 uses every \
+               step of it, 1 a 32nd of them",
     },
     Setting {
         key: "light-filter",
@@ -133,7 +169,17 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Kircher 2009, 4, 7.1",
         help: "how BLEND surfaces share the layers of the stipple: those that overlap on screen get different ones, nearest \
-               first (ours); by turns from the nearest on; or by turns in the order of the file",
+               first (ours); by turns from the nearest on; or as the user says, the rest by turns in the order of the file",
+    },
+    Setting {
+        key: "stipple-layers",
+        symbol: "",
+        kind: Kind::Text("NAME=LAYER,...|none"),
+        default: layer_names::NONE,
+        unit: "",
+        paper: "Kircher 2009, 4",
+        help: "of --assignment static: layers of the stipple, 1 to 3 or 15, for BLEND surfaces by the name of their node or \
+               material; before quincunx_stipple_layer in the extras of a file's nodes and materials",
     },
     Setting {
         key: "alpha-filter",

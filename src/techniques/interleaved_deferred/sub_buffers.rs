@@ -91,7 +91,7 @@ impl Storage {
         plan.push(
             group,
             name,
-            Shape::Image(ImageDescription { extent, format, level_count: 1, layer_count, samples: 1, usage }),
+            Shape::Image(ImageDescription { layer_count, ..ImageDescription::plain(extent, format, 1, usage) }),
         );
     }
 }

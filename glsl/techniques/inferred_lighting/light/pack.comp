@@ -1,4 +1,4 @@
-// Float sums to the L-buffer's halves, once. Pass: src/techniques/inferred_lighting/light/pack.rs.
+// Float sums to the L-buffer's 16 bits a channel, once. Pass: src/techniques/inferred_lighting/light/pack.rs.
 #version 460
 #include "frame.glsl"
 #include "techniques/inferred_lighting/l_buffer.glsl"

@@ -2,7 +2,8 @@
 //!
 //! The L-buffer holds irradiance in three channels and the intensity of the highlight in the fourth, as half floats. Sums
 //! are float and in the order of the lights on every road, so all roads leave the same bits; `--l-buffer half` blends in
-//! half floats as the paper did, which loses light (drivers round towards zero).
+//! half floats as the paper did, which loses light (drivers round towards zero). `--l-buffer fixed` packs the float sums to
+//! 16 bits of fixed point instead.
 //!
 //! roads  tiled      one dispatch, a list of lights a tile
 //!        volumes    a draw a light, into float sums that `pack` rounds once, or into the L-buffer itself; lights may
@@ -11,6 +12,7 @@
 pub mod pack;
 pub mod reach;
 pub mod shadow_volumes;
+pub mod store;
 pub mod tiled;
 pub mod volumes;
 
@@ -19,6 +21,7 @@ use crate::gpu::Access;
 use crate::plan::Plan;
 use crate::units::Extent;
 use ash::vk;
+use store::Store;
 
 /// How texels meet their lights (`--volumes`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +57,8 @@ impl Volumes {
     }
 }
 
-pub const L_BUFFER_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+/// What lights are blended in with `--l-buffer half`.
+pub const HALF_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const SUMS_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Full name of the L-buffer.
@@ -68,11 +72,18 @@ pub fn sums() -> String {
 }
 
 /// Plans the L-buffer, and the sums where lights are drawn and not blended in halves.
-pub fn plan(plan: &mut Plan, extent: Extent, volumes: Volumes, in_halves: bool) {
+pub fn plan(plan: &mut Plan, extent: Extent, volumes: Volumes, in_halves: bool, store: Store) {
     use vk::ImageUsageFlags as Usage;
     let written = if in_halves { Usage::COLOR_ATTACHMENT } else { Usage::STORAGE };
     let usage = written | Usage::SAMPLED | Usage::TRANSFER_SRC;
-    plan.image("l-buffer", l_buffer(), extent, L_BUFFER_FORMAT, usage);
+    match store {
+        Store::Halves => plan.image("l-buffer", l_buffer(), extent, HALF_FORMAT, usage),
+        Store::Fixed { .. } => {
+            plan.image("l-buffer", l_buffer(), extent, vk::Format::R16G16B16A16_UNORM, usage);
+            // What is held at its most is counted.
+            plan.read_back(&l_buffer());
+        }
+    }
     if volumes != Volumes::Tiled && !in_halves {
         plan.image("l-buffer", sums(), extent, SUMS_FORMAT, Usage::COLOR_ATTACHMENT | Usage::SAMPLED);
     }

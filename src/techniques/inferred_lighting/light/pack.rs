@@ -1,4 +1,4 @@
-//! Pack: float sums to the L-buffer's halves, each rounded once. Shader: pack.comp.
+//! Pack: float sums to the L-buffer's 16 bits a channel, each rounded once. Shader: pack.comp.
 //! reads  light.sums      writes  light.l_buffer
 
 use super::super::NAME;
@@ -15,9 +15,10 @@ pub struct Pack {
 }
 
 impl Pack {
-    pub fn new(gpu: &Arc<Gpu>, workgroup: &[(&str, u32)]) -> Result<Self> {
+    /// `constants`: the workgroup's and LIGHT_RANGE.
+    pub fn new(gpu: &Arc<Gpu>, constants: &[(&str, u32)]) -> Result<Self> {
         let shader = &crate::gpu::shader::techniques::inferred_lighting::light::pack::COMP;
-        let pipeline = ComputePipeline::new(gpu, shader, workgroup)?;
+        let pipeline = ComputePipeline::new(gpu, shader, constants)?;
         Ok(Self { pipeline, nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)? })
     }
 
