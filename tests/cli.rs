@@ -22,7 +22,7 @@ fn a_scene_that_cannot_be_read_is_a_bad_request() {
     std::fs::write(program.path("empty.gltf"), "").unwrap();
     program.fails(&["render", "empty.gltf"], 2, &["empty.gltf"]);
     program.fails(&["render", "nowhere"], 2, &["nowhere", "cornell, hall, lamps"]);
-    program.fails(&["render", "lamps:lights=0"], 2, &["lights=0", "1 to 5000"]);
+    program.fails(&["render", "lamps:lights=5001"], 2, &["lights=5001", "0 to 5000"]);
     program.fails(&["render", "cornell:size=3"], 2, &["cornell"]);
 }
 

@@ -58,3 +58,19 @@ pub fn point_light(position: Vec3, candela: f32) -> Light {
 pub fn panel(radiance: Vec3) -> Material {
     Material { emissive: radiance, ..Material::diffuse("panel", Vec3::ZERO) }
 }
+
+/// A square that stands before a wall, from the paper's figure 4: between both runs an edge that no texel of the light
+/// buffer follows. `wall_light`: candela of a light that reaches the wall and not the square.
+pub fn edge(wall_light: f32) -> Scene {
+    let mut scene =
+        Scene { name: format!("edge {wall_light}"), hash: format!("edge {wall_light}"), ..Scene::default() };
+    let gray = Material::diffuse("gray", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.0, 0.0, -6.0), 6.0 * Vec3::X, 6.0 * Vec3::Y, gray.clone());
+    let (u, v) = (vec3(0.9, 0.3, 0.0), vec3(-0.3, 0.9, 0.0));
+    rectangle(&mut scene, vec3(-0.5, -0.4, -3.0), u, v, gray);
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    let of_wall = Light { range: Some(2.0), ..point_light(vec3(0.3, 0.2, -5.0), wall_light) };
+    scene.lights.push(point_light(Vec3::ZERO, 5.0));
+    scene.lights.push(of_wall);
+    scene
+}

@@ -5,6 +5,7 @@
 
 pub mod boxes;
 pub mod counted;
+pub mod difference;
 pub mod failing;
 pub mod gltf_file;
 pub mod measured;

@@ -1,0 +1,141 @@
+//! Inferred lighting's filter (Kircher 2009, section 3): whose light a pixel takes, and how near that is to many samples.
+
+mod support;
+
+use glam::{Vec3, vec3};
+use quincunx::scene::Material;
+use support::boxes::{edge, rectangle};
+use support::watched::{Watched, both};
+
+const NAME: &str = "inferred_lighting";
+
+/// Samples of the wall are thrown out where the square is shaded, however bright they are; plain filtering lets them in.
+#[test]
+fn the_filter_keeps_another_surface_s_light_out() {
+    let dark = Watched::with_scene(edge(0.0));
+    let bright = Watched::with_scene(edge(500.0));
+    let common = [("size", "160x120"), ("light-size", "50x38"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    // The square's own pixels, by a light buffer of the frame's size.
+    let marked = both(&common, &[("light-size", "160x120")]);
+    let renderer = dark.render_stages(NAME, &marked, &["geometry.dsf.id"]);
+    let ids = dark.integers(&renderer, "geometry.dsf.id");
+    let is_square = |index: &usize| ids[*index] >> 8 == 1;
+    assert!((0..ids.len()).filter(is_square).count() > 1000);
+    for (filter, leaks) in
+        [("dsf", false), ("discontinuity", false), ("bilateral", false), ("bilinear", true), ("nearest", true)]
+    {
+        let changes = both(&common, &[("light-filter", filter)]);
+        let [a, b] = [&dark, &bright].map(|watched| watched.picture(NAME, &changes).pixels);
+        let changed = (0..ids.len()).filter(is_square).filter(|index| a[*index] != b[*index]).count();
+        assert_eq!(changed > 0, leaks, "--light-filter {filter}: {changed} pixels of the square changed");
+        let wall = (0..ids.len()).filter(|index| !is_square(index)).filter(|index| a[*index] != b[*index]).count();
+        assert!(wall > 1000, "the light reaches the wall");
+    }
+}
+
+/// The paper's figure 4, pixel by pixel: the light of a pixel is the bilinear mean of those of its four texels that show its
+/// surface, by their ids; of all four where none does, which is counted. The sliver is too narrow to reach many texels.
+#[test]
+fn a_pixel_takes_the_texels_of_its_own_surface() {
+    const RATIO: usize = 4;
+    let (extent, texels) = ([160, 120], [40, 30]);
+    let mut scene = edge(300.0);
+    let gray = Material::diffuse("gray", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.9, 0.3, -2.9), vec3(0.02, 0.0, 0.0), vec3(0.1, 0.7, 0.0), gray);
+    let watched = Watched::with_scene(scene);
+    let common = [("size", "160x120"), ("light-size", "40x30"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    let stages = ["geometry.dsf.id", "light.l_buffer.irradiance"];
+    let low = watched.render_stages(NAME, &common, &stages);
+    let full = watched.render_stages(NAME, &both(&common, &[("light-size", "160x120")]), &stages[..1]);
+    let (low_ids, ids) = (watched.integers(&low, stages[0]), watched.integers(&full, stages[0]));
+    let light = watched.rgb(&low, stages[1]);
+    let picture = low.picture().unwrap();
+    // Any pixel of a texel shows the texel.
+    let shown = |[x, y]: [usize; 2]| (y * RATIO + RATIO / 2) * extent[0] + x * RATIO + RATIO / 2;
+    let mut found = [0; 5];
+    for (pixel, id) in ids.iter().enumerate() {
+        let at = [pixel % extent[0], pixel / extent[0]].map(|at| (at as f32 + 0.5) / RATIO as f32 - 0.5);
+        let [mut own, mut all] = [(Vec3::ZERO, 0.0, 0); 2];
+        for corner in 0..4usize {
+            let step = [corner & 1, corner >> 1];
+            let texel = [0, 1].map(|side| {
+                let place = at[side].floor() as i32 + step[side] as i32;
+                place.clamp(0, texels[side] - 1) as usize
+            });
+            let weigh = |side: usize| {
+                let part = at[side] - at[side].floor();
+                if step[side] == 1 { part } else { 1.0 - part }
+            };
+            let (weight, irradiance) = (weigh(0) * weigh(1), Vec3::from_array(light[shown(texel)]));
+            let add = |sum: &mut (Vec3, f32, usize)| {
+                *sum = (sum.0 + irradiance * weight, sum.1 + weight, sum.2 + 1);
+            };
+            add(&mut all);
+            if low_ids[shown(texel)] == *id {
+                add(&mut own);
+            }
+        }
+        found[own.2] += 1;
+        let (sum, weights, _) = if own.2 > 0 { own } else { all };
+        let expected = sum / weights * (0.5 / std::f32::consts::PI);
+        let off = (Vec3::from_array(picture.pixels[pixel]) - expected).abs().max_element();
+        assert!(off <= 1e-4 * expected.max_element() + 1e-6, "pixel {pixel}: {off} off {expected}, {} texels", own.2);
+    }
+    println!("pixels by how many of their four texels are their own: {found:?}");
+    assert!(found.iter().all(|count| *count > 20), "{found:?}");
+    assert_eq!(low.measured_counters().unwrap()["rejected_fragments"], f64::from(found[0]), "{found:?}");
+}
+
+/// Where the light buffer's nearest texel shows another surface than the pixel does, the filter is nearer to what many samples a
+/// pixel come to than plain filtering is.
+#[test]
+fn on_edges_the_filter_is_nearer_to_the_supersampled_picture() {
+    let (size, common) = ("200x112", [("brdf", "lambert"), ("size", "200x112")]);
+    for spec in ["lamps:objects=101,lights=81", "fence:lights=20", "hall:triangles=8000"] {
+        let watched = Watched::open(spec);
+        let reference = watched.picture("forward", &both(&common, &[("supersample", "8")]));
+        let ids = |light_size: &str| {
+            let changes = both(&common, &[("light-size", light_size)]);
+            let renderer = watched.render_stages(NAME, &changes, &["geometry.dsf.id"]);
+            watched.integers(&renderer, "geometry.dsf.id")
+        };
+        let (low, high) = (ids("auto"), ids(size));
+        let chosen: Vec<usize> = (0..low.len()).filter(|index| low[*index] != high[*index]).collect();
+        assert!(chosen.len() > 500, "{spec}: {} pixels", chosen.len());
+        let rmse = |filter: &str| {
+            let picture = watched.picture(NAME, &both(&common, &[("msaa", "4"), ("light-filter", filter)]));
+            let square = |index: &usize| {
+                let channels = picture.pixels[*index].into_iter().zip(reference.pixels[*index]);
+                channels.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / 3.0
+            };
+            (chosen.iter().map(square).sum::<f64>() / chosen.len() as f64).sqrt()
+        };
+        let [dsf, bilinear, nearest] = ["dsf", "bilinear", "nearest"].map(rmse);
+        println!("{spec}: {} pixels, dsf {dsf:.4}, bilinear {bilinear:.4}, nearest {nearest:.4}", chosen.len());
+        assert!(dsf < bilinear && bilinear < nearest, "{spec}: {dsf}, {bilinear}, {nearest}");
+    }
+}
+
+/// A sampler may round a fetch's place: to one of 16 from texel to texel at the coarsest that Vulkan allows, of 256 on most GPUs,
+/// not at all on lavapipe. A half float has 1024 steps from one power of two to the next.
+#[test]
+fn a_single_fetch_blends_as_four_do_but_for_the_sampler_s_steps() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [("size", "160x90"), ("brdf", "lambert")];
+    let picture = |fetch: &str, filter: &str| {
+        watched.picture(NAME, &both(&common, &[("light-fetch", fetch), ("light-filter", filter)])).pixels
+    };
+    for filter in ["dsf", "bilinear"] {
+        let (four, single) = (picture("texels", filter), picture("sampler", filter));
+        let step = |value: f32| 2f32.powi(value.max(1e-6).log2().floor() as i32 - 10);
+        let steps = four.as_flattened().iter().zip(single.as_flattened()).map(|(a, b)| (a - b).abs() / step(a.max(*b)));
+        let (mut most, mut sum) = (0f32, 0f64);
+        for steps in steps {
+            most = most.max(steps);
+            sum += f64::from(steps);
+        }
+        println!("{filter}: {most} half-float steps at most, {} in the mean", sum / (3 * four.len()) as f64);
+        assert!(most > 0.0, "{filter}: it is another way");
+        assert!(most < 8.0, "{filter}: {most} half-float steps");
+    }
+}

@@ -1,0 +1,214 @@
+//! BLEND surfaces in inferred lighting (Kircher 2009, section 4): each is lit by its own texels of the stipple.
+
+mod support;
+
+use glam::{Vec3, vec3};
+use quincunx::report::image_file::AovChannels;
+use quincunx::scene::{AlphaMode, Material, Scene};
+use serde_json::json;
+use std::collections::BTreeSet;
+use support::boxes::{camera, point_light, rectangle};
+use support::difference::greatest_part;
+use support::gltf_file::GltfFile;
+use support::watched::{Watched, both};
+
+const NAME: &str = "inferred_lighting";
+
+/// Sheets of glass one behind the other before a wall. `lit`: the only one that is not black, where it is one.
+fn glass(count: usize, lit: Option<usize>) -> Scene {
+    let mut scene = Scene { name: format!("glass {count} {lit:?}"), ..Scene::default() };
+    let wall = Material::diffuse("wall", Vec3::splat(if lit.is_some() { 0.0 } else { 0.5 }));
+    rectangle(&mut scene, vec3(0.0, 0.0, -6.0), 6.0 * Vec3::X, 6.0 * Vec3::Y, wall);
+    for sheet in 0..count {
+        let color = vec3(0.9, 0.5, 0.3).lerp(vec3(0.2, 0.4, 0.9), sheet as f32 / 2.0).max(Vec3::splat(0.1));
+        let color = if lit.is_none_or(|lit| lit == sheet) { color } else { Vec3::ZERO };
+        let glass = Material {
+            base_color: color.extend(0.4),
+            alpha: AlphaMode::Blend,
+            double_sided: true,
+            ..Material::diffuse("glass", color)
+        };
+        let z = -3.0 - 0.5 * sheet as f32;
+        rectangle(&mut scene, vec3(0.3 * sheet as f32 - 0.3, 0.0, z), Vec3::X, 0.8 * Vec3::Y, glass);
+    }
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    // Far enough that light changes little from sample to sample.
+    scene.lights.push(point_light(vec3(2.0, 3.0, 2.0), 100.0));
+    scene
+}
+
+/// Each sheet by itself, the others black: what it sends is what a forward renderer gives it, neither twice nor nothing, as long
+/// as the stipple has a layer for each. A fourth sheet shares one of the three layers of a stipple of 2x2 with another: where the
+/// nearer one has the texels, the farther one is lit by what is there.
+#[test]
+fn glass_is_lit_as_forward_lights_it() {
+    let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    for count in 1..=4 {
+        for lit in (0..count).map(Some).chain([None]) {
+            let watched = Watched::with_scene(glass(count, lit));
+            let forward = watched.picture("deferred", &common);
+            let brightest = |pixel: &[f32; 3]| pixel.iter().fold(0f32, |most, channel| most.max(*channel));
+            for stipple in ["2x2", "4x4"] {
+                for assignment in ["overlap", "depth", "static"] {
+                    for filter in ["cone", "bilinear"] {
+                        let changes = [("stipple", stipple), ("alpha-filter", filter), ("assignment", assignment)];
+                        let size = [("light-size", "160x120")];
+                        let picture = watched.picture(NAME, &both(&both(&common, &changes), &size));
+                        let found = greatest_part(&picture, &forward);
+                        println!("{lit:?} of {count} sheets, {stipple} {assignment} {filter}: {found}");
+                        let shares = count == 4 && stipple == "2x2" && lit.is_none_or(|lit| lit == 3);
+                        let bound = if shares { 0.4 } else { 0.03 };
+                        assert!(found < bound, "{lit:?} of {count} sheets, {changes:?}: {found}");
+                        let dark = |(a, b): (&[f32; 3], &[f32; 3])| brightest(a) < 0.5 * brightest(b);
+                        let black = picture.pixels.iter().zip(&forward.pixels).filter(|pair| dark(*pair)).count();
+                        assert_eq!(black, 0, "{lit:?} of {count} sheets, {changes:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Sheets of glass before a wall, each of which fills the screen, nearest first at `z_m` meters.
+fn sheets(z_m: &[f32]) -> Scene {
+    let mut scene = Scene { name: format!("sheets {z_m:?}"), ..Scene::default() };
+    let gray = Material::diffuse("wall", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.0, 0.0, -6.0), 9.0 * Vec3::X, 9.0 * Vec3::Y, gray);
+    for z in z_m {
+        let glass = Material {
+            base_color: Vec3::splat(0.5).extend(0.3),
+            alpha: AlphaMode::Blend,
+            ..Material::diffuse("glass", Vec3::ONE)
+        };
+        rectangle(&mut scene, vec3(0.0, 0.0, *z), 12.0 * Vec3::X, 12.0 * Vec3::Y, glass);
+    }
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    scene.lights.push(point_light(vec3(0.0, 0.0, -1.0), 10.0));
+    scene
+}
+
+/// Of sheets that fill the screen the three nearest have a layer of a 2x2 stipple each; those behind them share it and are left
+/// without a texel, as is one behind the wall. One behind the eye is not on the screen and is not counted.
+#[test]
+fn the_report_counts_layers_that_are_lit_and_draws_that_are_not() {
+    let behind_wall = -7.0;
+    for (z_m, lit, unlit, shared) in [
+        (&[-2.0][..], 1.0, 0.0, 0.0),
+        (&[-2.0, -2.5, -3.0], 3.0, 0.0, 0.0),
+        (&[-2.0, -2.5, -3.0, -3.5, -4.0], 3.0, 2.0, 2.0),
+        (&[-2.0, behind_wall], 1.0, 1.0, 0.0),
+        (&[-2.0, 3.0], 1.0, 0.0, 0.0),
+    ] {
+        let watched = Watched::with_scene(sheets(z_m));
+        for (packing, extras) in [("words", "on"), ("words", "off"), ("fixed", "on"), ("rgba8", "on")] {
+            let changes = [("size", "80x60"), ("light-size", "50x38"), ("packing", packing), ("extras", extras)];
+            let renderer = watched.render(NAME, &changes);
+            let found = renderer.measured_counters().unwrap();
+            let names = ["stipple_layers_lit", "stipple_draws_lit", "stipple_draws_unlit", "stipple_layers_shared"];
+            assert_eq!(names.map(|name| found[name]), [lit, lit, unlit, shared], "{z_m:?}, {packing}: {names:?}");
+        }
+    }
+}
+
+/// Two panes side by side of one material each, from a file.
+fn panes() -> GltfFile {
+    let mut file = GltfFile::empty();
+    for (index, (name, x)) in [("amber", -2.5f32), ("blue", 0.1)].into_iter().enumerate() {
+        let corners =
+            [x, -1.0, -4.0, x + 2.0, -1.0, -4.0, x, 1.0, -4.0, x + 2.0, -1.0, -4.0, x + 2.0, 1.0, -4.0, x, 1.0, -4.0];
+        let positions = file.floats("VEC3", &corners);
+        let surface = json!({"baseColorFactor": [0.5, 0.5, 0.5, 0.5]});
+        file.push("materials", json!({"name": name, "alphaMode": "BLEND", "pbrMetallicRoughness": surface}));
+        file.push("meshes", json!({"primitives": [{"attributes": {"POSITION": positions}, "material": index}]}));
+        file.root(json!({"mesh": index, "name": format!("{name} pane")}));
+    }
+    let eye = json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}});
+    file.push("cameras", eye);
+    file.root(json!({"camera": 0}));
+    file
+}
+
+/// Extras of a material or a node, and the flag, say which texels a surface is lit at; what is not said goes by turns.
+#[test]
+fn the_user_names_layers_in_the_file_or_by_flag() {
+    let layer = |layer: u32| json!({"quincunx_stipple_layer": layer, "other": [1]});
+    let mut by_material = panes();
+    by_material.json["materials"][0]["extras"] = layer(3);
+    let mut by_node = by_material.clone();
+    by_node.json["nodes"][0]["extras"] = layer(2);
+    for (file, flag, expected) in [
+        (panes(), "none", [1, 2]),
+        (by_material.clone(), "none", [3, 1]),
+        (by_node.clone(), "none", [2, 1]),
+        (by_node.clone(), "amber=1", [1, 2]),
+        (by_node.clone(), "blue pane=2,amber pane=2", [2, 2]),
+    ] {
+        let watched = Watched::with_scene(file.load().unwrap());
+        let size = [("size", "64x48"), ("light-size", "64x48")];
+        let changes = both(&size, &[("assignment", "static"), ("stipple-layers", flag)]);
+        let renderer = watched.render_stages(NAME, &changes, &["geometry.dsf.id", "geometry.dsf.depth"]);
+        let ids = watched.integers(&renderer, "geometry.dsf.id");
+        let AovChannels::Y(depths) = renderer.aov("geometry.dsf.depth").unwrap().channels else { panic!("a number") };
+        for draw in 0..2 {
+            let texels = (0..ids.len()).filter(|index| depths[*index] > 0.0 && ids[*index] >> 8 == draw);
+            let layers: BTreeSet<usize> = texels.map(|index| index / 64 % 2 * 2 + index % 64 % 2).collect();
+            assert_eq!(layers, BTreeSet::from([expected[draw as usize]]), "pane {draw} with {flag}");
+        }
+    }
+    let watched = Watched::with_scene(by_node.load().unwrap());
+    for (changes, said) in [
+        (&[("assignment", "static"), ("stipple-layers", "green=1")][..], "amber, amber pane, blue, blue pane"),
+        (&[("assignment", "static"), ("stipple-layers", "blue=4")], "layers 1 to 3"),
+        (&[("stipple-layers", "blue=2")], "--assignment static takes them"),
+    ] {
+        let error = watched.try_renderer(NAME, changes, &[], quincunx::gpu::commands::Submits::One).err().unwrap();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains(said), "{changes:?}: {error}");
+    }
+    for (wrong, said) in
+        [(json!(0), "from 1 to 15"), (json!("3"), "is \"3\""), (json!(16), "is 16"), (json!(1.5), "is 1.5")]
+    {
+        let mut file = panes();
+        file.json["materials"][1]["extras"] = json!({"quincunx_stipple_layer": wrong});
+        let error = file.load().unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains(said), "{error}");
+        assert!(error.to_string().contains("material 1 \"blue\""), "{error}");
+    }
+}
+
+/// A decal is a BLEND surface just over another (section 4): it is lit by texels of its own, and so by its own normal and not by
+/// that of what it lies on, which normals blended into a G-buffer could not be.
+#[test]
+fn a_decal_is_lit_by_its_own_normal() {
+    let scene = |lean: f32| {
+        let mut scene = Scene { name: format!("decal {lean}"), ..Scene::default() };
+        let wall = Material::diffuse("wall", Vec3::splat(0.5));
+        rectangle(&mut scene, vec3(0.0, 0.0, -4.0), 5.0 * Vec3::X, 5.0 * Vec3::Y, wall);
+        let decal = Material {
+            base_color: vec3(0.8, 0.6, 0.2).extend(0.7),
+            alpha: AlphaMode::Blend,
+            ..Material::diffuse("decal", Vec3::ONE)
+        };
+        // Two millimetres over the wall.
+        rectangle(&mut scene, vec3(0.2, 0.1, -3.998), Vec3::X, 0.8 * Vec3::Y, decal);
+        let normal = vec3(lean, 0.0, 1.0).normalize();
+        scene.meshes[1].normals.fill(normal);
+        scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+        scene.lights.push(point_light(vec3(3.0, 2.0, 2.0), 100.0));
+        scene
+    };
+    let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    let pictures = [-1.0, 0.0, 1.0].map(|lean| {
+        let watched = Watched::with_scene(scene(lean));
+        let forward = watched.picture("forward", &common);
+        for stipple in ["2x2", "4x4"] {
+            let picture = watched.picture(NAME, &both(&common, &[("light-size", "160x120"), ("stipple", stipple)]));
+            let found = greatest_part(&picture, &forward);
+            println!("normal leans by {lean}, {stipple}: {found}");
+            assert!(found < 0.03, "normal leans by {lean}, {stipple}: {found}");
+        }
+        forward
+    });
+    // The light comes from the right.
+    assert!(greatest_part(&pictures[0], &pictures[1]) > 0.3, "a normal to the left darkens");
+}
