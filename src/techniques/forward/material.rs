@@ -57,7 +57,8 @@ impl Material {
                     blending: Blending::Replace,
                     depth_format: Some(super::depth::FORMAT),
                     depth_write: !has_prepass,
-                    depth_compare: if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER },
+                    // Of surfaces in one place the last one is seen either way.
+                    depth_compare: if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER_OR_EQUAL },
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
                     stencil: None,

@@ -125,7 +125,12 @@ impl Material {
                     blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: alpha != "blend",
-                    depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                    // Of solid surfaces in one place the first one is seen, as in the geometry pass.
+                    depth_compare: if alpha == "blend" {
+                        vk::CompareOp::GREATER_OR_EQUAL
+                    } else {
+                        vk::CompareOp::GREATER
+                    },
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
                     stencil: None,
