@@ -132,7 +132,7 @@ fn a_broken_file_is_refused_as_render_refuses_it() {
     let [inspect, render] = [["scene", "inspect", &path].as_slice(), &["render", &path]].map(|run| program.run(run));
     assert_eq!((inspect.code, inspect.err), (render.code, render.err));
     program.fails(&["scene", "inspect", "teapot.obj"], 2, &["neither a built-in scene"]);
-    program.fails(&["scene", "inspect", "lamps:lights=0"], 2, &["1 to 5000"]);
+    program.fails(&["scene", "inspect", "lamps:lights=5001"], 2, &["0 to 5000"]);
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn export_writes_a_whole_glb_or_nothing() {
         (["cornell", "-o", "box"], ["box", "written as .glb"]),
         (["cornell", "-o", "missing/box.glb"], ["missing", "no folder"]),
         (["teapot", "-o", "teapot.glb"], ["teapot", "built-in scenes: cornell"]),
-        (["lamps:lights=0", "-o", "dark.glb"], ["lights=0", "1 to 5000"]),
+        (["lamps:lights=5001", "-o", "dark.glb"], ["lights=5001", "0 to 5000"]),
     ] {
         let [scene, flag, file] = arguments;
         program.fails(&["scene", "export", scene, flag, file], 2, &words);
