@@ -62,7 +62,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "4096",
         unit: "texels",
         paper: "Kircher 2009, 2.2",
-        help: "of --volumes auto: a light whose rectangle has fewer texels is drawn without the stencil",
+        help: "of --volumes auto: a light whose rectangle has fewer texels is drawn without the stencil (lavapipe: it pays from some \
+               16384 on, and below makes no difference)",
     },
     Setting {
         key: "shadow-volumes",
