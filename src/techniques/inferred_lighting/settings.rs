@@ -131,7 +131,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Choice(&["texels", "sampler"]),
         default: "texels",
         unit: "",
-        paper: "Kircher 2009, 7.2",
+        paper: "Kircher 2009, 7.1",
         help: "of a solid surface's pixel whose four texels all belong to it: they are read one by one, or blended by the sampler in a \
                single fetch, as finely as the device places it",
     },
