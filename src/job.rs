@@ -13,11 +13,12 @@ use crate::memory::ledger::Snapshot;
 use crate::plan::Requirements;
 use crate::reference::Asked;
 use crate::report;
-use crate::report::image_file::{Aov, AovChannels, ExrPrecision, WriteOptions, write};
+use crate::report::image_file::{Aov, ExrPrecision, WriteOptions, write};
 use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
+use crate::report::visible::visible;
 use crate::report::whole_file::write_whole;
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
@@ -337,7 +338,7 @@ impl Job {
             // A PNG has no layers: each stage becomes a picture beside it.
             for aov in aovs {
                 let file = path.with_extension(format!("{}.png", aov.name));
-                write(&file, &visible(aov, picture), &WriteOptions { aovs: &[], ..options.clone() })?;
+                write(&file, &visible(aov, picture.extent), &WriteOptions { aovs: &[], ..options.clone() })?;
             }
         }
         Ok(())
@@ -372,22 +373,6 @@ pub fn judge(log: Option<&Log>) -> Result<()> {
             Err(Error::gate(format!("--validate: {count} messages, the first is {}", first.id)).note(&first.text))
         }
     }
-}
-
-/// An AOV as a picture: normals from -1..1 to 0..1, irradiance as a white surface would show it, flags as white.
-fn visible(aov: &Aov, picture: &Picture) -> Picture {
-    let pixels = match &aov.channels {
-        AovChannels::Rgb(values) if aov.name.ends_with("normal") => {
-            values.iter().map(|value| value.map(|channel| 0.5 + 0.5 * channel)).collect()
-        }
-        AovChannels::Rgb(values) if aov.name.ends_with("irradiance") => {
-            values.iter().map(|value| value.map(|channel| channel / std::f32::consts::PI)).collect()
-        }
-        AovChannels::Rgb(values) => values.clone(),
-        AovChannels::Y(values) => values.iter().map(|value| [*value; 3]).collect(),
-        AovChannels::YU32(values) => values.iter().map(|value| [*value as f32; 3]).collect(),
-    };
-    Picture { extent: picture.extent, pixels }
 }
 
 /// Errors: the folder of an output does not exist (exit code 2); found before a picture is made, not after.

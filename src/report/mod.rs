@@ -5,4 +5,5 @@ pub mod memory;
 pub mod picture;
 pub mod run;
 pub mod tonemap;
+pub mod visible;
 pub mod whole_file;

@@ -1,0 +1,68 @@
+//! Stages for the eye: an AOV as a picture beside a PNG. The numbers are in an EXR.
+
+use super::image_file::{Aov, AovChannels};
+use super::picture::Picture;
+use crate::units::Extent;
+
+/// The stage as light that a PNG shows: normals from -1..1 to 0..1, irradiance as a white surface would show it, depths as a part
+/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, other whole numbers as they are: flags
+/// are white.
+pub fn visible(aov: &Aov, extent: Extent) -> Picture {
+    let is = |ending: &str| aov.name.ends_with(ending);
+    let pixels = match &aov.channels {
+        AovChannels::Rgb(values) if is("normal") => around_grey(values, 1.0),
+        AovChannels::Rgb(values) if is("motion") => around_grey(values, greatest(values.iter().flatten())),
+        AovChannels::Rgb(values) if is("irradiance") => {
+            values.iter().map(|value| value.map(|channel| channel / std::f32::consts::PI)).collect()
+        }
+        AovChannels::Rgb(values) => values.clone(),
+        AovChannels::Y(values) if is("depth") => {
+            let most = greatest(values);
+            values.iter().map(|value| [value / most; 3]).collect()
+        }
+        AovChannels::Y(values) => values.iter().map(|value| [*value; 3]).collect(),
+        AovChannels::YU32(values) if is(".id") => values.iter().map(|id| color_of(*id)).collect(),
+        AovChannels::YU32(values) => values.iter().map(|value| [*value as f32; 3]).collect(),
+    };
+    Picture { extent, pixels }
+}
+
+fn around_grey(values: &[[f32; 3]], most: f32) -> Vec<[f32; 3]> {
+    values.iter().map(|value| value.map(|channel| 0.5 + 0.5 * channel / most)).collect()
+}
+
+/// Greatest size of a finite number; 1 where all are 0.
+fn greatest<'a>(values: impl IntoIterator<Item = &'a f32>) -> f32 {
+    let most = values.into_iter().filter(|value| value.is_finite()).fold(0f32, |most, value| most.max(value.abs()));
+    if most > 0.0 { most } else { 1.0 }
+}
+
+/// Bytes of the id times an odd number near 2^32 over the golden ratio: ids that follow each other look unlike.
+fn color_of(id: u32) -> [f32; 3] {
+    let [_, red, green, blue] = id.wrapping_add(1).wrapping_mul(0x9e37_79b1).to_le_bytes();
+    [red, green, blue].map(|byte| f32::from(byte) / 255.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(name: &str, channels: AovChannels) -> Vec<[f32; 3]> {
+        visible(&Aov { name: name.to_owned(), channels }, Extent::new(3, 1)).pixels
+    }
+
+    #[test]
+    fn depths_ids_and_vectors_can_be_told_apart() {
+        let depths = shown("geometry.dsf.depth", AovChannels::Y(vec![0.0, 20.0, 80.0]));
+        assert_eq!(depths, [[0.0; 3], [0.25; 3], [1.0; 3]]);
+        assert_eq!(shown("depth", AovChannels::Y(vec![0.0; 3])), [[0.0; 3]; 3]);
+        let ids = shown("geometry.dsf.id", AovChannels::YU32(vec![0x0100, 0x0101, 0x0200]));
+        for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+            let away = ids[a].iter().zip(&ids[b]).map(|(a, b)| (a - b).abs()).fold(0f32, f32::max);
+            assert!(away > 0.1, "{ids:?}");
+        }
+        let moved = shown("geometry.motion", AovChannels::Rgb(vec![[0.0; 3], [4.0, -2.0, 0.0], [-4.0, 0.0, 0.0]]));
+        assert_eq!(moved, [[0.5; 3], [1.0, 0.25, 0.5], [0.0, 0.5, 0.5]]);
+        assert_eq!(shown("discontinuity.flags", AovChannels::YU32(vec![0, 1, 7])), [[0.0; 3], [1.0; 3], [7.0; 3]]);
+    }
+}
