@@ -92,7 +92,9 @@ fn outcome(matches: &ArgMatches) -> Result<Outcome> {
 /// Which pixels are measured apart: `--where`.
 struct Where<'a> {
     channel: &'a str,
-    files: Vec<&'a Path>,
+    file: &'a Path,
+    /// What the first is held against; None: 0.
+    other: Option<&'a Path>,
 }
 
 impl<'a> Where<'a> {
@@ -101,23 +103,22 @@ impl<'a> Where<'a> {
         let example = "for example --where geometry.dsf.id.Y=low.exr,high.exr";
         let refused = |cause: &str| Error::request(format!("--where {argument}: {cause}")).note(example);
         let (channel, files) = argument.split_once('=').ok_or_else(|| refused("it has no ="))?;
-        let files: Vec<&Path> = files.split(',').map(Path::new).collect();
-        if channel.is_empty() || files.len() > 2 || files.iter().any(|file| file.as_os_str().is_empty()) {
+        let (file, other) = files.split_once(',').map_or((files, None), |(file, other)| (file, Some(other)));
+        if [Some(channel), Some(file), other].contains(&Some("")) || other.is_some_and(|other| other.contains(',')) {
             return Err(refused("it must name a channel and one EXR file or two"));
         }
-        Ok(Self { channel, files })
+        Ok(Self { channel, file: Path::new(file), other: other.map(Path::new) })
     }
 
     /// A flag for each pixel of a picture of `extent`.
     ///
     /// Errors: a file that cannot be read, is of another size or has no such channel (exit code 2).
     fn chosen(&self, extent: Extent) -> Result<Vec<bool>> {
-        let read = |file: &&Path| image_file::read_exr_channels(file, extent, [self.channel]).map(|(values, _)| values);
-        let values = self.files.iter().map(read).collect::<Result<Vec<_>>>()?;
-        Ok(match &values[..] {
-            [first, second] => first.iter().zip(second).map(|(a, b)| a != b).collect(),
-            [only, ..] => only.iter().map(|[value]| *value != 0.0).collect(),
-            [] => unreachable!("parse wants a file"),
+        let read = |file: &Path| image_file::read_exr_channels(file, extent, [self.channel]).map(|(values, _)| values);
+        let values = read(self.file)?;
+        Ok(match self.other.map(read).transpose()? {
+            Some(others) => values.iter().zip(&others).map(|(a, b)| a != b).collect(),
+            None => values.iter().map(|[value]| *value != 0.0).collect(),
         })
     }
 }

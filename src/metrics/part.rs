@@ -1,7 +1,8 @@
 //! The errors of a part of a picture's pixels: what happens on edges is lost in the mean of everything.
 
-use super::Comparison;
+use super::{Comparison, flip, linear, percent_over};
 use crate::report::picture::Picture;
+use crate::units::Extent;
 use serde::Serialize;
 
 /// The measures that are means over pixels, of some of them; null and None where there are none of these.
@@ -32,20 +33,24 @@ impl Comparison {
     /// The errors of the pixels that `chosen` has. `actual`, `reference`: the compared pictures; `threshold`: of
     /// `Part::over_threshold`; `chosen`: a flag for each pixel, row-major.
     pub fn part(&self, actual: &Picture, reference: &Picture, threshold: f64, chosen: &[bool]) -> Part {
-        let indices = || chosen.iter().enumerate().filter_map(|(index, is_chosen)| is_chosen.then_some(index));
-        let pixels = indices().count();
-        let mean = |of: &dyn Fn(usize) -> f64| (pixels > 0).then(|| indices().map(of).sum::<f64>() / pixels as f64);
-        let squares = |index: usize, weigh: &dyn Fn(f64) -> f64| {
-            let channels = actual.pixels[index].into_iter().zip(reference.pixels[index]);
-            channels.map(|(a, b)| (f64::from(a) - f64::from(b)).powi(2) * weigh(f64::from(b))).sum::<f64>() / 3.0
+        let indices: Vec<usize> = (0..chosen.len()).filter(|index| chosen[*index]).collect();
+        let pixels = indices.len();
+        let picture = |of: &Picture| {
+            let pixels = indices.iter().map(|index| of.pixels[*index]).collect();
+            Picture { extent: Extent::new(indices.len() as u32, 1), pixels }
         };
+        let map = |of: &[f32]| -> Vec<f32> { indices.iter().map(|index| of[*index]).collect() };
+        let ([actual, reference], flip_map, hdr_flip_map) =
+            ([actual, reference].map(picture), map(&self.flip_map), map(&self.hdr_flip_map));
+        // Of no pixels there is no mean.
+        let mean = |value: f64| (pixels > 0).then_some(value);
         Part {
             pixels,
-            rmse: mean(&|index| squares(index, &|_| 1.0)).map(f64::sqrt),
-            relmse: mean(&|index| squares(index, &|b| (b.powi(2) + super::linear::RELMSE_EPSILON).recip())),
-            flip: mean(&|index| f64::from(self.flip_map[index])),
-            hdr_flip: mean(&|index| f64::from(self.hdr_flip_map[index])),
-            over_threshold: mean(&|index| if f64::from(self.hdr_flip_map[index]) > threshold { 100.0 } else { 0.0 }),
+            rmse: mean(linear::rmse(&actual, &reference)),
+            relmse: mean(linear::relmse(&actual, &reference)),
+            flip: mean(flip::mean(&flip_map)),
+            hdr_flip: mean(flip::mean(&hdr_flip_map)),
+            over_threshold: mean(percent_over(&hdr_flip_map, threshold)),
         }
     }
 }
