@@ -1,6 +1,6 @@
 // The surface that a ray meets: attributes between a triangle's corners, and its material with its textures. The same as
 // the G-buffer pass makes of a fragment, but for textures: a pixel is many rays, and their finest level is read, or that of the
-// ray's cone (TEXTURE_CONE), which what a surface lets through and what it emits are not dimmed or spread by.
+// ray's cone (TEXTURE_CONE); of alpha and emission always the finest.
 //
 // The including shader declares bvh_triangles[], bvh_closing[], surfaces[], closings[], tangents[], extended[],
 // traced_materials[] and what texel.glsl wants.
@@ -66,7 +66,7 @@ float uv_area(vec2 a, vec2 b, vec2 c) {
 }
 
 // Width of a cone in units of both UV sets, where it meets a triangle. `width`: across the ray, metres; `slope`: cosine between
-// the ray and the plane's normal; `area`: twice the triangle's, square metres. Akenine-Moeller et al. 2019, equation 34.
+// the ray and the plane's normal; `area`: twice the triangle's, square metres. Akenine-Moeller et al. 2019.
 vec2 footprints_of(TracedTriangleBlock triangle, uint index, float width, float slope, float area) {
     vec3 v = triangle.v_material.xyz;
     vec2 first = vec2(triangle.corners[0].w, v.x);
