@@ -17,7 +17,7 @@ pub enum Access {
     ComputeWrite,
     /// Read through an image descriptor by a compute shader.
     ComputeSample,
-    /// Read as a storage or uniform buffer by vertex and fragment shaders.
+    /// Read as a storage or uniform buffer by vertex, geometry and fragment shaders.
     GraphicsRead,
     /// Read through an image descriptor by a fragment shader.
     FragmentSample,
@@ -68,7 +68,8 @@ impl Access {
         use vk::PipelineStageFlags2 as Stage;
         match self {
             Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample | Self::ComputeTrace => Stage::COMPUTE_SHADER,
-            Self::GraphicsRead => Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER,
+            // Geometry shaders too, where there are any.
+            Self::GraphicsRead => Stage::PRE_RASTERIZATION_SHADERS | Stage::FRAGMENT_SHADER,
             Self::FragmentSample | Self::FragmentWrite => Stage::FRAGMENT_SHADER,
             Self::ColorWrite => Stage::COLOR_ATTACHMENT_OUTPUT,
             Self::DepthWrite | Self::DepthTest => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,

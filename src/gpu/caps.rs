@@ -83,6 +83,14 @@ impl Identity {
         (self.is_software() && major < 25).then_some(65_535)
     }
 
+    /// Whether a memory barrier inside a divergent loop ends the threads of a workgroup that reach it more often than others:
+    /// lavapipe of Mesa 22.3.6 suspends them there as at a barrier of the workgroup, 25.0.7 does not; what lies between is
+    /// taken to. Such a driver's stores are those of its processor (x86, Arm with atomics that order them): a compare-exchange
+    /// comes after what was stored before it.
+    pub fn barriers_end_threads(&self) -> bool {
+        self.loop_turns().is_some()
+    }
+
     /// The driver with its version where it tells one.
     pub fn driver_text(&self) -> &str {
         if self.driver_info.is_empty() { &self.driver } else { &self.driver_info }

@@ -263,18 +263,28 @@ impl Gpu {
             .sampler_anisotropy(caps.features.sampler_anisotropy)
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
-            .depth_clamp(caps.features.depth_clamp);
-        let mut addresses = vk::PhysicalDeviceBufferDeviceAddressFeatures::default().buffer_device_address(true);
+            .depth_clamp(caps.features.depth_clamp)
+            .geometry_shader(caps.features.geometry_shader);
+        let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
+            .buffer_device_address(caps.features.ray_query)
+            .shader_output_layer(caps.features.layer_from_vertex_shader);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
-        let ray_query_extensions = probe::RAY_QUERY_EXTENSIONS.map(CStr::as_ptr);
+        let mut extensions: Vec<*const c_char> = Vec::new();
+        if caps.features.ray_query {
+            extensions.extend(probe::RAY_QUERY_EXTENSIONS.map(CStr::as_ptr));
+        }
+        if caps.features.conservative_rasterization {
+            extensions.push(ash::ext::conservative_rasterization::NAME.as_ptr());
+        }
         let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&features)
+            .enabled_extension_names(&extensions)
+            .push_next(&mut features12)
             .push_next(&mut features13);
         if caps.features.ray_query {
-            info = info.enabled_extension_names(&ray_query_extensions);
-            info = info.push_next(&mut addresses).push_next(&mut structures).push_next(&mut ray_queries);
+            info = info.push_next(&mut structures).push_next(&mut ray_queries);
         }
         // SAFETY: every pointer in `info` outlives the call; the features were found present.
         let created = unsafe { instance.create_device(physical, &info, None) };

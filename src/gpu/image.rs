@@ -105,6 +105,8 @@ pub struct Image {
     pub view: vk::ImageView,
     /// The same texels as shaders store them; `view` itself where the formats are one.
     pub storage_view: vk::ImageView,
+    /// One of each layer, to draw into; of a plain image, and of one that is never attached, none.
+    pub layer_views: Vec<vk::ImageView>,
     /// What shaders sample: of depth with stencil the depth alone; the texels as another format; else `view` itself.
     pub sampled_view: vk::ImageView,
     pub name: String,
@@ -119,6 +121,7 @@ struct Views {
     view: vk::ImageView,
     storage: vk::ImageView,
     sampled: vk::ImageView,
+    layers: Vec<vk::ImageView>,
 }
 
 impl Image {
@@ -155,7 +158,7 @@ impl Image {
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
         match Self::bind(gpu, name, group, description, handle, berth) {
-            Ok((allocation, Views { view, storage, sampled })) => {
+            Ok((allocation, Views { view, storage, sampled, layers })) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
@@ -165,6 +168,7 @@ impl Image {
                     handle,
                     view,
                     storage_view: storage,
+                    layer_views: layers,
                     sampled_view: sampled,
                     name,
                     description,
@@ -237,15 +241,26 @@ impl Image {
         } else {
             Ok(view)
         };
-        match other {
+        let attached = usage & (vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
+        let layer_count = if attached.is_empty() { 0 } else { description.layer_count.unwrap_or_default() };
+        let mut layers = Vec::new();
+        let mut made = vec![view];
+        let all = other.and_then(|other| {
+            made.extend((other != view).then_some(other));
+            for layer in 0..layer_count {
+                layers.push(view_as(format, attached, whole.base_array_layer(layer).layer_count(1))?);
+            }
+            Ok(other)
+        });
+        match all {
             Ok(other) => {
                 let storage = if is_stored_otherwise { other } else { view };
                 let sampled = if is_sampled_in_part || description.sampled_as.is_some() { other } else { view };
-                Ok((allocation, Views { view, storage, sampled }))
+                Ok((allocation, Views { view, storage, sampled, layers }))
             }
             Err(error) => {
                 // SAFETY: never used.
-                unsafe { gpu.device.destroy_image_view(view, None) };
+                unsafe { made.into_iter().chain(layers).for_each(|view| gpu.device.destroy_image_view(view, None)) };
                 Err(error)
             }
         }
@@ -274,6 +289,7 @@ impl Drop for Image {
     fn drop(&mut self) {
         // SAFETY: the frame's fence was waited for; view, image, memory in this order, each once.
         unsafe {
+            self.layer_views.iter().for_each(|layer| self.gpu.device.destroy_image_view(*layer, None));
             for other in [self.storage_view, self.sampled_view].into_iter().filter(|other| *other != self.view) {
                 self.gpu.device.destroy_image_view(other, None);
             }

@@ -33,5 +33,5 @@ pub use descriptors::Bound;
 pub use device::{DeviceRequest, Gpu};
 pub use image::{Image, ImageDescription};
 pub use needs::{Ability, Need};
-pub use rendering::ColorTarget;
+pub use rendering::{ColorTarget, Layers};
 pub use structure::Structure;

@@ -28,6 +28,12 @@ pub enum Ability {
     FourSamples,
     /// The same with 8.
     EightSamples,
+    /// Geometry shaders.
+    GeometryShader,
+    /// Vertex shaders choose the layer that is drawn into.
+    LayerFromVertex,
+    /// All pixels that a triangle touches are drawn.
+    ConservativeRaster,
     /// Shaders send rays through structures that the driver builds.
     RayQuery,
 }
@@ -46,6 +52,9 @@ impl Ability {
             Self::DepthClamp => caps.features.depth_clamp,
             Self::FourSamples => has_samples(&caps.formats, 4),
             Self::EightSamples => has_samples(&caps.formats, 8),
+            Self::GeometryShader => caps.features.geometry_shader,
+            Self::LayerFromVertex => caps.features.layer_from_vertex_shader,
+            Self::ConservativeRaster => caps.features.conservative_rasterization,
             Self::RayQuery => caps.features.ray_query,
         }
     }
@@ -63,6 +72,9 @@ impl Ability {
             Self::DepthClamp => "depthClamp",
             Self::FourSamples => "4 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::EightSamples => "8 samples a pixel in float colour and D32_SFLOAT attachments",
+            Self::GeometryShader => "geometryShader",
+            Self::LayerFromVertex => "shaderOutputLayer",
+            Self::ConservativeRaster => "VK_EXT_conservative_rasterization",
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",
         }
     }

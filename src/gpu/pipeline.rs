@@ -1,6 +1,7 @@
 //! Compute and graphics pipelines from the table's entries: their layouts come from the shaders, not from hands.
 
 use super::Gpu;
+use super::descriptors::Bound;
 use super::shader::{Binding, Shader, Side};
 use crate::error::{Error, Result};
 use ash::vk;
@@ -85,6 +86,14 @@ impl Interface {
                 Err(Error::device(format!("creating the pipeline layout of {label}: {result}")))
             }
         }
+    }
+}
+
+impl Interface {
+    /// Those of `bound` that its shaders have.
+    pub fn own<'a>(&self, bound: &[(&'static str, Bound<'a>)]) -> Vec<(&'static str, Bound<'a>)> {
+        let is_own = |name: &str| self.bindings.iter().any(|binding| binding.name == name);
+        bound.iter().filter(|(name, _)| is_own(name)).copied().collect()
     }
 }
 
@@ -227,6 +236,7 @@ impl Drop for ComputePipeline {
 /// What a graphics pipeline draws with.
 pub struct GraphicsDescription<'a> {
     pub vertex: &'a Shader,
+    pub geometry: Option<&'a Shader>,
     /// None: depth only.
     pub fragment: Option<&'a Shader>,
     pub constants: Constants<'a>,
@@ -243,6 +253,8 @@ pub struct GraphicsDescription<'a> {
     pub depth_clamp: bool,
     /// What is added to depth: parts of what it changes by from a pixel to the next where the surface is steepest.
     pub depth_slope_bias: f32,
+    /// Every pixel that a triangle touches is drawn (VK_EXT_conservative_rasterization).
+    pub conservative: bool,
     /// None: no stencil test. Reference and write mask are set by commands.
     pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
@@ -336,7 +348,8 @@ pub struct GraphicsPipeline {
 impl GraphicsPipeline {
     /// Errors: the driver refuses (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, description: &GraphicsDescription<'_>) -> Result<Self> {
-        let shaders: Vec<&Shader> = std::iter::once(description.vertex).chain(description.fragment).collect();
+        let shaders: Vec<&Shader> =
+            std::iter::once(description.vertex).chain(description.geometry).chain(description.fragment).collect();
         assert_constants_exist(&shaders, description.constants);
         let interface = Interface::new(gpu, &shaders, description.foreign_sets)?;
         let modules: Vec<Module<'_>> = shaders.iter().map(|shader| Module::new(gpu, shader)).collect::<Result<_>>()?;
@@ -376,11 +389,16 @@ impl GraphicsPipeline {
         let assembly =
             vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+        let mut overestimate = vk::PipelineRasterizationConservativeStateCreateInfoEXT::default()
+            .conservative_rasterization_mode(vk::ConservativeRasterizationModeEXT::OVERESTIMATE);
+        let mut raster = vk::PipelineRasterizationStateCreateInfo::default()
             .line_width(1.0)
             .depth_clamp_enable(description.depth_clamp)
             .depth_bias_enable(description.depth_slope_bias != 0.0)
             .depth_bias_slope_factor(description.depth_slope_bias);
+        if description.conservative {
+            raster = raster.push_next(&mut overestimate);
+        }
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(description.samples));
         let [front, back] = description.stencil.map(StencilUse::states).unwrap_or_default();

@@ -15,6 +15,29 @@ pub struct ColorTarget<'a> {
     pub resolve: Option<&'a Image>,
 }
 
+/// Which layers of its attachments a rendering draws into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layers {
+    /// The first; of plain images the only one.
+    First,
+    One(u32),
+    /// So many, and shaders say which.
+    All(u32),
+}
+
+impl Layers {
+    fn view(self, image: &Image) -> vk::ImageView {
+        match self {
+            Self::One(layer) => image.layer_views[layer as usize],
+            Self::First | Self::All(_) => image.view,
+        }
+    }
+
+    fn count(self) -> u32 {
+        if let Self::All(count) = self { count } else { 1 }
+    }
+}
+
 impl<'a> ColorTarget<'a> {
     /// Not resolved.
     pub fn new(image: &'a Image, clear: Option<vk::ClearColorValue>) -> Self {
@@ -26,9 +49,9 @@ impl<'a> ColorTarget<'a> {
         Self { resolve: Some(plain), ..self }
     }
 
-    fn info(&self) -> vk::RenderingAttachmentInfo<'static> {
+    fn info(&self, layers: Layers) -> vk::RenderingAttachmentInfo<'static> {
         let info = vk::RenderingAttachmentInfo::default()
-            .image_view(self.image.view)
+            .image_view(layers.view(self.image))
             .image_layout(Access::ColorWrite.layout())
             .load_op(load(self.clear.is_some()))
             .store_op(vk::AttachmentStoreOp::STORE)
@@ -64,6 +87,17 @@ impl Commands {
         colors: &[ColorTarget<'_>],
         depth: Option<(&Image, Option<f32>, Access)>,
     ) {
+        self.begin_layers(extent, Layers::First, colors, depth);
+    }
+
+    /// The same into layers of arrays.
+    pub fn begin_layers(
+        &mut self,
+        extent: Extent,
+        layers: Layers,
+        colors: &[ColorTarget<'_>],
+        depth: Option<(&Image, Option<f32>, Access)>,
+    ) {
         for color in colors {
             self.check_attached(color.image, Access::ColorWrite);
             color.resolve.inspect(|plain| self.check_attached(plain, Access::ColorWrite));
@@ -71,11 +105,11 @@ impl Commands {
         if let Some((image, _, access)) = depth {
             self.check_attached(image, access);
         }
-        let color_infos: Vec<_> = colors.iter().map(ColorTarget::info).collect();
+        let color_infos: Vec<_> = colors.iter().map(|color| color.info(layers)).collect();
         let depth_info = depth.map(|(image, clear, access)| {
             let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
             vk::RenderingAttachmentInfo::default()
-                .image_view(image.view)
+                .image_view(layers.view(image))
                 .image_layout(access.layout())
                 .load_op(load(clear.is_some()))
                 .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
@@ -85,7 +119,8 @@ impl Commands {
             offset: vk::Offset2D::default(),
             extent: vk::Extent2D { width: extent.width, height: extent.height },
         };
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
+        let mut info =
+            vk::RenderingInfo::default().render_area(area).layer_count(layers.count()).color_attachments(&color_infos);
         if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
             info = info.depth_attachment(depth_info);
             if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {

@@ -104,6 +104,7 @@ impl Blend {
             gpu,
             &GraphicsDescription {
                 vertex: mesh::vertex_shader(scene),
+                geometry: None,
                 fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), lists])),
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
@@ -115,6 +116,7 @@ impl Blend {
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
+                conservative: false,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

@@ -10,6 +10,7 @@ use ash::vk;
 pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) -> GraphicsDescription<'a> {
     GraphicsDescription {
         vertex: &crate::gpu::shader::passes::fullscreen::VERT,
+        geometry: None,
         fragment: Some(fragment),
         constants: &[],
         vertex_buffers: &[],
@@ -21,6 +22,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         depth_compare: vk::CompareOp::ALWAYS,
         depth_clamp: false,
         depth_slope_bias: 0.0,
+        conservative: false,
         stencil: None,
         foreign_sets: &[],
     }

@@ -310,6 +310,7 @@ impl GBufferPass {
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
+                    geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &names)),
                     constants: if has_emissive { &constants } else { &[] },
                     vertex_buffers: mesh::vertex_buffers(scene),
@@ -321,6 +322,7 @@ impl GBufferPass {
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
+                    conservative: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -103,6 +103,33 @@ pub fn draw_each<'a>(
     calls: impl IntoIterator<Item = &'a DrawCall>,
     mut before: impl FnMut(&DrawCall),
 ) {
+    for_each(cmd, pipeline, scene, Sides::AsDrawn, calls, |call| {
+        before(call);
+        let DrawCall { index_count, first_index, vertex_offset, draw, .. } = *call;
+        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+        unsafe {
+            cmd.gpu().device.cmd_draw_indexed(cmd.buffer(), index_count, 1, first_index, vertex_offset, draw);
+        }
+    });
+}
+
+/// Which sides of triangles are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// Fronts, and backs of what is double-sided.
+    AsDrawn,
+    Both,
+}
+
+/// Sets sides, winding and material where they change, and lets `draw` draw each call.
+pub fn for_each<'a>(
+    cmd: &Commands,
+    pipeline: &GraphicsPipeline,
+    scene: &SceneGpu,
+    sides: Sides,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+    mut draw: impl FnMut(&DrawCall),
+) {
     let device = &cmd.gpu().device;
     let buffer = cmd.buffer();
     let mut state: Option<(bool, bool)> = None;
@@ -110,7 +137,11 @@ pub fn draw_each<'a>(
     for call in calls {
         if state != Some((call.double_sided, call.mirrored)) {
             state = Some((call.double_sided, call.mirrored));
-            let cull = if call.double_sided { vk::CullModeFlags::NONE } else { vk::CullModeFlags::BACK };
+            let cull = if call.double_sided || sides == Sides::Both {
+                vk::CullModeFlags::NONE
+            } else {
+                vk::CullModeFlags::BACK
+            };
             // glTF's front faces are counter-clockwise; y is turned in clip space, so they arrive as such.
             let front = if call.mirrored { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE };
             // SAFETY: the buffer is being recorded inside rendering.
@@ -128,9 +159,6 @@ pub fn draw_each<'a>(
                 device.cmd_bind_descriptor_sets(buffer, vk::PipelineBindPoint::GRAPHICS, layout, 1, &set, &[]);
             }
         }
-        before(call);
-        let DrawCall { index_count, first_index, vertex_offset, draw, .. } = *call;
-        // SAFETY: as above; the importer checked that every index has its vertex.
-        unsafe { device.cmd_draw_indexed(buffer, index_count, 1, first_index, vertex_offset, draw) };
+        draw(call);
     }
 }

@@ -27,7 +27,7 @@ pub use visible::{DrawList, GeometryChoice};
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
-use crate::gpu::{Access, Buffer, Caps, Gpu, ImageDescription, upload};
+use crate::gpu::{Access, AccessSet, Buffer, Caps, Gpu, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
 use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps, object_ids};
 use crate::units::Extent;
@@ -174,7 +174,8 @@ impl SceneStats {
         let mut plan = Plan::default();
         let geometry = |bytes: u64, flags: Flags| Shape::Buffer {
             bytes: bytes.max(16),
-            flags: flags | Flags::TRANSFER_DST,
+            // deep_shading reads vertices as storage.
+            flags: flags | Flags::STORAGE_BUFFER | Flags::TRANSFER_DST,
             usage: crate::memory::kinds::Use::Device,
         };
         let attributes = size_of::<VertexAttributes>() as u64;
@@ -261,28 +262,31 @@ impl SceneGpu {
         let mut resources = Resources::make(gpu, "scene", &stats.geometry_plan(), &Sharing::default())?;
         let textures = kept.map_or_else(|| Textures::new(gpu, scene, &stats).map(Arc::new), Ok)?;
         let geometry = Geometry::of(scene);
-        let send = |buffer: &Buffer, bytes: &[u8], access| upload::buffer(gpu, buffer, bytes, access);
+        let send = |buffer: &Buffer, bytes: &[u8], accesses: AccessSet| upload::buffer(gpu, buffer, bytes, accesses);
+        // Vertex inputs, and what shaders fetch for themselves.
+        let vertices = Access::VertexRead | Access::GraphicsRead;
+        let shaders = AccessSet::from(Access::GraphicsRead);
         let positions = resources.buffer("scene.positions");
-        send(&positions, bytemuck::cast_slice(&geometry.positions), Access::VertexRead)?;
+        send(&positions, bytemuck::cast_slice(&geometry.positions), vertices)?;
         let attributes = resources.buffer("scene.attributes");
-        send(&attributes, bytemuck::cast_slice(&geometry.attributes), Access::VertexRead)?;
+        send(&attributes, bytemuck::cast_slice(&geometry.attributes), vertices)?;
         let extended = match stats.has_extended {
             false => None,
             true => {
                 let attributes = resources.buffer("scene.extended");
-                send(&attributes, bytemuck::cast_slice(&geometry::extended(scene)), Access::VertexRead)?;
+                send(&attributes, bytemuck::cast_slice(&geometry::extended(scene)), vertices)?;
                 let placements = resources.buffer("scene.placements");
-                send(&placements, bytemuck::cast_slice(&material_blocks::placements(scene)), Access::GraphicsRead)?;
+                send(&placements, bytemuck::cast_slice(&material_blocks::placements(scene)), shaders)?;
                 Some(Extended { attributes, placements })
             }
         };
         let indices = resources.buffer("scene.indices");
-        send(&indices, bytemuck::cast_slice(&geometry.indices), Access::VertexRead)?;
+        send(&indices, bytemuck::cast_slice(&geometry.indices), vertices)?;
         let draws = resources.buffer("scene.draws");
-        send(&draws, bytemuck::cast_slice(&draw_blocks(scene)), Access::GraphicsRead)?;
+        send(&draws, bytemuck::cast_slice(&draw_blocks(scene)), shaders)?;
         let materials = resources.buffer("scene.materials");
         let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_blocks::block).collect();
-        send(&materials, bytemuck::cast_slice(&blocks), Access::GraphicsRead)?;
+        send(&materials, bytemuck::cast_slice(&blocks), shaders)?;
         let MaterialSets { samplers, layout, pool, sets } = MaterialSets::new(gpu, scene, &textures)?;
         let mut calls = geometry.calls(scene);
         sort(&mut calls);
@@ -344,7 +348,7 @@ fn normals_from(draw: &Draw) -> Mat3 {
     Mat3::from_cols(sign * y.cross(z), sign * z.cross(x), sign * x.cross(y))
 }
 
-fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
+pub fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
     scene
         .draws
         .iter()

@@ -28,6 +28,7 @@ impl Depth {
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
+                    geometry: None,
                     fragment,
                     constants: &[],
                     vertex_buffers: mesh::vertex_buffers(scene),
@@ -39,6 +40,7 @@ impl Depth {
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
+                    conservative: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -49,6 +49,7 @@ impl Material {
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
+                    geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights])),
                     constants: &choices.direct.light_constants(),
                     vertex_buffers: mesh::vertex_buffers(scene),
@@ -61,6 +62,7 @@ impl Material {
                     depth_compare: if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER_OR_EQUAL },
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
+                    conservative: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

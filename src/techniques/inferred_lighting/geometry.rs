@@ -215,6 +215,7 @@ impl Geometry {
                 gpu,
                 &GraphicsDescription {
                     vertex,
+                    geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &names)),
                     constants: &[choices.fixed_constant()],
                     vertex_buffers: mesh::vertex_buffers(scene),
@@ -226,6 +227,7 @@ impl Geometry {
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
+                    conservative: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -117,6 +117,7 @@ impl Material {
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
+                    geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide])),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
@@ -133,6 +134,7 @@ impl Material {
                     },
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
+                    conservative: false,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },
