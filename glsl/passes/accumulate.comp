@@ -1,4 +1,4 @@
-// The mean of the pictures of all runs so far (--supersample). Pass: src/techniques/forward/accumulate.rs.
+// The mean of the pictures of all runs so far (--supersample, --accumulate). Pass: src/passes/accumulate.rs.
 #version 460
 #include "frame.glsl"
 

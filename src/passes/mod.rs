@@ -1,5 +1,6 @@
 //! Passes that two or more techniques share. Each is labelled by the technique that runs it.
 
+pub mod accumulate;
 pub mod blend;
 pub mod decode;
 pub mod direct;

@@ -17,7 +17,6 @@
 //! Why this way: a list is found by the draw's push constants. An index of the object in the fragment shader would be one
 //! more thing to interpolate for every technique that shares the vertex stage.
 
-pub mod accumulate;
 pub mod depth;
 pub mod material;
 mod plan;
@@ -29,6 +28,7 @@ use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Ability, Access, Bound, Buffer, Caps, Commands, Gpu, Image, Need, readback, upload};
 use crate::lights::LightSet;
 use crate::lights::object_lists::{ListChoice, ObjectLists};
+use crate::passes::accumulate::Accumulate;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
 use crate::passes::direct::{self, DirectGpu, DirectSettings};
 use crate::passes::resolve;
@@ -37,7 +37,6 @@ use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{Coverage, DrawList, SceneGpu};
 use crate::settings::{MULTISAMPLE, Setting, Values};
 use crate::units::Bytes;
-use accumulate::Accumulate;
 use depth::Depth;
 use glam::Vec2;
 use material::Material;
@@ -213,7 +212,7 @@ impl Prepared for PreparedForward {
             depth: if has_prepass { Some(Depth::new(gpu, scene, samples)?) } else { None },
             material: Material::new(gpu, scene, &choices, &lists.objects, background)?,
             blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &constants, &target)?,
-            accumulate: if runs_per_side > 1 { Some(Accumulate::new(gpu, resources)?) } else { None },
+            accumulate: if runs_per_side > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             targets: Targets {
                 depth: resources.image(plan::DEPTH),
                 drawn: resources.image(plan::DRAWN),
@@ -280,7 +279,7 @@ impl Frame for ForwardFrame {
             resolve::record(cmd, NAME, drawn.from(Access::ColorWrite), plain)?;
         }
         if let Some(accumulate) = &self.accumulate {
-            accumulate.record(cmd, frame, self.run_picture().from(Access::ColorWrite))?;
+            accumulate.record(cmd, NAME, frame, self.run_picture().from(Access::ColorWrite))?;
         }
         Ok(())
     }

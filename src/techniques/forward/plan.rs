@@ -1,13 +1,12 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
-use super::accumulate::SUM_BYTES;
 use super::{Choices, NAME, depth};
 use crate::error::Result;
 use crate::gpu::Access;
 use crate::gpu::shader::structs::LightBlock;
 use crate::lights::object_lists::ObjectLists;
 use crate::memory::kinds::Use;
-use crate::passes::{blend, direct, resolve};
+use crate::passes::{accumulate, blend, direct, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Shape};
 use crate::techniques::Inputs;
 use ash::vk::{BufferUsageFlags, ImageUsageFlags as Usage};
@@ -25,9 +24,6 @@ pub const VPLS: &str = "forward.vpls";
 pub const DRAWN: &str = "forward.material.color";
 /// The mean of its samples.
 pub const RESOLVED: &str = "forward.resolve.color";
-pub const SUMS: &str = "forward.accumulate.sums";
-/// The mean of all runs.
-pub const MEAN: &str = "forward.accumulate.color";
 
 /// Resources and passes of a frame.
 pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Result<Plan> {
@@ -60,8 +56,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Resu
         (true, true) => plan.image("color", RESOLVED, extent, PICTURE_FORMAT, plain),
     }
     if is_mean {
-        plan.buffer("accumulation", SUMS, extent.pixel_count() * SUM_BYTES);
-        plan.picture(MEAN, extent);
+        accumulate::plan(&mut plan, NAME, extent);
     }
     let full = |pass: &str| format!("{NAME}.{pass}");
     let touch = |name: &str, access| (name.to_owned(), access);
@@ -79,7 +74,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Resu
     }
     if is_mean {
         let run = if is_resolved { RESOLVED } else { DRAWN };
-        plan.pass(full("accumulate"), [touch(run, Access::ComputeRead), touch(MEAN, Access::ComputeWrite)]);
+        accumulate::plan_pass(&mut plan, NAME, run);
     }
     Ok(plan)
 }
