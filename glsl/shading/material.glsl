@@ -5,6 +5,8 @@
 // The including shader reads the material's block: from its push constants, or from `materials[]`. Where pixels have several
 // samples it defines INTERPOLATION as centroid: a pixel whose middle the triangle does not cover must not be shaded beyond
 // the triangle's edge.
+// Where it shades another place than its own it defines MATERIAL_PLACE, and writes what is otherwise interpolated before it
+// calls anything, with the changes of texture coordinates that choose levels.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 
@@ -21,6 +23,33 @@ layout(set = 1, binding = 4) uniform sampler2D occlusion_texture;
 #define INTERPOLATION
 #endif
 
+#ifdef MATERIAL_PLACE
+
+vec3 in_position_ws;
+vec3 in_normal_ws;
+vec4 in_tangent_ws;
+vec2 in_uv;
+// By how much in_uv changes a pixel to the right, and down.
+vec2 in_uv_right;
+vec2 in_uv_down;
+uint in_material;
+bool in_front_facing;
+#ifdef VERTEX_EXTENDED
+vec4 in_color;
+vec2 in_uv_1;
+vec2 in_uv_1_right;
+vec2 in_uv_1_down;
+#endif
+
+#ifdef VERTEX_EXTENDED
+#define UV_CHANGE(which, way) uv_change(which, in_uv_##way, in_uv_1_##way)
+#else
+#define UV_CHANGE(which, way) uv_change(which, in_uv_##way, in_uv_##way)
+#endif
+#define TEXEL(name, which) textureGrad(name, uv_of(which), UV_CHANGE(which, right), UV_CHANGE(which, down))
+
+#else
+
 layout(location = 0) INTERPOLATION in vec3 in_position_ws;
 layout(location = 1) INTERPOLATION in vec3 in_normal_ws;
 layout(location = 2) INTERPOLATION in vec4 in_tangent_ws;
@@ -32,6 +61,10 @@ layout(location = 6) INTERPOLATION in vec2 in_uv_1;
 #endif
 
 #define in_material in_ids.x
+#define in_front_facing gl_FrontFacing
+#define TEXEL(name, which) texture(name, uv_of(which))
+
+#endif
 
 // Where on its picture a texture (TEXTURE_) is read.
 vec2 uv_of(uint which) {
@@ -44,13 +77,25 @@ vec2 uv_of(uint which) {
 #endif
 }
 
+#ifdef MATERIAL_PLACE
+vec2 uv_change(uint which, vec2 change, vec2 change_1) {
+#ifdef VERTEX_EXTENDED
+    PlacementBlock placement = placements[in_material * TEXTURE_COUNT + which];
+    vec2 chosen = placement.u.w > 0.5 ? change_1 : change;
+    return vec2(dot(placement.u.xy, chosen), dot(placement.v.xy, chosen));
+#else
+    return change;
+#endif
+}
+#endif
+
 vec4 base_color_at(MaterialBlock material) {
     vec4 color = material.base_color;
 #ifdef VERTEX_EXTENDED
     color *= in_color;
 #endif
     if ((material.flags & MATERIAL_BASE_COLOR_TEXTURE) != 0u) {
-        color *= texture(base_color_texture, uv_of(TEXTURE_BASE_COLOR));
+        color *= TEXEL(base_color_texture, TEXTURE_BASE_COLOR);
     }
     return color;
 }
@@ -59,7 +104,7 @@ vec4 base_color_at(MaterialBlock material) {
 vec2 metallic_roughness_at(MaterialBlock material) {
     vec2 value = vec2(material.metallic, material.roughness);
     if ((material.flags & MATERIAL_METALLIC_ROUGHNESS_TEXTURE) != 0u) {
-        value *= texture(metallic_roughness_texture, uv_of(TEXTURE_METALLIC_ROUGHNESS)).bg;
+        value *= TEXEL(metallic_roughness_texture, TEXTURE_METALLIC_ROUGHNESS).bg;
     }
     return value;
 }
@@ -67,7 +112,7 @@ vec2 metallic_roughness_at(MaterialBlock material) {
 vec3 emissive_at(MaterialBlock material) {
     vec3 radiance = material.emissive.rgb;
     if ((material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
-        radiance *= texture(emissive_texture, uv_of(TEXTURE_EMISSIVE)).rgb;
+        radiance *= TEXEL(emissive_texture, TEXTURE_EMISSIVE).rgb;
     }
     return radiance;
 }
@@ -77,7 +122,7 @@ uint extras_at(MaterialBlock material) {
     float openness = 1.0;
     if ((material.flags & MATERIAL_OCCLUSION_TEXTURE) != 0u) {
         float strength = float((material.flags >> 16) & 0xffu) / 255.0;
-        openness += strength * (texture(occlusion_texture, uv_of(TEXTURE_OCCLUSION)).r - 1.0);
+        openness += strength * (TEXEL(occlusion_texture, TEXTURE_OCCLUSION).r - 1.0);
     }
     return pack_extras((material.flags >> 8) & 0xffu, openness);
 }
@@ -88,13 +133,13 @@ vec3 normal_at(MaterialBlock material) {
     if ((material.flags & MATERIAL_NORMAL_TEXTURE) != 0u && in_tangent_ws.xyz != vec3(0.0)) {
         vec3 tangent = normalize(in_tangent_ws.xyz);
         vec3 bitangent = cross(normal, tangent) * in_tangent_ws.w;
-        vec3 mapped = texture(normal_texture, uv_of(TEXTURE_NORMAL)).xyz * 2.0 - 1.0;
+        vec3 mapped = TEXEL(normal_texture, TEXTURE_NORMAL).xyz * 2.0 - 1.0;
         mapped.xy *= material.emissive.a;
         vec3 bent = tangent * mapped.x + bitangent * mapped.y + normal * mapped.z;
         // A map that points nowhere leaves the surface as it is.
         normal = dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
     }
-    bool turned = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u && !gl_FrontFacing;
+    bool turned = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u && !in_front_facing;
     return turned ? -normal : normal;
 }
 

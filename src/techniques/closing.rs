@@ -1,4 +1,4 @@
-//! Camera and lights when the shutter closes (`--shutter`); where triangles are then, the tree and the traced scene know.
+//! Camera and lights when the shutter closes (`--shutter`).
 
 use super::Inputs;
 use crate::error::Result;
@@ -8,7 +8,7 @@ use crate::lights::LightSet;
 
 /// The other end of what moves.
 pub struct Closing {
-    view: View,
+    pub view: View,
     pub lights: LightSet,
 }
 

@@ -4,6 +4,8 @@
 //! does the host's part, `Prepared::build` makes pipelines and takes the planned resources, and `Frame::record` writes
 //! the commands of one frame, in the order of the paper's overview figure.
 
+mod closing;
+pub mod deep_shading;
 pub mod deferred;
 pub mod fitness;
 pub mod forward;
@@ -174,6 +176,7 @@ pub trait Frame {
 pub const ALL: &[&dyn Technique] = &[
     &interleaved_deferred::InterleavedDeferred,
     &inferred_lighting::InferredLighting,
+    &deep_shading::DeepShading,
     &deferred::Deferred,
     &forward::Forward,
     &path_traced::PathTraced,

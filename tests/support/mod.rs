@@ -66,6 +66,7 @@ pub enum Feature {
     ExactPositions,
     /// Rays through structures of the driver's own.
     RayQuery,
+    GeometryShader,
 }
 
 impl Feature {
@@ -74,13 +75,14 @@ impl Feature {
             Self::Pinned => caps.identity.driver_info.contains(PINNED),
             Self::ExactPositions => caps.limits.sub_pixel_bits >= 8,
             Self::RayQuery => caps.features.ray_query,
+            Self::GeometryShader => caps.features.geometry_shader,
         }
     }
 
     /// Whether the driver that CI runs on has it: where not, CI skips the test as others do.
     fn is_of_pinned(self) -> bool {
         match self {
-            Self::Pinned | Self::ExactPositions => true,
+            Self::Pinned | Self::ExactPositions | Self::GeometryShader => true,
             Self::RayQuery => false,
         }
     }
@@ -93,6 +95,7 @@ impl Feature {
                 format!("vertices placed to a 256th of a pixel: {} bits, 8 are needed", caps.limits.sub_pixel_bits)
             }
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure".to_owned(),
+            Self::GeometryShader => "geometryShader".to_owned(),
         }
     }
 }

@@ -36,10 +36,10 @@
 //! what `interleaved_deferred --split none` comes to with ever more virtual point lights.
 
 mod airlight;
-mod moving;
 pub mod sample;
 pub mod settings;
 
+use super::closing::Closing;
 use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
@@ -59,7 +59,6 @@ use crate::settings::{Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
 use airlight::Air;
 use bytemuck::Zeroable;
-use moving::Closing;
 use sample::{Choices, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,0 +1,23 @@
+// Whether a sample sees a surface with an alpha: MASK by its threshold, BLEND by as many samples as alpha says.
+//
+// The including shader includes shading/material.glsl with MATERIAL_PLACE and has `params`, `deep` and in_uv's varyings.
+#ifndef DEEP_SHADING_ALPHA_GLSL
+#define DEEP_SHADING_ALPHA_GLSL
+
+// 0 to 1 without 1, another for each sample, draw and run: layers over each other must not let the same samples pass.
+float alpha_threshold(uvec2 at, uint tuple, uint draw) {
+    uint bits = at.x * 0x9e3779b1u ^ at.y * 0x85ebca77u ^ tuple * 0xc2b2ae3du ^ draw * 0x27d4eb2fu;
+    bits = (bits ^ (bits >> 15)) * 0x2c1b3c6du;
+    bits = (bits ^ (bits >> 12)) * 0x297a2d39u;
+    bits ^= bits >> 15;
+    return float(bits >> 8) / 16777216.0;
+}
+
+bool is_seen(float alpha, uvec2 at, uint tuple) {
+    if ((params.flags & DRAWN_BLENDED) != 0u) {
+        return alpha > alpha_threshold(at, tuple, params.draw);
+    }
+    return alpha >= params.material.alpha_cutoff;
+}
+
+#endif

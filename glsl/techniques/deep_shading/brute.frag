@@ -1,0 +1,40 @@
+// Samples shaded where they are seen, each by itself: the oracle of the lists (--lists none), and what they leave out.
+// Pass: src/techniques/deep_shading/brute.rs.
+// variants: SAMPLES=all|strays VERTEX=plain|extended
+#version 460
+#include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/surface.glsl"
+#include "techniques/deep_shading/counters.glsl"
+
+// As in shade.frag.
+layout(constant_id = 94) const uint IS_COUNTED = 0;
+
+layout(location = 1) flat in uint in_primitive;
+layout(location = 2) in vec3 in_weights;
+
+layout(set = 0, binding = 27) uniform usampler2DArray spids;
+layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+#ifdef SAMPLES_STRAYS
+layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+#endif
+
+void main() {
+    uvec3 at = uvec3(gl_FragCoord.xy, params.tuple);
+    uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+    if (spid.x != in_primitive) {
+        discard;
+    }
+    uint own = sample_index(deep, at);
+    bool is_stray = spid.y == NO_SHADING_PIXEL;
+#ifdef SAMPLES_STRAYS
+    if (!is_stray) {
+        discard;
+    }
+    own = nodes[own].x;
+#endif
+    colors[own] = color_on(in_primitive, uvec2(spid.y & 0xffffu, spid.y >> 16), is_stray, inside_weights(in_weights));
+    if (IS_COUNTED != 0u) {
+        atomicAdd(counters[COUNTED_SHADED], 1u);
+    }
+}

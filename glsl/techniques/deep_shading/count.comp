@@ -1,0 +1,67 @@
+// How long the lists are, after the frame: what is listed, what stands in a list again, the longest
+// (--instrument; section 4.1). Pass: src/techniques/deep_shading/count.rs.
+// variants: LISTS=linked|compact
+#version 460
+#include "techniques/deep_shading/space.glsl"
+#include "techniques/deep_shading/counters.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
+layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
+layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+#ifdef LISTS_COMPACT
+layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+#endif
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+layout(std430, set = 0, binding = 30) writeonly buffer Lengths { uint lengths[]; };
+
+#include "techniques/deep_shading/nodes.glsl"
+
+void main() {
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (at.x >= deep.shading_width_px) {
+        return;
+    }
+    uint pixel = at.y * deep.shading_width_px + at.x;
+    uint node = begins[pixel];
+    uint listed = 0u;
+    uint again = 0u;
+    bool is_listed = node != 0u;
+#ifdef LISTS_COMPACT
+    if (is_listed) {
+        for (; listed < LINEAR_COUNT; listed++) {
+            if (linear[pixel * LINEAR_COUNT + listed] == LINEAR_END) {
+                break;
+            }
+        }
+        node = listed == LINEAR_COUNT ? nodes[node - 1u].y : 0u;
+    }
+    bool overflows = node != 0u;
+    for (; node != 0u; node = nodes[node - 1u].y) {
+        listed++;
+    }
+#else
+    bool overflows = false;
+    for (; node != 0u; node = nodes[node - 1u].y) {
+        bool is_again = false;
+        for (uint other = nodes[node - 1u].y; other != 0u && !is_again; other = nodes[other - 1u].y) {
+            is_again = nodes[other - 1u].x == nodes[node - 1u].x;
+        }
+        listed += is_again ? 0u : 1u;
+        again += is_again ? 1u : 0u;
+    }
+#endif
+    lengths[pixel] = listed;
+    if (is_listed) {
+        atomicAdd(counters[COUNTED_LISTED], listed);
+        atomicAdd(counters[COUNTED_PIXELS], 1u);
+        atomicMax(counters[COUNTED_LONGEST], listed);
+        if (again > 0u) {
+            atomicAdd(counters[COUNTED_DUPLICATES], again);
+        }
+        if (overflows) {
+            atomicAdd(counters[COUNTED_OVERFLOWS], 1u);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+// What a frame counts (the report's counters); src/techniques/deep_shading/counters.rs reads it.
+#ifndef DEEP_SHADING_COUNTERS_GLSL
+#define DEEP_SHADING_COUNTERS_GLSL
+
+// Colours that compaction has given out: it needs this one.
+const uint COUNTED_COLORS = 0u;
+// Samples without a shading pixel: those before it have their colours from the end on.
+const uint COUNTED_STRAYS = 1u;
+// Surfaces that were shaded, after the look-up.
+const uint COUNTED_SHADED = 2u;
+// Samples whose colour was never stored.
+const uint COUNTED_MISSING = 3u;
+// Triangles of all lists, each once.
+const uint COUNTED_LISTED = 4u;
+// Those that stand in a list again.
+const uint COUNTED_DUPLICATES = 5u;
+// The longest list.
+const uint COUNTED_LONGEST = 6u;
+// Lists that do not fit into a row.
+const uint COUNTED_OVERFLOWS = 7u;
+// Pixels of shading space with a list.
+const uint COUNTED_PIXELS = 8u;
+// Samples that see a surface.
+const uint COUNTED_SAMPLES = 9u;
+const uint COUNTER_COUNT = 10u;
+
+#endif

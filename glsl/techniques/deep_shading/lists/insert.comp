@@ -1,0 +1,94 @@
+// Each sample's triangle into the list of its shading pixel, where it is not yet (section 4.3; appendix A, pass 2).
+// Pass: src/techniques/deep_shading/lists/insert.rs.
+// variants: ZMAX=off|on ADDRESSES=off|on
+#version 460
+#include "techniques/deep_shading/space.glsl"
+#include "techniques/deep_shading/counters.glsl"
+
+// 1: a node that was inserted meanwhile is not looked at: a triangle may come into a list again, as in the paper.
+layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
+// 1: colours are given out by compaction, those of strays from their end on.
+layout(constant_id = 93) const uint IS_COMPACTED = 0;
+
+// 0: the driver takes a memory barrier for one of the whole workgroup, whose threads come here as often as they please; its
+// stores come in order without (src/gpu/caps.rs, `Identity::barriers_end_threads`).
+layout(constant_id = 95) const uint HAS_FENCES = 1;
+
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
+layout(set = 0, binding = 27) uniform usampler2DArray spids;
+layout(std430, set = 0, binding = 20) coherent buffer Begins { uint begins[]; };
+layout(std430, set = 0, binding = 21) coherent buffer Nodes { uvec2 nodes[]; };
+layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+#ifdef ADDRESSES_ON
+layout(std430, set = 0, binding = 24) writeonly buffer Addresses { uint addresses[]; };
+#endif
+#ifdef ZMAX_ON
+layout(set = 0, binding = 28) uniform usampler2DArray shading_depths;
+layout(std430, set = 0, binding = 25) buffer ZMax { uint zmax[]; };
+#endif
+
+// Returns the node that holds `primitive`: `own`, or one that was there.
+uint insert(uint pixel, uint primitive, uint own) {
+    // From `known` on the list does not hold it.
+    uint known = 0u;
+    uint head = begins[pixel];
+    uint holder = NO_PRIMITIVE;
+    while (holder == NO_PRIMITIVE) {
+        uint at = head;
+        while (at != known && holder == NO_PRIMITIVE) {
+            uvec2 node = nodes[at - 1u];
+            holder = node.x == primitive ? at - 1u : NO_PRIMITIVE;
+            at = node.y;
+        }
+        if (holder == NO_PRIMITIVE) {
+            nodes[own] = uvec2(primitive, head);
+            if (HAS_FENCES != 0u) {
+                memoryBarrierBuffer();
+            }
+            uint found = atomicCompSwap(begins[pixel], head, own + 1u);
+            holder = found == head ? own : NO_PRIMITIVE;
+            // Somebody was quicker: only what is new need be looked at.
+            known = TOLERATES_DUPLICATES != 0u ? found : head;
+            head = found;
+        }
+    }
+    return holder;
+}
+
+void main() {
+    uvec3 at = gl_GlobalInvocationID;
+    if (at.x >= deep.layer_width_px) {
+        return;
+    }
+    uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+    if (spid.x == NO_PRIMITIVE) {
+        return;
+    }
+    uint own = sample_index(deep, at);
+    uint color = own;
+    if (spid.y == NO_SHADING_PIXEL) {
+        uint stray = atomicAdd(counters[COUNTED_STRAYS], 1u);
+        if (IS_COMPACTED != 0u) {
+            color = deep.tuple_count * deep.layer_width_px * deep.layer_height_px - 1u - stray;
+        }
+        // Its node serves no list: it says where the colour is.
+        nodes[own] = uvec2(color, 0u);
+        colors[color] = uvec2(0u);
+    } else {
+        uint pixel = (spid.y >> 16) * deep.shading_width_px + (spid.y & 0xffffu);
+        color = insert(pixel, spid.x, own);
+        if (IS_COMPACTED == 0u && color == own) {
+            // Alpha says whether it is shaded.
+            colors[own] = uvec2(0u);
+        }
+#ifdef ZMAX_ON
+        atomicMax(zmax[pixel], texelFetch(shading_depths, ivec3(at), 0).x);
+#endif
+    }
+#ifdef ADDRESSES_ON
+    addresses[own] = color;
+#endif
+}

@@ -1,0 +1,72 @@
+// The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
+// samples' own places (section 3.2; appendix A, pass 4). Pass: src/techniques/deep_shading/resolve.rs.
+// variants: FETCH=own|address|linked|compact
+#version 460
+#include "frame.glsl"
+#include "techniques/deep_shading/space.glsl"
+#include "techniques/deep_shading/counters.glsl"
+
+// As in shade.frag.
+layout(constant_id = 94) const uint IS_COUNTED = 0;
+
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
+layout(set = 0, binding = 27) uniform usampler2DArray spids;
+layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+layout(set = 0, binding = 29, rgba32f) writeonly uniform image2D color;
+#ifdef FETCH_ADDRESS
+layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
+#endif
+#if defined(FETCH_LINKED) || defined(FETCH_COMPACT)
+layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
+layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+#ifdef FETCH_COMPACT
+layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+#define LISTS_COMPACT
+#endif
+#include "techniques/deep_shading/nodes.glsl"
+#include "techniques/deep_shading/spid.glsl"
+#endif
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
+        return;
+    }
+    uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
+    uvec2 cell = pixel % table;
+    uint first = (cell.y * table.x + cell.x) * deep.sample_count;
+    precise vec3 sum = vec3(0.0);
+    uint missing = 0u;
+    uint seen = 0u;
+    for (uint index = 0u; index < deep.sample_count; index++) {
+        uvec3 at = uvec3(pixel / table, first + index);
+        uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+        if (spid.x == NO_PRIMITIVE) {
+            sum += frame.background.rgb;
+            continue;
+        }
+        seen++;
+        uint own = sample_index(deep, at);
+#if defined(FETCH_OWN)
+        uint where = own;
+#elif defined(FETCH_ADDRESS)
+        uint where = addresses[own];
+#else
+        uint where = color_of(spid, own);
+#endif
+        uvec2 words = where == 0xffffffffu ? uvec2(0u) : colors[where];
+        vec2 blue_alpha = unpackHalf2x16(words.y);
+        // Alpha is 1 where something was shaded.
+        missing += blue_alpha.y == 0.0 ? 1u : 0u;
+        sum += vec3(unpackHalf2x16(words.x), blue_alpha.x);
+    }
+    imageStore(color, ivec2(pixel), vec4(sum / float(deep.sample_count), 1.0));
+    if (IS_COUNTED != 0u && (missing > 0u || seen > 0u)) {
+        atomicAdd(counters[COUNTED_MISSING], missing);
+        atomicAdd(counters[COUNTED_SAMPLES], seen);
+    }
+}

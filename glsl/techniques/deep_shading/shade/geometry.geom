@@ -1,0 +1,27 @@
+// Conservative rasterisation in software: a triangle's hull in its place (section 4.4, a).
+// Pass: src/techniques/deep_shading/shade/geometry.rs.
+#version 460
+#include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/shade/hull.glsl"
+
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 8) out;
+
+layout(location = 0) flat in uint in_primitive[];
+layout(location = 0) flat out uint out_primitive;
+
+void main() {
+    vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
+    vec4 corners[3];
+    for (uint index = 0u; index < 3u; index++) {
+        vec4 at = gl_in[index].gl_Position;
+        corners[index] = vec4((at.xy + at.w) * 0.5 * extent, at.zw);
+    }
+    Hull hull = hull_of(corners[0], corners[1], corners[2]);
+    for (uint place = 0u; place < hull.count; place++) {
+        out_primitive = in_primitive[0];
+        gl_Position = vec4(hull.corners[strip_corner(place, hull.count)] * 2.0 / extent - 1.0, 0.5, 1.0);
+        EmitVertex();
+    }
+    EndPrimitive();
+}

@@ -1,0 +1,68 @@
+// Shading space and the tuples that visibility is sampled at (Clarberg & Munkberg 2014, sections 3 and 4.2). Written by
+// src/techniques/deep_shading/space.rs and tuples.rs.
+#ifndef DEEP_SHADING_SPACE_GLSL
+#define DEEP_SHADING_SPACE_GLSL
+
+// 1: the scene is another one when the shutter closes.
+layout(constant_id = 90) const uint IS_MOVING = 0;
+// 1: the lens is open.
+layout(constant_id = 91) const uint HAS_LENS = 0;
+
+struct DeepBlock {
+    // When the shutter opens, and closes.
+    mat4 open_clip_from_world;
+    mat4 close_clip_from_world;
+    // How many metres before the eye a point lies: its product with xyz, plus w.
+    vec4 open_depth;
+    vec4 close_depth;
+    // By how much clip space's x and y move a metre beside the eye's plane when the eye moves by the lens's radius.
+    vec2 lens;
+    // One through the distance of the plane in focus, 1/m.
+    float inverse_focus;
+    // Pixels of shading space around the frame's.
+    float guard_px;
+    // Pixels of shading space that the frame's width and height are.
+    vec2 scaled_px;
+    uint shading_width_px;
+    uint shading_height_px;
+    // Of a layer: a tuple's samples.
+    uint layer_width_px;
+    uint layer_height_px;
+    // Pixels over which the table of tuples is spread.
+    uint table_width_px;
+    uint table_height_px;
+    // Samples a pixel, and all tuples.
+    uint sample_count;
+    uint tuple_count;
+    uint _unused[2];
+};
+
+// One place in a pixel, on the lens and in time: (x, y, u, v, t) of the paper's appendix.
+struct TupleBlock {
+    // Of a layer's clip space, from the frame's: factors of x and y, and parts of w.
+    vec2 scale;
+    vec2 shift;
+    // On the unit disk.
+    vec2 lens;
+    // 0: the shutter opens; 1: it closes.
+    float time;
+    uint _unused;
+};
+
+// Where no surface is.
+const uint NO_PRIMITIVE = 0xffffffffu;
+// In place of a shading pixel: the sample has none.
+const uint NO_SHADING_PIXEL = 0xffffffffu;
+
+// Homogeneous pixels of shading space: xy through w is a place in it.
+vec2 shading_from_clip(DeepBlock deep, vec4 clip) {
+    precise vec2 at = 0.5 * clip.xy * deep.scaled_px + clip.w * (0.5 * deep.scaled_px + deep.guard_px);
+    return at;
+}
+
+// Of a sample in the buffers that have one entry a sample: layer by layer, row by row.
+uint sample_index(DeepBlock deep, uvec3 at) {
+    return (at.z * deep.layer_height_px + at.y) * deep.layer_width_px + at.x;
+}
+
+#endif

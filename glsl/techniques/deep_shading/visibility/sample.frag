@@ -1,0 +1,68 @@
+// What a sample sees: the id of the triangle and its shading point, packed (a SPID), and perhaps the depth there.
+// Pass: src/techniques/deep_shading/visibility/sample.rs. Appendix A, pass 1.
+// variants: ALPHA=opaque|tested VERTEX=plain|extended DEPTH=none|shading
+#version 460
+#include "frame.glsl"
+#include "techniques/deep_shading/scene_buffers.glsl"
+
+layout(location = 0) in vec4 in_canonical;
+layout(location = 1) flat in uint in_primitive;
+layout(location = 2) in vec3 in_weights;
+#ifdef ALPHA_TESTED
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(location = 3) in vec2 in_uv_here;
+#ifdef VERTEX_EXTENDED
+layout(location = 4) in vec4 in_color_here;
+layout(location = 5) in vec2 in_uv_1_here;
+layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
+#endif
+
+#define MATERIAL_PLACE
+#include "shading/material.glsl"
+#include "techniques/deep_shading/alpha.glsl"
+#endif
+
+// x: the triangle's id; y: its shading pixel, 16 bits a side, or NO_SHADING_PIXEL.
+layout(location = 0) out uvec2 out_spid;
+#ifdef DEPTH_SHADING
+// Greater the farther, as the bits of floats without sign compare.
+layout(location = 1) out uint out_shading_depth;
+#endif
+
+void main() {
+#ifdef ALPHA_TESTED
+    // A layer's pixels are a table apart.
+    vec2 pixels = vec2(deep.table_width_px, deep.table_height_px);
+    in_material = draws[params.draw].material;
+    in_uv = in_uv_here;
+    in_uv_right = dFdx(in_uv_here) / pixels.x;
+    in_uv_down = dFdy(in_uv_here) / pixels.y;
+#ifdef VERTEX_EXTENDED
+    in_color = in_color_here;
+    in_uv_1 = in_uv_1_here;
+    in_uv_1_right = dFdx(in_uv_1_here) / pixels.x;
+    in_uv_1_down = dFdy(in_uv_1_here) / pixels.y;
+#endif
+    float alpha = base_color_at(params.material).a;
+    if (!is_seen(alpha, uvec2(gl_FragCoord.xy), frame.sample_index * deep.tuple_count + params.tuple)) {
+        discard;
+    }
+#endif
+    vec4 canonical = in_canonical;
+    if (any(lessThan(in_weights, vec3(0.0)))) {
+        uint corner = 3u * (in_primitive - params.primitive_offset);
+        vec3 weights = inside_weights(in_weights);
+        canonical = weights.x * canonical_corner(corner) + weights.y * canonical_corner(corner + 1u) +
+                    weights.z * canonical_corner(corner + 2u);
+    }
+    vec2 at = canonical.xy / canonical.w;
+    vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
+    // Behind the eye, before the near plane or outside: shading space has no place for it.
+    bool has_place = canonical.w > 0.0 && canonical.z <= canonical.w && all(greaterThanEqual(at, vec2(0.0))) &&
+                     all(lessThan(at, extent));
+    uvec2 pixel = uvec2(at);
+    out_spid = uvec2(in_primitive, has_place ? pixel.x | pixel.y << 16 : NO_SHADING_PIXEL);
+#ifdef DEPTH_SHADING
+    out_shading_depth = ~floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
+#endif
+}

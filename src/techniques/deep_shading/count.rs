@@ -1,0 +1,57 @@
+//! Count: how long the lists are, after the frame (`--instrument on`). Shader: count.comp.
+//! reads  the lists      writes  count.lengths  buffer, 4 B a pixel of shading space; the counters
+
+use super::choices::Choices;
+use super::full;
+use super::lists::Lists;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::count::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::plan::Resources;
+use crate::units::Extent;
+use std::sync::Arc;
+
+pub struct Count {
+    pipeline: ComputePipeline,
+    /// Triangles of each list, each once.
+    pub lengths: Buffer,
+    space: Extent,
+}
+
+impl Count {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
+        let lists = if choices.is_compacted { "compact" } else { "linked" };
+        let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[lists]), &[])?;
+        let lengths = resources.buffer(&full(super::plan::LENGTHS));
+        Ok(Self { pipeline, lengths, space: choices.space.extent })
+    }
+
+    /// After the resolve.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        lists: &Lists,
+        counters: &Buffer,
+    ) -> Result<()> {
+        let traffic = Traffic {
+            read_bytes: lists.begins.bytes,
+            written_bytes: self.lengths.bytes,
+            invocations: Some(self.space.pixel_count()),
+        };
+        cmd.pass(&full("count"), traffic, |cmd| {
+            lists.links_to_compute(cmd);
+            cmd.barriers([
+                self.lengths.discard(Access::ComputeWrite),
+                counters.from(Access::ComputeWrite).to(Access::ComputeWrite),
+            ]);
+            let mut bound = bound.to_vec();
+            bound.extend(lists.bound());
+            bound.extend([("Counters", Bound::Buffer(counters)), ("Lengths", Bound::Buffer(&self.lengths))]);
+            let groups = self.pipeline.groups([self.space.width, self.space.height, 1]);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}

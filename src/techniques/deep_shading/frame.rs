@@ -1,0 +1,171 @@
+//! A frame of deep shading on the device: the passes in the order of figure 3.
+
+use super::brute::Brute;
+use super::choices::Choices;
+use super::count::Count;
+use super::counters;
+use super::lists::address::Address;
+use super::lists::compact::Compact;
+use super::lists::insert::Insert;
+use super::lists::{self, Lists};
+use super::plan::{COLOR, COUNTERS};
+use super::primitives::{self, Primitives};
+use super::resolve::Resolve;
+use super::scene::DeepScene;
+use super::shade::Shade;
+use super::visibility::sample::Sample;
+use super::visibility::{self, Samples};
+use super::{NAME, full};
+use crate::error::Result;
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::passes::accumulate::Accumulate;
+use crate::plan::Resources;
+use crate::report::image_file::{Aov, AovChannels};
+use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::{Frame, Inputs, left_out};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+pub const AOVS: &[&str] = &["count.lengths"];
+
+/// What builds the deep shading buffer and shades it.
+struct Listed {
+    lists: Lists,
+    insert: Insert,
+    compact: Option<Compact>,
+    address: Option<Address>,
+    shade: Shade,
+    count: Option<Count>,
+}
+
+pub struct DeepFrame {
+    choices: Choices,
+    primitives: Primitives,
+    list: DrawList,
+    scene: DeepScene,
+    samples: Samples,
+    sample: Sample,
+    listed: Option<Listed>,
+    brute: Option<Brute>,
+    resolve: Resolve,
+    accumulate: Option<Accumulate>,
+    colors: Buffer,
+    counters: Buffer,
+    color: Image,
+}
+
+impl DeepFrame {
+    /// Makes the pipelines and takes the planned resources out.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: Choices,
+        primitives: Primitives,
+    ) -> Result<Self> {
+        let listed = if choices.has_lists {
+            let address = choices.is_compacted && choices.has_addresses;
+            Some(Listed {
+                lists: Lists::new(resources, &choices),
+                insert: Insert::new(gpu, &choices)?,
+                compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
+                address: if address { Some(Address::new(gpu)?) } else { None },
+                shade: Shade::new(gpu, scene, &choices)?,
+                count: if choices.is_counted { Some(Count::new(gpu, resources, &choices)?) } else { None },
+            })
+        } else {
+            None
+        };
+        Ok(Self {
+            list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
+            scene: DeepScene::new(gpu, inputs, resources, &choices)?,
+            samples: Samples::new(gpu, resources, &choices)?,
+            sample: Sample::new(gpu, scene, &choices)?,
+            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices)?) } else { None },
+            resolve: Resolve::new(gpu, &choices)?,
+            accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
+            colors: lists::colors(resources),
+            counters: resources.buffer(&full(COUNTERS)),
+            color: resources.image(&full(COLOR)),
+            listed,
+            choices,
+            primitives,
+        })
+    }
+}
+
+impl Frame for DeepFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let Self { list, primitives, samples, colors, counters, .. } = self;
+        let bound = self.scene.bound(frame, scene);
+        let frame_extent = self.color.description.extent;
+        let tuples = (&self.choices.table, frame_extent);
+        visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, tuples)?;
+        if let Some(listed) = &self.listed {
+            let lists = &listed.lists;
+            listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;
+            if let Some(compact) = &listed.compact {
+                compact.record(cmd, &bound, lists, colors, counters, self.choices.space.extent)?;
+            }
+            let mut links_left = Access::ComputeWrite;
+            if let Some(address) = &listed.address {
+                address.record(cmd, &bound, samples, lists)?;
+                links_left = Access::ComputeRead;
+            }
+            listed.shade.record(cmd, scene, list, primitives, &bound, (lists, links_left), colors, counters)?;
+        }
+        let lists = self.listed.as_ref().map(|listed| &listed.lists);
+        if let Some(brute) = &self.brute {
+            brute.record(cmd, scene, list, primitives, &bound, samples, lists, colors, counters)?;
+        }
+        let spids_left = match (&self.listed, &self.brute) {
+            (Some(_), None) => Access::ComputeSample.into(),
+            (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
+            (None, _) => Access::FragmentSample | Access::ColorWrite,
+        };
+        self.resolve.record(cmd, &bound, (samples, spids_left), lists, colors, counters, &self.color)?;
+        if let Some((listed, count)) = self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?))) {
+            count.record(cmd, &bound, &listed.lists, counters)?;
+        }
+        if let Some(accumulate) = &self.accumulate {
+            accumulate.record(cmd, NAME, frame, self.color.from(Access::ComputeWrite))?;
+        }
+        Ok(())
+    }
+
+    fn run_count(&self) -> u32 {
+        self.choices.run_count
+    }
+
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        let mut counters: BTreeMap<&'static str, f64> = self.list.counters().into();
+        counters.insert("draws", self.list.calls().count() as f64);
+        counters
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (self.accumulate.as_ref().map_or(&self.color, |accumulate| &accumulate.color), Access::ComputeWrite)
+    }
+
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        if !self.choices.is_counted {
+            return Ok(BTreeMap::new());
+        }
+        let pixels = self.color.description.extent.pixel_count();
+        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels)
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        let count = self.listed.as_ref().and_then(|listed| listed.count.as_ref());
+        let Some(count) = count else {
+            return Err(left_out(NAME, name, "lists are counted with --lists linked and --instrument on"));
+        };
+        let bytes = readback::buffer(gpu, &count.lengths, count.lengths.bytes, Access::ComputeWrite)?;
+        let lengths: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+        let frame = self.color.description.extent;
+        let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
+        let channels = AovChannels::YU32(pixels.map(|at| lengths[self.choices.space.index_under(at)]).collect());
+        Ok(Aov { name: name.to_owned(), channels })
+    }
+}

@@ -1,0 +1,49 @@
+//! Addresses: where each sample's colour will lie in a compacted list, looked up once. Shader: address.comp.
+//! reads  visibility.spids, the lists      writes  lists.addresses
+
+use super::super::full;
+use super::super::visibility::Samples;
+use super::Lists;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::lists::address::COMP;
+use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use std::sync::Arc;
+
+pub struct Address {
+    pipeline: ComputePipeline,
+}
+
+impl Address {
+    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    }
+
+    /// After compaction.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        samples: &Samples,
+        lists: &Lists,
+    ) -> Result<()> {
+        let spids = &samples.spids;
+        let addresses = lists.addresses.as_ref().expect("only with --address-buffer on");
+        let count = spids.description.extent.pixel_count() * u64::from(spids.description.layers());
+        let traffic =
+            Traffic { read_bytes: spids.description.bytes(), written_bytes: addresses.bytes, invocations: Some(count) };
+        cmd.pass(&full("lists.address"), traffic, |cmd| {
+            lists.links_to(cmd, Access::ComputeWrite, Access::ComputeRead);
+            cmd.barriers([
+                spids.from(Access::ComputeSample).to(Access::ComputeSample),
+                addresses.from(Access::ComputeWrite).to(Access::ComputeWrite),
+            ]);
+            let mut bound = bound.to_vec();
+            bound.extend(lists.bound());
+            bound.push(("spids", samples.sampled(spids, Access::ComputeSample)));
+            let extent = spids.description.extent;
+            let groups = self.pipeline.groups([extent.width, extent.height, spids.description.layers()]);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}

@@ -1,0 +1,47 @@
+//! Compaction: lists sorted, without what they hold twice, their first 16 triangles in a row, their colours in a row. Shader:
+//! compact.comp.
+//! reads and writes  lists.begins, lists.nodes      writes  lists.linear; begins alphas of colours at 0
+
+use super::super::full;
+use super::Lists;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::lists::compact::COMP;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::units::Extent;
+use std::sync::Arc;
+
+pub struct Compact {
+    pipeline: ComputePipeline,
+}
+
+impl Compact {
+    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    }
+
+    /// `space`: pixels of shading space. After insertion.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        lists: &Lists,
+        colors: &Buffer,
+        counters: &Buffer,
+        space: Extent,
+    ) -> Result<()> {
+        let begin_bytes = lists.begins.bytes;
+        let traffic =
+            Traffic { read_bytes: begin_bytes, written_bytes: begin_bytes, invocations: Some(space.pixel_count()) };
+        cmd.pass(&full("lists.compact"), traffic, |cmd| {
+            let touched = [&lists.begins, &lists.nodes, colors, counters];
+            cmd.barriers(touched.iter().map(|buffer| buffer.from(Access::ComputeWrite).to(Access::ComputeWrite)));
+            cmd.barriers(lists.linear.iter().map(|buffer| buffer.discard(Access::ComputeWrite)));
+            let mut bound = bound.to_vec();
+            bound.extend(lists.bound());
+            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            let groups = self.pipeline.groups([space.width, space.height, 1]);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}

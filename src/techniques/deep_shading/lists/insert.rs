@@ -1,0 +1,74 @@
+//! Insertion: each sample's triangle at the head of its list, by compare-exchange, unless the list has it. Shader: insert.comp.
+//! reads   visibility.spids, visibility.shading_depths
+//! writes  lists.begins, lists.nodes, lists.zmax, and addresses as they are without compaction; begins alphas of colours at 0
+
+use super::super::choices::Choices;
+use super::super::full;
+use super::super::visibility::Samples;
+use super::Lists;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::lists::insert::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use std::sync::Arc;
+
+pub struct Insert {
+    pipeline: ComputePipeline,
+}
+
+impl Insert {
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        let on = |is_on| if is_on { "on" } else { "off" };
+        let shader = variant(COMP_VARIANTS, &[on(choices.has_zmax), on(choices.has_addresses)]);
+        let constants = [
+            ("TOLERATES_DUPLICATES", u32::from(choices.tolerates_duplicates)),
+            ("IS_COMPACTED", u32::from(choices.is_compacted)),
+            ("HAS_FENCES", u32::from(!gpu.caps.identity.barriers_end_threads())),
+        ];
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
+    }
+
+    /// `bound`: what shaders of the technique may read.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        samples: &Samples,
+        lists: &Lists,
+        colors: &Buffer,
+        counters: &Buffer,
+    ) -> Result<()> {
+        let spids = &samples.spids;
+        let traffic = Traffic {
+            // What walks read beside is counted after the frame.
+            read_bytes: spids.description.bytes()
+                + samples.shading_depths().map_or(0, |image| image.description.bytes()),
+            written_bytes: lists.begins.bytes + lists.addresses.as_ref().map_or(0, |buffer| buffer.bytes),
+            invocations: Some(spids.description.extent.pixel_count() * u64::from(spids.description.layers())),
+        };
+        cmd.pass(&full("lists"), traffic, |cmd| {
+            let cleared: Vec<&Buffer> =
+                [Some(&lists.begins), Some(counters), lists.zmax.as_ref()].into_iter().flatten().collect();
+            cmd.barriers(cleared.iter().map(|buffer| buffer.discard(Access::TransferWrite)));
+            cleared.iter().for_each(|buffer| cmd.clear(buffer));
+            cmd.barriers(cleared.iter().map(|buffer| buffer.from(Access::TransferWrite).to(Access::ComputeWrite)));
+            let fresh = [Some(&lists.nodes), Some(colors), lists.addresses.as_ref()].into_iter().flatten();
+            cmd.barriers(fresh.map(|buffer| buffer.discard(Access::ComputeWrite)));
+            let drawn = [Some(spids), samples.shading_depths()].into_iter().flatten();
+            cmd.barriers(drawn.map(|image| image.from(Access::ColorWrite).to(Access::ComputeSample)));
+            let mut bound = bound.to_vec();
+            bound.extend(lists.bound());
+            bound.extend([
+                ("Colors", Bound::Buffer(colors)),
+                ("Counters", Bound::Buffer(counters)),
+                ("spids", samples.sampled(spids, Access::ComputeSample)),
+            ]);
+            let depths = samples.shading_depths();
+            bound.extend(depths.map(|image| ("shading_depths", samples.sampled(image, Access::ComputeSample))));
+            let extent = spids.description.extent;
+            let groups = self.pipeline.groups([extent.width, extent.height, spids.description.layers()]);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! Lists: which triangles must be shaded at each pixel of shading space (Clarberg & Munkberg 2014, section 4.3).
+//!
+//! Why lanes have samples of one tuple: neighbours in a layer are pixels apart and mostly have lists of their own; the samples
+//! of one pixel would all find one list empty at once.
+
+pub mod address;
+pub mod compact;
+pub mod insert;
+
+use super::choices::Choices;
+use super::full;
+use super::plan::{ADDRESSES, BEGINS, COLORS, LINEAR, NODES, ZMAX};
+use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands};
+use crate::plan::Resources;
+
+/// The deep shading buffer: lists, and the colours of what they name.
+pub struct Lists {
+    /// 4 B a pixel of shading space: one more than the first node's index, 0 where nothing was seen.
+    pub begins: Buffer,
+    /// 8 B a sample: triangle, next node.
+    pub nodes: Buffer,
+    /// 64 B a pixel of shading space, with `--compaction on`.
+    pub linear: Option<Buffer>,
+    /// 4 B a sample, with `--address-buffer on`.
+    pub addresses: Option<Buffer>,
+    /// 4 B a pixel of shading space, with `--zmax on`.
+    pub zmax: Option<Buffer>,
+}
+
+/// 8 B a sample: RGBA16F; alpha is 1 where it is stored.
+pub fn colors(resources: &mut Resources) -> Buffer {
+    resources.buffer(&full(COLORS))
+}
+
+impl Lists {
+    pub fn new(resources: &mut Resources, choices: &Choices) -> Self {
+        let mut take = |is_there: bool, name: &str| is_there.then(|| resources.buffer(&full(name)));
+        Self {
+            linear: take(choices.is_compacted, LINEAR),
+            addresses: take(choices.has_addresses, ADDRESSES),
+            zmax: take(choices.has_zmax, ZMAX),
+            begins: take(true, BEGINS).expect("it is there"),
+            nodes: take(true, NODES).expect("it is there"),
+        }
+    }
+
+    /// What holds the lists, without addresses and depths.
+    pub fn links(&self) -> impl Iterator<Item = &Buffer> {
+        [Some(&self.begins), Some(&self.nodes), self.linear.as_ref()].into_iter().flatten()
+    }
+
+    /// All of it, by name.
+    pub fn bound(&self) -> Vec<(&'static str, Bound<'_>)> {
+        let mut bound = vec![("Begins", Bound::Buffer(&self.begins)), ("Nodes", Bound::Buffer(&self.nodes))];
+        let optional = [("Linear", &self.linear), ("Addresses", &self.addresses), ("ZMax", &self.zmax)];
+        bound.extend(optional.into_iter().filter_map(|(name, buffer)| Some((name, Bound::Buffer(buffer.as_ref()?)))));
+        bound
+    }
+
+    /// Compute shaders read the links after draws have: what wrote them was waited for by the draws alone.
+    pub fn links_to_compute(&self, cmd: &mut Commands) {
+        self.links_to(
+            cmd,
+            (Access::ComputeWrite | Access::ComputeRead).with(Access::GraphicsRead),
+            Access::ComputeRead,
+        );
+    }
+
+    /// Barriers of the links, from one access to another.
+    pub fn links_to(&self, cmd: &mut Commands, from: impl Into<AccessSet>, to: Access) {
+        let from = from.into();
+        cmd.barriers(self.links().map(|buffer| buffer.from(from).to(to)));
+    }
+
+    /// Bytes of nodes and begins, which a pass over all of them reads.
+    pub fn link_bytes(&self) -> u64 {
+        self.links().map(|buffer| buffer.bytes).sum()
+    }
+}

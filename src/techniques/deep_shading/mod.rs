@@ -1,0 +1,176 @@
+//! Deep shading buffers: Clarberg and Munkberg 2014, "Deep Shading Buffers on Commodity GPUs". Under motion and defocus blur
+//! each triangle is shaded once a pixel, however many samples see it.
+//!
+//! Passes: visibility (the triangle that each sample sees, and where it is in canonical shading space: its SPID), lists (of
+//! triangles, by compare-exchange), lists.compact, lists.address, shade (one conservative pass over shading space, which
+//! shades what the lists have), strays (samples that shading space has no place for, under blur), resolve (box filter),
+//! count (`--instrument on`), accumulate (`--accumulate` above 1).
+//!
+//! Differs from the paper
+//! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
+//!   an insertion that another was quicker than looks at what is new, and no triangle comes into a list twice
+//!   (`--duplicates tolerated` is the paper's way)
+//! - colours of a compacted list follow each other from a place that the list's first node keeps; a pass of its own
+//!   then looks up each sample's address
+//! - s_z is the depth where the sample hit, and a triangle is hidden where its nearest corner is behind all of them: the test
+//!   needs no depth buffer in shading space, and hulls no depth
+//! - a shading point outside its triangle is brought to the triangle's nearest place; texture levels come from rates on the
+//!   triangle's plane: colours depend on triangle and pixel alone
+//! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted
+//! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
+//! - light as by `forward`, with shadow rays in place of shadow maps; surfaces face as the middle of the lens sees them
+//!
+//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits. Without blur
+//! it is `forward --supersample` with samples in other places.
+
+mod brute;
+mod choices;
+mod count;
+mod counters;
+mod frame;
+mod lists;
+mod plan;
+mod primitives;
+mod resolve;
+mod scene;
+mod settings;
+mod shade;
+mod space;
+mod tuples;
+mod visibility;
+
+use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::error::Result;
+use crate::gpu::shader::Shader;
+use crate::gpu::{Ability, Caps, Gpu, Need};
+use crate::lights::LightSet;
+use crate::plan::{Plan, Resources};
+use crate::resident::SceneGpu;
+use crate::settings::{Setting, Values};
+use choices::Choices;
+use frame::DeepFrame;
+use primitives::Primitives;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const NAME: &str = "deep_shading";
+
+/// The technique's constants that one of these shaders has.
+fn constants_of(choices: &Choices, shaders: &[Option<&Shader>]) -> Vec<(&'static str, u32)> {
+    let has = |name: &str| {
+        let mut shaders = shaders.iter().flatten();
+        shaders.any(|shader| shader.constants.iter().any(|constant| constant.name == name))
+    };
+    choices.constants().into_iter().filter(|(name, _)| has(name)).collect()
+}
+
+/// The full name of a pass or a resource.
+fn full(what: &str) -> String {
+    format!("{NAME}.{what}")
+}
+
+pub struct DeepShading;
+
+impl Technique for DeepShading {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "deep shading buffers (Clarberg 2014): motion and defocus blur, each triangle shaded once a pixel"
+    }
+
+    fn scene(&self) -> &'static str {
+        "hall"
+    }
+
+    fn settings(&self) -> &'static [&'static [Setting]] {
+        &[settings::SETTINGS]
+    }
+
+    fn aovs(&self) -> &'static [&'static str] {
+        frame::AOVS
+    }
+
+    fn needs(&self, values: &Values, caps: &Caps, _: bool) -> Vec<Need> {
+        let need = |of: &str, ability, instead| Need { of: of.to_owned(), ability, instead };
+        let mut needs = vec![
+            need("the visibility pass", Ability::FloatDepth, ""),
+            need("the shading pass", Ability::FragmentAtomics, ""),
+        ];
+        match choices::road(values, caps) {
+            shade::Road::Geometry => {
+                let instead = "--conservative vertex works without it";
+                needs.push(need("--conservative geometry", Ability::GeometryShader, instead));
+            }
+            shade::Road::Hardware => {
+                let instead = "--conservative vertex works without it";
+                needs.push(need("--conservative hardware", Ability::ConservativeRaster, instead));
+            }
+            shade::Road::Vertex => {}
+        }
+        needs
+    }
+
+    fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)> {
+        vec![("--tuples", format!("{}", caps.limits.max_image_layers.min(2048)))]
+    }
+
+    /// Punctual lights, straight.
+    fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        Ok(vec![
+            ("transport", "direct".to_owned()),
+            ("light-visibility", light_visibility(values, lights, 0)?),
+            ("emissive", "off".to_owned()),
+        ])
+    }
+
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&Choices::new(inputs)?, inputs)
+    }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let (choices, primitives) = (Choices::new(inputs)?, Primitives::new(inputs.scene)?);
+        Ok(Box::new(PreparedDeep { choices, primitives, light_count: inputs.lights.lights.len() as u32 }))
+    }
+}
+
+struct PreparedDeep {
+    choices: Choices,
+    primitives: Primitives,
+    light_count: u32,
+}
+
+impl Prepared for PreparedDeep {
+    fn host_passes(&self) -> Vec<(String, u64)> {
+        Vec::new()
+    }
+
+    fn counters(&self) -> BTreeMap<&'static str, f64> {
+        BTreeMap::from([("lights", f64::from(self.light_count)), ("primitives", self.primitives.count as f64)])
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let Choices { table, road, lens, .. } = &self.choices;
+        let mut resolved =
+            BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
+        if let Some(lens) = lens {
+            resolved.insert("focus", format!("{}", lens.focus));
+        }
+        resolved
+    }
+
+    fn light_counts(&self) -> [u32; 2] {
+        [self.light_count, 0]
+    }
+
+    fn build(
+        self: Box<Self>,
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+    ) -> Result<Box<dyn Frame>> {
+        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, self.primitives)?))
+    }
+}

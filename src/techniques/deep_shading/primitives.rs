@@ -1,0 +1,96 @@
+//! Global ids of triangles over all draws, and what of the scene is drawn (Clarberg & Munkberg 2014, section 4.2).
+
+use crate::error::{Error, Result};
+use crate::frame::View;
+use crate::gpu::shader::structs::DrawnParams;
+use crate::passes::blend;
+use crate::resident::{Coverage, DrawCall, DrawList, GeometryChoice, Raster, SceneGpu};
+use crate::scene::{AlphaMode, Scene};
+use bytemuck::Zeroable;
+
+/// `scene_buffers.glsl`.
+const DRAWN_MIRRORED: u32 = 1;
+const DRAWN_BLENDED: u32 = 2;
+
+/// Ids of a scene's triangles.
+pub struct Primitives {
+    /// By draw: what an index's place, a third of it, is short of the id (modulo 2^32).
+    offsets: Vec<u32>,
+    pub count: u64,
+}
+
+impl Primitives {
+    /// Errors: more triangles than ids (exit code 2).
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let mut firsts = Vec::new();
+        let mut first = 0u64;
+        for mesh in &scene.meshes {
+            firsts.push(first);
+            first += mesh.triangle_count() as u64;
+        }
+        let mut count = 0u64;
+        let offsets = scene.draws.iter().map(|draw| {
+            let offset = count.wrapping_sub(firsts[draw.mesh]) as u32;
+            count += scene.meshes[draw.mesh].triangle_count() as u64;
+            offset
+        });
+        let offsets = offsets.collect();
+        // One id means that there is none.
+        if count >= u64::from(u32::MAX) {
+            return Err(Error::request(format!("{}: {count} triangles, and ids are 32 bits", scene.name)));
+        }
+        Ok(Self { offsets, count })
+    }
+
+    /// What shaders are told of a draw, but for the tuple.
+    pub fn params(&self, scene: &SceneGpu, call: &DrawCall) -> DrawnParams {
+        let mut flags = if call.mirrored { DRAWN_MIRRORED } else { 0 };
+        if call.alpha == AlphaMode::Blend {
+            flags |= DRAWN_BLENDED;
+        }
+        DrawnParams {
+            material: scene.material_blocks[call.material as usize],
+            draw: call.draw,
+            vertex_offset: call.vertex_offset as u32,
+            primitive_offset: self.offsets[call.draw as usize],
+            flags,
+            ..DrawnParams::zeroed()
+        }
+    }
+}
+
+/// The same for one tuple.
+pub fn of_tuple(params: DrawnParams, tuple: u32) -> DrawnParams {
+    DrawnParams { tuple, ..params }
+}
+
+/// What is drawn: solid surfaces, and with an alpha test those that have one, BLEND ones last.
+///
+/// `is_blurred`: a triangle that the middle of the lens does not see may be seen from its rim, or at another time.
+pub fn drawn(scene: &Scene, resident: &SceneGpu, view: &View, choice: GeometryChoice, is_blurred: bool) -> DrawList {
+    let choice = if is_blurred { GeometryChoice::All } else { choice };
+    let raster = Raster { extent: view.extent, coverage: Coverage::Anywhere };
+    let mut list = DrawList::new(scene, resident, view, raster, choice);
+    list.mask.extend(blend::back_to_front(resident, view));
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Draw, Mesh};
+    use glam::Mat4;
+
+    #[test]
+    fn ids_count_on_over_draws_of_shared_meshes() {
+        let mesh = |triangles: usize| Mesh { indices: vec![0; 3 * triangles], ..Mesh::default() };
+        let draw = |mesh| Draw { mesh, world_from_object: Mat4::IDENTITY };
+        let scene =
+            Scene { meshes: vec![mesh(5), mesh(2)], draws: vec![draw(1), draw(0), draw(1)], ..Scene::default() };
+        let primitives = Primitives::new(&scene).unwrap();
+        assert_eq!(primitives.count, 9);
+        // The second mesh's first triangle is the fifth of all indices.
+        let id = |draw: usize, place: u32| place.wrapping_add(primitives.offsets[draw]);
+        assert_eq!([id(0, 5), id(0, 6), id(1, 0), id(1, 4), id(2, 5), id(2, 6)], [0, 1, 2, 6, 7, 8]);
+    }
+}

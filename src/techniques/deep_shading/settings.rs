@@ -1,0 +1,136 @@
+//! The settings that only this technique reads.
+
+use crate::settings::{APERTURE, BRDF, DIRECT_SHADOW, FOCUS, GEOMETRY, Kind, SHUTTER, Setting};
+
+/// Greatest side of the guard band: shading pixels have 16 bits a side.
+const MOST_GUARD_PX: u64 = 4096;
+
+pub const SETTINGS: &[Setting] = &[
+    Setting {
+        key: "visibility",
+        symbol: "",
+        kind: Kind::Choice(&["repeat-frame"]),
+        default: "repeat-frame",
+        unit: "",
+        paper: "Clarberg 2014, 4.2",
+        help: "how samples find what they see: the frame is drawn once for each tuple",
+    },
+    Setting {
+        key: "spp",
+        symbol: "n",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: "8",
+        unit: "",
+        paper: "Clarberg 2014, 6",
+        help: "samples a pixel in one set of buffers",
+    },
+    Setting {
+        key: "tuples",
+        symbol: "N",
+        kind: Kind::IntegerOrAuto { min: 1, max: 2048 },
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 4.2",
+        help: "places in a pixel, on the lens and in time that all samples share, spread over a table of N/n pixels; a multiple of \
+               --spp; auto: four times --spp",
+    },
+    Setting {
+        key: "accumulate",
+        symbol: "",
+        kind: Kind::Integer { min: 1, max: 4096 },
+        default: "1",
+        unit: "",
+        paper: "",
+        help: "sets of --spp samples a pixel, each with tuples of its own, that the picture is the mean of",
+    },
+    Setting {
+        key: "guard-band",
+        symbol: "",
+        kind: Kind::Integer { min: 0, max: MOST_GUARD_PX },
+        default: "64",
+        unit: "px",
+        paper: "Clarberg 2014, 6",
+        help: "pixels of shading space around the frame's, for what blur brings in; samples that are farther out are shaded by \
+               themselves",
+    },
+    Setting {
+        key: "shading-scale",
+        symbol: "",
+        kind: Kind::Number { min: 0.05, max: 4.0 },
+        default: "1",
+        unit: "",
+        paper: "Clarberg 2014, 6",
+        help: "pixels of shading space along a pixel of the frame: below 1 is shaded more coarsely",
+    },
+    Setting {
+        key: "lists",
+        symbol: "",
+        kind: Kind::Choice(&["linked", "none"]),
+        default: "linked",
+        unit: "",
+        paper: "Clarberg 2014, 4.3",
+        help: "linked lists of what is shaded at each pixel of shading space, or none: every sample is shaded where it is seen, at its \
+               shading point (the plain way to the same bits)",
+    },
+    Setting {
+        key: "duplicates",
+        symbol: "",
+        kind: Kind::Choice(&["avoided", "tolerated"]),
+        default: "avoided",
+        unit: "",
+        paper: "Clarberg 2014, 4.3",
+        help: "whether an insertion that another one was quicker than looks at what is new in its list; the same picture",
+    },
+    Setting {
+        key: "compaction",
+        symbol: "M",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "Clarberg 2014, 4.3",
+        help: "lists are sorted, and their first 16 triangles lie in a row; the same picture",
+    },
+    Setting {
+        key: "zmax",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "Clarberg 2014, 3.1",
+        help: "what lies behind all that samples saw at a pixel of shading space is left out before its list is read; the same picture",
+    },
+    Setting {
+        key: "address-buffer",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "Clarberg 2014, 4.3",
+        help: "where each sample's colour lies is kept, or found again by following links; the same picture",
+    },
+    Setting {
+        key: "conservative",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "geometry", "vertex", "hardware"]),
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 4.4",
+        help: "how every pixel that a triangle touches is drawn: its hull from a geometry shader or from vertex shaders, or the \
+               device's own conservative rasterisation; the same picture; auto: the last of these that the device has, of the first two the first",
+    },
+    Setting {
+        key: "instrument",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "Clarberg 2014, 4.1",
+        help: "what is shaded, listed and missing is counted; off for timings",
+    },
+    APERTURE,
+    FOCUS,
+    SHUTTER,
+    BRDF,
+    GEOMETRY,
+    DIRECT_SHADOW,
+];

@@ -1,0 +1,148 @@
+//! Shade: all triangles once over shading space, every pixel that they touch; what the lists have is shaded and stored
+//! (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of the roads.
+//! reads   the scene, its lights, the lists, lists.zmax
+//! writes  shade.colors   buffer, 8 B a sample: RGBA16F
+
+pub mod corner;
+pub mod geometry;
+pub mod vertex;
+
+use super::choices::Choices;
+use super::full;
+use super::lists::Lists;
+use super::primitives::Primitives;
+use crate::error::Result;
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
+use crate::gpu::shader::{Shader, variant};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::passes::mesh::{self, Sides};
+use crate::resident::{DrawList, SceneGpu};
+use crate::units::Extent;
+use ash::vk;
+use std::sync::Arc;
+
+/// How every pixel that a triangle touches is drawn (`--conservative`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Road {
+    /// By the device.
+    Hardware,
+    /// Its hull from a geometry shader.
+    Geometry,
+    /// Its hull from vertex shaders.
+    Vertex,
+}
+
+/// What a road draws with.
+struct Stages {
+    vertex: &'static Shader,
+    geometry: Option<&'static Shader>,
+    is_conservative: bool,
+    /// Vertices of a triangle.
+    vertex_count: u32,
+}
+
+impl Road {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hardware => "hardware",
+            Self::Geometry => "geometry",
+            Self::Vertex => "vertex",
+        }
+    }
+
+    fn stages(self) -> Stages {
+        match self {
+            Self::Hardware => corner::stages(),
+            Self::Geometry => geometry::stages(),
+            Self::Vertex => vertex::stages(),
+        }
+    }
+}
+
+pub struct Shade {
+    pipeline: GraphicsPipeline,
+    stages: Stages,
+    space: Extent,
+}
+
+impl Shade {
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+        let lists = if choices.is_compacted { "compact" } else { "linked" };
+        let zmax = if choices.has_zmax { "on" } else { "off" };
+        let stages = choices.road.stages();
+        let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene)]);
+        let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
+        let constants = super::constants_of(choices, &shaders);
+        let pipeline = GraphicsPipeline::new(
+            gpu,
+            &GraphicsDescription {
+                vertex: stages.vertex,
+                geometry: stages.geometry,
+                fragment: Some(fragment),
+                constants: &constants,
+                vertex_buffers: &[],
+                color_formats: &[],
+                samples: 1,
+                blending: Blending::Replace,
+                depth_format: None,
+                depth_write: false,
+                depth_compare: vk::CompareOp::ALWAYS,
+                depth_clamp: false,
+                depth_slope_bias: 0.0,
+                conservative: stages.is_conservative,
+                stencil: None,
+                foreign_sets: &[scene.material_layout],
+            },
+        )?;
+        Ok(Self { pipeline, stages, space: choices.space.extent })
+    }
+
+    /// `left`: who wrote links and depths last, and is reading them.
+    #[allow(clippy::too_many_arguments)]
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        list: &DrawList,
+        primitives: &Primitives,
+        bound: &[(&'static str, Bound<'_>)],
+        (lists, left): (&Lists, Access),
+        colors: &Buffer,
+        counters: &Buffer,
+    ) -> Result<()> {
+        let traffic = Traffic {
+            read_bytes: mesh::read_bytes(scene, list.calls()) + lists.link_bytes(),
+            // Counted after the frame.
+            written_bytes: 0,
+            invocations: None,
+        };
+        cmd.pass(&full("shade"), traffic, |cmd| {
+            lists.links_to(cmd, left, Access::GraphicsRead);
+            let zmax = lists.zmax.iter();
+            cmd.barriers(zmax.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::GraphicsRead)));
+            let written = [colors, counters].into_iter();
+            cmd.barriers(written.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::FragmentWrite)));
+            let mut bound = bound.to_vec();
+            bound.extend(lists.bound());
+            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
+            cmd.begin_rendering(self.space, &[], None);
+            let Some(first) = list.calls().next() else {
+                cmd.end_rendering();
+                return Ok(());
+            };
+            cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
+            // A triangle that turns its back to the middle of the lens may show its front to the rim.
+            mesh::for_each(cmd, &self.pipeline, scene, Sides::Both, list.calls(), |call| {
+                cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&primitives.params(scene, call)));
+                let of = |indices: u32| indices / 3 * self.stages.vertex_count;
+                let (count, first) = (of(call.index_count), of(call.first_index));
+                // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+                unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, 1, first, 0) };
+            });
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+}

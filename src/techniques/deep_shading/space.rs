@@ -1,0 +1,114 @@
+//! Canonical shading space: the frame in the middle of the exposure, from the middle of the lens, with a guard band around it
+//! (Clarberg & Munkberg 2014, sections 3 and 6).
+
+use super::tuples::Table;
+use crate::error::{Error, Result};
+use crate::frame::View;
+use crate::gpu::shader::structs::DeepBlock;
+use crate::lens::Lens;
+use crate::settings::Values;
+use crate::units::Extent;
+use glam::{Mat4, Vec3, Vec4};
+
+/// Places of 16 bits a side, one of which says that there is none.
+const MOST_SIDE_PX: u64 = 65_534;
+
+/// Its size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadingSpace {
+    guard_px: u32,
+    /// Pixels of it along a pixel of the frame.
+    scale: f64,
+    /// What the frame takes of it.
+    scaled_px: [f32; 2],
+    pub extent: Extent,
+}
+
+impl ShadingSpace {
+    /// Reads `--guard-band` and `--shading-scale`.
+    ///
+    /// Errors: a side is longer than shading points can be packed (exit code 2).
+    pub fn new(values: &Values, frame: Extent) -> Result<Self> {
+        let (guard_px, scale) = (values.integer("guard-band") as u32, values.number("shading-scale"));
+        let scaled = [frame.width, frame.height].map(|side| f64::from(side) * scale);
+        let [width, height] = scaled.map(|side| side.ceil() as u64 + 2 * u64::from(guard_px));
+        if width.max(height) > MOST_SIDE_PX {
+            return Err(Error::request(format!(
+                "--guard-band {guard_px}, --shading-scale {scale}: shading space has {width} x {height} pixels, and a side holds \
+                 {MOST_SIDE_PX}"
+            ))
+            .note("a smaller --size or --shading-scale would fit"));
+        }
+        let scaled_px = scaled.map(|side| side as f32);
+        Ok(Self { guard_px, scale, scaled_px, extent: Extent::new(width as u32, height as u32) })
+    }
+
+    /// The pixel of shading space, row by row, that is under the middle of a pixel of the frame.
+    pub fn index_under(&self, frame_px: [u32; 2]) -> usize {
+        let [x, y] = [0, 1].map(|axis| {
+            let inside = ((f64::from(frame_px[axis]) + 0.5) * self.scale) as u32;
+            let side = [self.extent.width, self.extent.height][axis];
+            (self.guard_px + inside).min(side - 1) as usize
+        });
+        y * self.extent.width as usize + x
+    }
+
+    /// What shaders know of it, of the cameras at both ends of the exposure, and of the samples.
+    pub fn block(&self, open: &View, close: Option<&View>, lens: Option<Lens>, table: &Table) -> DeepBlock {
+        let close = close.unwrap_or(open);
+        let layer = table.layer(open.extent);
+        let [open_clip, close_clip] = [open, close].map(View::clip_from_world);
+        // How much of the picture's half a metre is, where a metre is as far away as it is wide.
+        let row_length = |matrix: &Mat4, row: usize| matrix.row(row).truncate().length();
+        let radius = lens.map_or(0.0, |lens| lens.radius);
+        DeepBlock {
+            open_clip_from_world: open_clip.to_cols_array_2d(),
+            close_clip_from_world: close_clip.to_cols_array_2d(),
+            open_depth: depth_row(open).to_array(),
+            close_depth: depth_row(close).to_array(),
+            lens: [0, 1].map(|axis| radius * row_length(&open_clip, axis)),
+            inverse_focus: lens.map_or(0.0, |lens| 1.0 / lens.focus),
+            guard_px: self.guard_px as f32,
+            scaled_px: self.scaled_px,
+            shading_width_px: self.extent.width,
+            shading_height_px: self.extent.height,
+            layer_width_px: layer.width,
+            layer_height_px: layer.height,
+            table_width_px: table.cells[0],
+            table_height_px: table.cells[1],
+            sample_count: table.samples,
+            tuple_count: table.tuple_count(),
+            _unused: [0; 2],
+        }
+    }
+}
+
+/// What a point's place is multiplied with for its distance before the eye's plane.
+fn depth_row(view: &View) -> Vec4 {
+    let forward: Vec3 = -view.camera.world_from_view.z_axis.truncate();
+    forward.extend(-forward.dot(view.eye()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Values;
+
+    fn space(guard: &str, scale: &str, extent: Extent) -> Result<ShadingSpace> {
+        let rows = super::super::settings::SETTINGS;
+        let mut values = Values::defaults(rows);
+        for (key, text) in [("guard-band", guard), ("shading-scale", scale)] {
+            values.set(rows.iter().find(|row| row.key == key).unwrap(), text).unwrap();
+        }
+        ShadingSpace::new(&values, extent)
+    }
+
+    #[test]
+    fn a_guard_band_lies_on_all_sides_of_the_scaled_frame() {
+        let side = |space: ShadingSpace| (space.extent.width, space.extent.height);
+        assert_eq!(side(space("64", "1", Extent::new(1280, 720)).unwrap()), (1408, 848));
+        assert_eq!(side(space("0", "0.5", Extent::new(101, 31)).unwrap()), (51, 16));
+        let error = space("4096", "4", Extent::new(16384, 16)).unwrap_err();
+        assert!(error.to_string().contains("73728 x 8256"), "{error}");
+    }
+}

@@ -1,0 +1,144 @@
+//! Tuples: the places in a pixel, on the lens and in time at which all samples are taken (Clarberg & Munkberg 2014, section
+//! 4.2; Keller & Heidrich 2001 interleave them in the same way).
+//!
+//! Samples of a pixel are its cell's tuples. The table of cells repeats over the frame, so that all samples of one tuple are a
+//! regular grid, which the rasteriser draws as a picture of its own.
+
+use crate::gpu::shader::structs::TupleBlock;
+use crate::sampling::sobol;
+use crate::units::Extent;
+
+/// How samples are spread over pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Table {
+    /// Pixels that have tuples of their own.
+    pub cells: [u32; 2],
+    /// Samples a pixel.
+    pub samples: u32,
+}
+
+impl Table {
+    /// `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
+    pub fn new(samples: u32, tuples: u32) -> Self {
+        let cells = tuples / samples;
+        let height = (1..=cells.isqrt()).rev().find(|side| cells.is_multiple_of(*side)).unwrap_or(1);
+        Self { cells: [cells / height, height], samples }
+    }
+
+    pub fn tuple_count(&self) -> u32 {
+        self.cells[0] * self.cells[1] * self.samples
+    }
+
+    /// Pixels of a layer: one for each cell that begins in the frame.
+    pub fn layer(&self, frame: Extent) -> Extent {
+        Extent::new(frame.width.div_ceil(self.cells[0]), frame.height.div_ceil(self.cells[1]))
+    }
+
+    /// How much of a tuple's layer lies in the frame, from its first pixel on.
+    pub fn inside(&self, frame: Extent, tuple: u32) -> Extent {
+        let cell = tuple / self.samples;
+        let [x, y] = [cell % self.cells[0], cell / self.cells[0]];
+        let count = |side: u32, first: u32, cells: u32| side.saturating_sub(first).div_ceil(cells);
+        Extent::new(count(frame.width, x, self.cells[0]), count(frame.height, y, self.cells[1]))
+    }
+
+    /// The tuples of one set, cell by cell in row order. `run`: another one for each set of a picture.
+    pub fn tuples(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
+        let count = self.tuple_count();
+        // Aligned stretches of the sequence are nets: a cell's tuples are as well spread as all of them.
+        let of = |index: u32, purpose: u32| {
+            sobol::pair(
+                run.wrapping_mul(count).wrapping_add(index),
+                sobol::pair_seed(sobol::pixel_seed([0, 0], seed), purpose),
+            )
+        };
+        let layer = self.layer(frame);
+        (0..count)
+            .map(|index| {
+                let cell = index / self.samples;
+                // A single sample a pixel is its middle.
+                let place = if count == 1 && run == 0 { [0.5, 0.5] } else { of(index, 0) };
+                let [radius, turn] = of(index, 1);
+                let [time, _] = of(index, 2);
+                let (radius, turn) = (radius.sqrt(), turn * std::f32::consts::TAU);
+                let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
+                    let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
+                    let offset = f64::from(cell) + f64::from(place);
+                    let scale = pixels / (cells * side);
+                    let shift = (pixels / cells + 1.0 - 2.0 * offset / cells) / side - 1.0;
+                    [scale as f32, shift as f32]
+                };
+                let [width, height] = self.cells;
+                let x = axis(frame.width, layer.width, width, cell % width, place[0]);
+                let y = axis(frame.height, layer.height, height, cell / width, place[1]);
+                TupleBlock {
+                    scale: [x[0], y[0]],
+                    shift: [x[1], y[1]],
+                    lens: [radius * turn.cos(), radius * turn.sin()],
+                    time,
+                    _unused: 0,
+                }
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_as_square_as_its_cells_allow() {
+        for (samples, tuples, cells) in
+            [(8, 32, [2, 2]), (8, 8, [1, 1]), (4, 64, [4, 4]), (4, 32, [4, 2]), (2, 6, [3, 1]), (1, 12, [4, 3])]
+        {
+            assert_eq!(Table::new(samples, tuples), Table { cells, samples });
+            assert_eq!(Table::new(samples, tuples).tuple_count(), tuples);
+        }
+    }
+
+    #[test]
+    fn a_frame_that_the_table_does_not_divide_has_layers_that_cover_it() {
+        let layer = Table::new(8, 32).layer(Extent::new(101, 31));
+        assert_eq!((layer.width, layer.height), (51, 16));
+        let inside = [0, 8, 16, 24].map(|tuple| Table::new(8, 32).inside(Extent::new(101, 31), tuple));
+        assert_eq!(inside.map(|part| (part.width, part.height)), [(51, 16), (50, 16), (51, 15), (50, 15)]);
+    }
+
+    /// What the transform puts into the middle of a layer's pixel is the tuple's place in the frame's pixel.
+    #[test]
+    fn the_middle_of_a_layer_s_pixel_is_the_tuple_s_place() {
+        let (table, frame) = (Table::new(4, 16), Extent::new(30, 17));
+        let layer = table.layer(frame);
+        for (index, tuple) in table.tuples(frame, 1, 0).iter().enumerate() {
+            let cell = index as u32 / 4;
+            for at in [[0, 0], [3, 2], [14, 8]] {
+                let middle = [0, 1].map(|axis| {
+                    let side = [layer.width, layer.height][axis];
+                    2.0 * (at[axis] as f32 + 0.5) / side as f32 - 1.0
+                });
+                let ndc = [0, 1].map(|axis| (middle[axis] - tuple.shift[axis]) / tuple.scale[axis]);
+                let place = [0, 1].map(|axis| {
+                    let pixels = [frame.width, frame.height][axis] as f32;
+                    let cell = [cell % table.cells[0], cell / table.cells[0]][axis];
+                    (ndc[axis] + 1.0) * 0.5 * pixels - (at[axis] * table.cells[axis] + cell) as f32
+                });
+                assert!(place.iter().all(|place| (-1e-3..1.001).contains(place)), "{place:?}");
+            }
+        }
+        let alone = Table::new(1, 1).tuples(frame, 1, 0)[0];
+        assert_eq!((alone.scale, alone.shift), ([1.0; 2], [0.0; 2]));
+    }
+
+    #[test]
+    fn lens_and_time_are_evenly_spread_and_runs_differ() {
+        let (table, frame) = (Table::new(8, 32), Extent::new(64, 64));
+        let tuples = table.tuples(frame, 7, 0);
+        let inside = tuples.iter().filter(|tuple| tuple.lens[0].hypot(tuple.lens[1]) < 0.5f32.sqrt()).count();
+        assert_eq!(inside, 16, "half of the disk's area");
+        for cell in tuples.chunks(8) {
+            assert_eq!(cell.iter().filter(|tuple| tuple.time < 0.5).count(), 4);
+        }
+        assert_ne!(tuples, table.tuples(frame, 7, 1));
+    }
+}

@@ -1,0 +1,196 @@
+//! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
+//! shaded is what is listed, each once; blur comes to what path tracing sees.
+
+mod support;
+
+use quincunx::error::Result;
+use quincunx::metrics;
+use quincunx::scene::{self, AnimationChoice, Scene};
+use std::collections::BTreeMap;
+use support::program::Program;
+use support::watched::{Changes, Watched, both};
+use support::{Feature, has};
+
+const DEEP: &str = "deep_shading";
+const SIZE: (&str, &str) = ("size", "161x91");
+
+/// Ways to the same picture; the first shades every sample by itself.
+const ROADS: [Changes<'_>; 8] = [
+    &[("lists", "none")],
+    &[],
+    &[("compaction", "off")],
+    &[("zmax", "off")],
+    &[("address-buffer", "off")],
+    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
+    &[("compaction", "off"), ("duplicates", "tolerated")],
+    &[("instrument", "off"), ("duplicates", "tolerated")],
+];
+
+/// Both software roads of conservative rasterisation, where the driver has them.
+fn conservative(watched: &Watched) -> Vec<&'static str> {
+    let mut roads = vec!["vertex"];
+    if has(&watched.session.gpu.caps, Feature::GeometryShader) {
+        roads.push("geometry");
+    }
+    roads
+}
+
+#[track_caller]
+fn require_one_picture(watched: &Watched, common: Changes<'_>) {
+    let first = watched.hash(DEEP, &both(common, ROADS[0]));
+    for road in &ROADS[1..] {
+        assert_eq!(watched.hash(DEEP, &both(common, road)), first, "{road:?} with {common:?}");
+    }
+    for road in conservative(watched) {
+        let hash = watched.hash(DEEP, &both(common, &[("conservative", road)]));
+        assert_eq!(hash, first, "--conservative {road} with {common:?}");
+    }
+}
+
+/// The fence's rotor turns by a quarter of a turn and a half.
+fn moving(spec: &str) -> Scene {
+    scene::open(spec, 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap()
+}
+
+#[test]
+fn every_road_shades_as_every_sample_by_itself_would_be() {
+    let watched = Watched::open("cornell");
+    for common in [
+        &[SIZE, ("spp", "4")][..],
+        &[SIZE, ("spp", "2"), ("tuples", "12"), ("shading-scale", "0.5"), ("direct-shadow", "ray")],
+        &[SIZE, ("spp", "1"), ("tuples", "1"), ("guard-band", "0")],
+    ] {
+        require_one_picture(&watched, common);
+    }
+}
+
+#[test]
+fn every_road_is_one_under_a_lens_with_textures_and_glass() {
+    let watched = Watched::open("hall:triangles=8000");
+    require_one_picture(&watched, &[SIZE, ("spp", "4"), ("aperture", "0.3"), ("focus", "6")]);
+}
+
+#[test]
+fn every_road_is_one_while_things_move_with_holes_and_glass() {
+    for spec in ["fence:lights=6", "fence:lights=6,alpha=mask"] {
+        let watched = Watched::with_scene(moving(spec));
+        require_one_picture(&watched, &[SIZE, ("camera", "rotor"), ("spp", "4"), ("accumulate", "2")]);
+    }
+}
+
+/// Without a guard band, and with a lens that brings most of the scene in from outside.
+#[test]
+fn samples_that_shading_space_has_no_place_for_are_shaded_too() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [SIZE, ("spp", "4"), ("aperture", "3"), ("focus", "2"), ("guard-band", "0")];
+    require_one_picture(&watched, &common);
+    let counters = watched.render(DEEP, &common).measured_counters().unwrap();
+    let (outside, seen) = (counters["samples_outside_shading_space"], counters["samples_seen"]);
+    assert!(outside > 0.05 * seen && outside < seen, "{outside} of {seen}");
+    assert_eq!(counters["samples_without_colour"], 0.0);
+    let wide = both(&common, &[("guard-band", "400")]);
+    let fewer = watched.render(DEEP, &wide).measured_counters().unwrap()["samples_outside_shading_space"];
+    assert!(fewer < 0.5 * outside, "{fewer} with a guard band, {outside} without");
+}
+
+#[test]
+fn what_is_shaded_is_what_is_listed_and_nothing_is_missing() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [SIZE, ("spp", "8"), ("aperture", "0.2"), ("focus", "6")];
+    for road in &ROADS[1..6] {
+        let counters = watched.render(DEEP, &both(&common, road)).measured_counters().unwrap();
+        assert_eq!(counters["shader_invocations"], counters["listed_primitives"], "{road:?}");
+        for key in ["samples_without_colour", "listed_again"] {
+            assert_eq!(counters[key], 0.0, "{road:?}: {key}");
+        }
+        let rate = counters["shaded_per_pixel"];
+        assert!((1.0..2.5).contains(&rate), "{road:?}: {rate}");
+    }
+    let alone = watched.render(DEEP, &both(&common, ROADS[0])).measured_counters().unwrap();
+    assert_eq!(alone["shader_invocations"], alone["samples_seen"]);
+}
+
+/// The order in which threads come must not show: neither in what is listed nor in the picture.
+#[test]
+fn ten_runs_list_and_show_the_same() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [("size", "96x54"), ("spp", "8"), ("aperture", "0.3"), ("focus", "6")];
+    let renderer = watched.render_stages(DEEP, &common, &["count.lengths"]);
+    let seen = || {
+        renderer.frame().unwrap();
+        let counters = renderer.measured_counters().unwrap();
+        let lengths = watched.integers(&renderer, "count.lengths");
+        (renderer.picture().unwrap().hash().unwrap(), lengths, counters["longest_list"], counters["listed_primitives"])
+    };
+    let first = seen();
+    assert!(first.1.iter().any(|length| *length > 1), "some pixels have several triangles");
+    for _ in 0..9 {
+        assert_eq!(seen(), first);
+    }
+}
+
+/// Half floats keep 2^-12 of a colour at worst. Scenes without textures: those have their levels by other rates than a quad's.
+#[test]
+fn one_sample_in_the_middle_is_forward_shading() {
+    for spec in ["cornell", "lamps:objects=40,lights=20"] {
+        let watched = Watched::open(spec);
+        let forward = watched.picture("forward", &[SIZE]);
+        let far = rmse(&watched, &[SIZE, ("spp", "1"), ("tuples", "1")], &forward);
+        println!("{spec}: {far}");
+        assert!(far > 0.0 && far < 5e-4, "{spec}: {far}");
+    }
+}
+
+fn rmse(watched: &Watched, changes: Changes<'_>, reference: &quincunx::report::picture::Picture) -> f64 {
+    metrics::compare(&watched.picture(DEEP, changes), reference, 0.1).unwrap().metrics.rmse
+}
+
+/// Four sets of as many samples halve the error of independent ones; these are better spread.
+#[test]
+fn blur_comes_to_what_path_tracing_sees() {
+    let light = [("size", "64x64"), ("brdf", "lambert"), ("aperture", "0.15")];
+    let traced = [("transport", "direct"), ("light-visibility", "off"), ("emissive", "off"), ("spp", "1024")];
+    let watched = Watched::open("cornell");
+    let reference = watched.picture("path_traced", &both(&light, &traced));
+    let errors: Vec<f64> = ["1", "4", "16", "64"]
+        .iter()
+        .map(|sets| rmse(&watched, &both(&light, &[("spp", "4"), ("accumulate", *sets)]), &reference))
+        .collect();
+    println!("4, 16, 64, 256 samples: {errors:?}");
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.75 * pair[0]), "{errors:?}");
+}
+
+/// The published table (Clarberg & Munkberg 2014, section 6), to the byte of its formulas.
+#[test]
+fn memory_is_what_the_paper_s_table_says() {
+    let program = Program::new();
+    let arguments = ["memory", "--technique", DEEP, "--plan", "--size", "1280x720", "--spp", "8", "--json"];
+    let json = program.run(&arguments).fine().json();
+    let groups: BTreeMap<String, u64> =
+        serde_json::from_value(json["techniques"][0]["memory"]["groups"].clone()).unwrap();
+    for (group, bytes, mebibytes) in [
+        ("frame_buffer", 88_473_600, 84.4),
+        ("deep_shading_buffer", 122_740_736, 117.1),
+        ("auxiliary", 140_173_312, 133.7),
+    ] {
+        assert_eq!(groups[group], bytes, "{group}");
+        assert!((groups[group] as f64 / f64::from(1 << 20) - mebibytes).abs() < 0.05, "{group}");
+    }
+}
+
+fn refusal(watched: &Watched, changes: Changes<'_>) -> String {
+    let made = watched.try_renderer(DEEP, changes, &[], quincunx::gpu::commands::Submits::One);
+    let made: Result<_> = made.map(|_| ());
+    made.unwrap_err().to_string()
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_what_can() {
+    let watched = Watched::open("cornell");
+    let text = refusal(&watched, &[("spp", "8"), ("tuples", "12")]);
+    assert!(text.contains("--tuples 12: it must be a multiple of --spp 8") && text.contains("--tuples 16"), "{text}");
+    let text = refusal(&watched, &[("size", "16384x16384"), ("spp", "8")]);
+    assert!(text.contains("shading space") || text.contains("binds"), "{text}");
+    let text = refusal(&watched, &[("size", "1280x720"), ("spp", "64")]);
+    assert!(text.contains("--spp 18 fits at this size"), "{text}");
+}
