@@ -107,6 +107,8 @@ pub struct Image {
     pub storage_view: vk::ImageView,
     /// What shaders sample: of depth with stencil the depth alone; the texels as another format; else `view` itself.
     pub sampled_view: vk::ImageView,
+    /// Each layer by itself, where depth is drawn into an array.
+    pub(super) layer_views: Vec<vk::ImageView>,
     pub name: String,
     pub description: ImageDescription,
     /// Last accesses of whoever had its bytes before it in the frame.
@@ -119,6 +121,7 @@ struct Views {
     view: vk::ImageView,
     storage: vk::ImageView,
     sampled: vk::ImageView,
+    layers: Vec<vk::ImageView>,
 }
 
 impl Image {
@@ -155,7 +158,7 @@ impl Image {
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
         match Self::bind(gpu, name, group, description, handle, berth) {
-            Ok((allocation, Views { view, storage, sampled })) => {
+            Ok((allocation, Views { view, storage, sampled, layers })) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
@@ -166,6 +169,7 @@ impl Image {
                     view,
                     storage_view: storage,
                     sampled_view: sampled,
+                    layer_views: layers,
                     name,
                     description,
                     takes_over,
@@ -205,7 +209,7 @@ impl Image {
         } else {
             vk::ImageViewType::TYPE_2D
         };
-        let view_as = |format, usage, range| {
+        let view_of = |view_type, format, usage, range| {
             let mut usage = vk::ImageViewUsageCreateInfo::default().usage(usage);
             let info = vk::ImageViewCreateInfo::default()
                 .image(handle)
@@ -217,6 +221,7 @@ impl Image {
             unsafe { gpu.device.create_image_view(&info, None) }
                 .map_err(|result| Error::device(format!("creating a view of image {name}: {result}")))
         };
+        let view_as = |format, usage, range| view_of(view_type, format, usage, range);
         let (format, usage) = (description.format, description.usage);
         let is_stored_otherwise = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
         let is_sampled_in_part =
@@ -237,15 +242,33 @@ impl Image {
         } else {
             Ok(view)
         };
-        match other {
-            Ok(other) => {
+        let mut made = vec![view];
+        let rest = other.and_then(|other| {
+            if other != view {
+                made.push(other);
+            }
+            let is_drawn_by_layer =
+                description.layer_count.is_some() && usage.contains(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
+            let count = if is_drawn_by_layer { description.layers() } else { 0 };
+            let mut layers = Vec::with_capacity(count as usize);
+            for layer in 0..count {
+                let range = whole.base_array_layer(layer).layer_count(1);
+                let attached = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+                let one = view_of(vk::ImageViewType::TYPE_2D, format, attached, range)?;
+                made.push(one);
+                layers.push(one);
+            }
+            Ok((other, layers))
+        });
+        match rest {
+            Ok((other, layers)) => {
                 let storage = if is_stored_otherwise { other } else { view };
                 let sampled = if is_sampled_in_part || description.sampled_as.is_some() { other } else { view };
-                Ok((allocation, Views { view, storage, sampled }))
+                Ok((allocation, Views { view, storage, sampled, layers }))
             }
             Err(error) => {
                 // SAFETY: never used.
-                unsafe { gpu.device.destroy_image_view(view, None) };
+                made.iter().for_each(|view| unsafe { gpu.device.destroy_image_view(*view, None) });
                 Err(error)
             }
         }
@@ -274,7 +297,8 @@ impl Drop for Image {
     fn drop(&mut self) {
         // SAFETY: the frame's fence was waited for; view, image, memory in this order, each once.
         unsafe {
-            for other in [self.storage_view, self.sampled_view].into_iter().filter(|other| *other != self.view) {
+            let others = [self.storage_view, self.sampled_view].into_iter().filter(|other| *other != self.view);
+            for other in others.chain(self.layer_views.iter().copied()) {
                 self.gpu.device.destroy_image_view(other, None);
             }
             self.gpu.device.destroy_image_view(self.view, None);

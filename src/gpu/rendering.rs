@@ -55,6 +55,17 @@ fn load(clears: bool) -> vk::AttachmentLoadOp {
     if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD }
 }
 
+/// A depth attachment, and a stencil one where the view has both. A clear value of None loads what is there.
+fn depth_info(view: vk::ImageView, clear: Option<f32>, access: Access) -> vk::RenderingAttachmentInfo<'static> {
+    let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
+    vk::RenderingAttachmentInfo::default()
+        .image_view(view)
+        .image_layout(access.layout())
+        .load_op(load(clear.is_some()))
+        .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
+        .clear_value(vk::ClearValue { depth_stencil: value })
+}
+
 impl Commands {
     /// Opens rendering into whole images of `extent`. A depth image that has a stencil too is attached as both, and both
     /// are cleared; a clear value of None loads what is there.
@@ -72,24 +83,35 @@ impl Commands {
             self.check_attached(image, access);
         }
         let color_infos: Vec<_> = colors.iter().map(ColorTarget::info).collect();
-        let depth_info = depth.map(|(image, clear, access)| {
-            let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
-            vk::RenderingAttachmentInfo::default()
-                .image_view(image.view)
-                .image_layout(access.layout())
-                .load_op(load(clear.is_some()))
-                .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
-                .clear_value(vk::ClearValue { depth_stencil: value })
-        });
+        let depth_info = depth.map(|(image, clear, access)| depth_info(image.view, clear, access));
+        let has_stencil = depth.is_some_and(|(image, ..)| image.aspect().contains(vk::ImageAspectFlags::STENCIL));
+        self.open(extent, &color_infos, depth_info.as_ref(), has_stencil);
+    }
+
+    /// Opens rendering into one layer of an array of depth images, all of which hold `clear` before the draws. The others
+    /// stay as they are.
+    pub fn begin_rendering_layer(&mut self, image: &Image, layer: u32, clear: f32) {
+        self.check_attached(image, Access::DepthWrite);
+        let info = depth_info(image.layer_views[layer as usize], Some(clear), Access::DepthWrite);
+        self.open(image.description.extent, &[], Some(&info), false);
+    }
+
+    fn open(
+        &mut self,
+        extent: Extent,
+        colors: &[vk::RenderingAttachmentInfo<'_>],
+        depth: Option<&vk::RenderingAttachmentInfo<'_>>,
+        has_stencil: bool,
+    ) {
         let area = vk::Rect2D {
             offset: vk::Offset2D::default(),
             extent: vk::Extent2D { width: extent.width, height: extent.height },
         };
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
-        if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
-            info = info.depth_attachment(depth_info);
-            if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {
-                info = info.stencil_attachment(depth_info);
+        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(colors);
+        if let Some(depth) = depth {
+            info = info.depth_attachment(depth);
+            if has_stencil {
+                info = info.stencil_attachment(depth);
             }
         }
         let viewport = vk::Viewport {
