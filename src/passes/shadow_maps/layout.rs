@@ -203,15 +203,20 @@ impl Asked {
         let heap_bytes = caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
         let budget_bytes = values.bytes("memory-budget").unwrap_or(u64::MAX).min(heap_bytes);
         let image_bytes = requirements.greatest_image_bytes(&description(size_px, layer_count));
-        let rooms = [
+        let held_bytes = stats.plan().bytes();
+        let (holds, room) = [
             ("one image of this device holds", image_bytes.min(limits.max_allocation_bytes)),
-            ("beside the scene memory has", budget_bytes.saturating_sub(stats.plan().bytes())),
-        ];
+            ("beside the scene memory has", budget_bytes.saturating_sub(held_bytes)),
+        ]
+        .into_iter()
+        .min_by_key(|(_, room)| *room)
+        .expect("there are two");
         let bytes = |size_px: u32| description(size_px, layer_count).bytes();
-        let Some((holds, _)) = rooms.iter().find(|(_, room)| bytes(size_px) > *room) else { return Ok(()) };
-        let room = rooms.iter().map(|(_, room)| *room).min().unwrap_or_default();
-        let powers = (LEAST_SIZE_PX.ilog2()..=size_px.ilog2()).rev().map(|power| 1 << power);
-        let fitting = powers.into_iter().find(|size_px| bytes(*size_px) <= room);
+        if bytes(size_px) <= room {
+            return Ok(());
+        }
+        let mut powers = (LEAST_SIZE_PX.ilog2()..=size_px.ilog2()).rev().map(|power| 1 << power);
+        let fitting = powers.find(|size_px| bytes(*size_px) <= room);
         Err(Error::memory(format!(
             "--shadow-map-size {size_px}: the {layer_count} maps of {light_count} lights need {}, and {holds} {}",
             Bytes(bytes(size_px)),

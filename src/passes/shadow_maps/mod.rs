@@ -10,7 +10,8 @@
 //! nothing. What is nearer to a light than a thousandth of the far plane casts nothing either.
 //!
 //! A frame takes three calls: `MapLayout::plan` where the technique plans its passes, `ShadowMaps::record` where it
-//! records them, and `ShadowMaps::bound` for shaders of the axis SHADOWS=mapped, after `ShadowMaps::barrier`. While a
+//! records them, and `ShadowMaps::bound` for shaders of the axis SHADOWS=mapped, after `ShadowMaps::barrier`; pipelines of
+//! such shaders get the constants of `MapLayout::constants`, lights their indices from `direct::light_blocks`. While a
 //! shutter is open there is one moment that maps are of, the caller's: in the middle of the exposure.
 //!
 //! Why this way: a layer is drawn by itself, because not every driver takes the layer from a vertex stage (and where one
