@@ -50,6 +50,7 @@ const uint TRIANGLE_MIRRORED = 4u;
 // A shadow ray starts this many metres off its surface, along the normal.
 layout(constant_id = 60) const float RAY_OFFSET = 1e-4;
 
+// What DIRECT_SHADOW asks rays for. Shadow maps are another number, which asks for none.
 const uint SHADOW_NONE = 0u;
 const uint SHADOW_SUN = 1u;
 const uint SHADOW_RAY = 2u;

@@ -341,6 +341,14 @@ fn techniques_are_measured_in_one_run() {
         assert!(command.join(" ").contains("--brdf lambert"), "{command:?}");
         assert!(row["settings"]["technique"].is_null());
     }
+    // What one of them alone takes of a setting that both read leaves the other out.
+    let mapped = ["--direct-shadow", "map", "--shadow-map-size", "64"];
+    let rows = lines(&program.run(&[&common[..], &swept[..4], &mapped].concat()).fine().out);
+    for row in &rows {
+        let is_left_out = row["skipped"].as_str().is_some_and(|why| why.contains("deferred: --direct-shadow map"));
+        assert_eq!(is_left_out, row["variant"] == "technique=deferred", "{row}");
+    }
+    assert_eq!(rows.len(), 2);
     let wrong = program.run(&[&common[..], &["--sweep", "technique=nothing"]].concat());
     assert_eq!(wrong.code, 2, "{}", wrong.err);
 }

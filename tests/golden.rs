@@ -103,6 +103,13 @@ fn lamps_deferred() {
     require_golden("lamps_deferred", "lamps", "deferred", &[("direct-shadow", "ray")]);
 }
 
+/// Shadow maps, with holes in those of the wire.
+#[test]
+fn fence_mapped() {
+    let changes = [("direct-shadow", "map"), ("shadow-map-size", "128")];
+    require_golden("fence_mapped", "fence:alpha=mask,lights=30", "forward", &changes);
+}
+
 #[test]
 fn lamps_inferred() {
     require_golden("lamps_inferred", "lamps", "inferred_lighting", &[]);

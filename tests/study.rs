@@ -53,6 +53,7 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
         ("forward", &[("size", "97x53")]),
         ("forward", &[("size", "161x91"), ("msaa", "4"), ("direct-shadow", "ray"), ("light-buffer", "storage")]),
         ("forward", &[("size", "97x53"), ("msaa", "4"), ("supersample", "2"), ("depth-prepass", "off")]),
+        ("forward", &[("size", "97x53"), ("direct-shadow", "map"), ("shadow-map-size", "33")]),
         ("inferred_lighting", &[("size", "161x91")]),
         ("inferred_lighting", &[("size", "97x53"), ("volumes", "both"), ("extras", "off"), ("msaa", "4")]),
         ("inferred_lighting", &[("size", "161x91"), ("volumes", "scissor"), ("l-buffer", "half")]),

@@ -1,6 +1,6 @@
 // BLEND surfaces over the finished picture, back to front, lit forward by every punctual light, or those of the draw's list,
 // and by the virtual ones of their pixel. Pass: src/passes/blend.rs.
-// variants: VERTEX=plain|extended LISTS=none|object
+// variants: VERTEX=plain|extended LISTS=none|object SHADOWS=traced|mapped
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"

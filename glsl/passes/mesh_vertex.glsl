@@ -31,7 +31,8 @@ layout(location = 6) out vec2 out_uv_1;
 // Two passes over the same triangles must agree on depth to the bit.
 invariant gl_Position;
 
-void write_vertex() {
+// All but the place in the picture. Returns the place in the world.
+vec4 write_attributes() {
     // The first instance is the draw's index: no push constants between draws.
     DrawBlock draw = draws[gl_InstanceIndex];
     vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
@@ -45,7 +46,11 @@ void write_vertex() {
     out_color = color;
     out_uv_1 = uv_1;
 #endif
-    gl_Position = frame.clip_from_world * position_ws;
+    return position_ws;
+}
+
+void write_vertex() {
+    gl_Position = frame.clip_from_world * write_attributes();
 }
 
 #endif

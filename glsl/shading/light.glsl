@@ -23,7 +23,8 @@ struct LightBlock {
     float spot_scale;
     float spot_offset;
     uint kind;
-    uint _unused;
+    // Its place among the lights of the picture, in whatever list it stands: which shadow maps are its own.
+    uint index;
 };
 
 // A virtual point light: a small Lambert patch that shines into the half space of its normal.

@@ -1,12 +1,16 @@
 // The loop over punctual lights that full shading shares: deferred shading, composite, blended surfaces.
 //
 // The including shader declares: `lights[]`, `frame`, what bvh.glsl wants, and the constants BRDF_KIND and
-// DIRECT_SHADOW. A light beyond its range adds exactly 0, so leaving it out changes no bit.
+// DIRECT_SHADOW. With the axis SHADOWS=mapped shadow maps are asked instead of rays. A light beyond its range adds exactly
+// 0, so leaving it out changes no bit.
 #ifndef SHADING_SHADE_LIGHTS_GLSL
 #define SHADING_SHADE_LIGHTS_GLSL
 
 #include "shading/light.glsl"
 #include "shading/brdf.glsl"
+#ifdef SHADOWS_MAPPED
+#include "passes/shadow_maps.glsl"
+#endif
 
 // Radiance towards the eye that one punctual light causes. `geometric_ws`: normal of the triangle's plane side, used to
 // start shadow rays off the surface.
@@ -16,6 +20,13 @@ vec3 shade_light(LightBlock light, Surface surface, vec3 position_ws, vec3 norma
     if (cosine <= 0.0 || incident.irradiance == vec3(0.0)) {
         return vec3(0.0);
     }
+#ifdef SHADOWS_MAPPED
+    float passed = passed_by_shadow_maps(light, position_ws, incident.direction_ws);
+    if (passed == 0.0) {
+        return vec3(0.0);
+    }
+    incident.irradiance *= passed;
+#endif
     if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL)) {
         if (occluded(position_ws, normal_ws, incident.direction_ws, incident.distance)) {
             return vec3(0.0);

@@ -28,7 +28,7 @@ impl Candidate {
         let (named, own): (Point, Point) = point.iter().cloned().partition(|(key, _)| key == TECHNIQUE);
         let with = match named.first() {
             None => Ok(job.at(&job.values)),
-            Some((_, name)) => techniques::find(name).map(|technique| with_technique(job, technique)),
+            Some((_, name)) => techniques::find(name).and_then(|technique| with_technique(job, technique)),
         };
         let (job, known) = match with {
             Ok(job) => (job, Ok(())),
@@ -45,15 +45,16 @@ impl Candidate {
 }
 
 /// `job` with another technique: what both read stays as it is, what the other alone reads is at its default.
-fn with_technique(job: &Job, technique: &'static dyn Technique) -> Job {
+///
+/// Errors: the other does not take a value, such as shadow maps, of what both read (exit code 2).
+fn with_technique(job: &Job, technique: &'static dyn Technique) -> Result<Job> {
     let mut other = Job::new(&job.scene, technique);
     for setting in settings_of(technique) {
         if let Some((_, text)) = job.values.iter().find(|(key, _)| *key == setting.key) {
-            // A key means the same, and takes the same values, for every technique that reads it.
-            other.set(setting.key, text).expect("it was checked for the first technique");
+            other.set(setting.key, text)?;
         }
     }
-    other
+    Ok(other)
 }
 
 /// `values` with some of them changed.

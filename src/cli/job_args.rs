@@ -45,12 +45,18 @@ pub fn with_job_args(command: Command) -> Command {
     command
 }
 
-/// Every setting once, under the heading of where it comes from first.
+/// Every setting once, under the heading of where it comes from first; where techniques differ in what it may be, with all
+/// the choices that one of them has.
 fn all_settings() -> Vec<(String, &'static Setting)> {
     let mut all: Vec<(String, &'static Setting)> =
         COMMON.iter().map(|setting| ("Common settings".to_owned(), setting)).collect();
     for setting in techniques::ALL.iter().flat_map(|technique| technique.settings()).copied().flatten() {
-        if all.iter().any(|(_, known)| known.key == setting.key) {
+        if let Some((_, known)) = all.iter_mut().find(|(_, known)| known.key == setting.key) {
+            if let (Kind::Choice(few), Kind::Choice(more)) = (known.kind, setting.kind)
+                && more.len() > few.len()
+            {
+                *known = setting;
+            }
             continue;
         }
         let reads = |technique: &&&dyn Technique| {

@@ -184,6 +184,9 @@ pub struct Features {
 pub struct Formats {
     /// D32_SFLOAT as depth attachment and sampled.
     pub float_depth: bool,
+    /// D32_SFLOAT sampled with linear filtering. Data from before it was looked up has not.
+    #[serde(default)]
+    pub float_depth_linear: bool,
     /// D32_SFLOAT_S8_UINT as attachment of depth and stencil.
     pub float_depth_with_stencil: bool,
     /// R32G32B32A32_SFLOAT blends as colour attachment.

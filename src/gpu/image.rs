@@ -64,6 +64,11 @@ impl ImageDescription {
             .usage(usage)
     }
 
+    /// The most bytes that the driver lets such an image have, whatever its extent.
+    pub fn greatest_bytes(&self, gpu: &Gpu) -> u64 {
+        gpu.greatest_image_bytes(&self.create_info())
+    }
+
     /// What the driver requires of memory for such an image, without making one.
     pub fn requirements(&self, gpu: &Gpu) -> vk::MemoryRequirements {
         let info = self.create_info();
@@ -145,7 +150,7 @@ impl Image {
             return Err(Error::request(format!("{name}: {layers} layers: this device allows {limit} in an image")));
         }
         let info = description.create_info();
-        let (bytes, most) = (description.bytes(), gpu.greatest_image_bytes(&info));
+        let (bytes, most) = (description.bytes(), description.greatest_bytes(gpu));
         if bytes > most {
             return Err(Error::memory(format!(
                 "{name} ({extent}, {format:?}) needs {}, and this device makes such images up to {}",

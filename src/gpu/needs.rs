@@ -10,6 +10,8 @@ use crate::error::Error;
 pub enum Ability {
     /// A depth buffer of floats that shaders sample.
     FloatDepth,
+    /// Its samples are filtered.
+    FilteredDepth,
     /// Depth and stencil in one image.
     DepthWithStencil,
     /// Surfaces blend over a picture of floats.
@@ -43,6 +45,7 @@ impl Ability {
     pub fn is_there(self, caps: &Caps) -> bool {
         match self {
             Self::FloatDepth => caps.formats.float_depth,
+            Self::FilteredDepth => caps.formats.float_depth_linear,
             Self::DepthWithStencil => caps.formats.float_depth_with_stencil,
             Self::BlendFloats => caps.formats.float_color_blend,
             Self::FixedPairs => caps.formats.fixed_pair_color,
@@ -63,6 +66,7 @@ impl Ability {
     pub fn name(self) -> &'static str {
         match self {
             Self::FloatDepth => "D32_SFLOAT as sampled depth attachment",
+            Self::FilteredDepth => "D32_SFLOAT sampled with linear filtering",
             Self::DepthWithStencil => "D32_SFLOAT_S8_UINT as depth and stencil attachment",
             Self::BlendFloats => "R32G32B32A32_SFLOAT as blended colour attachment",
             Self::FixedPairs => "R16G16_UNORM as colour attachment",

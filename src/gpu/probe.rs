@@ -45,6 +45,7 @@ fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
     let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
     Formats {
         float_depth: has(vk::Format::D32_SFLOAT, Flags::DEPTH_STENCIL_ATTACHMENT | Flags::SAMPLED_IMAGE),
+        float_depth_linear: has(vk::Format::D32_SFLOAT, Flags::SAMPLED_IMAGE_FILTER_LINEAR),
         float_depth_with_stencil: has(vk::Format::D32_SFLOAT_S8_UINT, Flags::DEPTH_STENCIL_ATTACHMENT),
         float_color_blend: has(vk::Format::R32G32B32A32_SFLOAT, Flags::COLOR_ATTACHMENT_BLEND),
         fixed_pair_color: has(vk::Format::R16G16_UNORM, Flags::COLOR_ATTACHMENT),

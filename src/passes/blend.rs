@@ -8,6 +8,7 @@
 //! pass takes 15 ms instead of 104 on lavapipe.
 
 use super::mesh;
+use super::shadow_maps::{self, ShadowMaps};
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::Bound;
@@ -34,6 +35,8 @@ pub struct BlendLights<'a> {
     pub bvh_triangles: &'a Buffer,
     /// Where the pass was made with lists.
     pub lists: Option<&'a Buffer>,
+    /// Where the pass was made with shadow maps; the material pass, or another of fragments, has asked them before.
+    pub shadow_maps: Option<&'a ShadowMaps>,
 }
 
 /// What the pass needs of a device, where the scene has BLEND surfaces.
@@ -53,11 +56,13 @@ pub struct BlendTarget<'a> {
     pub lists: Option<&'a [ObjectLights]>,
     /// More than 1 with lists only.
     pub samples: u32,
+    /// Lights have shadow maps; the constants are those of `MapLayout::constants` too.
+    pub has_shadow_maps: bool,
 }
 
 impl BlendTarget<'_> {
     /// Every light, one sample.
-    pub const PLAIN: Self = Self { lists: None, samples: 1 };
+    pub const PLAIN: Self = Self { lists: None, samples: 1, has_shadow_maps: false };
 }
 
 /// Every virtual point light on every pixel, none nearer than the root of `least_squared` (m^2).
@@ -96,6 +101,7 @@ impl Blend {
         target: &BlendTarget<'_>,
     ) -> Result<Option<Self>> {
         let lists = if target.lists.is_some() { "object" } else { "none" };
+        let shadows = shadow_maps::axis(target.has_shadow_maps);
         let calls = back_to_front(scene, view);
         if calls.is_empty() {
             return Ok(None);
@@ -105,7 +111,7 @@ impl Blend {
             &GraphicsDescription {
                 vertex: mesh::vertex_shader(scene),
                 geometry: None,
-                fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), lists])),
+                fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), lists, shadows])),
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[PICTURE_FORMAT],
@@ -138,6 +144,7 @@ impl Blend {
         let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
         cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
             cmd.barriers([depth.to(Access::DepthTest), picture.to(Access::ColorWrite)]);
+            cmd.barriers(lights.shadow_maps.map(|maps| maps.barrier(Access::FragmentSample)));
             let extent = picture.resource.description.extent;
             cmd.begin_rendering(
                 extent,
@@ -155,6 +162,7 @@ impl Blend {
                 ("BvhTriangles", Bound::Buffer(lights.bvh_triangles)),
             ]);
             bound.extend(lights.lists.map(|lists| ("LightLists", Bound::Buffer(lists))));
+            bound.extend(lights.shadow_maps.iter().flat_map(|maps| maps.bound()));
             cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&self.params), &bound)?;
             mesh::draw_each(cmd, &self.pipeline, scene, &self.calls, |call| {
                 if let Some(lists) = &self.lists {

@@ -24,6 +24,8 @@ pub enum DirectShadow {
     None = 0,
     Sun = 1,
     Ray = 2,
+    /// None of them: there are shadow maps instead (`passes::shadow_maps`).
+    Map = 3,
 }
 
 impl DirectShadow {
@@ -32,7 +34,8 @@ impl DirectShadow {
         match text {
             "ray" if !lights.lights.is_empty() => Self::Ray,
             "sun" if lights.sun_count() > 0 => Self::Sun,
-            "none" | "sun" | "ray" => Self::None,
+            "map" if !lights.lights.is_empty() => Self::Map,
+            "none" | "sun" | "ray" | "map" => Self::None,
             other => panic!("--direct-shadow {other} was checked"),
         }
     }
@@ -73,7 +76,7 @@ impl DirectSettings {
     pub fn load(&self, light_count: usize) -> LightLoad {
         let light_count = light_count as u64;
         let casting_count = match self.shadow {
-            DirectShadow::None => 0,
+            DirectShadow::None | DirectShadow::Map => 0,
             DirectShadow::Sun => self.sun_count.min(light_count),
             DirectShadow::Ray => light_count,
         };
@@ -99,7 +102,10 @@ impl DirectSettings {
 
     /// The tree that shadow rays walk: the scene's, or the empty one where no ray is cast.
     pub fn tree<'a>(&self, bvh: &'a LazyBvh, scene: &Scene) -> Result<&'a Bvh> {
-        if self.shadow == DirectShadow::None { Ok(bvh.empty()) } else { bvh.over(scene) }
+        match self.shadow {
+            DirectShadow::None | DirectShadow::Map => Ok(bvh.empty()),
+            DirectShadow::Sun | DirectShadow::Ray => bvh.over(scene),
+        }
     }
 }
 
@@ -243,8 +249,9 @@ impl DirectGpu {
     }
 }
 
-/// The lights as shaders read them.
+/// The lights as shaders read them, each with its index.
 pub fn light_blocks(lights: &LightSet, values: &Values) -> Vec<LightBlock> {
     let cutoff = values.number("light-cutoff") as f32;
-    lights.lights.iter().map(|one| light::block(one, cutoff)).collect()
+    let block = |(index, one)| LightBlock { index, ..light::block(one, cutoff) };
+    (0u32..).zip(&lights.lights).map(block).collect()
 }

@@ -66,8 +66,13 @@ pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a Draw
 
 /// Binds the scene's streams, inside rendering.
 pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
+    bind_streams_at(cmd, scene, &scene.positions);
+}
+
+/// The same with other positions of the same vertices.
+pub fn bind_streams_at(cmd: &Commands, scene: &SceneGpu, positions: &Buffer) {
     let device = &cmd.gpu().device;
-    let common = [scene.positions.handle, scene.attributes.handle];
+    let common = [positions.handle, scene.attributes.handle];
     let streams: Vec<_> =
         common.into_iter().chain(scene.extended.as_ref().map(|extended| extended.attributes.handle)).collect();
     // SAFETY: the buffer is being recorded; the scene outlives the recorded frame.

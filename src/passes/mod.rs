@@ -9,4 +9,5 @@ pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;
 pub mod resolve;
+pub mod shadow_maps;
 pub mod texels;

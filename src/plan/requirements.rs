@@ -49,6 +49,14 @@ impl Requirements<'_> {
         }
     }
 
+    /// The most bytes that an image like this one may have; no bound where nobody tells.
+    pub fn greatest_image_bytes(&self, description: &ImageDescription) -> u64 {
+        match self {
+            Self::Device(gpu) => description.greatest_bytes(gpu),
+            Self::Rules(_) => u64::MAX,
+        }
+    }
+
     /// Bytes that an acceleration structure takes; the device has ray queries, or the rules' driver has.
     ///
     /// Errors: nobody has measured how large the rules' driver makes them (exit code 2).

@@ -58,6 +58,15 @@ impl DrawList {
         Self::of(scene, drawn, view, raster, choice)
     }
 
+    /// What casts shadows into a map that is drawn from `view`: both sides of every triangle, as shadow rays meet both. `scene`:
+    /// as its draws stand in the map.
+    pub fn of_casters(scene: &Scene, resident: &SceneGpu, view: &View, choice: GeometryChoice) -> Self {
+        let both_sides = |call: &DrawCall| DrawCall { double_sided: true, ..*call };
+        let calls: Vec<DrawCall> = resident.calls.iter().map(both_sides).collect();
+        let raster = Raster { extent: view.extent, coverage: Coverage::Middle };
+        Self::of(scene, (&calls, &resident.clusters, &resident.host_indices), view, raster, choice)
+    }
+
     fn of(
         scene: &Scene,
         (calls, clusters, indices): (&[DrawCall], &[Cluster], &[u32]),

@@ -4,10 +4,12 @@
 //! when it is set, so that what `Values` holds is possible.
 
 mod optics;
+mod shadow_maps;
 mod tables;
 mod tree;
 
 pub use optics::{APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, earlier_s, exposure_s};
+pub use shadow_maps::{MAPPED_DIRECT_SHADOW, SHADOW_MAPS};
 pub use tables::{
     BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, NORMAL_THRESHOLD, SHADING, TEXELS, VPL_CLAMP,
     WORKGROUP,
@@ -405,7 +407,7 @@ mod tests {
 
     #[test]
     fn every_default_of_the_table_is_possible() {
-        for setting in COMMON.iter().chain(SHADING).chain(MULTISAMPLE).chain(TREE) {
+        for setting in COMMON.iter().chain(SHADING).chain(MULTISAMPLE).chain(TREE).chain(SHADOW_MAPS) {
             setting.check(setting.default).unwrap();
         }
     }

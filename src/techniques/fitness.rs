@@ -72,6 +72,7 @@ mod tests {
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
         let mut caps = known::caps(known::DEFAULT).unwrap();
         caps.features.ray_query = true;
+        caps.formats.float_depth_linear = true;
         let Formats { float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts, .. } =
             &mut caps.formats;
         for counts in [float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts] {
@@ -147,10 +148,30 @@ mod tests {
     }
 
     #[test]
+    fn a_filter_that_depth_has_not_is_refused_and_the_plain_one_is_not() {
+        let technique = find("forward").unwrap();
+        let caps = device(|caps| caps.formats.float_depth_linear = false);
+        assert_eq!(of(&fitness(technique, &caps).left_out), ["--shadow-filter bilinear"]);
+        let filtered = |filter: &str| {
+            let settings = settings_of(technique);
+            let mut values = Values::defaults(&settings);
+            values.set(settings.iter().find(|setting| setting.key == "shadow-filter").unwrap(), filter).unwrap();
+            require(technique, &values, &caps, false)
+        };
+        for plain in ["auto", "nearest", "gather"] {
+            filtered(plain).unwrap();
+        }
+        let error = filtered("bilinear").unwrap_err();
+        let text = error.to_string();
+        assert_eq!(error.exit_code(), 3);
+        assert!(text.contains("D32_SFLOAT sampled with linear") && text.contains("--shadow-filter gather"), "{text}");
+    }
+
+    #[test]
     fn samples_are_left_out_where_one_format_has_not_as_many() {
         let forward = find("forward").unwrap();
         for (caps, expected) in [
-            (known::caps(known::DEFAULT).unwrap(), &["--msaa 8"][..]),
+            (known::caps(known::DEFAULT).unwrap(), &["--shadow-filter bilinear", "--msaa 8"][..]),
             (device(|caps| caps.formats.half_color_sample_counts = vec![1, 2, 4]), &["--msaa 8"]),
             (device(|caps| caps.formats.float_depth_sample_counts = vec![1, 8]), &["--msaa 4"]),
             (device(|caps| caps.formats.float_color_sample_counts = vec![1]), &["--msaa 4", "--msaa 8"]),

@@ -1,6 +1,6 @@
 // The material pass: a surface with its whole material under the lights of its object's list.
 // Pass: src/techniques/forward/material.rs.
-// variants: ALPHA=opaque|mask VERTEX=plain|extended LIGHTS=uniform|storage
+// variants: ALPHA=opaque|mask VERTEX=plain|extended LIGHTS=uniform|storage SHADOWS=traced|mapped
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"

@@ -194,6 +194,7 @@ impl Frame for DeferredFrame {
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
                 lists: None,
+                shadow_maps: None,
             };
             let picture = self.color.from(Access::ComputeWrite);
             let depth = gbuffer.depth_edge(Access::ComputeSample);

@@ -1,6 +1,6 @@
 //! Material pass: every solid surface that is seen, with its whole material, under the lights of its object's list.
 //! Shaders: mesh.vert, material.frag.
-//! reads   the scene, the lights, their lists, the tree, forward.depth.reversed
+//! reads   the scene, the lights, their lists, the tree or the shadow maps, forward.depth.reversed
 //! writes  the picture, RGBA32F, all samples; without a pre-pass forward.depth.reversed
 //!
 //! With a pre-pass the draws come in the opposite order: of surfaces at the same depth the last one drawn then wins, which
@@ -17,6 +17,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Traffic};
 use crate::lights::object_lists::ObjectLights;
 use crate::passes::mesh;
+use crate::passes::shadow_maps::{self, ShadowMaps};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, DrawList, SceneGpu};
 use ash::vk;
@@ -44,14 +45,15 @@ impl Material {
     ) -> Result<Self> {
         let Choices { samples, has_prepass, is_uniform, .. } = *choices;
         let lights = if is_uniform { "uniform" } else { "storage" };
+        let shadows = shadow_maps::axis(choices.maps.is_some());
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights])),
-                    constants: &choices.direct.light_constants(),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights, shadows])),
+                    constants: &choices.light_constants(),
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
                     samples,
@@ -72,7 +74,8 @@ impl Material {
         Ok(Self { opaque, mask, has_prepass, objects: objects.to_vec(), background })
     }
 
-    /// `lit`: the lights, their lists, the tree.
+    /// `lit`: the lights, their lists, the tree. `maps`: just drawn.
+    #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -80,6 +83,7 @@ impl Material {
         scene: &SceneGpu,
         list: &DrawList,
         lit: &[(&'static str, Bound<'_>)],
+        maps: Option<&ShadowMaps>,
         targets: &Targets,
     ) -> Result<()> {
         let (depth, color) = (&targets.depth, &targets.drawn);
@@ -91,8 +95,10 @@ impl Material {
         };
         let mut bound = mesh::bound(frame, scene);
         bound.extend_from_slice(lit);
+        bound.extend(maps.iter().flat_map(|maps| maps.bound()));
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
+            cmd.barriers(maps.map(|maps| maps.barrier(Access::DepthWrite)));
             let depth = if self.has_prepass {
                 cmd.barriers([depth.from(Access::DepthWrite).to(Access::DepthTest)]);
                 (depth, None, Access::DepthTest)

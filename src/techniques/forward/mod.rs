@@ -1,12 +1,14 @@
 //! Forward shading with a depth pre-pass and a list of lights for each object: what Kircher and Lawrance 2009, section 5,
 //! call an optimized forward renderer and beat with inferred lighting. Direct light only.
 //!
-//! Passes: lights (on the host: the lists), depth, material, blend (where the scene has BLEND surfaces), resolve (with
+//! Passes: lights (on the host: the lists), shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces), resolve (with
 //! `--msaa` above 1), accumulate (with `--supersample` above 1).
 //!
 //! Differs from the paper, which says of its forward renderer no more than that it is one
 //! - lists are by the box around an object and the light's range; the floor of a hall is one object, under all its lights
 //! - the samples of MSAA are 32-bit floats of linear light, averaged before any tone mapping
+//! - shadow maps (`--direct-shadow map`) are Clarberg and Munkberg's (2014, section 6); each run of `--supersample` draws
+//!   them again, as every frame does
 //! - holes of MASK surfaces are cut once a pixel: their edges stay as jagged as without MSAA
 //!
 //! Equal to others: with `--msaa 1` it is `deferred` but for what that one's G-buffer rounds. `--light-lists none`,
@@ -32,10 +34,11 @@ use crate::passes::accumulate::Accumulate;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
 use crate::passes::direct::{self, DirectGpu, DirectSettings};
 use crate::passes::resolve;
+use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{Coverage, DrawList, SceneGpu};
-use crate::settings::{MULTISAMPLE, Setting, Values};
+use crate::settings::{MULTISAMPLE, SHADOW_MAPS, Setting, Values};
 use crate::units::Bytes;
 use depth::Depth;
 use glam::Vec2;
@@ -59,10 +62,12 @@ pub struct Choices {
     samples: u32,
     /// Runs of a picture along each side of a pixel.
     runs_per_side: u32,
+    /// With `--direct-shadow map`, where there are lights.
+    maps: Option<MapLayout>,
 }
 
 impl Choices {
-    /// Errors: more lights than a uniform buffer holds (exit code 2).
+    /// Errors: more lights than a uniform buffer holds (exit code 2); shadow maps that do not fit (`MapLayout::new`).
     fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
         let (count, range) = (inputs.lights.lights.len(), inputs.caps.limits.max_uniform_buffer_range_bytes);
@@ -83,6 +88,8 @@ impl Choices {
             has_prepass: values.is_on("depth-prepass"),
             samples: resolve::samples(values),
             runs_per_side: values.integer("supersample") as u32,
+            maps: MapLayout::new(values, inputs.lights, inputs.scene, inputs.stats, inputs.caps, inputs.requirements)
+                .map_err(|error| error.within(NAME))?,
         })
     }
 
@@ -92,6 +99,12 @@ impl Choices {
         let most_bytes = inputs.caps.limits.max_storage_buffer_range_bytes;
         let lists = ObjectLists::new(inputs.scene, &lights, self.lists, most_bytes)?;
         Ok((lights, lists))
+    }
+
+    /// The constants of all shaders that light.
+    fn light_constants(&self) -> Vec<(&'static str, u32)> {
+        let maps = self.maps.iter().flat_map(MapLayout::constants);
+        self.direct.light_constants().into_iter().chain(maps).collect()
     }
 
     fn coverage(&self) -> Coverage {
@@ -113,7 +126,7 @@ impl Technique for Forward {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, MULTISAMPLE]
+        &[settings::SETTINGS, SHADOW_MAPS, MULTISAMPLE]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -122,7 +135,8 @@ impl Technique for Forward {
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
         let depth = Need { of: "the depth buffer".to_owned(), ability: Ability::FloatDepth, instead: "" };
-        [depth].into_iter().chain(resolve::needs(values)).chain(blend::needs(has_blend)).collect()
+        let chosen = resolve::needs(values).into_iter().chain(shadow_maps::needs(values));
+        [depth].into_iter().chain(chosen).chain(blend::needs(has_blend)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -177,7 +191,8 @@ impl Prepared for PreparedForward {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let buffer = if self.choices.is_uniform { "uniform" } else { "storage" };
-        BTreeMap::from([("light-buffer", buffer.to_owned())])
+        let maps = self.choices.maps.as_ref().map(MapLayout::resolved);
+        [("light-buffer", buffer.to_owned())].into_iter().chain(maps).collect()
     }
 
     fn light_counts(&self) -> [u32; 2] {
@@ -204,11 +219,14 @@ impl Prepared for PreparedForward {
                 Some(buffer)
             }
         };
-        let constants = choices.direct.light_constants();
-        let target = BlendTarget { lists: Some(&lists.objects), samples };
+        let constants = choices.light_constants();
+        let target = BlendTarget { lists: Some(&lists.objects), samples, has_shadow_maps: choices.maps.is_some() };
+        let maps = choices.maps.as_ref();
+        let maps = maps.map(|layout| ShadowMaps::new(gpu, resources, NAME, layout, inputs.scene, scene));
         let background = inputs.values.color("background");
         Ok(Box::new(ForwardFrame {
             list: inputs.draw_list(scene, choices.coverage()),
+            maps: maps.transpose()?,
             depth: if has_prepass { Some(Depth::new(gpu, scene, samples)?) } else { None },
             material: Material::new(gpu, scene, &choices, &lists.objects, background)?,
             blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &constants, &target)?,
@@ -237,6 +255,7 @@ pub struct Targets {
 
 struct ForwardFrame {
     list: DrawList,
+    maps: Option<ShadowMaps>,
     depth: Option<Depth>,
     material: Material,
     blend: Option<Blend>,
@@ -253,6 +272,9 @@ struct ForwardFrame {
 impl Frame for ForwardFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let Targets { depth, drawn, resolved } = &self.targets;
+        if let Some(maps) = &self.maps {
+            maps.record(cmd, NAME, scene, Places::of(scene))?;
+        }
         if let Some(prepass) = &self.depth {
             prepass.record(cmd, frame, scene, &self.list, depth)?;
         }
@@ -262,7 +284,7 @@ impl Frame for ForwardFrame {
             lit.push(("Lights", Bound::Buffer(uniform)));
         }
         lit.push(("LightLists", Bound::Buffer(&self.lists)));
-        self.material.record(cmd, frame, scene, &self.list, &lit, &self.targets)?;
+        self.material.record(cmd, frame, scene, &self.list, &lit, self.maps.as_ref(), &self.targets)?;
         if let Some(blend) = &self.blend {
             let lights = BlendLights {
                 lights: &self.direct.lights,
@@ -271,6 +293,7 @@ impl Frame for ForwardFrame {
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
                 lists: Some(&self.lists),
+                shadow_maps: self.maps.as_ref(),
             };
             let tested = if self.depth.is_some() { Access::DepthTest } else { Access::DepthWrite };
             blend.record(cmd, NAME, frame, scene, &lights, depth.from(tested), drawn.from(Access::ColorWrite))?;
@@ -297,6 +320,7 @@ impl Frame for ForwardFrame {
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
         let mut counters: BTreeMap<&'static str, f64> = self.list.counters().into();
         counters.insert("draws", self.list.calls().count() as f64);
+        counters.extend(self.maps.iter().flat_map(ShadowMaps::counters));
         counters
     }
 

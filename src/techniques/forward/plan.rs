@@ -60,14 +60,19 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Resu
     }
     let full = |pass: &str| format!("{NAME}.{pass}");
     let touch = |name: &str, access| (name.to_owned(), access);
+    if let Some(maps) = &choices.maps {
+        maps.plan(&mut plan, NAME);
+    }
+    let asked = || choices.maps.iter().map(|maps| maps.read(NAME));
     let mut depth_access = Access::DepthWrite;
     if has_prepass {
         plan.pass(full("depth"), [touch(DEPTH, Access::DepthWrite)]);
         depth_access = Access::DepthTest;
     }
-    plan.pass(full("material"), [touch(DEPTH, depth_access), touch(DRAWN, Access::ColorWrite)]);
+    let drawn = [touch(DEPTH, depth_access), touch(DRAWN, Access::ColorWrite)];
+    plan.pass(full("material"), drawn.into_iter().chain(asked()));
     if inputs.stats.has_blend {
-        plan.pass(full("blend"), blend::touches(DEPTH, DRAWN));
+        plan.pass(full("blend"), blend::touches(DEPTH, DRAWN).into_iter().chain(asked()));
     }
     if is_resolved {
         plan.pass(full("resolve"), resolve::touches(DRAWN, RESOLVED));

@@ -1,6 +1,6 @@
 //! The settings that only this technique reads.
 
-use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, Setting};
+use crate::settings::{BRDF, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, Setting};
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
@@ -44,5 +44,5 @@ pub const SETTINGS: &[Setting] = &[
     },
     BRDF,
     GEOMETRY,
-    DIRECT_SHADOW,
+    MAPPED_DIRECT_SHADOW,
 ];

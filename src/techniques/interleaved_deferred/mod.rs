@@ -267,6 +267,7 @@ impl Frame for InterleavedFrame {
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
                 lists: None,
+                shadow_maps: None,
             };
             let picture = self.color.from(Access::ComputeWrite);
             blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(surface), picture)?;

@@ -1,0 +1,15 @@
+// Vertices as a light sees them: of MASK surfaces with all that their holes are read by, of others places alone.
+// Pass: src/passes/shadow_maps/mod.rs.
+// variants: ALPHA=opaque|mask VERTEX=plain|extended
+#version 460
+#include "passes/mesh_vertex.glsl"
+#include "passes/shadow_maps_params.glsl"
+
+void main() {
+#ifdef ALPHA_MASK
+    vec4 position_ws = write_attributes();
+#else
+    vec4 position_ws = draws[gl_InstanceIndex].world_from_object * vec4(position, 1.0);
+#endif
+    gl_Position = params.clip_from_world * position_ws;
+}

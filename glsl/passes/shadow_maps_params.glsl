@@ -1,0 +1,16 @@
+// What both stages that draw shadow maps are told between draws.
+#ifndef PASSES_SHADOW_MAPS_PARAMS_GLSL
+#define PASSES_SHADOW_MAPS_PARAMS_GLSL
+
+#include "resident.glsl"
+
+struct ShadowMapsParams {
+    // Of the map that is drawn, depth reversed.
+    mat4 clip_from_world;
+    // The draw's; read for MASK surfaces only.
+    MaterialBlock material;
+};
+
+layout(push_constant) uniform Push { ShadowMapsParams params; };
+
+#endif

@@ -1,0 +1,434 @@
+//! Which light has which shadow maps, from where each is drawn, and how large all of them are: arithmetic, before anything
+//! is made.
+
+use super::{FORMAT, MapFilter, blocks_name, depth_name, pass};
+use crate::error::{Error, Result};
+use crate::frame::View;
+use crate::gpu::shader::structs::ShadowMapBlock;
+use crate::gpu::{Access, Caps, ImageDescription};
+use crate::lights::LightSet;
+use crate::plan::{Plan, Requirements, Shape};
+use crate::resident::{GeometryChoice, SceneStats};
+use crate::scene::{Bounds, Camera, Light, LightKind, Projection, Scene};
+use crate::settings::Values;
+use crate::shading::light;
+use crate::units::{Bytes, Extent};
+use ash::vk;
+use bytemuck::Zeroable;
+use glam::{Mat4, Vec3};
+
+/// Row of the memory table.
+const GROUP: &str = "shadow_maps";
+/// A near plane is no nearer than this part of the far one: the depths of 32-bit floats stay finer than a part in 2^12 of
+/// the distance, where triangles that cross the near plane are interpolated.
+const NEAREST_PART: f32 = 1e-3;
+/// Greatest half angle of a spot with one map, radians: 89 degrees. A wider one has the six of a point light.
+const MOST_CONE: f32 = 89.0 * std::f32::consts::PI / 180.0;
+/// Texels that a map has beyond what it must hold, on each side: what four comparisons reach.
+const BORDER_PX: f32 = 1.0;
+/// What boxes and ranges are widened by, as a part of them: rounding.
+const SLACK: f32 = 1e-3;
+/// The least that `--shadow-map-size` may be.
+const LEAST_SIZE_PX: u32 = 16;
+
+/// The shadow maps of a picture.
+pub struct MapLayout {
+    /// One for each light.
+    pub(super) blocks: Vec<ShadowMapBlock>,
+    /// One for each layer.
+    pub(super) views: Vec<View>,
+    pub(super) filter: MapFilter,
+    /// Texels whose change of depth surfaces are pushed away by.
+    pub(super) slope_bias_px: f32,
+    pub(super) casters: GeometryChoice,
+    size_px: u32,
+    bias_m: f32,
+}
+
+impl MapLayout {
+    /// The maps of `lights` where `--direct-shadow` is `map` and there are any. `scene`: as it stands in them.
+    ///
+    /// Errors: a side or the number of layers is beyond the device's (exit code 2), the bytes are beyond its images, its
+    /// memory or the budget (4).
+    pub fn new(
+        values: &Values,
+        lights: &LightSet,
+        scene: &Scene,
+        stats: &SceneStats,
+        caps: &Caps,
+        requirements: Requirements<'_>,
+    ) -> Result<Option<Self>> {
+        if values.text("direct-shadow") != "map" || lights.lights.is_empty() {
+            return Ok(None);
+        }
+        let size_px = values.integer("shadow-map-size") as u32;
+        let cutoff_lux = values.number("light-cutoff") as f32;
+        let layer_count: u32 = lights.lights.iter().map(|light| layers_of(light.kind)).sum();
+        let asked = Asked { size_px, layer_count, light_count: lights.lights.len() };
+        asked.require_fitting(values, stats, caps, requirements)?;
+        let mut layout = Self {
+            blocks: Vec::with_capacity(lights.lights.len()),
+            views: Vec::with_capacity(layer_count as usize),
+            filter: MapFilter::from_setting(values.text("shadow-filter"), caps),
+            slope_bias_px: values.number("shadow-slope-bias") as f32,
+            casters: GeometryChoice::from_setting(values.text("shadow-casters")),
+            size_px,
+            bias_m: values.length("shadow-bias", scene.lasting_bounds().diagonal().max(1e-6)),
+        };
+        let bounds = match scene.bounds() {
+            bounds if bounds.is_empty() => Bounds { min: Vec3::ZERO, max: Vec3::ZERO },
+            bounds => bounds,
+        };
+        for light in &lights.lights {
+            layout.add(light, light::block(light, cutoff_lux).intensity[3], &bounds);
+        }
+        Ok(Some(layout))
+    }
+
+    /// `range`: metres, 0 where the light does not end.
+    fn add(&mut self, light: &Light, range: f32, bounds: &Bounds) {
+        let first_layer = self.views.len() as u32;
+        let block = ShadowMapBlock { first_layer, layer_count: layers_of(light.kind), ..ShadowMapBlock::zeroed() };
+        let border = self.size_px as f32 / (self.size_px as f32 - 2.0 * BORDER_PX);
+        let block = match light.kind {
+            LightKind::Directional => {
+                self.views.push(self.view(around(bounds, light.direction, border)));
+                ShadowMapBlock { clip_from_world: self.last_clip(), ..block }
+            }
+            LightKind::Spot { outer_angle, .. } if block.layer_count == 1 => {
+                let tangent = border * outer_angle.tan();
+                let depths = depths(light.position, range, tangent, bounds);
+                let (right, up) = across(light.direction);
+                let axes = [right, up, -light.direction];
+                self.views.push(self.view(perspective(light.position, axes, tangent, depths)));
+                ShadowMapBlock { clip_from_world: self.last_clip(), ..block }
+            }
+            LightKind::Spot { .. } | LightKind::Point => {
+                let [near, far] = depths(light.position, range, border, bounds);
+                for face in 0..6 {
+                    let camera = perspective(light.position, face_axes(face), border, [near, far]);
+                    self.views.push(self.view(camera));
+                }
+                // As View::clip_from_world has it.
+                ShadowMapBlock {
+                    depth_far: -near / (far - near),
+                    depth_over: near * far / (far - near),
+                    face_scale: 1.0 / border,
+                    ..block
+                }
+            }
+        };
+        self.blocks.push(block);
+    }
+
+    fn view(&self, camera: Camera) -> View {
+        View { extent: Extent::new(self.size_px, self.size_px), camera, made_up: false }
+    }
+
+    fn last_clip(&self) -> [[f32; 4]; 4] {
+        self.views.last().map_or(Mat4::IDENTITY, View::clip_from_world).to_cols_array_2d()
+    }
+
+    /// Plans the maps as resources of `technique`, and the pass that draws them as its next one.
+    pub fn plan(&self, plan: &mut Plan, technique: &str) {
+        let description = description(self.size_px, self.views.len() as u32);
+        plan.push(GROUP, depth_name(technique), Shape::Image(description));
+        plan.buffer(GROUP, blocks_name(technique), size_of_val(self.blocks.as_slice()) as u64);
+        plan.pass(pass(technique), [(depth_name(technique), Access::DepthWrite)]);
+    }
+
+    /// What a pass touches whose fragments ask the maps.
+    pub fn read(&self, technique: &str) -> (String, Access) {
+        (depth_name(technique), Access::FragmentSample)
+    }
+
+    /// SHADOW_BIAS and SHADOW_FILTER.
+    pub fn constants(&self) -> [(&'static str, u32); 2] {
+        let filter = u32::from(self.filter == MapFilter::Gather);
+        [("SHADOW_BIAS", self.bias_m.to_bits()), ("SHADOW_FILTER", filter)]
+    }
+
+    /// What `--shadow-filter auto` came to.
+    pub fn resolved(&self) -> (&'static str, String) {
+        ("shadow-filter", self.filter.name().to_owned())
+    }
+}
+
+fn description(size_px: u32, layer_count: u32) -> ImageDescription {
+    use vk::ImageUsageFlags as Usage;
+    let usage = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED;
+    let plain = ImageDescription::plain(Extent::new(size_px, size_px), FORMAT, 1, usage);
+    ImageDescription { layer_count: Some(layer_count), ..plain }
+}
+
+fn layers_of(kind: LightKind) -> u32 {
+    match kind {
+        LightKind::Directional => 1,
+        LightKind::Spot { outer_angle, .. } if outer_angle <= MOST_CONE => 1,
+        LightKind::Spot { .. } | LightKind::Point => 6,
+    }
+}
+
+/// How many maps of which size.
+struct Asked {
+    size_px: u32,
+    layer_count: u32,
+    light_count: usize,
+}
+
+impl Asked {
+    /// Errors: as `MapLayout::new`.
+    fn require_fitting(
+        &self,
+        values: &Values,
+        stats: &SceneStats,
+        caps: &Caps,
+        requirements: Requirements<'_>,
+    ) -> Result<()> {
+        let Self { size_px, layer_count, light_count } = *self;
+        let limits = &caps.limits;
+        if size_px > limits.max_image_side_px {
+            let most = limits.max_image_side_px;
+            let why = format!("--shadow-map-size {size_px}: this device allows {most} pixels a side");
+            return Err(Error::request(why).note(format!("--shadow-map-size {most} would fit")));
+        }
+        if layer_count > limits.max_image_layers {
+            let why = format!(
+                "--direct-shadow map: {light_count} lights have {layer_count} shadow maps: this device allows {} in an image",
+                limits.max_image_layers
+            );
+            let out = "fewer lights would fit (six maps a point light); --direct-shadow ray needs no maps";
+            return Err(Error::request(why).note(out));
+        }
+        let heap_bytes = caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
+        let budget_bytes = values.bytes("memory-budget").unwrap_or(u64::MAX).min(heap_bytes);
+        let image_bytes = requirements.greatest_image_bytes(&description(size_px, layer_count));
+        let held_bytes = stats.plan().bytes();
+        let (holds, room) = [
+            ("one image of this device holds", image_bytes.min(limits.max_allocation_bytes)),
+            ("beside the scene memory has", budget_bytes.saturating_sub(held_bytes)),
+        ]
+        .into_iter()
+        .min_by_key(|(_, room)| *room)
+        .expect("there are two");
+        let bytes = |size_px: u32| description(size_px, layer_count).bytes();
+        if bytes(size_px) <= room {
+            return Ok(());
+        }
+        let mut powers = (LEAST_SIZE_PX.ilog2()..=size_px.ilog2()).rev().map(|power| 1 << power);
+        let fitting = powers.find(|size_px| bytes(*size_px) <= room);
+        Err(Error::memory(format!(
+            "--shadow-map-size {size_px}: the {layer_count} maps of {light_count} lights need {}, and {holds} {}",
+            Bytes(bytes(size_px)),
+            Bytes(room)
+        ))
+        .note(match fitting {
+            Some(size_px) => format!("--shadow-map-size {size_px} would fit: {}", Bytes(bytes(size_px))),
+            None => "no size would fit; --direct-shadow ray needs no maps".to_owned(),
+        }))
+    }
+}
+
+/// Distances of the near and the far plane of a light that ends after `range` metres (0: never), metres. `tangent`: of half
+/// the angle across a side of its map.
+fn depths(position: Vec3, range: f32, tangent: f32, bounds: &Bounds) -> [f32; 2] {
+    let farthest = (bounds.min - position).abs().max((bounds.max - position).abs()).length();
+    let ends = if range > 0.0 { range.min(farthest) } else { farthest };
+    let far = ends.max(1e-6 * bounds.diagonal()).max(1e-9) * (1.0 + SLACK);
+    let nearest = position.clamp(bounds.min, bounds.max).distance(position);
+    // In a corner of the map a point is farther from the light than along the axis.
+    let along_axis = nearest * (1.0 - SLACK) / (1.0 + 2.0 * tangent * tangent).sqrt();
+    [along_axis.clamp(NEAREST_PART * far, 0.5 * far), far]
+}
+
+fn perspective(position: Vec3, [right, up, back]: [Vec3; 3], tangent: f32, [z_near, z_far]: [f32; 2]) -> Camera {
+    let y_fov = 2.0 * tangent.atan();
+    camera([right, up, back], position, Projection::Perspective { y_fov, aspect: None, z_near, z_far: Some(z_far) })
+}
+
+/// A square that holds all of `bounds`, seen along `direction`.
+fn around(bounds: &Bounds, direction: Vec3, border: f32) -> Camera {
+    let back = -direction;
+    let (right, up) = across(direction);
+    let (center, half) = (bounds.center(), (bounds.max - bounds.min) * 0.5);
+    let reach = |axis: Vec3| axis.abs().dot(half);
+    // A flat scene still needs a box with an inside.
+    let least = 1e-6 * bounds.diagonal().max(1e-6);
+    let side = reach(right).max(reach(up)).max(least) * (1.0 + SLACK) * border;
+    let depth = reach(back).max(least) * (1.0 + SLACK);
+    let projection = Projection::Orthographic { x_mag: side, y_mag: side, z_near: 0.0, z_far: 2.0 * depth };
+    camera([right, up, back], center + back * depth, projection)
+}
+
+fn camera([right, up, back]: [Vec3; 3], position: Vec3, projection: Projection) -> Camera {
+    let world_from_view = Mat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), position.extend(1.0));
+    Camera { name: String::new(), world_from_view, projection }
+}
+
+/// Right and up of whoever looks along the unit vector `direction`: the right is across the axis of the world that it is
+/// least along.
+fn across(direction: Vec3) -> (Vec3, Vec3) {
+    let aside = Vec3::AXES[direction.abs().min_position()];
+    let right = direction.cross(aside).normalize();
+    (right, right.cross(direction))
+}
+
+/// Right, up and back of the camera of a cube's face, as shadow_maps.glsl takes faces for granted: +x -x +y -y +z -z.
+fn face_axes(face: usize) -> [Vec3; 3] {
+    let sign = [1.0, -1.0][face % 2];
+    let axis = |step: usize| Vec3::AXES[(face / 2 + step) % 3];
+    [axis(1), -sign * axis(2), -sign * axis(0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::known;
+    use crate::settings::{COMMON, MAPPED_DIRECT_SHADOW, SHADOW_MAPS};
+    use proptest::prelude::*;
+
+    const ROOM: Bounds = Bounds { min: Vec3::new(-4.0, -1.0, -3.0), max: Vec3::new(5.0, 3.0, 2.0) };
+
+    fn light(kind: LightKind, position: Vec3, direction: Vec3) -> Light {
+        Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None }
+    }
+
+    fn values(changes: &[(&str, &str)]) -> Values {
+        let rows: Vec<_> = COMMON.iter().chain(SHADOW_MAPS).chain([&MAPPED_DIRECT_SHADOW]).copied().collect();
+        let mut values = Values::defaults(&rows);
+        for (key, text) in [("direct-shadow", "map")].iter().chain(changes) {
+            values.set(rows.iter().find(|row| row.key == *key).unwrap(), text).unwrap();
+        }
+        values
+    }
+
+    fn layout(lights: Vec<Light>, changes: &[(&str, &str)], caps: &Caps) -> Result<Option<MapLayout>> {
+        let set =
+            LightSet { lights, ambient: Vec3::ZERO, has_rig: false, is_emissive_alone: false, has_punctual: true };
+        let rules = caps.layout.as_ref().unwrap();
+        let scene = Scene { reach: Some(ROOM), ..Scene::default() };
+        let stats = SceneStats::of(&scene);
+        MapLayout::new(&values(changes), &set, &scene, &stats, caps, Requirements::Rules(rules))
+    }
+
+    /// The maps of one light in a room.
+    fn of(light: &Light, range: f32) -> MapLayout {
+        let mut layout = layout(vec![], &[], &known::caps(known::DEFAULT).unwrap()).unwrap();
+        assert!(layout.take().is_none(), "no light, no map");
+        let mut layout = MapLayout {
+            blocks: vec![],
+            views: vec![],
+            filter: MapFilter::Nearest,
+            slope_bias_px: 0.0,
+            casters: GeometryChoice::All,
+            size_px: 16,
+            bias_m: 0.0,
+        };
+        layout.add(light, range, &ROOM);
+        layout
+    }
+
+    /// Layer and place that shadow_maps.glsl asks at.
+    fn asked(block: &ShadowMapBlock, light: &Light, at_ws: Vec3) -> (u32, Vec3) {
+        if block.layer_count == 1 {
+            let clip = Mat4::from_cols_array_2d(&block.clip_from_world) * at_ws.extend(1.0);
+            return (block.first_layer, clip.truncate() / clip.w);
+        }
+        let away = at_ws - light.position;
+        let size = away.abs();
+        let axis = if size.z > size.x.max(size.y) { 2 } else { usize::from(size.y > size.x) };
+        let [along, next, after] = [0, 1, 2].map(|step| away[(axis + step) % 3]);
+        let scale = block.face_scale / along.abs();
+        let depth = block.depth_far + block.depth_over / along.abs();
+        let face = 2 * axis as u32 + u32::from(along < 0.0);
+        (block.first_layer + face, Vec3::new(next * scale, after * along.signum() * scale, depth))
+    }
+
+    fn point_in_room(parts: [f32; 3]) -> Vec3 {
+        ROOM.min + (ROOM.max - ROOM.min) * Vec3::from_array(parts)
+    }
+
+    proptest! {
+        /// Where a shader asks is where the rasteriser has put the point, inside the map by what a filter reaches.
+        #[test]
+        fn shaders_ask_where_maps_are_drawn(
+            at in [0f32..1.0, 0f32..1.0, 0f32..1.0],
+            from in [-0.5f32..1.5, -0.5f32..1.5, -0.5f32..1.5],
+            towards in [-1f32..1.0, -1f32..1.0, -1f32..1.0],
+            kind in 0u32..3,
+        ) {
+            let (at_ws, position) = (point_in_room(at), point_in_room(from));
+            let direction = Vec3::from_array(towards).try_normalize().unwrap_or(Vec3::X);
+            let kind = match kind {
+                0 => LightKind::Directional,
+                1 => LightKind::Point,
+                _ => LightKind::Spot { inner_angle: 0.1, outer_angle: 1.2 },
+            };
+            let light = light(kind, position, direction);
+            let away = at_ws - position;
+            let lit = match kind {
+                LightKind::Spot { outer_angle, .. } => away.normalize_or_zero().dot(direction) > outer_angle.cos(),
+                _ => true,
+            };
+            prop_assume!(lit && away.length() > 0.2);
+            let layout = of(&light, 0.0);
+            let (layer, place) = asked(&layout.blocks[0], &light, at_ws);
+            let drawn = layout.views[layer as usize].clip_from_world().project_point3(at_ws);
+            prop_assert!((place - drawn).abs().max_element() < 2e-5, "{place} and {drawn} of layer {layer}");
+            let most = 1.0 - 2.0 * BORDER_PX / 16.0 + 1e-4;
+            prop_assert!(place.x.abs() <= most && place.y.abs() <= most, "{place}");
+            prop_assert!((0.0..=1.0).contains(&place.z), "{place}");
+        }
+
+        /// A light that ends has all of what it reaches between its planes, and depth falls with the distance.
+        #[test]
+        fn depth_falls_from_the_near_plane_to_where_light_ends(range in 0.5f32..20.0, part in 0.05f32..0.9) {
+            let light = light(LightKind::Point, Vec3::new(0.5, 1.0, -0.5), -Vec3::Y);
+            let layout = of(&light, range);
+            let farthest = (ROOM.max - light.position).max(light.position - ROOM.min).length();
+            let far = range.min(farthest);
+            let [nearer, farther] = [part, 1.1 * part].map(|part| light.position + Vec3::X * (part * far));
+            let depth = |at| asked(&layout.blocks[0], &light, at).1.z;
+            prop_assert!(depth(nearer) > depth(farther) && depth(farther) >= 0.0 && depth(nearer) <= 1.0);
+        }
+    }
+
+    #[test]
+    fn a_wide_spot_has_six_maps_and_others_one() {
+        let spot = |degrees: f32| LightKind::Spot { inner_angle: 0.0, outer_angle: degrees.to_radians() };
+        let counts = [spot(5.0), spot(88.9), spot(90.0), LightKind::Point, LightKind::Directional].map(layers_of);
+        assert_eq!(counts, [1, 1, 6, 6, 1]);
+        let lights = [spot(20.0), LightKind::Point, LightKind::Directional];
+        let lights = lights.map(|kind| light(kind, Vec3::ZERO, -Vec3::Y)).to_vec();
+        let made = layout(lights, &[], &known::caps(known::DEFAULT).unwrap()).unwrap().unwrap();
+        let firsts: Vec<[u32; 2]> = made.blocks.iter().map(|block| [block.first_layer, block.layer_count]).collect();
+        assert_eq!((firsts, made.views.len()), (vec![[0, 1], [1, 6], [7, 1]], 8));
+    }
+
+    #[test]
+    fn maps_that_do_not_fit_are_refused_with_what_would() {
+        let caps = known::caps(known::DEFAULT).unwrap();
+        let refused = |count: usize, changes: &[(&str, &str)]| {
+            let lights = vec![light(LightKind::Point, Vec3::ZERO, -Vec3::Y); count];
+            let error = layout(lights, changes, &caps).err().expect("too much was asked for");
+            (error.exit_code(), error.to_string())
+        };
+        // 120 maps of 4 MiB.
+        let (code, text) = refused(20, &[("memory-budget", "200MiB")]);
+        assert_eq!(code, 4, "{text}");
+        assert!(text.contains("the 120 maps of 20 lights need 480 MiB"), "{text}");
+        assert!(text.contains("--shadow-map-size 512 would fit: 120 MiB"), "{text}");
+        let (code, text) = refused(20, &[("memory-budget", "64KiB")]);
+        assert!(code == 4 && text.contains("no size would fit; --direct-shadow ray"), "{text}");
+        // 2 GiB is what the driver's heap and its greatest allocation are.
+        let (code, text) = refused(1, &[("shadow-map-size", "8192"), ("memory-budget", "1GiB")]);
+        assert!(code == 4 && text.contains("--shadow-map-size 4096 would fit: 384 MiB"), "{text}");
+        let (code, text) = refused(342, &[("shadow-map-size", "16")]);
+        assert!(code == 2 && text.contains("2052 shadow maps: this device allows 2048"), "{text}");
+        let mut small = caps.clone();
+        small.limits.max_image_side_px = 4096;
+        let lights = vec![light(LightKind::Directional, Vec3::ZERO, -Vec3::Y)];
+        let error = layout(lights, &[("shadow-map-size", "8192")], &small).err().unwrap().to_string();
+        assert!(error.contains("4096 pixels a side") && error.contains("--shadow-map-size 4096 would fit"), "{error}");
+    }
+}

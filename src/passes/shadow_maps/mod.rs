@@ -1,0 +1,260 @@
+//! Shadow maps of every punctual light (Clarberg & Munkberg 2014, section 6: all lights of their scenes have one, of
+//! 1024 x 1024 with one sample a texel, drawn anew each frame). Shaders: shadow_maps.vert and, for MASK surfaces,
+//! shadow_maps.frag; shadow_maps.glsl reads them.
+//! reads   the scene, where the caller says that its draws stand
+//! writes  TECHNIQUE.shadow_maps.depth  array of images, 4 B a texel; beside it TECHNIQUE.shadow_maps.blocks, kept
+//!
+//! A spot has one map of its cone, a directional light one around the box of all that is drawn, a point light the six faces
+//! of a cube. Depth is reversed: 1 at the near plane, 0 at the far one, which is where the light ends or the box does.
+//! Solid surfaces cast from both sides, as they stop shadow rays; MASK surfaces have their holes; BLEND surfaces cast
+//! nothing. What is nearer to a light than a thousandth of the far plane casts nothing either.
+//!
+//! A frame takes three calls: `MapLayout::plan` where the technique plans its passes, `ShadowMaps::record` where it
+//! records them, and `ShadowMaps::bound` for shaders of the axis SHADOWS=mapped, after `ShadowMaps::barrier`; pipelines of
+//! such shaders get the constants of `MapLayout::constants`, lights their indices from `direct::light_blocks`. While a
+//! shutter is open there is one moment that maps are of, the caller's: in the middle of the exposure.
+//!
+//! Why this way: a layer is drawn by itself, because not every driver takes the layer from a vertex stage (and where one
+//! does, it was slower); cubes are layers of the same array, so that one binding serves every light. Depth that is pushed
+//! away by a slope's part of it, in the rasteriser, cannot detach a shadow by more than as many texels, however steep the
+//! surface; metres along the ray to the light are added where it is asked, because they mean the same at every distance.
+
+mod layout;
+
+pub use layout::MapLayout;
+
+use super::mesh;
+use crate::error::Result;
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::passes::shadow_maps::{FRAG_VARIANTS, VERT_VARIANTS};
+use crate::gpu::shader::structs::ShadowMapsParams;
+use crate::gpu::shader::variant;
+use crate::gpu::{Ability, Access, Barrier, Bound, Buffer, Caps, Commands, Gpu, Image, Layers, Need, Traffic, upload};
+use crate::plan::Resources;
+use crate::resident::{DrawList, SceneGpu};
+use crate::scene::Scene;
+use crate::settings::Values;
+use ash::vk;
+use glam::Mat4;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// How a map is asked (`--shadow-filter`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MapFilter {
+    /// One comparison.
+    Nearest,
+    /// Four, filtered by the sampler.
+    Bilinear,
+    /// Four, filtered by the shader.
+    Gather,
+}
+
+impl MapFilter {
+    /// The value of `--shadow-filter`.
+    fn from_setting(text: &str, caps: &Caps) -> Self {
+        match text {
+            "auto" if caps.formats.float_depth_linear => Self::Bilinear,
+            "auto" | "gather" => Self::Gather,
+            "nearest" => Self::Nearest,
+            "bilinear" => Self::Bilinear,
+            other => panic!("--shadow-filter {other} was checked"),
+        }
+    }
+
+    /// As settings name it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Bilinear => "bilinear",
+            Self::Gather => "gather",
+        }
+    }
+}
+
+/// The value of the shaders' axis SHADOWS.
+pub fn axis(has_shadow_maps: bool) -> &'static str {
+    if has_shadow_maps { "mapped" } else { "traced" }
+}
+
+/// What `values` need of a device, whether maps are drawn or not.
+pub fn needs(values: &Values) -> Option<Need> {
+    let of = "--shadow-filter bilinear";
+    let instead = "--shadow-filter gather makes the same picture everywhere";
+    (values.text("shadow-filter") == "bilinear").then(|| Need {
+        of: of.to_owned(),
+        ability: Ability::FilteredDepth,
+        instead,
+    })
+}
+
+/// The pass, and what its resources' names begin with.
+fn pass(technique: &str) -> String {
+    format!("{technique}.shadow_maps")
+}
+
+fn depth_name(technique: &str) -> String {
+    format!("{}.depth", pass(technique))
+}
+
+fn blocks_name(technique: &str) -> String {
+    format!("{}.blocks", pass(technique))
+}
+
+/// Where the scene's draws stand, and their vertices: those of the scene, or of another moment of it.
+#[derive(Clone, Copy)]
+pub struct Places<'a> {
+    /// Blocks of the draws, as `SceneGpu::draws`.
+    pub draws: &'a Buffer,
+    /// Three floats a vertex, as `SceneGpu::positions`.
+    pub positions: &'a Buffer,
+}
+
+impl<'a> Places<'a> {
+    /// As they stand in the scene itself.
+    pub fn of(scene: &'a SceneGpu) -> Self {
+        Self { draws: &scene.draws, positions: &scene.positions }
+    }
+}
+
+/// One layer: how it is drawn, and what is drawn into it.
+struct Layer {
+    clip_from_world: Mat4,
+    casters: DrawList,
+}
+
+pub struct ShadowMaps {
+    opaque: GraphicsPipeline,
+    mask: GraphicsPipeline,
+    layers: Vec<Layer>,
+    depth: Image,
+    blocks: Buffer,
+    sampler: Sampler,
+}
+
+impl ShadowMaps {
+    /// Takes out what `layout` planned. `posed`: the scene as its draws stand in the maps, whose boxes say what a map may
+    /// hold; other places of `scene`'s own draws.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        technique: &str,
+        layout: &MapLayout,
+        posed: &Scene,
+        scene: &SceneGpu,
+    ) -> Result<Self> {
+        let vertex_name = mesh::vertex_name(scene);
+        let pipeline = |alpha, fragment| {
+            GraphicsPipeline::new(
+                gpu,
+                &GraphicsDescription {
+                    vertex: variant(VERT_VARIANTS, &[alpha, vertex_name]),
+                    geometry: None,
+                    fragment,
+                    constants: &[],
+                    vertex_buffers: mesh::vertex_buffers(scene),
+                    color_formats: &[],
+                    samples: 1,
+                    blending: Blending::Replace,
+                    depth_format: Some(FORMAT),
+                    depth_write: true,
+                    depth_compare: vk::CompareOp::GREATER,
+                    depth_clamp: false,
+                    // Depth is reversed: less is farther from the light.
+                    depth_slope_bias: -layout.slope_bias_px,
+                    conservative: false,
+                    stencil: None,
+                    foreign_sets: &[scene.material_layout],
+                },
+            )
+        };
+        let mask = variant(FRAG_VARIANTS, &[vertex_name]);
+        let blocks = resources.buffer(&blocks_name(technique));
+        upload::buffer(gpu, &blocks, bytemuck::cast_slice(&layout.blocks), Access::GraphicsRead)?;
+        let layers = layout.views.iter().map(|view| Layer {
+            clip_from_world: view.clip_from_world(),
+            casters: DrawList::of_casters(posed, scene, view, layout.casters),
+        });
+        Ok(Self {
+            opaque: pipeline("opaque", None)?,
+            mask: pipeline("mask", Some(mask))?,
+            layers: layers.collect(),
+            depth: resources.image(&depth_name(technique)),
+            blocks,
+            sampler: sampler(gpu, layout.filter)?,
+        })
+    }
+
+    /// Draws all maps anew.
+    pub fn record(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu, places: Places<'_>) -> Result<()> {
+        let traffic = Traffic {
+            read_bytes: self.layers.iter().map(|layer| mesh::read_bytes(scene, layer.casters.calls())).sum(),
+            written_bytes: self.depth.description.bytes(),
+            invocations: None,
+        };
+        cmd.pass(&pass(technique), traffic, |cmd| {
+            cmd.barriers([self.depth.discard(Access::DepthWrite)]);
+            let draws = [("Draws", Bound::Buffer(places.draws))];
+            let placements =
+                scene.extended.as_ref().map(|extended| ("Placements", Bound::Buffer(&extended.placements)));
+            let cut: Vec<_> = draws.into_iter().chain(placements).collect();
+            let (opaque, mask) = (cmd.set_for(&self.opaque, &draws)?, cmd.set_for(&self.mask, &cut)?);
+            for (index, Layer { clip_from_world, casters }) in self.layers.iter().enumerate() {
+                let params = |material: u32| ShadowMapsParams {
+                    clip_from_world: clip_from_world.to_cols_array_2d(),
+                    material: scene.material_blocks[material as usize],
+                };
+                let target = (&self.depth, Some(0.0), Access::DepthWrite);
+                cmd.begin_layers(self.depth.description.extent, Layers::One(index as u32), &[], Some(target));
+                mesh::bind_streams_at(cmd, scene, places.positions);
+                if let Some(first) = casters.opaque.first() {
+                    cmd.bind_with_set(&self.opaque, bytemuck::bytes_of(&params(first.material)), opaque);
+                    mesh::draw_with(cmd, &self.opaque, scene, &casters.opaque, |_| ());
+                }
+                if let Some(first) = casters.mask.first() {
+                    cmd.bind_with_set(&self.mask, bytemuck::bytes_of(&params(first.material)), mask);
+                    let push = |material| cmd.push(&self.mask.interface, bytemuck::bytes_of(&params(material)));
+                    mesh::draw_with(cmd, &self.mask, scene, &casters.mask, push);
+                }
+                cmd.end_rendering();
+            }
+            Ok(())
+        })
+    }
+
+    /// What a pass waits for whose fragments ask the maps. `from`: who touched them last, `Access::DepthWrite` or another
+    /// such pass.
+    pub fn barrier(&self, from: Access) -> Barrier {
+        self.depth.from(from).to(Access::FragmentSample)
+    }
+
+    /// What shadow_maps.glsl declares.
+    pub fn bound(&self) -> [(&'static str, Bound<'_>); 2] {
+        let maps = Bound::Sampled(&self.depth, self.sampler.handle, Access::FragmentSample);
+        [("ShadowMaps", Bound::Buffer(&self.blocks)), ("shadow_maps", maps)]
+    }
+
+    /// Numbers for the report's `counters`: maps, and triangles that are drawn into all of them together.
+    pub fn counters(&self) -> BTreeMap<&'static str, f64> {
+        let triangles: u64 = self.layers.iter().map(|layer| layer.casters.triangles_drawn()).sum();
+        BTreeMap::from([("shadow_maps", self.layers.len() as f64), ("shadow_map_triangles_drawn", triangles as f64)])
+    }
+}
+
+/// Light passes where a point is as near to it as what the map holds, or nearer.
+fn sampler(gpu: &Arc<Gpu>, filter: MapFilter) -> Result<Sampler> {
+    let edge = vk::SamplerAddressMode::CLAMP_TO_EDGE;
+    let texels = if filter == MapFilter::Bilinear { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
+    let info = vk::SamplerCreateInfo::default()
+        .mag_filter(texels)
+        .min_filter(texels)
+        .address_mode_u(edge)
+        .address_mode_v(edge)
+        .address_mode_w(edge)
+        .compare_enable(true)
+        .compare_op(vk::CompareOp::GREATER_OR_EQUAL);
+    Sampler::new(gpu, "sampler.shadow_maps", &info)
+}
