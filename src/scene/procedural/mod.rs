@@ -9,6 +9,7 @@ mod made;
 mod patch;
 mod patterns;
 mod pictures;
+mod pieces;
 mod shapes;
 
 #[cfg(test)]
@@ -92,11 +93,23 @@ pub const ALL: &[BuiltIn] = &[
     BuiltIn {
         name: "hall",
         description: "a vaulted hall of fluted columns, inside: marble, brick, brass, glass, and lamps",
-        parameters: &[Parameter {
-            key: "triangles",
-            description: "how many triangles all draws have together, within 5 %",
-            choice: Choice::Number { default: 256_000, range: [hall::LEAST_TRIANGLES, 4_000_000] },
-        }],
+        parameters: &[
+            Parameter {
+                key: "triangles",
+                description: "how many triangles all draws have together, within 5 %",
+                choice: Choice::Number { default: 256_000, range: [hall::LEAST_TRIANGLES, 4_000_000] },
+            },
+            Parameter {
+                key: "lights",
+                description: "how many of its lamps are there",
+                choice: Choice::Number { default: hall::MOST_LAMPS, range: [1, hall::MOST_LAMPS] },
+            },
+            Parameter {
+                key: "draws",
+                description: "in how many draws at most, copies joined to one mesh",
+                choice: Choice::Number { default: hall::MOST_DRAWS, range: [hall::LEAST_DRAWS, hall::MOST_DRAWS] },
+            },
+        ],
         make: hall::make,
     },
     BuiltIn {
@@ -255,6 +268,19 @@ mod tests {
     }
 
     #[test]
+    fn a_hall_in_fewer_draws_is_the_same_hall() {
+        let [whole, joined] = ["", ",draws=100"].map(|more| made(&format!("hall:triangles=20000{more}"), 1));
+        checks::assert_scene_is_sound(&joined);
+        assert_eq!((joined.draws.len(), joined.triangle_count()), (100, whole.triangle_count()));
+        // What is moved in 64 bits instead of 32 may be a rounding elsewhere.
+        let (joined, whole) = (joined.bounds(), whole.bounds());
+        assert!(joined.min.abs_diff_eq(whole.min, 1e-5) && joined.max.abs_diff_eq(whole.max, 1e-5), "{joined:?}");
+        let dark = made("hall:triangles=20000,lights=3", 1);
+        assert_eq!((dark.lights.len(), dark.lights[2].name.as_str()), (3, "nave_lamp_2"));
+        checks::assert_scene_is_sound(&dark);
+    }
+
+    #[test]
     fn the_hall_has_materials_and_lamps_of_many_kinds() {
         let scene = made("hall:triangles=20000", 1);
         let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
@@ -279,6 +305,18 @@ mod tests {
         assert_ne!(scene.hash, other.hash);
         checks::assert_scene_is_sound(&made("lamps:objects=5000,lights=5000", 1));
         checks::assert_scene_is_sound(&made("lamps:objects=1,lights=1", 1));
+    }
+
+    /// Clarberg & Munkberg 2014, table 1: thousands of triangles, draws, lights.
+    #[test]
+    fn the_scenes_of_table_1_have_its_numbers() {
+        let rows = [("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16)];
+        for (name, spec, triangles, draws, lights) in rows {
+            let scene = made(spec, 1);
+            let count = scene.triangle_count();
+            assert!(count.abs_diff(triangles) * 100 <= triangles, "{name}: {count} triangles");
+            assert_eq!((scene.draws.len(), scene.lights.len()), (draws, lights), "{name}");
+        }
     }
 
     #[test]
