@@ -1,7 +1,9 @@
 //! Scenes that the program makes itself, seeded: the same on every machine.
 
 mod assembly;
+mod chess;
 mod cornell;
+mod curves;
 mod fence;
 mod hall;
 mod lamps;
@@ -20,7 +22,7 @@ use crate::scene::{AnimationChoice, Scene, normal_groups};
 use assembly::Assembly;
 use rayon::prelude::*;
 
-pub use made::{Made, Spin};
+pub use made::{Made, Motion, Thing};
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
@@ -142,6 +144,16 @@ pub const ALL: &[BuiltIn] = &[
         ],
         make: fence::make,
     },
+    BuiltIn {
+        name: "chess",
+        description: "a game of chess under sixteen spots, four men moving (after Clarberg & Munkberg 2014, table 1)",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 1 %",
+            choice: Choice::Number { default: 46_000, range: [chess::LEAST_TRIANGLES, 2_000_000] },
+        }],
+        make: chess::make,
+    },
 ];
 
 /// One value for each parameter of a scene, in its order.
@@ -205,13 +217,13 @@ pub fn open(spec: &str, seed: u64) -> Option<Result<Made>> {
     };
     let built_in = ALL.iter().find(|built_in| built_in.name == name)?;
     let made = built_in.values(arguments).and_then(|values| {
-        let Assembly { mut scene, spins } = (built_in.make)(&values, seed);
+        let Assembly { mut scene, motions } = (built_in.make)(&values, seed);
         scene.meshes.par_iter_mut().for_each(normal_groups::assign);
         let settings = built_in.settings(&values);
         scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };
         let identity = format!("{} seed={seed} version={GENERATOR_VERSION}", scene.name);
         scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
-        Made { scene, spins }.playing(&AnimationChoice::All)
+        Made { scene, motions }.playing(&AnimationChoice::All)
     });
     Some(made)
 }
@@ -310,8 +322,9 @@ mod tests {
     /// Clarberg & Munkberg 2014, table 1: thousands of triangles, draws, lights.
     #[test]
     fn the_scenes_of_table_1_have_its_numbers() {
-        let rows = [("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16)];
-        for (name, spec, triangles, draws, lights) in rows {
+        for (name, spec, triangles, draws, lights) in
+            [("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16), ("CHESS", "chess", 46_000, 19, 16)]
+        {
             let scene = made(spec, 1);
             let count = scene.triangle_count();
             assert!(count.abs_diff(triangles) * 100 <= triangles, "{name}: {count} triangles");
@@ -320,8 +333,35 @@ mod tests {
     }
 
     #[test]
+    fn the_men_that_move_stand_on_squares_and_the_camera_circles() {
+        let Made { scene, motions } = open("chess:triangles=12000", 1).expect("a name").expect("good parameters");
+        let names: Vec<&str> = motions.iter().map(|motion| motion.name.as_str()).collect();
+        assert_eq!(names, ["queen", "bishop", "knight", "pawn", "circling"]);
+        checks::assert_scene_is_sound(&scene);
+        for motion in &motions[..4] {
+            let Thing::Draw(draw) = motion.thing else { panic!("{} is a man", motion.name) };
+            let [from, halfway] = [0.0, 1.0].map(|time_s| motion.translation_at(time_s));
+            // A square's middle is an odd number of 3 cm from the board's.
+            assert!([from.x, from.z].iter().all(|at| ((at / 0.06).abs() - 0.5).fract().abs() < 1e-3), "{from}");
+            assert!(from.y == 0.0 && halfway.distance(from) > 0.02, "{}: {from} to {halfway}", motion.name);
+            assert_eq!(scene.draws[draw].world_from_object, motion.place_at(0.0));
+        }
+        assert!(least_cosine(&motions[4], glam::Vec3::ZERO) > 0.95);
+    }
+
+    /// The least cosine, over its way, of the angle between where a camera looks and where `toward` is from it.
+    fn least_cosine(motion: &Motion, toward: glam::Vec3) -> f32 {
+        let cosine = |step: u32| {
+            let time_s = f64::from(step) * 0.37;
+            let way = (toward - motion.translation_at(time_s)).normalize();
+            (motion.rotation_at(time_s) * glam::Vec3::NEG_Z).dot(way)
+        };
+        (0..160).map(cosine).fold(1.0, f32::min)
+    }
+
+    #[test]
     fn the_fence_has_its_lamps_its_wire_its_glass_and_a_rotor_that_casts_shadows() {
-        let Made { scene, spins } = open("fence", 1).expect("the name is known").expect("it needs no parameters");
+        let Made { scene, motions } = open("fence", 1).expect("the name is known").expect("it needs no parameters");
         assert_eq!((scene.lights.len(), scene.name.as_str()), (122, "fence:lights=122,alpha=blend"));
         let count = |scene: &Scene, is: fn(&AlphaMode) -> bool| {
             scene.materials.iter().filter(|material| is(&material.alpha)).count()
@@ -332,10 +372,12 @@ mod tests {
         assert_eq!((count(&masked, |alpha| *alpha == AlphaMode::Blend), count(&masked, is_mask)), (7, 2));
         assert_eq!(masked.lights.len(), 1);
         checks::assert_scene_is_sound(&masked);
-        let [spin] = spins.as_slice() else { panic!("{} things turn", spins.len()) };
-        assert!(Shell::of(&scene.meshes[scene.draws[spin.draw].mesh]).is_closed());
+        let [Motion { thing: Thing::Draw(rotor), .. }] = motions.as_slice() else {
+            panic!("one thing turns: {motions:?}")
+        };
+        assert!(Shell::of(&scene.meshes[scene.draws[*rotor].mesh]).is_closed());
         // Above the rotor, so that its shadow falls on what is below.
-        assert!(scene.lights[0].position.y > spin.translation.y + 1.0);
+        assert!(scene.lights[0].position.y > motions[0].translation_at(0.0).y + 1.0);
     }
 
     #[test]

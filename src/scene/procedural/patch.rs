@@ -149,6 +149,13 @@ pub fn moved(patches: Vec<Patch>, shift: DVec3) -> impl Iterator<Item = Patch> {
     placed(patches, DAffine3::from_translation(shift))
 }
 
+/// A turn about the y axis, from +z toward +x.
+pub fn around_y(turns: f64) -> DAffine3 {
+    let (sine, cosine) = sin_cos_turns(turns);
+    let columns = [DVec3::new(cosine, 0.0, -sine), DVec3::Y, DVec3::new(sine, 0.0, cosine)];
+    DAffine3::from_cols(columns[0], columns[1], columns[2], DVec3::ZERO)
+}
+
 /// How many triangles the patches become together.
 pub fn triangle_count(patches: &[Patch]) -> u64 {
     patches.iter().map(Patch::triangle_count).sum()

@@ -80,14 +80,15 @@ impl Curve {
         points.windows(2).map(|pair| Self::line(pair[0], pair[1])).collect()
     }
 
-    fn at(&self, t: f64) -> DVec2 {
+    /// The place at `t`, 0 to 1.
+    pub fn at(&self, t: f64) -> DVec2 {
         let first = self.start * (1.0 - t) + self.middle * t;
         let second = self.middle * (1.0 - t) + self.end * t;
         first * (1.0 - t) + second * t
     }
 
     /// Between its chord and its control polygon: close enough to divide by and to lay textures along.
-    fn length(&self) -> f64 {
+    pub fn length(&self) -> f64 {
         let polygon = (self.middle - self.start).length() + (self.end - self.middle).length();
         ((self.end - self.start).length() + polygon) * 0.5
     }
