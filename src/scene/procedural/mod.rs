@@ -12,6 +12,7 @@ mod patch;
 mod patterns;
 mod pictures;
 mod pieces;
+mod power;
 mod shapes;
 
 #[cfg(test)]
@@ -143,6 +144,16 @@ pub const ALL: &[BuiltIn] = &[
             Parameter { key: "alpha", description: "how wire is drawn", choice: Choice::Word(&["blend", "mask"]) },
         ],
         make: fence::make,
+    },
+    BuiltIn {
+        name: "power",
+        description: "a hall of turbines, tanks and pipes in a floodlight (after Clarberg & Munkberg 2014, table 1)",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 1 %",
+            choice: Choice::Number { default: 111_000, range: [power::LEAST_TRIANGLES, 4_000_000] },
+        }],
+        make: power::make,
     },
     BuiltIn {
         name: "chess",
@@ -322,13 +333,24 @@ mod tests {
     /// Clarberg & Munkberg 2014, table 1: thousands of triangles, draws, lights.
     #[test]
     fn the_scenes_of_table_1_have_its_numbers() {
-        for (name, spec, triangles, draws, lights) in
-            [("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16), ("CHESS", "chess", 46_000, 19, 16)]
-        {
+        for (name, spec, triangles, draws, lights) in [
+            ("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16),
+            ("POWER", "power", 111_000, 286, 1),
+            ("CHESS", "chess", 46_000, 19, 16),
+        ] {
             let scene = made(spec, 1);
             let count = scene.triangle_count();
             assert!(count.abs_diff(triangles) * 100 <= triangles, "{name}: {count} triangles");
             assert_eq!((scene.draws.len(), scene.lights.len()), (draws, lights), "{name}");
+        }
+    }
+
+    #[test]
+    fn who_stands_in_the_hall_of_power_sees_its_roof() {
+        let scene = made("power:triangles=30000", 1);
+        for name in ["roof_sheet", "light_strip"] {
+            let mesh = scene.meshes.iter().find(|mesh| mesh.name == name).expect("it has a roof");
+            assert!(mesh.normals.iter().all(|normal| normal.y < -0.5), "{name}");
         }
     }
 
