@@ -244,7 +244,7 @@ fn what_is_read_back_is_what_was_written() {
 /// Draws and cameras, along splines and turning: a file of them moves as the scene does.
 #[test]
 fn what_moves_in_a_scene_moves_in_its_file() {
-    for spec in ["chess:triangles=12000"] {
+    for spec in ["chess:triangles=12000", "arena:triangles=60000"] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.glb");
         std::fs::write(&path, encoded(spec)).unwrap();

@@ -56,6 +56,16 @@ impl Assembly {
         self.material(material)
     }
 
+    /// Adds a material that lights itself, as a window does: a pattern is what it shines, by the factor of `material`; it
+    /// reflects next to nothing.
+    pub fn shining(&mut self, material: Material, size_px: u32, pattern: impl Fn([f32; 2]) -> Texel) -> usize {
+        let index = self.textured(material, Maps { size_px, relief: None, metallic_roughness: false }, pattern);
+        let material = &mut self.scene.materials[index];
+        material.emissive_texture = material.base_color_texture.take();
+        material.base_color = Vec4::new(0.02, 0.02, 0.02, 1.0);
+        index
+    }
+
     /// Adds an image seen trilinearly and repeated, and returns the texture's index.
     pub fn texture(&mut self, image: Image, color_space: ColorSpace) -> usize {
         self.scene.images.push(image.into());

@@ -1,5 +1,6 @@
 //! Scenes that the program makes itself, seeded: the same on every machine.
 
+mod arena;
 mod assembly;
 mod chess;
 mod cornell;
@@ -144,6 +145,16 @@ pub const ALL: &[BuiltIn] = &[
             Parameter { key: "alpha", description: "how wire is drawn", choice: Choice::Word(&["blend", "mask"]) },
         ],
         make: fence::make,
+    },
+    BuiltIn {
+        name: "arena",
+        description: "a gothic round under 64 spots, with a camera that flies (after Clarberg & Munkberg 2014, table 1)",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 1 %",
+            choice: Choice::Number { default: 528_000, range: [arena::LEAST_TRIANGLES, 8_000_000] },
+        }],
+        make: arena::make,
     },
     BuiltIn {
         name: "power",
@@ -334,6 +345,7 @@ mod tests {
     #[test]
     fn the_scenes_of_table_1_have_its_numbers() {
         for (name, spec, triangles, draws, lights) in [
+            ("ARENA", "arena", 528_000, 855, 64),
             ("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16),
             ("POWER", "power", 111_000, 286, 1),
             ("CHESS", "chess", 46_000, 19, 16),
@@ -351,6 +363,25 @@ mod tests {
         for name in ["roof_sheet", "light_strip"] {
             let mesh = scene.meshes.iter().find(|mesh| mesh.name == name).expect("it has a roof");
             assert!(mesh.normals.iter().all(|normal| normal.y < -0.5), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_moves_in_the_arena_stays_in_it() {
+        let Made { scene, motions } = open("arena:triangles=60000", 1).expect("a name").expect("good parameters");
+        checks::assert_scene_is_sound(&scene);
+        let named = |start: &str| motions.iter().filter(|motion| motion.name.starts_with(start)).count();
+        assert_eq!([named("crown"), named("lantern"), motions.len()], [16, 12, 3 + 16 + 12 + 4 + 1]);
+        // Nothing leaves the vault, through which rods of lanterns and raised gates could stick.
+        let (still, reach) = (scene.bounds(), scene.reach.expect("things move"));
+        assert!(reach.min.abs_diff_eq(still.min, 1e-4) && reach.max.abs_diff_eq(still.max, 1e-4), "{reach:?}");
+        let flight = motions.last().expect("the camera is added last");
+        assert_eq!(flight.thing, Thing::Camera(3));
+        for step in 0..600 {
+            let at = flight.translation_at(f64::from(step) * 0.1);
+            // Between stage and walls, over the parapet and under the vault.
+            let radius_m = at.x.hypot(at.z);
+            assert!((4.6..11.0).contains(&radius_m) && (1.3..7.6).contains(&at.y), "{at}");
         }
     }
 

@@ -98,7 +98,7 @@ impl Curve {
     }
 
     /// A bend needs two segments to show, unless the piece is smaller than an edge.
-    fn segments(&self, detail: Detail) -> u32 {
+    pub fn segments(&self, detail: Detail) -> u32 {
         let least = if self.is_straight() || self.length() < 0.5 * detail.edge_m { 1 } else { 2 };
         detail.along(self.length(), least)
     }
