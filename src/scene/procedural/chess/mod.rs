@@ -257,7 +257,7 @@ fn lights(assembly: &mut Assembly) {
     for index in 0..4_u32 {
         let (sine, cosine) = sin_cos_turns(f64::from(index) * 0.25);
         // From behind the table over it, so that the board stays in the light of the ring.
-        let ends = [dvec3(-cosine, 1.9, sine), dvec3(2.2 * cosine, 0.6, -2.2 * sine)];
-        assembly.spot_light(format!("paper_{index}"), ends, vec3(0.62, 0.74, 1.0) * 9.0, [0.2, 0.44]);
+        let ends = [dvec3(-cosine, 1.9, sine), dvec3(2.2 * cosine, 0.9, -2.2 * sine)];
+        assembly.spot_light(format!("paper_{index}"), ends, vec3(0.62, 0.74, 1.0) * 9.0, [0.3, 0.66]);
     }
 }
