@@ -5,6 +5,7 @@ mod support;
 use glam::{Vec2, Vec3, vec3};
 use quincunx::report::image_file::AovChannels;
 use quincunx::report::picture::Picture;
+use quincunx::scene::procedural::Thing;
 use quincunx::scene::{self, AnimationChoice, Material, Model, Scene, object_ids};
 use quincunx::techniques::inferred_lighting::encoding::Packing;
 use support::boxes::{camera, point_light, rectangle};
@@ -155,7 +156,8 @@ fn motion_vectors_are_where_the_rotor_was() {
         panic!("fence is built in")
     };
     let [time_s, earlier_s] = [1.0, 1.0 - 1.0 / 30.0];
-    let (rotor, name) = (made.spins[0].draw, made.spins[0].name);
+    let Thing::Draw(rotor) = made.motions[0].thing else { panic!("no camera of fence moves") };
+    let name = made.motions[0].name.clone();
     let scene = made.as_ref().clone().into_pose(time_s);
     let earlier = made.as_ref().clone().into_pose(earlier_s);
     let [now_place, earlier_place] = [&scene, &earlier].map(|scene| scene.draws[rotor].world_from_object);

@@ -33,7 +33,7 @@ fn every_walk_meets_what_the_host_meets() {
             assert!(row[ratio]["mean"].as_f64().unwrap() > 0.0 && row[ratio]["pairs"] == 2, "{row:#}");
         }
         assert_eq!(row["ms"]["samples"].as_array().unwrap().len(), 2);
-        assert_eq!(row["scene"]["name"], "hall:triangles=8000");
+        assert_eq!(row["scene"]["name"], "hall:triangles=8000,lights=17,draws=437");
     }
     // The walks of a set meet as much: what is nearest is something.
     for set in rows.chunks(of_a_set.len()) {

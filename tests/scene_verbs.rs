@@ -162,8 +162,8 @@ fn export_writes_a_whole_glb_or_nothing() {
 
 /// The bytes of a built-in scene of seed 1.
 fn encoded(spec: &str) -> Vec<u8> {
-    let Made { scene, spins } = procedural::open(spec, 1).unwrap().unwrap();
-    glb::encode(&scene, &spins).unwrap()
+    let Made { scene, motions } = procedural::open(spec, 1).unwrap().unwrap();
+    glb::encode(&scene, &motions).unwrap()
 }
 
 /// The scene, written and read.
@@ -185,7 +185,9 @@ fn uses_texture(scene: &Scene, material: usize) -> bool {
 
 #[test]
 fn what_is_read_back_is_what_was_written() {
-    for spec in ["cornell", "lamps:objects=40,lights=30", "hall:triangles=20000", "fence:alpha=mask"] {
+    for spec in
+        ["cornell", "lamps:objects=40,lights=30", "hall:triangles=20000", "fence:alpha=mask", "chess:triangles=12000"]
+    {
         let (made, read) = read_back(spec);
         let textured: Vec<bool> = (0..read.materials.len()).map(|material| uses_texture(&read, material)).collect();
         assert_eq!(read.warnings, [] as [&str; 0], "{spec}");
@@ -235,6 +237,29 @@ fn what_is_read_back_is_what_was_written() {
         for (made, read) in made.cameras.iter().zip(&read.cameras) {
             assert_eq!((&made.name, made.projection), (&read.name, read.projection));
             assert!(made.world_from_view.abs_diff_eq(read.world_from_view, UNIT), "{spec}");
+        }
+    }
+}
+
+/// Draws and cameras, along splines and turning: a file of them moves as the scene does.
+#[test]
+fn what_moves_in_a_scene_moves_in_its_file() {
+    for spec in ["chess:triangles=12000", "arena:triangles=60000"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.glb");
+        std::fs::write(&path, encoded(spec)).unwrap();
+        let made = scene::open(spec, 1, &AnimationChoice::All).unwrap();
+        let read = gltf::Model::open(&path, &AnimationChoice::All).unwrap();
+        let rest = made.pose(0.0).unwrap();
+        for time_s in [0.0, 0.3, 1.75, 16.9, 44.4, 60.0, 70.0] {
+            let [made, read] = [made.pose(time_s).unwrap(), read.pose(time_s).unwrap()];
+            let places = |scene: &Scene| scene.draws.iter().map(|draw| draw.world_from_object).collect::<Vec<_>>();
+            assert_eq!(places(&made), places(&read), "{spec}, {time_s} s");
+            assert_eq!(places(&made) == places(&rest), time_s % 60.0 == 0.0 || time_s > 60.0, "{spec}, {time_s} s");
+            assert_eq!(made.cameras.len(), read.cameras.len(), "{spec}");
+            for (made, read) in made.cameras.iter().zip(&read.cameras) {
+                assert!(made.world_from_view.abs_diff_eq(read.world_from_view, 4e-7), "{spec}: {}", made.name);
+            }
         }
     }
 }

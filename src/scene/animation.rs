@@ -103,6 +103,15 @@ impl Curve {
         &self.times_s
     }
 
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// All numbers in glTF's order: key by key, of a spline in-tangent, value and out-tangent.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
     /// The values at the keys, without tangents.
     pub fn key_values(&self) -> impl Iterator<Item = &[f32]> {
         (0..self.times_s.len()).map(|key| self.key_value(key))

@@ -41,12 +41,12 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb")) {
         return Err(Error::request(format!("-o {}: scenes are written as .glb", path.display())));
     }
-    let Made { scene, spins } = procedural::open(spec, super::seed(matches)).unwrap_or_else(|| {
+    let Made { scene, motions } = procedural::open(spec, super::seed(matches)).unwrap_or_else(|| {
         let names: Vec<&str> = procedural::ALL.iter().map(|built_in| built_in.name).collect();
         Err(Error::request(format!("scene {spec}: there is no built-in scene of that name"))
             .note(format!("built-in scenes: {}", names.join(", "))))
     })?;
-    let bytes = glb::encode(&scene, &spins).map_err(|error| error.within(spec))?;
+    let bytes = glb::encode(&scene, &motions).map_err(|error| error.within(spec))?;
     write_whole(path, |out| out.write_all(&bytes))?;
     cli::print(&format!("{}: {}, {} triangles\n", path.display(), Bytes(bytes.len() as u64), scene.triangle_count()))
 }

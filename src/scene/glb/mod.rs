@@ -12,7 +12,8 @@ mod materials;
 
 use self::binary::Binary;
 use crate::error::{Error, Result};
-use crate::scene::procedural::Spin;
+use crate::scene::animation::{Curve, Interpolation};
+use crate::scene::procedural::{Motion, Thing};
 use crate::scene::{Camera, Light, LightKind, Mesh, Projection, Scene};
 use crate::units::Bytes;
 use glam::{Mat4, Vec3};
@@ -20,10 +21,10 @@ use serde_json::{Map, Value, json};
 
 const LIGHTS: &str = "KHR_lights_punctual";
 
-/// `scene`, which a generator made, and what turns in it, each as an animation, as the bytes of a .glb.
+/// `scene`, which a generator made, and what moves in it, each as an animation, as the bytes of a .glb.
 ///
 /// Errors: more than the 4 GiB that the format can hold, or an image that cannot be encoded (exit code 2).
-pub fn encode(scene: &Scene, spins: &[Spin]) -> Result<Vec<u8>> {
+pub fn encode(scene: &Scene, motions: &[Motion]) -> Result<Vec<u8>> {
     let mut binary = Binary::default();
     let meshes: Vec<Value> = scene.meshes.iter().map(|mesh| mesh_json(scene, mesh, &mut binary)).collect();
     let looks = materials::encode(scene, &mut binary)?;
@@ -33,10 +34,7 @@ pub fn encode(scene: &Scene, spins: &[Spin]) -> Result<Vec<u8>> {
         .iter()
         .enumerate()
         .map(|(index, draw)| {
-            let mut node = match spins.iter().find(|spin| spin.draw == index) {
-                Some(spin) => turning(spin),
-                None => placed(draw.world_from_object),
-            };
+            let mut node = node(motions, Thing::Draw(index), draw.world_from_object);
             node.insert("mesh".to_owned(), json!(draw.mesh));
             node.insert("name".to_owned(), json!(scene.meshes[draw.mesh].name));
             Value::Object(node)
@@ -49,7 +47,7 @@ pub fn encode(scene: &Scene, spins: &[Spin]) -> Result<Vec<u8>> {
         Value::Object(node)
     }));
     nodes.extend(scene.cameras.iter().enumerate().map(|(index, camera)| {
-        let mut node = placed(camera.world_from_view);
+        let mut node = node(motions, Thing::Camera(index), camera.world_from_view);
         node.insert("name".to_owned(), json!(camera.name));
         node.insert("camera".to_owned(), json!(index));
         Value::Object(node)
@@ -68,7 +66,7 @@ pub fn encode(scene: &Scene, spins: &[Spin]) -> Result<Vec<u8>> {
     }
     let all_nodes: Vec<usize> = (0..nodes.len()).collect();
     let cameras = scene.cameras.iter().map(camera_json).collect();
-    let animations = spins.iter().map(|spin| animation_json(spin, &mut binary)).collect();
+    let animations = motions.iter().map(|motion| animation_json(scene, motion, &mut binary)).collect();
     let Binary { bytes, views, accessors } = binary;
     // glTF has no empty arrays.
     for (key, array) in [
@@ -145,22 +143,39 @@ fn placed(world_from_node: Mat4) -> Map<String, Value> {
     node
 }
 
-/// A node that an animation turns: it may have no matrix (glTF 2.0, section 3.5.3).
-fn turning(spin: &Spin) -> Map<String, Value> {
-    let rotation = spin.curve.rotation_at(0.0).to_array();
-    let parts = json!({ "translation": spin.translation.to_array(), "rotation": rotation });
+/// The node of a thing that stands at `place` or is moved by one of `motions`.
+fn node(motions: &[Motion], thing: Thing, place: Mat4) -> Map<String, Value> {
+    let Some(motion) = motions.iter().find(|motion| motion.thing == thing) else { return placed(place) };
+    // What an animation moves may have no matrix (glTF 2.0, section 3.5.3).
+    let (translation, rotation) = (motion.translation_at(0.0).to_array(), motion.rotation_at(0.0).to_array());
+    let parts = json!({ "translation": translation, "rotation": rotation });
     if let Value::Object(node) = parts { node } else { unreachable!("it is an object") }
 }
 
-/// `Spin::draw` is the index of its node too: draws come first.
-fn animation_json(spin: &Spin, binary: &mut Binary) -> Value {
-    let rotations: Vec<f32> = spin.curve.key_values().flatten().copied().collect();
-    let (input, output) = (binary.times(spin.curve.times_s()), binary.vectors(&rotations, "VEC4"));
-    json!({
-        "name": spin.name,
-        "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
-        "channels": [{ "sampler": 0, "target": { "node": spin.draw, "path": "rotation" } }],
-    })
+fn animation_json(scene: &Scene, motion: &Motion, binary: &mut Binary) -> Value {
+    // Draws come first, then lights, then cameras.
+    let node = match motion.thing {
+        Thing::Draw(index) => index,
+        Thing::Camera(index) => scene.draws.len() + scene.lights.len() + index,
+    };
+    let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+    for (path, kind, curve) in [("translation", "VEC3", &motion.translations), ("rotation", "VEC4", &motion.rotations)]
+    {
+        let Some(curve) = curve else { continue };
+        channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
+        samplers.push(sampler_json(curve, kind, binary));
+    }
+    json!({ "name": motion.name, "samplers": samplers, "channels": channels })
+}
+
+fn sampler_json(curve: &Curve, kind: &str, binary: &mut Binary) -> Value {
+    let (input, output) = (binary.times(curve.times_s()), binary.vectors(curve.values(), kind));
+    let interpolation = match curve.interpolation() {
+        Interpolation::Step => "STEP",
+        Interpolation::Linear => "LINEAR",
+        Interpolation::CubicSpline => "CUBICSPLINE",
+    };
+    json!({ "input": input, "output": output, "interpolation": interpolation })
 }
 
 /// A light shines along its node's -z.

@@ -2,9 +2,11 @@
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
-use super::made::Spin;
+use super::curves;
+use super::made::{Motion, Thing};
 use super::patch::{self, Patch};
 use super::pictures::{Sheet, Texel};
+use crate::scene::animation::Curve;
 use crate::scene::{Camera, ColorSpace, Draw, Image, Light, LightKind, Material, Projection, Sampler, Scene, Texture};
 
 /// Which pictures of a pattern a material uses.
@@ -21,8 +23,8 @@ pub struct Maps {
 #[derive(Default)]
 pub struct Assembly {
     pub scene: Scene,
-    /// What turns in it.
-    pub spins: Vec<Spin>,
+    /// What moves in it.
+    pub motions: Vec<Motion>,
 }
 
 impl Assembly {
@@ -54,6 +56,16 @@ impl Assembly {
         self.material(material)
     }
 
+    /// Adds a material that lights itself, as a window does: a pattern is what it shines, by the factor of `material`; it
+    /// reflects next to nothing.
+    pub fn shining(&mut self, material: Material, size_px: u32, pattern: impl Fn([f32; 2]) -> Texel) -> usize {
+        let index = self.textured(material, Maps { size_px, relief: None, metallic_roughness: false }, pattern);
+        let material = &mut self.scene.materials[index];
+        material.emissive_texture = material.base_color_texture.take();
+        material.base_color = Vec4::new(0.02, 0.02, 0.02, 1.0);
+        index
+    }
+
     /// Adds an image seen trilinearly and repeated, and returns the texture's index.
     pub fn texture(&mut self, image: Image, color_space: ColorSpace) -> usize {
         self.scene.images.push(image.into());
@@ -74,10 +86,19 @@ impl Assembly {
         self.scene.draws.push(Draw { mesh, world_from_object });
     }
 
-    /// Puts a mesh somewhere where it turns about an axis upward, once in `turn_s` seconds.
-    pub fn spin(&mut self, name: &'static str, mesh: usize, at: DVec3, turn_s: u32) {
-        self.spins.push(Spin::new(name, self.scene.draws.len(), at.as_vec3(), turn_s));
+    /// Puts a mesh somewhere where it turns about an axis of unit length, once in `turn_s` seconds.
+    pub fn turning(&mut self, name: &str, mesh: usize, at: DVec3, axis: Vec3, turn_s: u32) {
+        let thing = Thing::Draw(self.scene.draws.len());
         self.draw(mesh, shifted(at));
+        self.motions.push(Motion::turning(name, thing, at.as_vec3(), axis, turn_s));
+    }
+
+    /// Puts a mesh where `translations`, which repeats after `period_s` seconds, and `rotations` have it.
+    pub fn moving(&mut self, name: &str, mesh: usize, translations: Curve, rotations: Option<Curve>, period_s: u32) {
+        let thing = Thing::Draw(self.scene.draws.len());
+        let motion = Motion::along(name, thing, translations, rotations, period_s);
+        self.draw(mesh, motion.place_at(0.0));
+        self.motions.push(motion);
     }
 
     /// Adds a point light: candela per channel, metres.
@@ -86,17 +107,41 @@ impl Assembly {
         self.scene.lights.push(Light { name, kind: LightKind::Point, intensity, position, direction, range });
     }
 
+    /// Adds a spot light at `position` that shines toward `target`: candela per channel, metres; half angles of its cone
+    /// in radians, from where it fades and where it ends.
+    pub fn spot_light(&mut self, name: String, [position, target]: [DVec3; 2], intensity: Vec3, angles: [f32; 2]) {
+        let [inner_angle, outer_angle] = angles;
+        let direction = (target - position).normalize().as_vec3().normalize();
+        let (kind, position) = (LightKind::Spot { inner_angle, outer_angle }, position.as_vec3());
+        self.scene.lights.push(Light { name, kind, intensity, position, direction, range: None });
+    }
+
     /// Adds a perspective camera at `eye` that looks at `target`, y up. Metres, radians.
     pub fn camera(&mut self, name: &str, eye: DVec3, target: DVec3, y_fov: f32) {
-        let backward = (eye - target).normalize();
-        let right = DVec3::Y.cross(backward).normalize();
-        let up = backward.cross(right);
+        let [right, up, backward] = facing(eye, target);
         let column = |vector: DVec3, w: f32| vector.as_vec3().extend(w);
         let world_from_view =
             Mat4::from_cols(column(right, 0.0), column(up, 0.0), column(backward, 0.0), column(eye, 1.0));
         let projection = Projection::Perspective { y_fov, aspect: None, z_near: 0.05, z_far: None };
         self.scene.cameras.push(Camera { name: name.to_owned(), world_from_view, projection });
     }
+
+    /// Adds a camera that flies through `eyes` and back to the first while it looks from one of `targets` to the next, in
+    /// `curves::DURATION_S`. Its animation has its name.
+    pub fn flying_camera(&mut self, name: &str, eyes: &[DVec3], targets: &[DVec3], y_fov: f32) {
+        let thing = Thing::Camera(self.scene.cameras.len());
+        self.camera(name, eyes[0], targets[0], y_fov);
+        let [path, gaze] = [eyes, targets].map(|stops| curves::circuit(stops, curves::DURATION_S));
+        let looks = curves::looking(&path, &gaze);
+        self.motions.push(Motion::along(name, thing, path, Some(looks), curves::DURATION_S));
+    }
+}
+
+/// To the right, up and backward of one at `eye` who looks at `target` and keeps y up: unit vectors.
+pub fn facing(eye: DVec3, target: DVec3) -> [DVec3; 3] {
+    let backward = (eye - target).normalize();
+    let right = DVec3::Y.cross(backward).normalize();
+    [right, backward.cross(right), backward]
 }
 
 /// A place: `cosine` and `sine` of a turn around y (from +z toward +x), a scale, then a shift in metres.

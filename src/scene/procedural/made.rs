@@ -1,101 +1,129 @@
-//! A built-in scene once made: what stands still, and what of it turns with time.
+//! A built-in scene once made: what stands still, and what of it moves with time.
 
 use glam::{Mat4, Quat, Vec3};
 
+use super::curves;
 use crate::error::Result;
-use crate::scene::animation::{AnimationChoice, Curve, Interpolation};
+use crate::scene::animation::{AnimationChoice, Curve};
 use crate::scene::{Bounds, Scene, gltf};
 
-/// For how long a built-in scene moves; then it stands still, as an animated file does after its last key.
-const DURATION_S: u32 = 60;
-
-/// In how many moments of a turn it is looked at for where the scene reaches.
+/// In how many moments of its period a thing is looked at for where the scene reaches.
 const REACH_PARTS: u32 = 8;
 
-/// A draw that turns about an axis upward through its own origin; an animation of the scene.
-#[derive(Clone, Debug)]
-pub struct Spin {
-    pub name: &'static str,
+/// Which thing of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Thing {
     /// Index into `Scene::draws`.
-    pub draw: usize,
-    /// Where the draw's origin stands, metres.
-    pub translation: Vec3,
-    /// Of quaternions x, y, z, w; between keys the shorter arc.
-    pub curve: Curve,
-    turn_s: u32,
+    Draw(usize),
+    /// Index into `Scene::cameras`.
+    Camera(usize),
 }
 
-impl Spin {
-    /// Turns once in `turn_s` seconds, from +z toward +x.
-    pub fn new(name: &'static str, draw: usize, translation: Vec3, turn_s: u32) -> Self {
-        // Quarters: the shorter arc between two keys is then the way round.
-        const HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
-        let quarters = [[0.0, 0.0, 0.0, 1.0], [0.0, HALF, 0.0, HALF], [0.0, 1.0, 0.0, 0.0], [0.0, HALF, 0.0, -HALF]];
-        let key_count = 4 * DURATION_S / turn_s + 1;
-        let times_s = (0..key_count).map(|key| (key * turn_s) as f32 * 0.25).collect();
-        let values = (0..key_count as usize).flat_map(|key| quarters[key % 4]).collect();
-        let curve = Curve::new(Interpolation::Linear, times_s, values, 4).expect("as many keys as values, ascending");
-        Self { name, draw, translation, curve, turn_s }
+/// A thing that moves; an animation of the scene.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    pub name: String,
+    pub thing: Thing,
+    /// Where the thing's origin stands, metres, where `translations` is None.
+    translation: Vec3,
+    /// Of three numbers, metres.
+    pub translations: Option<Curve>,
+    /// Of quaternions x, y, z, w. None: it keeps the orientation of its own space.
+    pub rotations: Option<Curve>,
+    /// After how many seconds it has been wherever it goes.
+    period_s: u32,
+}
+
+impl Motion {
+    /// Once about `axis`, of unit length, through its own origin at `at` in `turn_s` seconds, counter-clockwise as seen
+    /// from the axis' tip: about y from +z toward +x.
+    pub fn turning(name: &str, thing: Thing, at: Vec3, axis: Vec3, turn_s: u32) -> Self {
+        let rotations = Some(curves::turns(axis, turn_s));
+        Self { name: name.to_owned(), thing, translation: at, translations: None, rotations, period_s: turn_s }
     }
 
-    fn world_from_object(&self, time_s: f64) -> Mat4 {
+    /// Along `translations`, which repeats after `period_s`, turned by `rotations`, if any.
+    pub fn along(name: &str, thing: Thing, translations: Curve, rotations: Option<Curve>, period_s: u32) -> Self {
+        let translation = translations.vector_at(0.0);
+        Self { name: name.to_owned(), thing, translation, translations: Some(translations), rotations, period_s }
+    }
+
+    /// Where the thing's origin stands at `time_s`, metres.
+    pub fn translation_at(&self, time_s: f64) -> Vec3 {
+        self.translations.as_ref().map_or(self.translation, |curve| curve.vector_at(time_s))
+    }
+
+    /// How the thing is turned at `time_s`.
+    pub fn rotation_at(&self, time_s: f64) -> Quat {
+        self.rotations.as_ref().map_or(Quat::IDENTITY, |curve| curve.rotation_at(time_s))
+    }
+
+    /// World from the thing's own space at `time_s`, seconds.
+    pub fn place_at(&self, time_s: f64) -> Mat4 {
         // As glTF composes a node, so that a scene that is written and read stands where it stood.
-        let rotation: Quat = self.curve.rotation_at(time_s);
-        Mat4::from_scale_rotation_translation(Vec3::ONE, rotation, self.translation)
+        Mat4::from_scale_rotation_translation(Vec3::ONE, self.rotation_at(time_s), self.translation_at(time_s))
     }
 }
 
-/// A scene at rest, and what turns in it.
+/// A scene at rest, and what moves in it.
 #[derive(Clone, Debug)]
 pub struct Made {
     pub scene: Scene,
-    pub spins: Vec<Spin>,
+    pub motions: Vec<Motion>,
 }
 
 impl Made {
-    /// The same with only those turning that `choice` names.
+    /// The same with only those moving that `choice` names.
     ///
     /// Errors: there is none of that name (exit code 2).
     pub fn playing(mut self, choice: &AnimationChoice) -> Result<Self> {
         match choice {
             AnimationChoice::All => {}
-            AnimationChoice::None => self.spins.clear(),
+            AnimationChoice::None => self.motions.clear(),
             AnimationChoice::One(name) => {
-                let by_name = self.spins.iter().position(|spin| spin.name == name);
-                let index = by_name.or_else(|| name.parse().ok()).filter(|index| *index < self.spins.len());
+                let by_name = self.motions.iter().position(|motion| motion.name == *name);
+                let index = by_name.or_else(|| name.parse().ok()).filter(|index| *index < self.motions.len());
                 let Some(index) = index else {
-                    return Err(gltf::no_such_animation(name, self.spins.iter().map(|spin| Some(spin.name))));
+                    let names = self.motions.iter().map(|motion| Some(motion.name.as_str()));
+                    return Err(gltf::no_such_animation(name, names));
                 };
-                self.spins = vec![self.spins.swap_remove(index)];
+                self.motions = vec![self.motions.swap_remove(index)];
             }
         }
         self.scene.reach = self.reach();
         Ok(self)
     }
 
-    /// The scene at `time_s`, seconds, at least 0. Its hash covers the time where something turns.
+    /// The scene at `time_s`, seconds, at least 0. Its hash covers the time where something moves.
     pub fn into_pose(self, time_s: f64) -> Scene {
-        let Self { mut scene, spins } = self;
-        for spin in &spins {
-            scene.draws[spin.draw].world_from_object = spin.world_from_object(time_s);
+        let Self { mut scene, motions } = self;
+        for motion in &motions {
+            let place = motion.place_at(time_s);
+            match motion.thing {
+                Thing::Draw(index) => scene.draws[index].world_from_object = place,
+                Thing::Camera(index) => scene.cameras[index].world_from_view = place,
+            }
         }
-        if !spins.is_empty() {
-            let names: Vec<&str> = spins.iter().map(|spin| spin.name).collect();
+        if !motions.is_empty() {
+            let names: Vec<&str> = motions.iter().map(|motion| motion.name.as_str()).collect();
             let identity = format!("{} time={time_s} playing={}", scene.hash, names.join(","));
             scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
         }
         scene
     }
 
-    /// Where the scene reaches while it turns; None where nothing does.
+    /// Where the scene reaches while its draws move; None where nothing moves.
     fn reach(&self) -> Option<Bounds> {
-        let longest_s = self.spins.iter().map(|spin| spin.turn_s).max()?;
+        if self.motions.is_empty() {
+            return None;
+        }
         let mut reach = self.scene.bounds();
-        for part in 0..REACH_PARTS {
-            let time_s = f64::from(longest_s) * f64::from(part) / f64::from(REACH_PARTS);
-            for spin in &self.spins {
-                let mut draw = self.scene.draws[spin.draw];
-                draw.world_from_object = spin.world_from_object(time_s);
+        for motion in &self.motions {
+            let Thing::Draw(index) = motion.thing else { continue };
+            let mut draw = self.scene.draws[index];
+            for part in 0..REACH_PARTS {
+                let time_s = f64::from(motion.period_s) * f64::from(part) / f64::from(REACH_PARTS);
+                draw.world_from_object = motion.place_at(time_s);
                 draw.extend(&self.scene.meshes[draw.mesh], &mut reach);
             }
         }
@@ -106,14 +134,16 @@ impl Made {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Draw, Mesh};
+    use crate::scene::{Camera, Draw, Mesh, Projection};
+    use glam::DVec3;
 
     fn made() -> Made {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let meshes = vec![Mesh { positions, indices: vec![0, 1, 2], ..Mesh::default() }];
         let draws = vec![Draw { mesh: 0, world_from_object: Mat4::IDENTITY }; 2];
         let scene = Scene { hash: "a hash".to_owned(), meshes, draws, ..Scene::default() };
-        Made { scene, spins: vec![Spin::new("wheel", 1, Vec3::new(5.0, 0.0, 0.0), 2)] }
+        let wheel = Motion::turning("wheel", Thing::Draw(1), Vec3::new(5.0, 0.0, 0.0), Vec3::Y, 2);
+        Made { scene, motions: vec![wheel] }
     }
 
     fn tip(time_s: f64) -> Vec3 {
@@ -136,6 +166,25 @@ mod tests {
             assert!(tip(time_s).abs_diff_eq(place, 1e-5), "{time_s} s: {}", tip(time_s));
         }
         assert_eq!(made().into_pose(0.3).draws[0].world_from_object, Mat4::IDENTITY);
+    }
+
+    #[test]
+    fn a_camera_flies_and_what_it_flies_past_stands() {
+        let mut made = made();
+        let projection = Projection::Orthographic { x_mag: 1.0, y_mag: 1.0, z_near: 0.0, z_far: 1.0 };
+        let camera = Camera { name: "bird".to_owned(), world_from_view: Mat4::IDENTITY, projection };
+        made.scene.cameras = vec![camera];
+        let path = curves::to_and_fro([DVec3::ZERO, DVec3::X * 100.0], 20);
+        let turn = curves::turns(Vec3::X, 20);
+        made.motions.push(Motion::along("flight", Thing::Camera(0), path, Some(turn), 20));
+        let made = made.playing(&AnimationChoice::parse("flight")).unwrap();
+        // The triangles alone: where a camera goes nothing is drawn.
+        assert_eq!(made.scene.reach, Some(made.scene.bounds()));
+        let pose = made.clone().into_pose(5.0);
+        let view = pose.cameras[0].world_from_view;
+        assert!(view.transform_point3(Vec3::Y).abs_diff_eq(Vec3::new(50.0, 0.0, 1.0), 1e-4), "{view}");
+        assert_eq!(pose.draws[1].world_from_object, Mat4::IDENTITY);
+        assert_ne!(pose.hash, made.into_pose(6.0).hash);
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! Scenes that the program makes itself, seeded: the same on every machine.
 
+mod arena;
 mod assembly;
+mod chess;
 mod cornell;
+mod curves;
 mod fence;
 mod hall;
 mod lamps;
@@ -9,6 +12,8 @@ mod made;
 mod patch;
 mod patterns;
 mod pictures;
+mod pieces;
+mod power;
 mod shapes;
 
 #[cfg(test)]
@@ -19,7 +24,7 @@ use crate::scene::{AnimationChoice, Scene, normal_groups};
 use assembly::Assembly;
 use rayon::prelude::*;
 
-pub use made::{Made, Spin};
+pub use made::{Made, Motion, Thing};
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
@@ -92,11 +97,23 @@ pub const ALL: &[BuiltIn] = &[
     BuiltIn {
         name: "hall",
         description: "a vaulted hall of fluted columns, inside: marble, brick, brass, glass, and lamps",
-        parameters: &[Parameter {
-            key: "triangles",
-            description: "how many triangles all draws have together, within 5 %",
-            choice: Choice::Number { default: 256_000, range: [hall::LEAST_TRIANGLES, 4_000_000] },
-        }],
+        parameters: &[
+            Parameter {
+                key: "triangles",
+                description: "how many triangles all draws have together, within 5 %",
+                choice: Choice::Number { default: 256_000, range: [hall::LEAST_TRIANGLES, 4_000_000] },
+            },
+            Parameter {
+                key: "lights",
+                description: "how many of its lamps are there",
+                choice: Choice::Number { default: hall::MOST_LAMPS, range: [1, hall::MOST_LAMPS] },
+            },
+            Parameter {
+                key: "draws",
+                description: "in how many draws at most, copies joined to one mesh",
+                choice: Choice::Number { default: hall::MOST_DRAWS, range: [hall::LEAST_DRAWS, hall::MOST_DRAWS] },
+            },
+        ],
         make: hall::make,
     },
     BuiltIn {
@@ -128,6 +145,36 @@ pub const ALL: &[BuiltIn] = &[
             Parameter { key: "alpha", description: "how wire is drawn", choice: Choice::Word(&["blend", "mask"]) },
         ],
         make: fence::make,
+    },
+    BuiltIn {
+        name: "arena",
+        description: "a gothic round under 64 spots, with a camera that flies (after Clarberg & Munkberg 2014, table 1)",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 1 %",
+            choice: Choice::Number { default: 528_000, range: [arena::LEAST_TRIANGLES, 8_000_000] },
+        }],
+        make: arena::make,
+    },
+    BuiltIn {
+        name: "power",
+        description: "a hall of turbines, tanks and pipes in a floodlight (after Clarberg & Munkberg 2014, table 1)",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 1 %",
+            choice: Choice::Number { default: 111_000, range: [power::LEAST_TRIANGLES, 4_000_000] },
+        }],
+        make: power::make,
+    },
+    BuiltIn {
+        name: "chess",
+        description: "a game of chess under sixteen spots, four men moving (after Clarberg & Munkberg 2014, table 1)",
+        parameters: &[Parameter {
+            key: "triangles",
+            description: "how many triangles all draws have together, within 1 %",
+            choice: Choice::Number { default: 46_000, range: [chess::LEAST_TRIANGLES, 2_000_000] },
+        }],
+        make: chess::make,
     },
 ];
 
@@ -192,13 +239,13 @@ pub fn open(spec: &str, seed: u64) -> Option<Result<Made>> {
     };
     let built_in = ALL.iter().find(|built_in| built_in.name == name)?;
     let made = built_in.values(arguments).and_then(|values| {
-        let Assembly { mut scene, spins } = (built_in.make)(&values, seed);
+        let Assembly { mut scene, motions } = (built_in.make)(&values, seed);
         scene.meshes.par_iter_mut().for_each(normal_groups::assign);
         let settings = built_in.settings(&values);
         scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };
         let identity = format!("{} seed={seed} version={GENERATOR_VERSION}", scene.name);
         scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
-        Made { scene, spins }.playing(&AnimationChoice::All)
+        Made { scene, motions }.playing(&AnimationChoice::All)
     });
     Some(made)
 }
@@ -255,6 +302,19 @@ mod tests {
     }
 
     #[test]
+    fn a_hall_in_fewer_draws_is_the_same_hall() {
+        let [whole, joined] = ["", ",draws=100"].map(|more| made(&format!("hall:triangles=20000{more}"), 1));
+        checks::assert_scene_is_sound(&joined);
+        assert_eq!((joined.draws.len(), joined.triangle_count()), (100, whole.triangle_count()));
+        // What is moved in 64 bits instead of 32 may be a rounding elsewhere.
+        let (joined, whole) = (joined.bounds(), whole.bounds());
+        assert!(joined.min.abs_diff_eq(whole.min, 1e-5) && joined.max.abs_diff_eq(whole.max, 1e-5), "{joined:?}");
+        let dark = made("hall:triangles=20000,lights=3", 1);
+        assert_eq!((dark.lights.len(), dark.lights[2].name.as_str()), (3, "nave_lamp_2"));
+        checks::assert_scene_is_sound(&dark);
+    }
+
+    #[test]
     fn the_hall_has_materials_and_lamps_of_many_kinds() {
         let scene = made("hall:triangles=20000", 1);
         let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
@@ -281,9 +341,80 @@ mod tests {
         checks::assert_scene_is_sound(&made("lamps:objects=1,lights=1", 1));
     }
 
+    /// Clarberg & Munkberg 2014, table 1: thousands of triangles, draws, lights.
+    #[test]
+    fn the_scenes_of_table_1_have_its_numbers() {
+        for (name, spec, triangles, draws, lights) in [
+            ("ARENA", "arena", 528_000, 855, 64),
+            ("SPONZA", "hall:lights=16,draws=392", 256_000, 392, 16),
+            ("POWER", "power", 111_000, 286, 1),
+            ("CHESS", "chess", 46_000, 19, 16),
+        ] {
+            let scene = made(spec, 1);
+            let count = scene.triangle_count();
+            assert!(count.abs_diff(triangles) * 100 <= triangles, "{name}: {count} triangles");
+            assert_eq!((scene.draws.len(), scene.lights.len()), (draws, lights), "{name}");
+        }
+    }
+
+    #[test]
+    fn who_stands_in_the_hall_of_power_sees_its_roof() {
+        let scene = made("power:triangles=30000", 1);
+        for name in ["roof_sheet", "light_strip"] {
+            let mesh = scene.meshes.iter().find(|mesh| mesh.name == name).expect("it has a roof");
+            assert!(mesh.normals.iter().all(|normal| normal.y < -0.5), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_moves_in_the_arena_stays_in_it() {
+        let Made { scene, motions } = open("arena:triangles=60000", 1).expect("a name").expect("good parameters");
+        checks::assert_scene_is_sound(&scene);
+        let named = |start: &str| motions.iter().filter(|motion| motion.name.starts_with(start)).count();
+        assert_eq!([named("crown"), named("lantern"), motions.len()], [16, 12, 3 + 16 + 12 + 4 + 1]);
+        // Nothing leaves the vault, through which rods of lanterns and raised gates could stick.
+        let (still, reach) = (scene.bounds(), scene.reach.expect("things move"));
+        assert!(reach.min.abs_diff_eq(still.min, 1e-4) && reach.max.abs_diff_eq(still.max, 1e-4), "{reach:?}");
+        let flight = motions.last().expect("the camera is added last");
+        assert_eq!(flight.thing, Thing::Camera(3));
+        for step in 0..600 {
+            let at = flight.translation_at(f64::from(step) * 0.1);
+            // Between stage and walls, over the parapet and under the vault.
+            let radius_m = at.x.hypot(at.z);
+            assert!((4.6..11.0).contains(&radius_m) && (1.3..7.6).contains(&at.y), "{at}");
+        }
+    }
+
+    #[test]
+    fn the_men_that_move_stand_on_squares_and_the_camera_circles() {
+        let Made { scene, motions } = open("chess:triangles=12000", 1).expect("a name").expect("good parameters");
+        let names: Vec<&str> = motions.iter().map(|motion| motion.name.as_str()).collect();
+        assert_eq!(names, ["queen", "bishop", "knight", "pawn", "circling"]);
+        checks::assert_scene_is_sound(&scene);
+        for motion in &motions[..4] {
+            let Thing::Draw(draw) = motion.thing else { panic!("{} is a man", motion.name) };
+            let [from, halfway] = [0.0, 1.0].map(|time_s| motion.translation_at(time_s));
+            // A square's middle is an odd number of 3 cm from the board's.
+            assert!([from.x, from.z].iter().all(|at| ((at / 0.06).abs() - 0.5).fract().abs() < 1e-3), "{from}");
+            assert!(from.y == 0.0 && halfway.distance(from) > 0.02, "{}: {from} to {halfway}", motion.name);
+            assert_eq!(scene.draws[draw].world_from_object, motion.place_at(0.0));
+        }
+        assert!(least_cosine(&motions[4], glam::Vec3::ZERO) > 0.95);
+    }
+
+    /// The least cosine, over its way, of the angle between where a camera looks and where `toward` is from it.
+    fn least_cosine(motion: &Motion, toward: glam::Vec3) -> f32 {
+        let cosine = |step: u32| {
+            let time_s = f64::from(step) * 0.37;
+            let way = (toward - motion.translation_at(time_s)).normalize();
+            (motion.rotation_at(time_s) * glam::Vec3::NEG_Z).dot(way)
+        };
+        (0..160).map(cosine).fold(1.0, f32::min)
+    }
+
     #[test]
     fn the_fence_has_its_lamps_its_wire_its_glass_and_a_rotor_that_casts_shadows() {
-        let Made { scene, spins } = open("fence", 1).expect("the name is known").expect("it needs no parameters");
+        let Made { scene, motions } = open("fence", 1).expect("the name is known").expect("it needs no parameters");
         assert_eq!((scene.lights.len(), scene.name.as_str()), (122, "fence:lights=122,alpha=blend"));
         let count = |scene: &Scene, is: fn(&AlphaMode) -> bool| {
             scene.materials.iter().filter(|material| is(&material.alpha)).count()
@@ -294,10 +425,12 @@ mod tests {
         assert_eq!((count(&masked, |alpha| *alpha == AlphaMode::Blend), count(&masked, is_mask)), (7, 2));
         assert_eq!(masked.lights.len(), 1);
         checks::assert_scene_is_sound(&masked);
-        let [spin] = spins.as_slice() else { panic!("{} things turn", spins.len()) };
-        assert!(Shell::of(&scene.meshes[scene.draws[spin.draw].mesh]).is_closed());
+        let [Motion { thing: Thing::Draw(rotor), .. }] = motions.as_slice() else {
+            panic!("one thing turns: {motions:?}")
+        };
+        assert!(Shell::of(&scene.meshes[scene.draws[*rotor].mesh]).is_closed());
         // Above the rotor, so that its shadow falls on what is below.
-        assert!(scene.lights[0].position.y > spin.translation.y + 1.0);
+        assert!(scene.lights[0].position.y > motions[0].translation_at(0.0).y + 1.0);
     }
 
     #[test]

@@ -6,6 +6,8 @@
 //!
 //! Only + - * / and sqrt are used, in f64: IEEE 754 fixes their results, libm's sine is another on every system.
 
+use std::rc::Rc;
+
 use glam::{DAffine3, DVec2, DVec3, Vec2, Vec3, Vec4};
 
 use crate::scene::Mesh;
@@ -17,12 +19,13 @@ pub struct Point {
     pub uv: DVec2,
 }
 
-type Surface = Box<dyn Fn(f64, f64) -> Point>;
+type Surface = Rc<dyn Fn(f64, f64) -> Point>;
 
 /// A grid of `columns` x `rows` quadrilaterals over s, t in 0 to 1.
 ///
 /// s runs to the right and t upward as seen from outside, and so do u and -v: no texture is mirrored, the handedness of
 /// every tangent is +1.
+#[derive(Clone)]
 pub struct Patch {
     columns: u32,
     rows: u32,
@@ -52,7 +55,7 @@ impl Patch {
     /// `columns` and `rows` at least 1. `surface` is also evaluated a little outside of 0 to 1.
     pub fn new(columns: u32, rows: u32, surface: impl Fn(f64, f64) -> Point + 'static) -> Self {
         assert!(columns > 0 && rows > 0, "a patch of {columns} x {rows} has no triangles");
-        Self { columns, rows, collapsed: [false; 2], surface: Box::new(surface) }
+        Self { columns, rows, collapsed: [false; 2], surface: Rc::new(surface) }
     }
 
     /// Says which of the rows t = 0 and t = 1 are points: their triangles without area are left out.
@@ -65,7 +68,7 @@ impl Patch {
     pub fn moved(self, place: DAffine3) -> Self {
         let surface = self.surface;
         Self {
-            surface: Box::new(move |s, t| {
+            surface: Rc::new(move |s, t| {
                 let point = surface(s, t);
                 Point { position: place.transform_point3(point.position), ..point }
             }),
@@ -134,6 +137,23 @@ impl Patch {
         let at = &self.surface;
         (difference(at(s - STEP, t), at(s + STEP, t)), difference(at(s, t - STEP), at(s, t + STEP)))
     }
+}
+
+/// The same patches elsewhere. `place` must not mirror.
+pub fn placed(patches: Vec<Patch>, place: DAffine3) -> impl Iterator<Item = Patch> {
+    patches.into_iter().map(move |patch| patch.moved(place))
+}
+
+/// The same patches, shifted, metres.
+pub fn moved(patches: Vec<Patch>, shift: DVec3) -> impl Iterator<Item = Patch> {
+    placed(patches, DAffine3::from_translation(shift))
+}
+
+/// A turn about the y axis, from +z toward +x.
+pub fn around_y(turns: f64) -> DAffine3 {
+    let (sine, cosine) = sin_cos_turns(turns);
+    let columns = [DVec3::new(cosine, 0.0, -sine), DVec3::Y, DVec3::new(sine, 0.0, cosine)];
+    DAffine3::from_cols(columns[0], columns[1], columns[2], DVec3::ZERO)
 }
 
 /// How many triangles the patches become together.

@@ -329,3 +329,18 @@ pub fn barbed_wire([u, v]: [f32; 2], size_px: u32) -> Texel {
         ..Texel::default()
     }
 }
+
+/// A banner of one colour with a gilded border and a lozenge in its middle, woven.
+pub fn banner([u, v]: [f32; 2], field: [f32; 3], seed: u32) -> Texel {
+    let border = u.min(1.0 - u).min(v).min(1.0 - v);
+    let lozenge = 1.6 * (u - 0.5).abs() + (v - 0.45).abs();
+    let is_gold = (0.05..0.09).contains(&border) || (0.2..0.25).contains(&lozenge) || lozenge < 0.09;
+    let weave = 0.5 * triangle_wave(48.0 * u) + 0.5 * triangle_wave(96.0 * v);
+    let color = if is_gold { [0.80, 0.60, 0.24] } else { field };
+    let wear = fractal([u, v], [5, 5], 4, seed);
+    Texel {
+        color: color.map(|channel| channel * (0.75 + 0.15 * weave + 0.2 * wear)),
+        height: weave,
+        ..Texel::default()
+    }
+}

@@ -3,9 +3,9 @@
 //! Every shape is a list of patches that face outward, in metres, y up. Shapes said to be closed are watertight: each
 //! edge belongs to exactly two triangles, with the same bits on both sides.
 
-use glam::{DVec2, DVec3, dvec2, dvec3};
+use glam::{DAffine3, DVec2, DVec3, dvec2, dvec3};
 
-use super::patch::{Detail, Patch, Point, sin_cos_turns};
+use super::patch::{Detail, Patch, Point, placed, sin_cos_turns};
 
 /// How a face takes its texture.
 #[derive(Clone, Copy, Debug)]
@@ -80,14 +80,15 @@ impl Curve {
         points.windows(2).map(|pair| Self::line(pair[0], pair[1])).collect()
     }
 
-    fn at(&self, t: f64) -> DVec2 {
+    /// The place at `t`, 0 to 1.
+    pub fn at(&self, t: f64) -> DVec2 {
         let first = self.start * (1.0 - t) + self.middle * t;
         let second = self.middle * (1.0 - t) + self.end * t;
         first * (1.0 - t) + second * t
     }
 
     /// Between its chord and its control polygon: close enough to divide by and to lay textures along.
-    fn length(&self) -> f64 {
+    pub fn length(&self) -> f64 {
         let polygon = (self.middle - self.start).length() + (self.end - self.middle).length();
         ((self.end - self.start).length() + polygon) * 0.5
     }
@@ -97,7 +98,7 @@ impl Curve {
     }
 
     /// A bend needs two segments to show, unless the piece is smaller than an edge.
-    fn segments(&self, detail: Detail) -> u32 {
+    pub fn segments(&self, detail: Detail) -> u32 {
         let least = if self.is_straight() || self.length() < 0.5 * detail.edge_m { 1 } else { 2 };
         detail.along(self.length(), least)
     }
@@ -195,6 +196,28 @@ pub fn torus(radius_m: f64, tube_m: f64, segments: u32, tube_segments: u32) -> V
         let radius = radius_m + tube_m * outward;
         Point { position: dvec3(radius * cosine, tube_m * height, -radius * sine), uv: dvec2(8.0 * s, -t) }
     })]
+}
+
+/// A place at `from` whose own y axis points to `to`.
+fn toward(from: DVec3, to: DVec3) -> DAffine3 {
+    let along = (to - from).normalize();
+    let beside = if along.y.abs() > 0.5 { DVec3::X } else { DVec3::Y };
+    let z = along.cross(beside).normalize();
+    DAffine3::from_cols(along.cross(z), along, z, from)
+}
+
+/// A closed bar with four sides from one place to the other, `half_m` wide to each side.
+pub fn bar(from: DVec3, to: DVec3, half_m: f64) -> Vec<Patch> {
+    let [low, high] = [dvec3(-half_m, 0.0, -half_m), dvec3(half_m, from.distance(to), half_m)];
+    placed(cuboid(low, high, 0.5, Detail::COARSE), toward(from, to)).collect()
+}
+
+/// A closed tube from one place to the other, of `segments` sides, at least 3.
+pub fn tube(from: DVec3, to: DVec3, radius_m: f64, segments: u32) -> Vec<Patch> {
+    let length_m = from.distance(to);
+    let turning = Turning { segments, repeats: 1, tile_m: 0.5, detail: Detail::COARSE };
+    let profile = Curve::lines(&[[0.0, 0.0], [radius_m, 0.0], [radius_m, length_m], [0.0, length_m]]);
+    placed(turned(&profile, turning), toward(from, to)).collect()
 }
 
 /// A moulding: a profile in x and y, drawn out along z from -length/2 to +length/2, open at both ends.
@@ -374,6 +397,8 @@ mod tests {
             ("sphere", sphere(0.7, 20)),
             ("torus", torus(0.6, 0.2, 20, 9)),
             ("arch", arch([0.6, 0.9], -0.2, 0.3, 9, FINE)),
+            ("bar", bar(dvec3(0.1, 0.2, -0.3), dvec3(0.9, -0.4, 0.5), 0.1)),
+            ("tube", tube(dvec3(0.1, 0.2, -0.3), dvec3(0.2, 1.4, 0.1), 0.15, 9)),
         ];
         for (name, patches) in shapes {
             let mesh = mesh(name, 0, &patches, true);

@@ -285,7 +285,7 @@ pub fn rotor(assembly: &mut Assembly, materials: &Materials, shapes: &Shapes) {
         patches.extend(shape.into_iter().map(|patch| patch.moved(at)));
     }
     let mesh = assembly.mesh("rotor", materials.yellow, &patches);
-    assembly.spin("rotor", mesh, ROTOR, 8);
+    assembly.turning("rotor", mesh, ROTOR, Vec3::Y, 8);
     let [left, right] = gantry_tops();
     let beam_y = left.y;
     shapes.strut(assembly, left, right, 0.05);

@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3, Mat4, dvec2, dvec3};
 use super::materials::Materials;
 use super::{Details, LENGTH_M, NAVE_M, OUTER_M, Piece, SPRINGING_M, VAULT_M, WALL_M, bays, both_sides, column_lines};
 use crate::scene::procedural::assembly::shifted;
-use crate::scene::procedural::patch::{Detail, Patch, Point, sin_cos_turns};
+use crate::scene::procedural::patch::{Detail, Patch, Point, moved, sin_cos_turns};
 use crate::scene::procedural::shapes::{Curve, Turning, cuboid, prism, sphere, torus, turned, turned_with};
 
 /// The middle of the dais on the floor of the nave.
@@ -16,35 +16,45 @@ pub const CANDELABRUM_M: f64 = 1.75;
 const NAVE_LAMP_M: f64 = 5.6;
 const AISLE_LAMP_M: f64 = 3.7;
 
-/// The glasses of the lamps in the nave.
-pub fn nave_lamps() -> Vec<DVec3> {
-    [-12.0, -6.0, 0.0, 6.0, 12.0].map(|z| dvec3(0.0, NAVE_LAMP_M, z)).into()
+/// Where the lamps are, of each kind.
+pub struct Lamps {
+    /// Glasses in the nave.
+    pub nave: Vec<DVec3>,
+    /// Glasses in the aisles, in every second bay.
+    pub aisle: Vec<DVec3>,
+    /// Feet of the candelabra around the dais.
+    pub candelabra: Vec<DVec3>,
 }
 
-/// The glasses of the lamps in the aisles, in every second bay.
-pub fn aisle_lamps() -> Vec<DVec3> {
-    let x = 0.5 * (NAVE_M + WALL_M + OUTER_M);
-    bays().skip(1).step_by(2).flat_map(|z| [-x, x].map(|x| dvec3(x, AISLE_LAMP_M, z))).collect()
+impl Lamps {
+    /// How many there can be.
+    pub const MOST: u64 = 17;
+
+    /// The first `count` of them.
+    pub fn new(count: usize) -> Self {
+        let nave = [-12.0, -6.0, 0.0, 6.0, 12.0].map(|z| dvec3(0.0, NAVE_LAMP_M, z));
+        let x = 0.5 * (NAVE_M + WALL_M + OUTER_M);
+        let aisle = bays().skip(1).step_by(2).flat_map(|z| [-x, x].map(|x| dvec3(x, AISLE_LAMP_M, z)));
+        let corners = [[-2.4, -2.2], [2.4, -2.2], [-2.4, 2.2], [2.4, 2.2]];
+        let candelabra = corners.map(|[x, z]| DAIS + dvec3(x, 0.0, z));
+        let aisle: Vec<DVec3> = aisle.take(count.saturating_sub(nave.len())).collect();
+        let rest = count.saturating_sub(nave.len() + aisle.len());
+        Self {
+            nave: nave.into_iter().take(count).collect(),
+            aisle,
+            candelabra: candelabra.into_iter().take(rest).collect(),
+        }
+    }
 }
 
-/// The feet of the candelabra around the dais.
-pub fn candelabra() -> Vec<DVec3> {
-    [[-2.4, -2.2], [2.4, -2.2], [-2.4, 2.2], [2.4, 2.2]].map(|[x, z]| DAIS + dvec3(x, 0.0, z)).into()
-}
-
-fn moved(patches: Vec<Patch>, shift: DVec3) -> impl Iterator<Item = Patch> {
-    let place = DAffine3::from_translation(shift);
-    patches.into_iter().map(move |patch| patch.moved(place))
-}
-
-fn places(positions: Vec<DVec3>) -> Vec<Mat4> {
-    positions.into_iter().map(shifted).collect()
+fn places(positions: &[DVec3]) -> Vec<Mat4> {
+    positions.iter().copied().map(shifted).collect()
 }
 
 /// Everything that could be carried out.
-pub fn pieces(materials: &Materials, details: Details) -> Vec<Piece> {
+pub fn pieces(materials: &Materials, details: Details, lit: &Lamps) -> Vec<Piece> {
     let mut pieces = dais(materials, details);
-    pieces.extend(lamps(materials, details));
+    pieces.extend(lamps(materials, details, lit));
     pieces.extend(along_the_walls(materials, details));
     let half = 0.5 * LENGTH_M;
     pieces.push(Piece {
@@ -91,7 +101,7 @@ fn dais(materials: &Materials, details: Details) -> Vec<Piece> {
             name: "pedestal",
             material: materials.stylobate,
             patches: pedestal(0.6),
-            places: places(corners.map(|[x, z]| on_dais(x, 0.0, z)).into()),
+            places: places(&corners.map(|[x, z]| on_dais(x, 0.0, z))),
         },
         Piece {
             name: "middle_pedestal",
@@ -114,7 +124,7 @@ fn dais(materials: &Materials, details: Details) -> Vec<Piece> {
     pieces
 }
 
-fn lamps(materials: &Materials, details: Details) -> Vec<Piece> {
+fn lamps(materials: &Materials, details: Details, lit: &Lamps) -> Vec<Piece> {
     let fine = details.fine;
     let turning = |around_m: f64| Turning { segments: fine.along(around_m, 6), repeats: 2, tile_m: 0.4, detail: fine };
     let glass = |radius_m: f64| sphere(radius_m, fine.along(8.0 * radius_m, if details.sketch { 4 } else { 8 }));
@@ -152,33 +162,33 @@ fn lamps(materials: &Materials, details: Details) -> Vec<Piece> {
         Curve::bent([0.2, 1.64], [0.08, 1.64], [0.0, 1.62]),
     ];
     vec![
-        Piece { name: "nave_glass", material: materials.glow, patches: glass(0.15), places: places(nave_lamps()) },
-        Piece { name: "nave_crown", material: materials.brass, patches: crown(0.62), places: places(nave_lamps()) },
+        Piece { name: "nave_glass", material: materials.glow, patches: glass(0.15), places: places(&lit.nave) },
+        Piece { name: "nave_crown", material: materials.brass, patches: crown(0.62), places: places(&lit.nave) },
         Piece {
             name: "nave_rod",
             material: materials.iron,
             patches: rod(0.018, 0.3, VAULT_M + NAVE_M - NAVE_LAMP_M),
-            places: places(nave_lamps()),
+            places: places(&lit.nave),
         },
-        Piece { name: "aisle_glass", material: materials.glow, patches: glass(0.11), places: places(aisle_lamps()) },
-        Piece { name: "aisle_crown", material: materials.brass, patches: crown(0.3), places: places(aisle_lamps()) },
+        Piece { name: "aisle_glass", material: materials.glow, patches: glass(0.11), places: places(&lit.aisle) },
+        Piece { name: "aisle_crown", material: materials.brass, patches: crown(0.3), places: places(&lit.aisle) },
         Piece {
             name: "aisle_rod",
             material: materials.iron,
             patches: rod(0.014, 0.3, SPRINGING_M + 2.0 - AISLE_LAMP_M),
-            places: places(aisle_lamps()),
+            places: places(&lit.aisle),
         },
         Piece {
             name: "candelabrum",
             material: materials.brass,
             patches: turned(&stand, turning(1.2)),
-            places: places(candelabra()),
+            places: places(&lit.candelabra),
         },
         Piece {
             name: "candelabrum_glass",
             material: materials.glow,
             patches: moved(glass(0.11), DVec3::Y * CANDELABRUM_M).collect(),
-            places: places(candelabra()),
+            places: places(&lit.candelabra),
         },
     ]
 }

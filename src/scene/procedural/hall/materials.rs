@@ -1,10 +1,9 @@
 //! What the hall is made of.
 
-use glam::{Vec3, vec3, vec4};
+use glam::{Vec3, vec3};
 
 use crate::scene::procedural::assembly::{Assembly, Maps};
 use crate::scene::procedural::patterns::{self, Masonry};
-use crate::scene::procedural::pictures::Texel;
 use crate::scene::{AlphaMode, Material};
 
 /// Indices into `Scene::materials`. All 0 by default, for counting triangles without painting.
@@ -54,15 +53,8 @@ fn plain(name: &str, color: Vec3, metallic: f32, roughness: f32) -> Material {
     Material { base_color: color.extend(1.0), metallic, roughness, ..named(name) }
 }
 
-/// A window lights itself: its picture is what it shines, it reflects nothing.
-fn shining(assembly: &mut Assembly, name: &str, radiance: f32, pattern: impl Fn([f32; 2]) -> Texel) -> usize {
-    let maps = Maps { size_px: 512, relief: None, metallic_roughness: false };
-    let material = Material { emissive: Vec3::splat(radiance), roughness: 0.4, ..named(name) };
-    let index = assembly.textured(material, maps, pattern);
-    let material = &mut assembly.scene.materials[index];
-    material.emissive_texture = material.base_color_texture.take();
-    material.base_color = vec4(0.02, 0.02, 0.02, 1.0);
-    index
+fn window(name: &str, radiance: f32) -> Material {
+    Material { emissive: Vec3::splat(radiance), roughness: 0.4, ..named(name) }
 }
 
 /// Adds all of them to the scene; `seed` chooses their grain.
@@ -135,8 +127,9 @@ pub fn add(assembly: &mut Assembly, seed: u32) -> Materials {
             patterns::marble(at, [0.17, 0.30, 0.23], [0.46, 0.58, 0.48], seed ^ 16)
         }),
         end_wall: a.textured(named("end_wall"), fine(0.008), |at| patterns::masonry(at, &end_stones, seed ^ 17)),
-        window: shining(a, "dusk_window", 0.8, |at| patterns::leaded_glass(at, 6, &dusk, seed ^ 18)),
-        rose_window: shining(a, "stained_glass", 1.3, |at| patterns::leaded_glass(at, 10, &jewels, seed ^ 19)),
+        window: a.shining(window("dusk_window", 0.8), 512, |at| patterns::leaded_glass(at, 6, &dusk, seed ^ 18)),
+        rose_window: a
+            .shining(window("stained_glass", 1.3), 512, |at| patterns::leaded_glass(at, 10, &jewels, seed ^ 19)),
         grille: a.textured(
             Material { alpha: AlphaMode::Mask { cutoff: 0.5 }, double_sided: true, ..named("grille") },
             Maps { size_px: 256, relief: None, metallic_roughness: true },

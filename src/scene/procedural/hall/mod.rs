@@ -4,8 +4,7 @@
 //! z runs along the nave from the stained-glass window (-16 m) to the door (+16 m), x across, the floor is y = 0. What
 //! repeats is one mesh drawn many times; the right side is the left one turned by half a turn.
 //!
-//! Every piece divides its curves and faces by one edge length. A wanted number of triangles is met by
-//! searching that length; what then is missing goes into the floor of the nave, which can take any number.
+//! A wanted number of triangles is met as `pieces` has it; what is missing goes into the floor of the nave.
 
 mod furniture;
 mod materials;
@@ -14,14 +13,23 @@ mod vaults;
 
 use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
 
+use self::furniture::Lamps;
 use self::materials::Materials;
 use super::Values;
 use super::assembly::{Assembly, place};
-use super::patch::{Detail, Patch, triangle_count};
+use super::patch::Detail;
+use super::pieces::{Piece, count, divided, grid, joined};
 use super::shapes::{Mapping, face_of};
 
 /// With fewer the arches would not be round.
 pub const LEAST_TRIANGLES: u64 = 5000;
+
+/// Lamps, each with its light.
+pub const MOST_LAMPS: u64 = Lamps::MOST;
+/// Of the whole hall; a sketch has fewer.
+pub const MOST_DRAWS: u64 = 437;
+/// Pieces that nothing joins: with fewer draws there would be fewer of them.
+pub const LEAST_DRAWS: u64 = 60;
 
 const BAY_M: f64 = 4.0;
 const BAY_COUNT: u32 = 8;
@@ -56,20 +64,6 @@ const ORNAMENTS: [&str; 17] = [
     "blue_urn",
     "veil_rail",
 ];
-
-/// One mesh and where it stands.
-struct Piece {
-    name: &'static str,
-    material: usize,
-    patches: Vec<Patch>,
-    places: Vec<Mat4>,
-}
-
-impl Piece {
-    fn triangle_count(&self) -> u64 {
-        triangle_count(&self.patches) * self.places.len() as u64
-    }
-}
 
 /// The edge lengths of the hall's parts, for one common scale.
 #[derive(Clone, Copy)]
@@ -114,67 +108,57 @@ fn both_sides(x_m: f64, y_m: f64, inward: bool, along: impl Iterator<Item = f64>
 }
 
 fn nave_floor(material: usize, triangles: u64) -> Piece {
-    let quads = (triangles / 2).max(1);
     let width_m = 2.0 * (NAVE_M + 0.05);
-    let columns = ((quads as f64 * width_m / LENGTH_M).sqrt().round() as u64).max(1);
-    let rows = (quads / columns).max(1);
+    let [columns, rows] = grid([width_m, LENGTH_M], triangles);
     let corners = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]]
         .map(|[x, z]| dvec3(x * width_m * 0.5, 0.0, z * LENGTH_M * 0.5));
-    let floor = face_of(corners, Mapping::Repeat { tile_m: 3.7 }, columns as u32, rows as u32);
+    let floor = face_of(corners, Mapping::Repeat { tile_m: 3.7 }, columns, rows);
     Piece { name: "nave_floor", material, patches: vec![floor], places: vec![Mat4::IDENTITY] }
 }
 
-/// All pieces, with `wanted` triangles within 5 %.
-fn plan(materials: &Materials, wanted: u64) -> Vec<Piece> {
+/// All pieces, with `wanted` triangles within 5 %, in at most `most_draws`.
+fn plan(materials: &Materials, wanted: u64, lamps: &Lamps, most_draws: u64) -> Vec<Piece> {
     let all_but_floor = |edge_m: f64| {
         let details = Details::new(edge_m);
         let mut pieces = structure::pieces(materials, details);
         pieces.extend(vaults::pieces(materials, details));
-        pieces.extend(furniture::pieces(materials, details));
+        pieces.extend(furniture::pieces(materials, details, lamps));
         pieces.retain(|piece| !(details.sketch && ORNAMENTS.contains(&piece.name)));
         pieces
     };
-    let count = |pieces: &[Piece]| pieces.iter().map(Piece::triangle_count).sum::<u64>();
     // The floor should have its share: about a twentieth of what is seen.
-    let budget = wanted - wanted / 20;
-    let (mut too_fine_m, mut coarse_m) = (0.005_f64, 100.0_f64);
-    for _ in 0..24 {
-        let middle_m = (too_fine_m * coarse_m).sqrt();
-        if count(&all_but_floor(middle_m)) > budget {
-            too_fine_m = middle_m;
-        } else {
-            coarse_m = middle_m;
-        }
-    }
-    let mut pieces = all_but_floor(coarse_m);
+    let mut pieces = divided(wanted - wanted / 20, [0.005, 100.0], all_but_floor);
     let rest = wanted.saturating_sub(count(&pieces));
     pieces.push(nave_floor(materials.floor, rest));
-    pieces
+    joined(pieces, most_draws)
 }
 
 /// How many triangles the hall has when `wanted` are asked for.
 #[cfg(test)]
 pub fn planned_triangle_count(wanted: u64) -> u64 {
-    plan(&Materials::default(), wanted).iter().map(Piece::triangle_count).sum()
+    count(&plan(&Materials::default(), wanted, &Lamps::new(17), MOST_DRAWS))
 }
 
 /// The hall for `triangles`; the seed chooses the grain of its stones.
 pub fn make(values: &Values, seed: u64) -> Assembly {
     let mut assembly = Assembly::default();
     let materials = materials::add(&mut assembly, seed as u32);
-    for piece in plan(&materials, values.get("triangles")) {
+    let lamps = Lamps::new(values.get("lights") as usize);
+    for piece in plan(&materials, values.get("triangles"), &lamps, values.get("draws")) {
         let mesh = assembly.mesh(piece.name, piece.material, &piece.patches);
         for place in piece.places {
             assembly.draw(mesh, place);
         }
     }
-    lights(&mut assembly);
+    lights(&mut assembly, lamps);
     for (name, eye, target, y_fov) in [
         ("nave", dvec3(-2.5, 1.75, 13.3), dvec3(0.75, 3.2, -3.0), 1.0),
         ("aisle", dvec3(-6.9, 1.7, 14.4), dvec3(-5.2, 2.2, 0.0), 0.95),
         ("dais", dvec3(2.7, 2.0, 2.6), dvec3(-0.4, 1.3, -3.4), 0.8),
         ("vault", dvec3(1.6, 1.2, 9.0), dvec3(-0.8, 8.6, -2.0), 1.05),
         ("column", dvec3(-1.7, 2.6, 5.9), dvec3(-4.6, 3.9, 3.2), 0.85),
+        // A candelabrum at arm's length, the window thirteen metres behind it: for a lens out of focus.
+        ("candelabrum", dvec3(-3.3, 1.74, 1.1), dvec3(0.1, 1.95, -6.0), 0.85),
     ] {
         assembly.camera(name, eye, target, y_fov);
     }
@@ -182,12 +166,12 @@ pub fn make(values: &Values, seed: u64) -> Assembly {
 }
 
 /// Every lamp has its light a little outside of its glass, which would else stand in the way of every shadow ray.
-fn lights(assembly: &mut Assembly) {
+fn lights(assembly: &mut Assembly, lamps: Lamps) {
     const WARM: Vec3 = vec3(1.0, 0.74, 0.44);
     for (kind, places, below_m, candela) in [
-        ("nave_lamp", furniture::nave_lamps(), 0.4, 38.0),
-        ("aisle_lamp", furniture::aisle_lamps(), 0.4, 15.0),
-        ("candelabrum", furniture::candelabra(), -furniture::CANDELABRUM_M - 0.32, 5.0),
+        ("nave_lamp", lamps.nave, 0.4, 38.0),
+        ("aisle_lamp", lamps.aisle, 0.4, 15.0),
+        ("candelabrum", lamps.candelabra, -furniture::CANDELABRUM_M - 0.32, 5.0),
     ] {
         for (index, position) in places.into_iter().enumerate() {
             let position = position - DVec3::Y * below_m;
