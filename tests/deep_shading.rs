@@ -78,6 +78,17 @@ fn every_road_is_one_while_things_move_with_holes_and_glass() {
     }
 }
 
+/// Under the paper's shadow-mapped lights, whose maps are of the middle of the exposure.
+#[test]
+fn every_road_is_one_under_shadow_maps() {
+    let maps = [SIZE, ("direct-shadow", "map"), ("shadow-map-size", "128"), ("spp", "2"), ("tuples", "2")];
+    let exposed = scene::open("chess:triangles=12000", 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.2]).unwrap();
+    let watched = Watched::with_scene(exposed);
+    require_one_picture(&watched, &maps);
+    let unshadowed = watched.hash(DEEP, &both(&maps, &[("direct-shadow", "none")]));
+    assert_ne!(unshadowed, watched.hash(DEEP, &maps), "the men have shadows");
+}
+
 /// Without a guard band, and with a lens that brings most of the scene in from outside.
 #[test]
 fn samples_that_shading_space_has_no_place_for_are_shaded_too() {

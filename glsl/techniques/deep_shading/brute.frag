@@ -1,6 +1,6 @@
 // Samples shaded where they are seen, each by itself: the oracle of the lists (--lists none), and what they leave out.
 // Pass: src/techniques/deep_shading/brute.rs.
-// variants: SAMPLES=all|strays VERTEX=plain|extended
+// variants: SAMPLES=all|strays VERTEX=plain|extended SHADOWS=traced|mapped
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"

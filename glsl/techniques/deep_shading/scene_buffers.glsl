@@ -25,8 +25,8 @@ struct DrawnParams {
 layout(push_constant) uniform Push { DrawnParams params; };
 layout(std430, set = 0, binding = 1) readonly buffer Draws { DrawBlock draws[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
-layout(std430, set = 0, binding = 10) readonly buffer Indices { uint indices[]; };
-layout(std430, set = 0, binding = 11) readonly buffer Positions { float positions[]; };
+layout(std430, set = 0, binding = 31) readonly buffer Indices { uint indices[]; };
+layout(std430, set = 0, binding = 32) readonly buffer Positions { float positions[]; };
 layout(std430, set = 0, binding = 14) readonly buffer ClosePositions { float close_positions[]; };
 layout(std430, set = 0, binding = 16) readonly buffer CloseDraws { DrawBlock close_draws[]; };
 

@@ -1,6 +1,6 @@
 // A triangle at the pixels of shading space that it touches: shaded where the list has it (section 4.4; appendix A, pass 3).
 // Pass: src/techniques/deep_shading/shade/mod.rs.
-// variants: LISTS=linked|compact ZMAX=off|on VERTEX=plain|extended
+// variants: LISTS=linked|compact ZMAX=off|on VERTEX=plain|extended SHADOWS=traced|mapped
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"

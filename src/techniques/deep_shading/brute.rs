@@ -12,8 +12,8 @@ use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::brute::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Layers, Traffic};
-use crate::passes::mesh;
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Layers, Traffic};
+use crate::passes::{mesh, shadow_maps};
 use crate::resident::{DrawList, SceneGpu};
 use ash::vk;
 use std::sync::Arc;
@@ -27,7 +27,8 @@ impl Brute {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let samples = if choices.has_lists { "strays" } else { "all" };
         let vertex = sample::vertex_shader(scene);
-        let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene)]);
+        let shadows = shadow_maps::axis(choices.maps.is_some());
+        let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows]);
         let constants = super::constants_of(choices, &[Some(vertex), Some(fragment)]);
         let pipeline = GraphicsPipeline::new(
             gpu,
@@ -53,7 +54,7 @@ impl Brute {
         Ok(Self { pipeline, name: choices.brute_pass() })
     }
 
-    /// `lists`: of which these are the strays.
+    /// The lists of which these are the strays; the barrier of the shadow maps.
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
@@ -63,7 +64,7 @@ impl Brute {
         primitives: &Primitives,
         bound: &[(&'static str, Bound<'_>)],
         samples: &Samples,
-        lists: Option<&Lists>,
+        (lists, maps): (Option<&Lists>, Option<Barrier>),
         colors: &Buffer,
         counters: &Buffer,
     ) -> Result<()> {
@@ -75,6 +76,7 @@ impl Brute {
             invocations: None,
         };
         cmd.pass(&full(self.name), traffic, |cmd| {
+            cmd.barriers(maps);
             let written = [colors, counters];
             let spids_left = if let Some(lists) = lists {
                 let from = Access::FragmentWrite;

@@ -1,12 +1,15 @@
 //! What the settings come to.
 
+use super::middle::Middle;
 use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::{NAME, shade::Road};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
 use crate::lens::Lens;
+use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
+use crate::passes::shadow_maps::MapLayout;
 use crate::resident::GeometryChoice;
 use crate::settings::Values;
 use crate::techniques::Inputs;
@@ -30,6 +33,10 @@ pub struct Choices {
     pub is_counted: bool,
     pub road: Road,
     pub geometry: GeometryChoice,
+    /// The scene where it is shaded; None: nothing moves.
+    pub middle: Option<Middle>,
+    /// With `--direct-shadow map`.
+    pub maps: Option<MapLayout>,
 }
 
 /// `--conservative`, `auto` resolved.
@@ -62,13 +69,19 @@ impl Choices {
         } else {
             None
         };
+        let middle = Middle::new(inputs)?;
+        let (scene, lights) =
+            middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
+        let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         Ok(Self {
+            maps: maps.map_err(|error| error.within(NAME))?,
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
             table: Table::new(samples, tuples),
             run_count: values.integer("accumulate") as u32,
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
             lens,
-            is_moving: inputs.scene.closing.is_some(),
+            is_moving: middle.is_some(),
+            middle,
             has_lists,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
             is_compacted,
@@ -78,6 +91,11 @@ impl Choices {
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         })
+    }
+
+    /// The lights that shade: those in the middle of the exposure.
+    pub fn lights<'a>(&'a self, inputs: &Inputs<'a>) -> &'a LightSet {
+        self.middle.as_ref().map_or(inputs.lights, |middle| &middle.lights)
     }
 
     /// Something is seen from elsewhere than shading space shows it from.
@@ -103,6 +121,7 @@ impl Choices {
     /// Constants that several shaders have.
     pub fn constants(&self) -> Vec<(&'static str, u32)> {
         let mut constants = self.direct.light_constants().to_vec();
+        constants.extend(self.maps.iter().flat_map(MapLayout::constants));
         constants.extend([
             ("IS_MOVING", u32::from(self.is_moving)),
             ("HAS_LENS", u32::from(self.lens.is_some())),

@@ -79,7 +79,7 @@ impl DeepFrame {
         };
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
-            scene: DeepScene::new(gpu, inputs, resources, &choices)?,
+            scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             samples: Samples::new(gpu, resources, &choices)?,
             sample: Sample::new(gpu, scene, &choices)?,
             brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices)?) } else { None },
@@ -99,6 +99,7 @@ impl Frame for DeepFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let Self { list, primitives, samples, colors, counters, .. } = self;
         let bound = self.scene.bound(frame, scene);
+        self.scene.record_maps(cmd, scene)?;
         let frame_extent = self.color.description.extent;
         let tuples = (&self.choices.table, frame_extent);
         visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, tuples)?;
@@ -113,11 +114,15 @@ impl Frame for DeepFrame {
                 address.record(cmd, &bound, samples, lists)?;
                 links_left = Access::ComputeRead;
             }
-            listed.shade.record(cmd, scene, list, primitives, &bound, (lists, links_left), colors, counters)?;
+            let maps = self.scene.maps_barrier(Access::DepthWrite);
+            let left = (lists, links_left, maps);
+            listed.shade.record(cmd, scene, list, primitives, &bound, left, colors, counters)?;
         }
         let lists = self.listed.as_ref().map(|listed| &listed.lists);
         if let Some(brute) = &self.brute {
-            brute.record(cmd, scene, list, primitives, &bound, samples, lists, colors, counters)?;
+            let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
+            let left = (lists, self.scene.maps_barrier(maps_left));
+            brute.record(cmd, scene, list, primitives, &bound, samples, left, colors, counters)?;
         }
         let spids_left = match (&self.listed, &self.brute) {
             (Some(_), None) => Access::ComputeSample.into(),

@@ -1,7 +1,7 @@
 //! Deep shading buffers: Clarberg and Munkberg 2014, "Deep Shading Buffers on Commodity GPUs". Under motion and defocus blur
 //! each triangle is shaded once a pixel, however many samples see it.
 //!
-//! Passes: visibility (the triangle that each sample sees, and where it is in canonical shading space: its SPID), lists (of
+//! Passes: shadow_maps (with `--direct-shadow map`), visibility (the triangle that each sample sees, and where it is in canonical shading space: its SPID), lists (of
 //! triangles, by compare-exchange), lists.compact, lists.address, shade (one conservative pass over shading space, which
 //! shades what the lists have), strays (samples that shading space has no place for, under blur), resolve (box filter),
 //! count (`--instrument on`), accumulate (`--accumulate` above 1).
@@ -18,7 +18,7 @@
 //!   triangle's plane: colours depend on triangle and pixel alone
 //! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
-//! - light as by `forward`, with shadow rays in place of shadow maps; surfaces face as the middle of the lens sees them
+//! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits. Without blur
 //! it is `forward --supersample` with samples in other places.
@@ -29,6 +29,7 @@ mod count;
 mod counters;
 mod frame;
 mod lists;
+mod middle;
 mod plan;
 mod primitives;
 mod resolve;
@@ -44,9 +45,10 @@ use crate::error::Result;
 use crate::gpu::shader::Shader;
 use crate::gpu::{Ability, Caps, Gpu, Need};
 use crate::lights::LightSet;
+use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::{Setting, Values};
+use crate::settings::{SHADOW_MAPS, Setting, Values};
 use choices::Choices;
 use frame::DeepFrame;
 use primitives::Primitives;
@@ -85,7 +87,7 @@ impl Technique for DeepShading {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS]
+        &[settings::SETTINGS, SHADOW_MAPS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -109,6 +111,7 @@ impl Technique for DeepShading {
             }
             shade::Road::Vertex => {}
         }
+        needs.extend(shadow_maps::needs(values));
         needs
     }
 
@@ -154,6 +157,7 @@ impl Prepared for PreparedDeep {
         let Choices { table, road, lens, .. } = &self.choices;
         let mut resolved =
             BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
+        resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if let Some(lens) = lens {
             resolved.insert("focus", format!("{}", lens.focus));
         }

@@ -7,11 +7,12 @@ use super::{NAME, full};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
 use crate::gpu::{Access, ImageDescription};
+use crate::memory::kinds::Use;
 use crate::passes::{accumulate, direct};
 use crate::plan::{Plan, Shape};
 use crate::resident::VertexAttributes;
 use crate::techniques::Inputs;
-use ash::vk::{Format, ImageUsageFlags as Usage};
+use ash::vk::{BufferUsageFlags, Format, ImageUsageFlags as Usage};
 
 pub const SPIDS: &str = "visibility.spids";
 pub const DEPTH: &str = "visibility.depth";
@@ -98,6 +99,15 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
     plan.buffer("scene.geometry", full("close.positions"), vertices * 12);
     plan.buffer("scene.geometry", full("close.attributes"), vertices * size_of::<VertexAttributes>() as u64);
     plan.buffer("scene.geometry", full("close.draws"), draws * size_of::<DrawBlock>() as u64);
+    if choices.is_moving && choices.maps.is_some() {
+        plan.buffer("scene.geometry", full("middle.draws"), draws * size_of::<DrawBlock>() as u64);
+        let flags = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::VERTEX_BUFFER | BufferUsageFlags::TRANSFER_DST;
+        let shape = Shape::Buffer { bytes: vertices * 12, flags, usage: Use::Device };
+        plan.push("scene.geometry", full("middle.positions"), shape);
+    }
+    if let Some(maps) = &choices.maps {
+        maps.plan(plan, NAME);
+    }
     Ok(())
 }
 
@@ -170,6 +180,7 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         }
         let mut shaded = read_lists(Access::GraphicsRead);
         shaded.extend(choices.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
+        shaded.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
     }
@@ -180,6 +191,7 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         } else {
             brute.extend([touch(COLORS, Access::TransferWrite), touch(COUNTERS, Access::TransferWrite)]);
         }
+        brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
         brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full(choices.brute_pass()), brute);
     }

@@ -4,14 +4,13 @@
 use super::choices::Choices;
 use super::{NAME, full};
 use crate::error::Result;
-use crate::gpu::shader::structs::{FrameBlock, LightBlock};
-use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
+use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, upload};
 use crate::passes::direct::{self, DirectGpu};
+use crate::passes::shadow_maps::{Places, ShadowMaps};
 use crate::plan::Resources;
 use crate::resident::{Geometry, SceneGpu, draw_blocks};
+use crate::scene::Scene;
 use crate::techniques::Inputs;
-use crate::techniques::closing::Closing;
-use glam::{Vec3, Vec4};
 use std::sync::Arc;
 
 /// Buffers beside the resident ones.
@@ -23,50 +22,97 @@ pub struct DeepScene {
     close_positions: Buffer,
     close_attributes: Buffer,
     close_draws: Buffer,
+    maps: Option<ShadowMaps>,
+    /// Draws and positions in the middle of the exposure, where shadow maps are drawn and something moves.
+    casters: Option<[Buffer; 2]>,
+}
+
+/// A moment of the scene as buffers hold it; empty where there is no such moment.
+#[derive(Default)]
+struct Placed {
+    positions: Vec<u8>,
+    attributes: Vec<u8>,
+    draws: Vec<u8>,
+}
+
+impl Placed {
+    fn of(scene: &Scene) -> Self {
+        let geometry = Geometry::of(scene);
+        Self {
+            positions: bytemuck::cast_slice(&geometry.positions).to_vec(),
+            attributes: bytemuck::cast_slice(&geometry.attributes).to_vec(),
+            draws: bytemuck::cast_slice(&draw_blocks(scene)).to_vec(),
+        }
+    }
 }
 
 impl DeepScene {
     /// Fills the planned buffers.
     ///
     /// Errors: as of the scene's cameras and lights; memory for the uploads (exit code 4).
-    pub fn new(gpu: &Arc<Gpu>, inputs: &Inputs<'_>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
-        let closing = Closing::new(inputs)?;
-        let mut lights = direct::light_blocks(inputs.lights, inputs.values);
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        resources: &mut Resources,
+        choices: &Choices,
+        scene: &SceneGpu,
+    ) -> Result<Self> {
+        let moved = choices.middle.as_ref();
+        let lights = direct::light_blocks(choices.lights(inputs), inputs.values);
         let bounds = inputs.scene.bounds();
         let background = inputs.values.color("background");
-        let mut middle = inputs.view.block(&bounds, background, inputs.lights.ambient, lights.len() as u32, 0);
-        if let Some(closing) = &closing {
-            let ends = direct::light_blocks(&closing.lights, inputs.values);
-            lights.iter_mut().zip(&ends).for_each(|(light, end)| *light = mean_light(light, end));
-            middle = mean_frame(&middle, &closing.block(inputs));
-        }
+        let open = inputs.view.block(&bounds, background, inputs.lights.ambient, lights.len() as u32, 0);
+        let middle = moved.map_or(open, |moved| moved.frame(inputs, &open));
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?;
         let seed = inputs.values.integer("seed") as u32;
         let tuples: Vec<_> =
             (0..choices.run_count).flat_map(|run| choices.table.tuples(inputs.view.extent, seed, run)).collect();
-        let view = closing.as_ref().map(|closing| &closing.view);
+        let view = moved.map(|moved| &moved.closing.view);
         let space = choices.space.block(inputs.view, view, choices.lens, &choices.table);
-        let close = inputs.scene.closing.as_deref().map(|scene| (Geometry::of(scene), draw_blocks(scene)));
-        let (geometry, draws) = close.unzip();
-        let of = |bytes: Option<&[u8]>| bytes.map_or(Vec::new(), <[u8]>::to_vec);
-        let positions = of(geometry.as_ref().map(|geometry| bytemuck::cast_slice(&geometry.positions)));
-        let attributes = of(geometry.as_ref().map(|geometry| bytemuck::cast_slice(&geometry.attributes)));
-        let draws = of(draws.as_ref().map(|draws| bytemuck::cast_slice(draws)));
-        let mut filled = |what: &str, bytes: &[u8]| -> Result<Buffer> {
+        let close = inputs.scene.closing.as_deref().map(Placed::of).unwrap_or_default();
+        let maps = choices.maps.as_ref().map(|layout| {
+            let posed = moved.map_or(inputs.scene, |moved| &moved.scene);
+            ShadowMaps::new(gpu, resources, NAME, layout, posed, scene)
+        });
+        let maps = maps.transpose()?;
+        let mut sent = |what: &str, bytes: &[u8], accesses: AccessSet| -> Result<Buffer> {
             let buffer = resources.buffer(&full(what));
-            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead | Access::GraphicsRead)?;
+            upload::buffer(gpu, &buffer, bytes, accesses)?;
             Ok(buffer)
         };
+        let casters = match moved.filter(|_| maps.is_some()) {
+            None => None,
+            Some(moved) => {
+                let Placed { positions, draws, .. } = Placed::of(&moved.scene);
+                let positions = sent("middle.positions", &positions, Access::VertexRead.into())?;
+                Some([sent("middle.draws", &draws, Access::GraphicsRead.into())?, positions])
+            }
+        };
+        let mut filled = |what: &str, bytes: &[u8]| sent(what, bytes, Access::ComputeRead | Access::GraphicsRead);
         Ok(Self {
             tuples: filled("tuples", bytemuck::cast_slice(&tuples))?,
             space: filled("space", bytemuck::bytes_of(&space))?,
             middle: filled("middle", bytemuck::bytes_of(&middle))?,
-            close_positions: filled("close.positions", &positions)?,
-            close_attributes: filled("close.attributes", &attributes)?,
-            close_draws: filled("close.draws", &draws)?,
+            close_positions: filled("close.positions", &close.positions)?,
+            close_attributes: filled("close.attributes", &close.attributes)?,
+            close_draws: filled("close.draws", &close.draws)?,
+            maps,
+            casters,
             direct,
         })
+    }
+
+    /// Draws the shadow maps, where lights have some.
+    pub fn record_maps(&self, cmd: &mut Commands, scene: &SceneGpu) -> Result<()> {
+        let Some(maps) = &self.maps else { return Ok(()) };
+        let moved = self.casters.as_ref().map(|[draws, positions]| Places { draws, positions });
+        maps.record(cmd, NAME, scene, moved.unwrap_or_else(|| Places::of(scene)))
+    }
+
+    /// What a pass waits for that lights, after the one that touched the shadow maps last.
+    pub fn maps_barrier(&self, from: Access) -> Option<Barrier> {
+        self.maps.as_ref().map(|maps| maps.barrier(from))
     }
 
     /// Everything that a shader of the technique may read of it, by name.
@@ -85,39 +131,11 @@ impl DeepScene {
             ("CloseDraws", Bound::Buffer(&self.close_draws)),
         ];
         bound.extend(self.direct.bound());
+        bound.extend(self.maps.iter().flat_map(ShadowMaps::bound));
         if let Some(extended) = &scene.extended {
             bound.push(("ExtendedAttributes", Bound::Buffer(&extended.attributes)));
             bound.push(("Placements", Bound::Buffer(&extended.placements)));
         }
         bound
-    }
-}
-
-/// A light in the middle of the exposure: as far and as strong as between its ends.
-fn mean_light(open: &LightBlock, close: &LightBlock) -> LightBlock {
-    let mean = |a: [f32; 4], b: [f32; 4]| (Vec4::from(a) * 0.5 + Vec4::from(b) * 0.5).to_array();
-    let direction = Vec4::from(mean(open.direction_ws, close.direction_ws)).truncate();
-    LightBlock {
-        position_ws: mean(open.position_ws, close.position_ws),
-        intensity: mean(open.intensity, close.intensity),
-        direction_ws: direction.normalize_or(Vec4::from(open.direction_ws).truncate()).extend(0.0).to_array(),
-        ..*open
-    }
-}
-
-/// The eye and its axes between both ends; the rest is the opening's.
-fn mean_frame(open: &FrameBlock, close: &FrameBlock) -> FrameBlock {
-    let mean = |a: [f32; 4], b: [f32; 4]| Vec4::from(a) * 0.5 + Vec4::from(b) * 0.5;
-    let direction = |a: [f32; 4], b: [f32; 4]| {
-        let between: Vec3 = mean(a, b).truncate();
-        between.normalize_or(Vec4::from(a).truncate()).extend(0.0).to_array()
-    };
-    FrameBlock {
-        eye_ws: mean(open.eye_ws, close.eye_ws).to_array(),
-        forward_ws: direction(open.forward_ws, close.forward_ws),
-        right_ws: direction(open.right_ws, close.right_ws),
-        up_ws: direction(open.up_ws, close.up_ws),
-        ambient: mean(open.ambient, close.ambient).to_array(),
-        ..*open
     }
 }

@@ -1,6 +1,6 @@
 //! The settings that only this technique reads.
 
-use crate::settings::{APERTURE, BRDF, DIRECT_SHADOW, FOCUS, GEOMETRY, Kind, SHUTTER, Setting};
+use crate::settings::{APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, Setting};
 
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
 const MOST_GUARD_PX: u64 = 4096;
@@ -132,5 +132,5 @@ pub const SETTINGS: &[Setting] = &[
     SHUTTER,
     BRDF,
     GEOMETRY,
-    DIRECT_SHADOW,
+    MAPPED_DIRECT_SHADOW,
 ];

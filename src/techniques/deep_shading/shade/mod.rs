@@ -15,8 +15,9 @@ use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
 use crate::gpu::shader::{Shader, variant};
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::mesh::{self, Sides};
+use crate::passes::shadow_maps;
 use crate::resident::{DrawList, SceneGpu};
 use crate::units::Extent;
 use ash::vk;
@@ -71,7 +72,8 @@ impl Shade {
         let lists = if choices.is_compacted { "compact" } else { "linked" };
         let zmax = if choices.has_zmax { "on" } else { "off" };
         let stages = choices.road.stages();
-        let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene)]);
+        let shadows = shadow_maps::axis(choices.maps.is_some());
+        let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
         let constants = super::constants_of(choices, &shaders);
         let pipeline = GraphicsPipeline::new(
@@ -98,7 +100,7 @@ impl Shade {
         Ok(Self { pipeline, stages, space: choices.space.extent })
     }
 
-    /// `left`: who wrote links and depths last, and is reading them.
+    /// The lists with who touched their links last; the barrier of the shadow maps.
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
@@ -107,7 +109,7 @@ impl Shade {
         list: &DrawList,
         primitives: &Primitives,
         bound: &[(&'static str, Bound<'_>)],
-        (lists, left): (&Lists, Access),
+        (lists, left, maps): (&Lists, Access, Option<Barrier>),
         colors: &Buffer,
         counters: &Buffer,
     ) -> Result<()> {
@@ -118,6 +120,7 @@ impl Shade {
             invocations: None,
         };
         cmd.pass(&full("shade"), traffic, |cmd| {
+            cmd.barriers(maps);
             lists.links_to(cmd, left, Access::GraphicsRead);
             let zmax = lists.zmax.iter();
             cmd.barriers(zmax.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::GraphicsRead)));
