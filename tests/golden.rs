@@ -132,6 +132,18 @@ fn lamps_forward() {
     require_golden("lamps_forward", "lamps", "forward", &[("msaa", "4")]);
 }
 
+#[test]
+fn chess_deep() {
+    let changes = [
+        ("aperture", "0.02"),
+        ("spp", "4"),
+        ("direct-shadow", "map"),
+        ("shadow-map-size", "256"),
+        ("conservative", "vertex"),
+    ];
+    require_golden("chess_deep", "chess:triangles=12000", "deep_shading", &changes);
+}
+
 /// By its panel alone, as photographs of the box are.
 #[test]
 fn cornell_path_traced() {

@@ -83,7 +83,7 @@ impl Technique for DeepShading {
     }
 
     fn scene(&self) -> &'static str {
-        "hall"
+        "chess"
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
