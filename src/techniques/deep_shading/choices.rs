@@ -22,6 +22,8 @@ pub struct Choices {
     pub lens: Option<Lens>,
     /// The scene is another one when the shutter closes.
     pub is_moving: bool,
+    /// Samples are tested by a shader instead of the rasteriser.
+    pub is_stochastic: bool,
     pub has_lists: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
@@ -69,6 +71,7 @@ impl Choices {
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
             lens,
             is_moving: inputs.scene.closing.is_some(),
+            is_stochastic: values.text("visibility") == "stochastic",
             has_lists,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
             is_compacted,
