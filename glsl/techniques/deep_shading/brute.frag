@@ -1,6 +1,6 @@
 // Samples shaded where they are seen, each by itself: the oracle of the lists (--lists none), and what they leave out.
 // Pass: src/techniques/deep_shading/brute.rs.
-// variants: SAMPLES=all|strays VERTEX=plain|extended SHADOWS=traced|mapped
+// variants: SAMPLES=all|strays VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
@@ -10,7 +10,12 @@
 layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 layout(location = 1) flat in uint in_primitive;
+#ifdef VISIBILITY_STOCHASTIC
+// Of stochastic.vert.
+layout(location = 2) flat in vec4 in_corners[3];
+#else
 layout(location = 2) in vec3 in_weights;
+#endif
 
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
@@ -33,7 +38,13 @@ void main() {
     }
     own = nodes[own].x;
 #endif
-    colors[own] = color_on(in_primitive, uvec2(spid.y & 0xffffu, spid.y >> 16), is_stray, inside_weights(in_weights));
+#ifdef VISIBILITY_STOCHASTIC
+    // What the sample sees has passed the test: its weights are inside.
+    vec3 weights = place_at(in_corners[0], in_corners[1], in_corners[2], gl_FragCoord.xy).weights;
+#else
+    vec3 weights = inside_weights(in_weights);
+#endif
+    colors[own] = color_on(in_primitive, uvec2(spid.y & 0xffffu, spid.y >> 16), is_stray, weights);
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
     }

@@ -41,6 +41,12 @@ vec4 canonical_corner(uint corner) {
     return vec4(shading_from_clip(deep, clip), clip.zw);
 }
 
+// The same of a place on the triangle whose first corner it is, by the corners' weights.
+vec4 canonical_at(uint corner, vec3 weights) {
+    return weights.x * canonical_corner(corner) + weights.y * canonical_corner(corner + 1u) +
+           weights.z * canonical_corner(corner + 2u);
+}
+
 // Weights of a triangle's corners, of sum 1, without those below 0: the rasteriser moves corners a little, and where a
 // triangle is seen edge-on that little can be far in shading space.
 vec3 inside_weights(vec3 weights) {

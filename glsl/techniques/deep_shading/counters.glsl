@@ -22,6 +22,12 @@ const uint COUNTED_OVERFLOWS = 7u;
 const uint COUNTED_PIXELS = 8u;
 // Samples that see a surface.
 const uint COUNTED_SAMPLES = 9u;
-const uint COUNTER_COUNT = 10u;
+// Samples that were tested against a triangle, stochastic visibility's, modulo 2^32.
+const uint COUNTED_TESTS = 10u;
+// How often that number went around.
+const uint COUNTED_TESTS_CARRIED = 11u;
+// Those of the tests in which the sample lay in the triangle.
+const uint COUNTED_TESTS_HIT = 12u;
+const uint COUNTER_COUNT = 13u;
 
 #endif

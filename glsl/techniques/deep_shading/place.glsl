@@ -50,15 +50,19 @@ vec2 nearest_on_edge(vec4 from, vec4 to) {
     return vec2(mix(first, last, even), dot(nearest, nearest));
 }
 
+// What a triangle's edges span with a place, homogeneous areas: of the edge opposite each corner. Arguments are the corners'
+// homogeneous pixels from that place on. Parts of their sum are the corners' weights.
+vec3 areas_of(vec2 a, vec2 b, vec2 c) {
+    precise vec3 areas = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);
+    return areas;
+}
+
 // `a`, `b`, `c`: xy homogeneous pixels of shading space, z depth, w; `middle`: of the pixel.
 Place place_at(vec4 a, vec4 b, vec4 c, vec2 middle) {
     precise vec2 from_a = a.xy - a.w * middle;
     precise vec2 from_b = b.xy - b.w * middle;
     precise vec2 from_c = c.xy - c.w * middle;
-    precise vec3 areas = vec3(
-        from_b.x * from_c.y - from_b.y * from_c.x,
-        from_c.x * from_a.y - from_c.y * from_a.x,
-        from_a.x * from_b.y - from_a.y * from_b.x);
+    vec3 areas = areas_of(from_a, from_b, from_c);
     precise float area = areas.x + areas.y + areas.z;
     Place place;
     place.is_front = area < 0.0;

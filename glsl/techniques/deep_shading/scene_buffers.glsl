@@ -9,6 +9,8 @@
 const uint DRAWN_MIRRORED = 1u;
 // BLEND: seen by as many samples as alpha says.
 const uint DRAWN_BLENDED = 2u;
+// Backs are drawn too.
+const uint DRAWN_DOUBLE_SIDED = 4u;
 
 struct DrawnParams {
     MaterialBlock material;

@@ -60,6 +60,22 @@ vec2 shading_from_clip(DeepBlock deep, vec4 clip) {
     return at;
 }
 
+// The pixel of a place, 16 bits a side, or NO_SHADING_PIXEL. `canonical`: xy homogeneous pixels, zw depth and w.
+uint shading_pixel(DeepBlock deep, vec4 canonical) {
+    vec2 at = canonical.xy / canonical.w;
+    vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
+    // Behind the eye, before the near plane or outside: shading space has no place for it.
+    bool has_place = canonical.w > 0.0 && canonical.z <= canonical.w && all(greaterThanEqual(at, vec2(0.0))) &&
+                     all(lessThan(at, extent));
+    uvec2 pixel = uvec2(at);
+    return has_place ? pixel.x | pixel.y << 16 : NO_SHADING_PIXEL;
+}
+
+// Its depth, greater the farther, as the bits of floats without sign compare.
+uint shading_depth(vec4 canonical) {
+    return ~floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
+}
+
 // Of a sample in the buffers that have one entry a sample: layer by layer, row by row.
 uint sample_index(DeepBlock deep, uvec3 at) {
     return (at.z * deep.layer_height_px + at.y) * deep.layer_width_px + at.x;

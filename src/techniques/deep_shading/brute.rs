@@ -1,5 +1,5 @@
 //! Samples shaded where they are seen, each by itself, at their shading points: all of them (`--lists none`, the oracle), or
-//! those that shading space has no place for (pass `strays`). Shaders: visibility/sample.vert, brute.frag.
+//! those that shading space has no place for (pass `strays`). Shaders: the vertex stage of visibility, brute.frag.
 //! reads  the scene, its lights, visibility.spids, visibility.depth      writes  shade.colors
 
 use super::choices::Choices;
@@ -20,15 +20,23 @@ use std::sync::Arc;
 
 pub struct Brute {
     pipeline: GraphicsPipeline,
+    stages: sample::Stages,
     name: &'static str,
 }
 
 impl Brute {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let samples = if choices.has_lists { "strays" } else { "all" };
-        let vertex = sample::vertex_shader(scene);
+        let stages = sample::stages(scene, choices);
+        let vertex = stages.vertex;
+        // Depths that a shader wrote are not the polygons'. The SPIDs alone say what is seen: a triangle covers a sample once.
+        let (visibility, depth_compare) = if choices.is_stochastic {
+            ("stochastic", vk::CompareOp::ALWAYS)
+        } else {
+            ("interleaved", vk::CompareOp::EQUAL)
+        };
         let shadows = shadow_maps::axis(choices.maps.is_some());
-        let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows]);
+        let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows, visibility]);
         let constants = super::constants_of(choices, &[Some(vertex), Some(fragment)]);
         let pipeline = GraphicsPipeline::new(
             gpu,
@@ -43,7 +51,7 @@ impl Brute {
                 blending: Blending::Replace,
                 depth_format: Some(DEPTH_FORMAT),
                 depth_write: false,
-                depth_compare: vk::CompareOp::EQUAL,
+                depth_compare,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
                 conservative: false,
@@ -51,7 +59,7 @@ impl Brute {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Self { pipeline, name: choices.brute_pass() })
+        Ok(Self { pipeline, stages, name: choices.brute_pass() })
     }
 
     /// The lists of which these are the strays; the barrier of the shadow maps.
@@ -77,17 +85,16 @@ impl Brute {
         };
         cmd.pass(&full(self.name), traffic, |cmd| {
             cmd.barriers(maps);
-            let written = [colors, counters];
+            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
             let spids_left = if let Some(lists) = lists {
-                let from = Access::FragmentWrite;
-                cmd.barriers(written.map(|buffer| buffer.from(from).to(Access::FragmentWrite)));
+                cmd.barriers([colors.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
                 cmd.barriers([lists.nodes.from(Access::ComputeRead | Access::GraphicsRead).to(Access::GraphicsRead)]);
                 // Compute shaders read them first: what drew them was waited for by those alone.
                 Access::ComputeSample | Access::ColorWrite
             } else {
-                cmd.barriers(written.map(|buffer| buffer.discard(Access::TransferWrite)));
-                written.iter().for_each(|buffer| cmd.clear(buffer));
-                cmd.barriers(written.map(|buffer| buffer.from(Access::TransferWrite).to(Access::FragmentWrite)));
+                cmd.barriers([colors.discard(Access::TransferWrite)]);
+                cmd.clear(colors);
+                cmd.barriers([colors.from(Access::TransferWrite).to(Access::FragmentWrite)]);
                 Access::ColorWrite.into()
             };
             cmd.barriers([
@@ -107,7 +114,7 @@ impl Brute {
                 let depth = (&samples.depth, None, Access::DepthTest);
                 cmd.begin_layers(description.extent, Layers::One(tuple), &[], Some(depth));
                 cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
-                sample::draw(cmd, &self.pipeline, scene, primitives, list.calls(), tuple);
+                sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), tuple);
                 cmd.end_rendering();
             }
             Ok(())

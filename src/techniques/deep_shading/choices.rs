@@ -25,6 +25,8 @@ pub struct Choices {
     pub lens: Option<Lens>,
     /// The scene is another one when the shutter closes.
     pub is_moving: bool,
+    /// Samples are tested by a shader instead of the rasteriser.
+    pub is_stochastic: bool,
     pub has_lists: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
@@ -81,6 +83,7 @@ impl Choices {
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
             lens,
             is_moving: middle.is_some(),
+            is_stochastic: values.text("visibility") == "stochastic",
             middle,
             has_lists,
             tolerates_duplicates: values.text("duplicates") == "tolerated",

@@ -6,16 +6,37 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 10;
+pub const COUNT: u64 = 13;
 
-/// Numbers that the last frame left in `counters`; `pixels` of the frame. `is_counted`: with `--instrument on`.
+/// Numbers that the last frame left in `counters`; `pixels` of the frame. `has_tests`: visibility tested samples itself.
 ///
 /// Errors: memory for the copy (exit code 4).
-pub fn read(gpu: &Arc<Gpu>, counters: &Buffer, last: Access, pixels: u64) -> Result<BTreeMap<&'static str, f64>> {
+pub fn read(
+    gpu: &Arc<Gpu>,
+    counters: &Buffer,
+    last: Access,
+    pixels: u64,
+    has_tests: bool,
+) -> Result<BTreeMap<&'static str, f64>> {
     let words: Vec<u32> = bytemuck::pod_collect_to_vec(&readback::buffer(gpu, counters, 4 * COUNT, last)?);
-    let [_, strays, shaded, missing, listed, duplicates, longest, overflows, list_pixels, samples] =
+    let words =
         words.try_into().map(|words: [u32; COUNT as usize]| words.map(f64::from)).expect("as many as asked for");
-    Ok(BTreeMap::from([
+    let [
+        _,
+        strays,
+        shaded,
+        missing,
+        listed,
+        duplicates,
+        longest,
+        overflows,
+        list_pixels,
+        samples,
+        tests,
+        carried,
+        hits,
+    ] = words;
+    let mut counters = BTreeMap::from([
         ("shader_invocations", shaded),
         ("shaded_per_pixel", shaded / pixels as f64),
         ("samples_seen", samples),
@@ -26,5 +47,10 @@ pub fn read(gpu: &Arc<Gpu>, counters: &Buffer, last: Access, pixels: u64) -> Res
         ("longest_list", longest),
         ("lists", list_pixels),
         ("lists_beyond_16", overflows),
-    ]))
+    ]);
+    if has_tests {
+        counters.insert("sample_tests", tests + carried * 4_294_967_296.0);
+        counters.insert("sample_tests_hit", hits);
+    }
+    Ok(counters)
 }

@@ -8,7 +8,7 @@ use super::lists::address::Address;
 use super::lists::compact::Compact;
 use super::lists::insert::Insert;
 use super::lists::{self, Lists};
-use super::plan::{COLOR, COUNTERS};
+use super::plan::{COLOR, COUNTERS, SPIDS};
 use super::primitives::{self, Primitives};
 use super::resolve::Resolve;
 use super::scene::DeepScene;
@@ -26,7 +26,7 @@ use crate::techniques::{Frame, Inputs, left_out};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub const AOVS: &[&str] = &["count.lengths"];
+pub const AOVS: &[&str] = &["count.lengths", SPIDS];
 
 /// What builds the deep shading buffer and shades it.
 struct Listed {
@@ -95,6 +95,20 @@ impl DeepFrame {
     }
 }
 
+impl DeepFrame {
+    /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    fn first_primitives(&self, gpu: &Arc<Gpu>) -> Result<Aov> {
+        let bytes = readback::image(gpu, &self.samples.spids, Access::ComputeSample)?;
+        let spids: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
+        let frame = self.color.description.extent;
+        let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
+        let ids = pixels.map(|pixel| spids[self.choices.table.first_sample(frame, pixel)][0]).collect();
+        Ok(Aov { name: SPIDS.to_owned(), channels: AovChannels::YU32(ids) })
+    }
+}
+
 impl Frame for DeepFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let Self { list, primitives, samples, colors, counters, .. } = self;
@@ -102,7 +116,7 @@ impl Frame for DeepFrame {
         self.scene.record_maps(cmd, scene)?;
         let frame_extent = self.color.description.extent;
         let tuples = (&self.choices.table, frame_extent);
-        visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, tuples)?;
+        visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, counters, tuples)?;
         if let Some(listed) = &self.listed {
             let lists = &listed.lists;
             listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;
@@ -158,10 +172,13 @@ impl Frame for DeepFrame {
             return Ok(BTreeMap::new());
         }
         let pixels = self.color.description.extent.pixel_count();
-        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels)
+        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, self.choices.is_stochastic)
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        if name == SPIDS {
+            return self.first_primitives(gpu);
+        }
         let count = self.listed.as_ref().and_then(|listed| listed.count.as_ref());
         let Some(count) = count else {
             return Err(left_out(NAME, name, "lists are counted with --lists linked and --instrument on"));

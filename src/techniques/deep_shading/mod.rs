@@ -18,6 +18,8 @@
 //!   triangle's plane: colours depend on triangle and pixel alone
 //! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
+//! - `--visibility stochastic` tests the tuples of the interleaved kinds, a layer a tuple, so that both see the same samples, and
+//!   the depth test finds the nearest without 64-bit atomics
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits. Without blur

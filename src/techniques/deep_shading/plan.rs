@@ -148,6 +148,7 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         lists
     };
     let mut seen = vec![touch(SPIDS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
+    seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
     if choices.has_zmax {
         seen.push(touch(SHADING_DEPTHS, Access::ColorWrite));
     }
@@ -157,7 +158,6 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
             touch(SPIDS, Access::ComputeSample),
             touch(BEGINS, Access::TransferWrite),
             touch(BEGINS, Access::ComputeWrite),
-            touch(COUNTERS, Access::TransferWrite),
             touch(COUNTERS, Access::ComputeWrite),
             touch(NODES, Access::ComputeWrite),
             touch(COLORS, Access::ComputeWrite),
@@ -189,7 +189,7 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         if choices.has_lists {
             brute.push(touch(NODES, Access::GraphicsRead));
         } else {
-            brute.extend([touch(COLORS, Access::TransferWrite), touch(COUNTERS, Access::TransferWrite)]);
+            brute.push(touch(COLORS, Access::TransferWrite));
         }
         brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
         brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);

@@ -11,6 +11,7 @@ use bytemuck::Zeroable;
 /// `scene_buffers.glsl`.
 const DRAWN_MIRRORED: u32 = 1;
 const DRAWN_BLENDED: u32 = 2;
+const DRAWN_DOUBLE_SIDED: u32 = 4;
 
 /// Ids of a scene's triangles.
 pub struct Primitives {
@@ -47,6 +48,9 @@ impl Primitives {
         let mut flags = if call.mirrored { DRAWN_MIRRORED } else { 0 };
         if call.alpha == AlphaMode::Blend {
             flags |= DRAWN_BLENDED;
+        }
+        if call.double_sided {
+            flags |= DRAWN_DOUBLE_SIDED;
         }
         DrawnParams {
             material: scene.material_blocks[call.material as usize],

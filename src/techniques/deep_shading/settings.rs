@@ -9,11 +9,12 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "visibility",
         symbol: "",
-        kind: Kind::Choice(&["repeat-frame"]),
+        kind: Kind::Choice(&["repeat-frame", "stochastic"]),
         default: "repeat-frame",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "how samples find what they see: the frame is drawn once for each tuple",
+        help: "how samples find what they see: the frame is drawn once for each tuple, or a polygon around each triangle's blur is drawn and \
+               its pixels' samples are tested by a shader; the same samples",
     },
     Setting {
         key: "spp",

@@ -42,6 +42,14 @@ impl Table {
         Extent::new(count(frame.width, x, self.cells[0]), count(frame.height, y, self.cells[1]))
     }
 
+    /// Where the first sample of a pixel of the frame lies in what has one entry a sample: layer by layer, row by row.
+    pub fn first_sample(&self, frame: Extent, [x, y]: [u32; 2]) -> usize {
+        let (layer, [width, height]) = (self.layer(frame), self.cells);
+        let tuple = u64::from((y % height * width + x % width) * self.samples);
+        let row = tuple * u64::from(layer.height) + u64::from(y / height);
+        (row * u64::from(layer.width) + u64::from(x / width)) as usize
+    }
+
     /// The tuples of one set, cell by cell in row order. `run`: another one for each set of a picture.
     pub fn tuples(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
         let count = self.tuple_count();
@@ -103,6 +111,14 @@ mod tests {
         assert_eq!((layer.width, layer.height), (51, 16));
         let inside = [0, 8, 16, 24].map(|tuple| Table::new(8, 32).inside(Extent::new(101, 31), tuple));
         assert_eq!(inside.map(|part| (part.width, part.height)), [(51, 16), (50, 16), (51, 15), (50, 15)]);
+    }
+
+    #[test]
+    fn a_pixel_s_first_sample_lies_in_its_cell_s_first_layer() {
+        let (table, frame) = (Table::new(8, 32), Extent::new(101, 31));
+        // A layer has 51 x 16 entries.
+        let places = [[0, 0], [1, 0], [2, 1], [100, 30]].map(|pixel| table.first_sample(frame, pixel));
+        assert_eq!(places, [0, 8 * 816, 16 * 816 + 1, 15 * 51 + 50]);
     }
 
     /// What the transform puts into the middle of a layer's pixel is the tuple's place in the frame's pixel.

@@ -25,7 +25,6 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 // x: the triangle's id; y: its shading pixel, 16 bits a side, or NO_SHADING_PIXEL.
 layout(location = 0) out uvec2 out_spid;
 #ifdef DEPTH_SHADING
-// Greater the farther, as the bits of floats without sign compare.
 layout(location = 1) out uint out_shading_depth;
 #endif
 
@@ -51,18 +50,10 @@ void main() {
     vec4 canonical = in_canonical;
     if (any(lessThan(in_weights, vec3(0.0)))) {
         uint corner = 3u * (in_primitive - params.primitive_offset);
-        vec3 weights = inside_weights(in_weights);
-        canonical = weights.x * canonical_corner(corner) + weights.y * canonical_corner(corner + 1u) +
-                    weights.z * canonical_corner(corner + 2u);
+        canonical = canonical_at(corner, inside_weights(in_weights));
     }
-    vec2 at = canonical.xy / canonical.w;
-    vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
-    // Behind the eye, before the near plane or outside: shading space has no place for it.
-    bool has_place = canonical.w > 0.0 && canonical.z <= canonical.w && all(greaterThanEqual(at, vec2(0.0))) &&
-                     all(lessThan(at, extent));
-    uvec2 pixel = uvec2(at);
-    out_spid = uvec2(in_primitive, has_place ? pixel.x | pixel.y << 16 : NO_SHADING_PIXEL);
+    out_spid = uvec2(in_primitive, shading_pixel(deep, canonical));
 #ifdef DEPTH_SHADING
-    out_shading_depth = ~floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
+    out_shading_depth = shading_depth(canonical);
 #endif
 }

@@ -5,6 +5,7 @@
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/attributes.glsl"
+#include "techniques/deep_shading/visibility/seen.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
@@ -27,23 +28,14 @@ void main() {
     uint corner = uint(gl_VertexIndex);
     uint vertex = vertex_of(corner);
     TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + params.tuple];
-    vec4 open = open_ws(vertex);
-    vec4 clip = deep.open_clip_from_world * open;
-    float depth = dot(deep.open_depth.xyz, open.xyz) + deep.open_depth.w;
-    vec4 canonical = clip;
+    Seen open = seen_open(vertex);
+    Seen close = open;
+    vec4 canonical = open.clip;
     if (IS_MOVING != 0u) {
-        vec4 close = close_ws(vertex);
-        vec4 close_clip = deep.close_clip_from_world * close;
-        canonical = 0.5 * clip + 0.5 * close_clip;
-        clip = mix(clip, close_clip, tuple.time);
-        depth = mix(depth, dot(deep.close_depth.xyz, close.xyz) + deep.close_depth.w, tuple.time);
+        close = seen_close(vertex);
+        canonical = 0.5 * open.clip + 0.5 * close.clip;
     }
-    if (HAS_LENS != 0u) {
-        // A thin lens: what lies in the plane in focus stays where it is.
-        clip.xy += deep.lens * tuple.lens * (depth * deep.inverse_focus - 1.0);
-    }
-    clip.xy = clip.xy * tuple.scale + clip.w * tuple.shift;
-    gl_Position = clip;
+    gl_Position = clip_of(open, close, tuple);
     out_canonical = vec4(shading_from_clip(deep, canonical), canonical.zw);
     out_primitive = params.primitive_offset + corner / 3u;
     uint place = corner % 3u;

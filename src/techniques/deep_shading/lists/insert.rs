@@ -48,11 +48,11 @@ impl Insert {
             invocations: Some(spids.description.extent.pixel_count() * u64::from(spids.description.layers())),
         };
         cmd.pass(&full("lists"), traffic, |cmd| {
-            let cleared: Vec<&Buffer> =
-                [Some(&lists.begins), Some(counters), lists.zmax.as_ref()].into_iter().flatten().collect();
+            let cleared: Vec<&Buffer> = [Some(&lists.begins), lists.zmax.as_ref()].into_iter().flatten().collect();
             cmd.barriers(cleared.iter().map(|buffer| buffer.discard(Access::TransferWrite)));
             cleared.iter().for_each(|buffer| cmd.clear(buffer));
             cmd.barriers(cleared.iter().map(|buffer| buffer.from(Access::TransferWrite).to(Access::ComputeWrite)));
+            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
             let fresh = [Some(&lists.nodes), Some(colors), lists.addresses.as_ref()].into_iter().flatten();
             cmd.barriers(fresh.map(|buffer| buffer.discard(Access::ComputeWrite)));
             let drawn = [Some(spids), samples.shading_depths()].into_iter().flatten();

@@ -3,9 +3,11 @@
 //! writes  visibility.spids, visibility.depth and, with `--zmax on`, visibility.shading_depths: arrays of a layer a tuple,
 //!         of a table's part of the frame: 8, 4 and 4 B a sample
 //!
-//! `repeat-frame`: layer by layer, each with all draws.
+//! `repeat-frame`: layer by layer, each with all draws. `stochastic`: the same with a polygon around each triangle's blur, whose
+//! samples a shader tests.
 
 pub mod sample;
+pub mod stochastic;
 
 use super::choices::Choices;
 use super::plan::{DEPTH, SHADING_DEPTHS, SPIDS};
@@ -14,7 +16,7 @@ use super::tuples::Table;
 use super::{NAME, full};
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
-use crate::gpu::{Access, Bound, ColorTarget, Commands, Gpu, Image, Layers, Traffic};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Layers, Traffic};
 use crate::passes::mesh;
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
@@ -67,6 +69,7 @@ pub fn record(
     primitives: &Primitives,
     bound: &[(&'static str, Bound<'_>)],
     samples: &Samples,
+    counters: &Buffer,
     (table, frame): (&Table, Extent),
 ) -> Result<()> {
     let layers = samples.spids.description.layers();
@@ -79,7 +82,12 @@ pub fn record(
         let colors: Vec<&Image> = [Some(&samples.spids), samples.shading_depths()].into_iter().flatten().collect();
         cmd.barriers(colors.iter().map(|image| image.discard(Access::ColorWrite)));
         cmd.barriers([samples.depth.discard(Access::DepthWrite)]);
-        let sets = sample.sets(cmd, bound)?;
+        cmd.barriers([counters.discard(Access::TransferWrite)]);
+        cmd.clear(counters);
+        cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
+        let mut bound = bound.to_vec();
+        bound.push(("Counters", Bound::Buffer(counters)));
+        let sets = sample.sets(cmd, &bound)?;
         // No triangle; and the depth of nothing, which no list hears of.
         let cleared = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
         for tuple in 0..layers {

@@ -1,8 +1,10 @@
 //! The draws of one tuple: sharp triangles, in the places where the tuple has them. Shaders: sample.vert, sample.frag.
 
 use super::super::choices::Choices;
+use super::super::constants_of;
 use super::super::plan::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
 use super::super::primitives::Primitives;
+use super::stochastic;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::sample::{FRAG_VARIANTS, VERT_VARIANTS};
@@ -13,25 +15,46 @@ use crate::resident::{DrawCall, DrawList, SceneGpu};
 use ash::vk;
 use std::sync::Arc;
 
-/// The vertex stage for `scene`; what draws the same triangles again shares it.
-pub fn vertex_shader(scene: &SceneGpu) -> &'static Shader {
-    variant(VERT_VARIANTS, &[mesh::vertex_name(scene)])
+/// What triangles are drawn with.
+pub struct Stages {
+    pub vertex: &'static Shader,
+    fragments: &'static [&'static Shader],
+    sides: Sides,
+    /// Vertices of a triangle.
+    vertex_count: u32,
+}
+
+/// Of the chosen visibility; what draws the same triangles again shares its vertex stage.
+pub fn stages(scene: &SceneGpu, choices: &Choices) -> Stages {
+    if choices.is_stochastic {
+        return Stages {
+            vertex: stochastic::vertex_shader(),
+            fragments: stochastic::fragment_shaders(),
+            // The shader tells sides apart: polygons have none.
+            sides: Sides::Both,
+            vertex_count: stochastic::vertex_count(choices),
+        };
+    }
+    let vertex = variant(VERT_VARIANTS, &[mesh::vertex_name(scene)]);
+    Stages { vertex, fragments: FRAG_VARIANTS, sides: Sides::AsDrawn, vertex_count: 3 }
 }
 
 /// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
 pub fn draw<'a>(
     cmd: &Commands,
-    pipeline: &GraphicsPipeline,
+    (pipeline, stages): (&GraphicsPipeline, &Stages),
     scene: &SceneGpu,
     primitives: &Primitives,
     calls: impl IntoIterator<Item = &'a DrawCall>,
     tuple: u32,
 ) {
-    mesh::for_each(cmd, pipeline, scene, Sides::AsDrawn, calls, |call| {
+    mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
         let params = super::super::primitives::of_tuple(primitives.params(scene, call), tuple);
         cmd.push(&pipeline.interface, bytemuck::bytes_of(&params));
+        let of = |indices: u32| indices / 3 * stages.vertex_count;
+        let (count, first) = (of(call.index_count), of(call.first_index));
         // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), call.index_count, 1, call.first_index, 0) };
+        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, 1, first, 0) };
     });
 }
 
@@ -41,20 +64,23 @@ pub struct Sets([Option<vk::DescriptorSet>; 2]);
 pub struct Sample {
     opaque: GraphicsPipeline,
     tested: GraphicsPipeline,
+    stages: Stages,
 }
 
 impl Sample {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let depth = if choices.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
-        let constants = [("IS_MOVING", u32::from(choices.is_moving)), ("HAS_LENS", u32::from(choices.lens.is_some()))];
+        let stages = stages(scene, choices);
         let pipeline = |alpha| {
+            let fragment = variant(stages.fragments, &[alpha, mesh::vertex_name(scene), depth]);
+            let constants = constants_of(choices, &[Some(stages.vertex), Some(fragment)]);
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
-                    vertex: vertex_shader(scene),
+                    vertex: stages.vertex,
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), depth])),
+                    fragment: Some(fragment),
                     constants: &constants,
                     vertex_buffers: &[],
                     color_formats: if choices.has_zmax { &formats } else { &formats[..1] },
@@ -71,7 +97,7 @@ impl Sample {
                 },
             )
         };
-        Ok(Self { opaque: pipeline("opaque")?, tested: pipeline("tested")? })
+        Ok(Self { opaque: pipeline("opaque")?, tested: pipeline("tested")?, stages })
     }
 
     /// One set for all tuples. `bound`: what shaders of the technique may read.
@@ -96,7 +122,7 @@ impl Sample {
             if let Some(first) = calls.first() {
                 let params = primitives.params(scene, first);
                 cmd.bind_with_set(pipeline, bytemuck::bytes_of(&params), *set);
-                draw(cmd, pipeline, scene, primitives, calls, tuple);
+                draw(cmd, (pipeline, &self.stages), scene, primitives, calls, tuple);
             }
         }
     }
