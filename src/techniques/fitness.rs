@@ -72,6 +72,7 @@ mod tests {
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
         let mut caps = known::caps(known::DEFAULT).unwrap();
         caps.features.ray_query = true;
+        caps.features.conservative_rasterization = true;
         caps.formats.float_depth_linear = true;
         let Formats { float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts, .. } =
             &mut caps.formats;
@@ -188,6 +189,7 @@ mod tests {
                 "path_traced" => &[],
                 "forward" => &["the depth buffer"],
                 "inferred_lighting" => &["the geometry pass"],
+                "deep_shading" => &["the visibility pass"],
                 _ => &["the G-buffer"],
             };
             assert_eq!(of(&fitness(*technique, &caps).stopped_by), expected);
