@@ -85,8 +85,7 @@ impl Identity {
 
     /// Whether a memory barrier inside a divergent loop ends the threads of a workgroup that reach it more often than others:
     /// lavapipe of Mesa 22.3.6 suspends them there as at a barrier of the workgroup, 25.0.7 does not; what lies between is
-    /// taken to. Such a driver's stores are those of its processor (x86, Arm with atomics that order them): a compare-exchange
-    /// comes after what was stored before it.
+    /// taken to. Who needs such a barrier there must do without it, and with tests that would see what it costs.
     pub fn barriers_end_threads(&self) -> bool {
         self.loop_turns().is_some()
     }

@@ -96,6 +96,13 @@ impl DeepFrame {
 }
 
 impl DeepFrame {
+    /// A stage of whole numbers, from that of each pixel of the frame.
+    fn of_pixels(&self, name: &str, number: impl Fn([u32; 2]) -> u32) -> Aov {
+        let frame = self.color.description.extent;
+        let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
+        Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
+    }
+
     /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
     ///
     /// Errors: memory for the copy (exit code 4).
@@ -103,9 +110,7 @@ impl DeepFrame {
         let bytes = readback::image(gpu, &self.samples.spids, Access::ComputeSample)?;
         let spids: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
         let frame = self.color.description.extent;
-        let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
-        let ids = pixels.map(|pixel| spids[self.choices.table.first_sample(frame, pixel)][0]).collect();
-        Ok(Aov { name: SPIDS.to_owned(), channels: AovChannels::YU32(ids) })
+        Ok(self.of_pixels(SPIDS, |pixel| spids[self.choices.table.first_sample(frame, pixel)][0]))
     }
 }
 
@@ -185,9 +190,6 @@ impl Frame for DeepFrame {
         };
         let bytes = readback::buffer(gpu, &count.lengths, count.lengths.bytes, Access::ComputeWrite)?;
         let lengths: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        let frame = self.color.description.extent;
-        let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
-        let channels = AovChannels::YU32(pixels.map(|at| lengths[self.choices.space.index_under(at)]).collect());
-        Ok(Aov { name: name.to_owned(), channels })
+        Ok(self.of_pixels(name, |at| lengths[self.choices.space.index_under(at)]))
     }
 }

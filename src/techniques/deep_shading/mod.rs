@@ -1,10 +1,11 @@
 //! Deep shading buffers: Clarberg and Munkberg 2014, "Deep Shading Buffers on Commodity GPUs". Under motion and defocus blur
 //! each triangle is shaded once a pixel, however many samples see it.
 //!
-//! Passes: shadow_maps (with `--direct-shadow map`), visibility (the triangle that each sample sees, and where it is in canonical shading space: its SPID), lists (of
-//! triangles, by compare-exchange), lists.compact, lists.address, shade (one conservative pass over shading space, which
-//! shades what the lists have), strays (samples that shading space has no place for, under blur), resolve (box filter),
-//! count (`--instrument on`), accumulate (`--accumulate` above 1).
+//! Passes: shadow_maps (with `--direct-shadow map`), visibility (the triangle that each sample sees, and where it is in
+//! canonical shading space: its SPID), lists (of triangles, by compare-exchange), lists.compact, lists.address, shade (one
+//! conservative pass over shading space, which shades what the lists have), strays (samples that shading space has no place
+//! for, under blur) or brute (`--lists none`), resolve (box filter), count (`--instrument on`), accumulate (`--accumulate`
+//! above 1).
 //!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;

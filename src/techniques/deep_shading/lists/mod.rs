@@ -34,13 +34,13 @@ pub fn colors(resources: &mut Resources) -> Buffer {
 
 impl Lists {
     pub fn new(resources: &mut Resources, choices: &Choices) -> Self {
-        let mut take = |is_there: bool, name: &str| is_there.then(|| resources.buffer(&full(name)));
+        let mut take = |name: &str| resources.buffer(&full(name));
         Self {
-            linear: take(choices.is_compacted, LINEAR),
-            addresses: take(choices.has_addresses, ADDRESSES),
-            zmax: take(choices.has_zmax, ZMAX),
-            begins: take(true, BEGINS).expect("it is there"),
-            nodes: take(true, NODES).expect("it is there"),
+            begins: take(BEGINS),
+            nodes: take(NODES),
+            linear: choices.is_compacted.then(|| take(LINEAR)),
+            addresses: choices.has_addresses.then(|| take(ADDRESSES)),
+            zmax: choices.has_zmax.then(|| take(ZMAX)),
         }
     }
 
