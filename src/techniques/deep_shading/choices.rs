@@ -2,6 +2,8 @@
 
 use super::space::ShadingSpace;
 use super::tuples::Table;
+use super::visibility::Order;
+use super::visibility::layer::LayerFrom;
 use super::{NAME, shade::Road};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
@@ -14,6 +16,10 @@ use crate::units::Extent;
 
 pub struct Choices {
     pub direct: DirectSettings,
+    pub order: Order,
+    pub layer_from: LayerFrom,
+    /// Layers that are drawn together reach beyond the frame.
+    pub has_padding: bool,
     pub table: Table,
     /// Sets of samples that the picture is the mean of.
     pub run_count: u32,
@@ -62,9 +68,13 @@ impl Choices {
         } else {
             None
         };
+        let (table, order) = (Table::new(samples, tuples), Order::of(values));
         Ok(Self {
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
-            table: Table::new(samples, tuples),
+            order,
+            layer_from: LayerFrom::of(values, inputs.caps),
+            has_padding: order.is_layered() && !table.divides(inputs.view.extent),
+            table,
             run_count: values.integer("accumulate") as u32,
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
             lens,

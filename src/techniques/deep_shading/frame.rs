@@ -14,7 +14,7 @@ use super::resolve::Resolve;
 use super::scene::DeepScene;
 use super::shade::Shade;
 use super::visibility::sample::Sample;
-use super::visibility::{self, Samples};
+use super::visibility::{self, Drawn, Samples};
 use super::{NAME, full};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
@@ -100,8 +100,9 @@ impl Frame for DeepFrame {
         let Self { list, primitives, samples, colors, counters, .. } = self;
         let bound = self.scene.bound(frame, scene);
         let frame_extent = self.color.description.extent;
-        let tuples = (&self.choices.table, frame_extent);
-        visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, tuples)?;
+        let (sample, table) = (&self.sample, &self.choices.table);
+        let drawn = Drawn { sample, scene, list, primitives, table, frame: frame_extent };
+        visibility::record(cmd, &drawn, &bound, samples, self.choices.order)?;
         if let Some(listed) = &self.listed {
             let lists = &listed.lists;
             listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;

@@ -1,21 +1,46 @@
-//! The draws of one tuple: sharp triangles, in the places where the tuple has them. Shaders: sample.vert, sample.frag.
+//! The draws of tuples: sharp triangles, in the places where each tuple has them. Shaders: sample.vert, sample.frag.
 
 use super::super::choices::Choices;
 use super::super::plan::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
-use super::super::primitives::Primitives;
+use super::super::primitives::{self, Primitives};
+use super::Drawn;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::sample::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
-use crate::resident::{DrawCall, DrawList, SceneGpu};
+use crate::resident::{DrawCall, SceneGpu};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
-/// The vertex stage for `scene`; what draws the same triangles again shares it.
-pub fn vertex_shader(scene: &SceneGpu) -> &'static Shader {
-    variant(VERT_VARIANTS, &[mesh::vertex_name(scene)])
+/// How each draw call comes to its tuples.
+pub struct Repeats {
+    /// The call comes again for every `step`th of them, and is told it.
+    pub tuples: Range<u32>,
+    pub step: u32,
+    /// Of each of these. More than one: an instance is a tuple.
+    pub instance_count: u32,
+}
+
+impl Repeats {
+    /// How often a vertex is fetched.
+    pub fn round_count(&self) -> u32 {
+        (self.tuples.len() as u32).div_ceil(self.step) * self.instance_count
+    }
+}
+
+/// What tuples are drawn with before fragments.
+pub struct Stages {
+    pub vertex: &'static Shader,
+    pub geometry: Option<&'static Shader>,
+}
+
+/// The vertex stage for `scene`; what draws the same triangles again shares it. `layer`: a value of its axis LAYER.
+pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str) -> &'static Shader {
+    let tuple = if repeats.instance_count > 1 { "instance" } else { "pushed" };
+    variant(VERT_VARIANTS, &[mesh::vertex_name(scene), tuple, layer])
 }
 
 /// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
@@ -25,13 +50,15 @@ pub fn draw<'a>(
     scene: &SceneGpu,
     primitives: &Primitives,
     calls: impl IntoIterator<Item = &'a DrawCall>,
-    tuple: u32,
+    repeats: &Repeats,
 ) {
     mesh::for_each(cmd, pipeline, scene, Sides::AsDrawn, calls, |call| {
-        let params = super::super::primitives::of_tuple(primitives.params(scene, call), tuple);
-        cmd.push(&pipeline.interface, bytemuck::bytes_of(&params));
-        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), call.index_count, 1, call.first_index, 0) };
+        let (params, instances) = (primitives.params(scene, call), repeats.instance_count);
+        for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {
+            cmd.push(&pipeline.interface, bytemuck::bytes_of(&primitives::of_tuple(params, tuple)));
+            // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+            unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), call.index_count, instances, call.first_index, 0) };
+        }
     });
 }
 
@@ -47,13 +74,19 @@ impl Sample {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let depth = if choices.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
-        let constants = [("IS_MOVING", u32::from(choices.is_moving)), ("HAS_LENS", u32::from(choices.lens.is_some()))];
+        let repeats = choices.order.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
+        let stages = choices.order.stages(scene, &repeats, choices.layer_from);
+        let constants = [
+            ("IS_MOVING", u32::from(choices.is_moving)),
+            ("HAS_LENS", u32::from(choices.lens.is_some())),
+            ("HAS_PADDING", u32::from(choices.has_padding)),
+        ];
         let pipeline = |alpha| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
-                    vertex: vertex_shader(scene),
-                    geometry: None,
+                    vertex: stages.vertex,
+                    geometry: stages.geometry,
                     fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), depth])),
                     constants: &constants,
                     vertex_buffers: &[],
@@ -82,21 +115,14 @@ impl Sample {
         Ok(Sets([set(&self.opaque)?, set(&self.tested)?]))
     }
 
-    /// All draws of a tuple, inside rendering.
-    pub fn draw(
-        &self,
-        cmd: &mut Commands,
-        scene: &SceneGpu,
-        list: &DrawList,
-        primitives: &Primitives,
-        Sets([opaque, tested]): &Sets,
-        tuple: u32,
-    ) {
+    /// All draws, inside rendering.
+    pub fn draw(&self, cmd: &mut Commands, drawn: &Drawn<'_>, Sets([opaque, tested]): &Sets, repeats: &Repeats) {
+        let Drawn { scene, list, primitives, .. } = drawn;
         for (pipeline, set, calls) in [(&self.opaque, opaque, &list.opaque), (&self.tested, tested, &list.mask)] {
             if let Some(first) = calls.first() {
                 let params = primitives.params(scene, first);
                 cmd.bind_with_set(pipeline, bytemuck::bytes_of(&params), *set);
-                draw(cmd, pipeline, scene, primitives, calls, tuple);
+                draw(cmd, pipeline, scene, primitives, calls, repeats);
             }
         }
     }
