@@ -132,6 +132,15 @@ pub struct Limits {
     /// `max_image_layers`.
     #[serde(default = "least_sub_pixel_bits")]
     pub sub_pixel_bits: u32,
+    /// Layers that one rendering draws into; as for `max_image_layers`.
+    #[serde(default = "least_framebuffer_layers")]
+    pub max_framebuffer_layers: u32,
+    /// Vertices that a geometry shader gives out for one primitive; 0 where there are none. As for `max_image_layers`.
+    #[serde(default = "least_geometry_vertices")]
+    pub max_geometry_vertices: u32,
+    /// Components of all these vertices together. The same.
+    #[serde(default = "least_geometry_components")]
+    pub max_geometry_components: u32,
     pub subgroup_size: u32,
     /// Nanoseconds a tick; 0 where the queue writes no timestamps.
     pub timestamp_period_ns: f32,
@@ -152,6 +161,18 @@ fn least_uniform_buffer_range_bytes() -> u64 {
 
 fn least_sub_pixel_bits() -> u32 {
     4
+}
+
+fn least_framebuffer_layers() -> u32 {
+    256
+}
+
+fn least_geometry_vertices() -> u32 {
+    256
+}
+
+fn least_geometry_components() -> u32 {
+    1024
 }
 
 fn least_shared_memory_bytes() -> u32 {

@@ -265,8 +265,9 @@ impl Gpu {
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
             .depth_clamp(caps.features.depth_clamp)
             .geometry_shader(caps.features.geometry_shader);
-        let mut features12 =
-            vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(caps.features.ray_query);
+        let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
+            .buffer_device_address(caps.features.ray_query)
+            .shader_output_layer(caps.features.layer_from_vertex_shader);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
         let mut extensions: Vec<*const c_char> = Vec::new();

@@ -32,6 +32,8 @@ pub enum Ability {
     EightSamples,
     /// Geometry shaders.
     GeometryShader,
+    /// Vertex shaders choose the layer that is drawn into.
+    LayerFromVertex,
     /// All pixels that a triangle touches are drawn.
     ConservativeRaster,
     /// Shaders send rays through structures that the driver builds.
@@ -54,6 +56,7 @@ impl Ability {
             Self::FourSamples => has_samples(&caps.formats, 4),
             Self::EightSamples => has_samples(&caps.formats, 8),
             Self::GeometryShader => caps.features.geometry_shader,
+            Self::LayerFromVertex => caps.features.layer_from_vertex_shader,
             Self::ConservativeRaster => caps.features.conservative_rasterization,
             Self::RayQuery => caps.features.ray_query,
         }
@@ -74,6 +77,7 @@ impl Ability {
             Self::FourSamples => "4 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::EightSamples => "8 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::GeometryShader => "geometryShader",
+            Self::LayerFromVertex => "shaderOutputLayer",
             Self::ConservativeRaster => "VK_EXT_conservative_rasterization",
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",
         }

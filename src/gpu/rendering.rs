@@ -21,14 +21,20 @@ pub enum Layers {
     /// The first; of plain images the only one.
     First,
     One(u32),
+    /// So many, and shaders say which.
+    All(u32),
 }
 
 impl Layers {
     fn view(self, image: &Image) -> vk::ImageView {
         match self {
             Self::One(layer) => image.layer_views[layer as usize],
-            Self::First => image.view,
+            Self::First | Self::All(_) => image.view,
         }
+    }
+
+    fn count(self) -> u32 {
+        if let Self::All(count) = self { count } else { 1 }
     }
 }
 
@@ -113,7 +119,8 @@ impl Commands {
             offset: vk::Offset2D::default(),
             extent: vk::Extent2D { width: extent.width, height: extent.height },
         };
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&color_infos);
+        let mut info =
+            vk::RenderingInfo::default().render_area(area).layer_count(layers.count()).color_attachments(&color_infos);
         if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
             info = info.depth_attachment(depth_info);
             if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {

@@ -16,6 +16,7 @@ layout(location = 2) flat in vec4 in_corners[3];
 #else
 layout(location = 2) in vec3 in_weights;
 #endif
+layout(location = 6) flat in uint in_tuple;
 
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
@@ -25,7 +26,7 @@ layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 #endif
 
 void main() {
-    uvec3 at = uvec3(gl_FragCoord.xy, params.tuple);
+    uvec3 at = uvec3(gl_FragCoord.xy, in_tuple);
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
     if (spid.x != in_primitive) {
         discard;

@@ -1,5 +1,6 @@
 //! Samples shaded where they are seen, each by itself, at their shading points: all of them (`--lists none`, the oracle), or
-//! those that shading space has no place for (pass `strays`). Shaders: the vertex stage of visibility, brute.frag.
+//! those that shading space has no place for (pass `strays`). Shaders: those before fragments of visibility,
+//! brute.frag.
 //! reads  the scene, its lights, visibility.spids, visibility.depth      writes  shade.colors
 
 use super::choices::Choices;
@@ -7,12 +8,12 @@ use super::full;
 use super::lists::Lists;
 use super::plan::DEPTH_FORMAT;
 use super::primitives::Primitives;
-use super::visibility::{Samples, sample};
+use super::visibility::{self, Samples, Visibility, sample};
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::brute::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Layers, Traffic};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::{mesh, shadow_maps};
 use crate::resident::{DrawList, SceneGpu};
 use ash::vk;
@@ -21,28 +22,29 @@ use std::sync::Arc;
 pub struct Brute {
     pipeline: GraphicsPipeline,
     stages: sample::Stages,
+    visibility: Visibility,
     name: &'static str,
 }
 
 impl Brute {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let samples = if choices.has_lists { "strays" } else { "all" };
-        let stages = sample::stages(scene, choices);
-        let vertex = stages.vertex;
+        let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
+        let stages = visibility::stages(scene, choices, &repeats);
         // Depths that a shader wrote are not the polygons'. The SPIDs alone say what is seen: a triangle covers a sample once.
-        let (visibility, depth_compare) = if choices.is_stochastic {
+        let (visibility, depth_compare) = if choices.visibility == Visibility::Stochastic {
             ("stochastic", vk::CompareOp::ALWAYS)
         } else {
             ("interleaved", vk::CompareOp::EQUAL)
         };
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows, visibility]);
-        let constants = super::constants_of(choices, &[Some(vertex), Some(fragment)]);
+        let constants = super::constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
         let pipeline = GraphicsPipeline::new(
             gpu,
             &GraphicsDescription {
-                vertex,
-                geometry: None,
+                vertex: stages.vertex,
+                geometry: stages.geometry,
                 fragment: Some(fragment),
                 constants: &constants,
                 vertex_buffers: &[],
@@ -59,7 +61,7 @@ impl Brute {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Self { pipeline, stages, name: choices.brute_pass() })
+        Ok(Self { pipeline, stages, visibility: choices.visibility, name: choices.brute_pass() })
     }
 
     /// The lists of which these are the strays; the barrier of the shadow maps.
@@ -77,8 +79,11 @@ impl Brute {
         counters: &Buffer,
     ) -> Result<()> {
         let description = samples.spids.description;
+        let layers = description.layers();
+        let repeats = self.visibility.repeats(scene, &cmd.gpu().caps.limits, layers);
+        let rounds = self.visibility.round_count(&repeats, layers);
         let traffic = Traffic {
-            read_bytes: u64::from(description.layers()) * mesh::read_bytes(scene, list.calls()) + description.bytes(),
+            read_bytes: u64::from(rounds) * mesh::read_bytes(scene, list.calls()) + description.bytes(),
             // Counted after the frame.
             written_bytes: 0,
             invocations: None,
@@ -110,13 +115,13 @@ impl Brute {
             ]);
             let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
             let Some(first) = list.calls().next() else { return Ok(()) };
-            for tuple in 0..description.layers() {
+            self.visibility.for_layers(&repeats, layers, |at, repeats| {
                 let depth = (&samples.depth, None, Access::DepthTest);
-                cmd.begin_layers(description.extent, Layers::One(tuple), &[], Some(depth));
+                cmd.begin_layers(description.extent, at, &[], Some(depth));
                 cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
-                sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), tuple);
+                sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
                 cmd.end_rendering();
-            }
+            });
             Ok(())
         })
     }

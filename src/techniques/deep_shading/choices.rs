@@ -3,6 +3,8 @@
 use super::middle::Middle;
 use super::space::ShadingSpace;
 use super::tuples::Table;
+use super::visibility::Visibility;
+use super::visibility::layer::LayerFrom;
 use super::{NAME, shade::Road};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
@@ -17,6 +19,10 @@ use crate::units::Extent;
 
 pub struct Choices {
     pub direct: DirectSettings,
+    pub visibility: Visibility,
+    pub layer_from: LayerFrom,
+    /// Layers that are drawn together reach beyond the frame.
+    pub has_padding: bool,
     pub table: Table,
     /// Sets of samples that the picture is the mean of.
     pub run_count: u32,
@@ -25,8 +31,6 @@ pub struct Choices {
     pub lens: Option<Lens>,
     /// The scene is another one when the shutter closes.
     pub is_moving: bool,
-    /// Samples are tested by a shader instead of the rasteriser.
-    pub is_stochastic: bool,
     pub has_lists: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
@@ -75,15 +79,18 @@ impl Choices {
         let (scene, lights) =
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
+        let (table, visibility) = (Table::new(samples, tuples), Visibility::of(values));
         Ok(Self {
             maps: maps.map_err(|error| error.within(NAME))?,
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
-            table: Table::new(samples, tuples),
+            visibility,
+            layer_from: LayerFrom::of(values, inputs.caps),
+            has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
+            table,
             run_count: values.integer("accumulate") as u32,
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
             lens,
             is_moving: middle.is_some(),
-            is_stochastic: values.text("visibility") == "stochastic",
             middle,
             has_lists,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
@@ -131,6 +138,7 @@ impl Choices {
             ("TOLERATES_DUPLICATES", u32::from(self.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
+            ("HAS_PADDING", u32::from(self.has_padding)),
         ]);
         constants
     }

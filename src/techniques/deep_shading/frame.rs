@@ -14,7 +14,7 @@ use super::resolve::Resolve;
 use super::scene::DeepScene;
 use super::shade::Shade;
 use super::visibility::sample::Sample;
-use super::visibility::{self, Samples};
+use super::visibility::{self, Drawn, Samples, Visibility};
 use super::{NAME, full};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
@@ -120,8 +120,9 @@ impl Frame for DeepFrame {
         let bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
         let frame_extent = self.color.description.extent;
-        let tuples = (&self.choices.table, frame_extent);
-        visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, counters, tuples)?;
+        let (sample, table) = (&self.sample, &self.choices.table);
+        let drawn = Drawn { sample, scene, list, primitives, table, frame: frame_extent };
+        visibility::record(cmd, &drawn, &bound, samples, counters, self.choices.visibility)?;
         if let Some(listed) = &self.listed {
             let lists = &listed.lists;
             listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;
@@ -177,7 +178,8 @@ impl Frame for DeepFrame {
             return Ok(BTreeMap::new());
         }
         let pixels = self.color.description.extent.pixel_count();
-        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, self.choices.is_stochastic)
+        let is_stochastic = self.choices.visibility == Visibility::Stochastic;
+        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, is_stochastic)
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

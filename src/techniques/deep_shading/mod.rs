@@ -23,8 +23,8 @@
 //!   the depth test finds the nearest without 64-bit atomics
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
-//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits. Without blur
-//! it is `forward --supersample` with samples in other places.
+//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
+//! every order of `--visibility`. Without blur it is `forward --supersample` with samples in other places.
 
 mod brute;
 mod choices;
@@ -57,6 +57,8 @@ use frame::DeepFrame;
 use primitives::Primitives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use visibility::Visibility;
+use visibility::layer::LayerFrom;
 
 const NAME: &str = "deep_shading";
 
@@ -103,6 +105,15 @@ impl Technique for DeepShading {
             need("the visibility pass", Ability::FloatDepth, ""),
             need("the shading pass", Ability::FragmentAtomics, ""),
         ];
+        let visibility = Visibility::of(values);
+        if visibility.is_layered() {
+            let ability = match LayerFrom::of(values, caps) {
+                LayerFrom::Vertex if visibility.has_layer_from() => Ability::LayerFromVertex,
+                _ => Ability::GeometryShader,
+            };
+            let of = format!("--visibility {}", values.text("visibility"));
+            needs.push(need(&of, ability, "--visibility repeat-frame works without it"));
+        }
         match choices::road(values, caps) {
             shade::Road::Geometry => {
                 let instead = "--conservative vertex works without it";
@@ -157,10 +168,13 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { table, road, lens, .. } = &self.choices;
+        let Choices { table, road, lens, visibility, layer_from, .. } = &self.choices;
         let mut resolved =
             BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
+        if visibility.has_layer_from() {
+            resolved.insert("layer-from", layer_from.name().to_owned());
+        }
         if let Some(lens) = lens {
             resolved.insert("focus", format!("{}", lens.focus));
         }

@@ -111,7 +111,7 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
     Ok(())
 }
 
-/// Errors: a buffer of one entry a sample is longer than the device binds.
+/// Errors: a buffer of one entry a sample is longer than the device binds; more tuples than layers.
 fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let range = inputs.caps.limits.max_storage_buffer_range_bytes;
     let (layers, most_layers) = (choices.table.tuple_count(), inputs.caps.limits.max_image_layers);
@@ -119,6 +119,15 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         return Err(
             Error::request(format!("--tuples {layers}: this device has images of {most_layers} layers")).within(NAME)
         );
+    }
+    let most_drawn = inputs.caps.limits.max_framebuffer_layers;
+    if choices.visibility.is_layered() && layers > most_drawn {
+        return Err(Error::request(format!(
+            "--visibility {}, --tuples {layers}: this device draws into {most_drawn} layers at once",
+            inputs.values.text("visibility")
+        ))
+        .within(NAME)
+        .note("--visibility repeat-frame draws into one"));
     }
     let samples = choices.samples_of(inputs.view.extent);
     if samples * COLOR_BYTES <= range {

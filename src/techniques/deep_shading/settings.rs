@@ -9,12 +9,23 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "visibility",
         symbol: "",
-        kind: Kind::Choice(&["repeat-frame", "stochastic"]),
+        kind: Kind::Choice(&["repeat-frame", "repeat-draw", "instancing", "replicate", "stochastic"]),
         default: "repeat-frame",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "how samples find what they see: the frame is drawn once for each tuple, or a polygon around each triangle's blur is drawn and \
-               its pixels' samples are tested by a shader; the same samples",
+        help: "how samples find what they see: the frame is drawn once for each tuple, or each draw is, or each draw has an instance a \
+               tuple, or a geometry shader makes a triangle for each tuple; or a polygon around each triangle's blur is drawn and its \
+               pixels' samples are tested by a shader; the same samples",
+    },
+    Setting {
+        key: "layer-from",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "vertex", "geometry"]),
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 4.2",
+        help: "which stage says the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a geometry \
+               shader that passes triangles through; the same samples; auto: vertex where the device can",
     },
     Setting {
         key: "spp",

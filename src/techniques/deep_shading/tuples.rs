@@ -34,6 +34,11 @@ impl Table {
         Extent::new(frame.width.div_ceil(self.cells[0]), frame.height.div_ceil(self.cells[1]))
     }
 
+    /// Whether all of every layer lies in the frame.
+    pub fn divides(&self, frame: Extent) -> bool {
+        frame.width.is_multiple_of(self.cells[0]) && frame.height.is_multiple_of(self.cells[1])
+    }
+
     /// How much of a tuple's layer lies in the frame, from its first pixel on.
     pub fn inside(&self, frame: Extent, tuple: u32) -> Extent {
         let cell = tuple / self.samples;

@@ -8,8 +8,13 @@
 layout(location = 0) in vec4 in_canonical;
 layout(location = 1) flat in uint in_primitive;
 layout(location = 2) in vec3 in_weights;
-#ifdef ALPHA_TESTED
+layout(location = 6) flat in uint in_tuple;
+
+// 1: tuples are drawn together and reach beyond the frame.
+layout(constant_id = 96) const uint HAS_PADDING = 0;
+
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+#ifdef ALPHA_TESTED
 layout(location = 3) in vec2 in_uv_here;
 #ifdef VERTEX_EXTENDED
 layout(location = 4) in vec4 in_color_here;
@@ -28,6 +33,14 @@ layout(location = 0) out uvec2 out_spid;
 layout(location = 1) out uint out_shading_depth;
 #endif
 
+// Whether a layer's pixel lies beyond the frame: one scissor for all layers cannot keep it out.
+bool is_padding(uvec2 at) {
+    uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
+    uint cell = in_tuple / deep.sample_count;
+    uvec2 pixel = at * table + uvec2(cell % table.x, cell / table.x);
+    return pixel.x >= frame.width_px || pixel.y >= frame.height_px;
+}
+
 void main() {
 #ifdef ALPHA_TESTED
     // A layer's pixels are a table apart.
@@ -43,10 +56,14 @@ void main() {
     in_uv_1_down = dFdy(in_uv_1_here) / pixels.y;
 #endif
     float alpha = base_color_at(params.material).a;
-    if (!is_seen(alpha, uvec2(gl_FragCoord.xy), frame.sample_index * deep.tuple_count + params.tuple)) {
+    if (!is_seen(alpha, uvec2(gl_FragCoord.xy), frame.sample_index * deep.tuple_count + in_tuple)) {
         discard;
     }
 #endif
+    // After the derivatives: a quad at the rim has them of all its pixels.
+    if (HAS_PADDING != 0u && is_padding(uvec2(gl_FragCoord.xy))) {
+        discard;
+    }
     vec4 canonical = in_canonical;
     if (any(lessThan(in_weights, vec3(0.0)))) {
         uint corner = 3u * (in_primitive - params.primitive_offset);

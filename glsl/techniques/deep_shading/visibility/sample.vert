@@ -1,7 +1,11 @@
 // A corner of a triangle as one tuple sees it, and where it is in shading space. Pass:
-// src/techniques/deep_shading/visibility/sample.rs.
-// variants: VERTEX=plain|extended
+// src/techniques/deep_shading/visibility/sample.rs. TUPLE: told by the draw, or the instance; LAYER: chosen by nobody or by
+// a later stage, or here.
+// variants: VERTEX=plain|extended TUPLE=pushed|instance LAYER=none|vertex
 #version 460
+#ifdef LAYER_VERTEX
+#extension GL_ARB_shader_viewport_layer_array : require
+#endif
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/attributes.glsl"
@@ -20,23 +24,29 @@ layout(location = 3) out vec2 out_uv;
 layout(location = 4) out vec4 out_color;
 layout(location = 5) out vec2 out_uv_1;
 #endif
+layout(location = 6) flat out uint out_tuple;
 
 // The passes over one tuple must agree on depth to the bit.
 invariant gl_Position;
 
 void main() {
+#ifdef TUPLE_INSTANCE
+    uint tuple = uint(gl_InstanceIndex);
+#else
+    uint tuple = params.tuple;
+#endif
     uint corner = uint(gl_VertexIndex);
     uint vertex = vertex_of(corner);
-    TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + params.tuple];
     Seen open = seen_open(vertex);
     Seen close = open;
-    vec4 canonical = open.clip;
     if (IS_MOVING != 0u) {
         close = seen_close(vertex);
-        canonical = 0.5 * open.clip + 0.5 * close.clip;
     }
-    gl_Position = clip_of(open, close, tuple);
-    out_canonical = vec4(shading_from_clip(deep, canonical), canonical.zw);
+    gl_Position = clip_of(open, close, tuples[frame.sample_index * deep.tuple_count + tuple]);
+#ifdef LAYER_VERTEX
+    gl_Layer = int(tuple);
+#endif
+    out_canonical = canonical_of(open, close);
     out_primitive = params.primitive_offset + corner / 3u;
     uint place = corner % 3u;
     out_weights = vec3(place == 0u, place == 1u, place == 2u);
@@ -45,4 +55,5 @@ void main() {
     out_color = color_at(vertex);
     out_uv_1 = uv_1_at(vertex);
 #endif
+    out_tuple = tuple;
 }

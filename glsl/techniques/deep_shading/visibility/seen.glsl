@@ -1,5 +1,6 @@
-// Corners as the ends of the exposure and as a tuple see them: every kind of visibility must put a triangle into the same
-// place. After scene_buffers.glsl.
+// Corners as the ends of the exposure and as a tuple see them (section 4.2; appendix A, pass 1): every kind of visibility must
+// put a triangle into the same place, whichever stage does it, and the passes over one tuple agree on depth to the bit.
+// After scene_buffers.glsl.
 #ifndef DEEP_SHADING_SEEN_GLSL
 #define DEEP_SHADING_SEEN_GLSL
 
@@ -13,18 +14,16 @@ struct Seen {
 
 Seen seen_open(uint vertex) {
     vec4 open = open_ws(vertex);
-    Seen seen;
-    seen.clip = deep.open_clip_from_world * open;
-    seen.depth = dot(deep.open_depth.xyz, open.xyz) + deep.open_depth.w;
-    return seen;
+    precise vec4 clip = deep.open_clip_from_world * open;
+    precise float depth = dot(deep.open_depth.xyz, open.xyz) + deep.open_depth.w;
+    return Seen(clip, depth);
 }
 
 Seen seen_close(uint vertex) {
     vec4 close = close_ws(vertex);
-    Seen seen;
-    seen.clip = deep.close_clip_from_world * close;
-    seen.depth = dot(deep.close_depth.xyz, close.xyz) + deep.close_depth.w;
-    return seen;
+    precise vec4 clip = deep.close_clip_from_world * close;
+    precise float depth = dot(deep.close_depth.xyz, close.xyz) + deep.close_depth.w;
+    return Seen(clip, depth);
 }
 
 // A thin lens: by how much of its shear a point moves that lies `depth` metres before the eye: what lies in the plane in
@@ -33,19 +32,29 @@ float lens_part(float depth) {
     return depth * deep.inverse_focus - 1.0;
 }
 
-// Clip space of the tuple's layer. `close` is read where something moves.
-vec4 clip_of(Seen open, Seen close, TupleBlock tuple) {
-    vec4 clip = open.clip;
-    float depth = open.depth;
+// In canonical shading space: xy homogeneous pixels, zw of clip space. `close` is read where something moves, here and below.
+vec4 canonical_of(Seen open, Seen close) {
+    precise vec4 clip = open.clip;
     if (IS_MOVING != 0u) {
-        clip = mix(clip, close.clip, tuple.time);
-        depth = mix(depth, close.depth, tuple.time);
+        clip = 0.5 * open.clip + 0.5 * close.clip;
     }
+    return vec4(shading_from_clip(deep, clip), clip.zw);
+}
+
+// Clip space of the tuple's layer.
+vec4 clip_of(Seen open, Seen close, TupleBlock tuple) {
+    precise vec4 clip = open.clip;
+    precise float depth = open.depth;
+    if (IS_MOVING != 0u) {
+        clip = mix(open.clip, close.clip, tuple.time);
+        depth = mix(open.depth, close.depth, tuple.time);
+    }
+    precise vec2 at = clip.xy;
     if (HAS_LENS != 0u) {
-        clip.xy += deep.lens * tuple.lens * lens_part(depth);
+        at = clip.xy + deep.lens * tuple.lens * lens_part(depth);
     }
-    clip.xy = clip.xy * tuple.scale + clip.w * tuple.shift;
-    return clip;
+    precise vec2 placed = at * tuple.scale + clip.w * tuple.shift;
+    return vec4(placed, clip.zw);
 }
 
 #endif

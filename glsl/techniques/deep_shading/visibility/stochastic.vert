@@ -12,6 +12,7 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 layout(location = 1) flat out uint out_primitive;
 // xy: homogeneous pixels of the layer; zw: depth and w.
 layout(location = 2) flat out vec4 out_corners[3];
+layout(location = 6) flat out uint out_tuple;
 
 // Samples that one pass over the polygons has seen must be found by the next.
 invariant gl_Position;
@@ -38,6 +39,7 @@ void main() {
         out_corners[corner] = vec4(at, clip.zw);
     }
     out_primitive = params.primitive_offset + triangle;
+    out_tuple = params.tuple;
     Bound bound = bound_of(seen, tuple, layer);
     // A fan; what it has too many of is of one point.
     uint place = vertex % 3u == 0u ? 0u : vertex / 3u + vertex % 3u;

@@ -3,9 +3,14 @@
 //! writes  visibility.spids, visibility.depth and, with `--zmax on`, visibility.shading_depths: arrays of a layer a tuple,
 //!         of a table's part of the frame: 8, 4 and 4 B a sample
 //!
-//! `repeat-frame`: layer by layer, each with all draws. `stochastic`: the same with a polygon around each triangle's blur, whose
-//! samples a shader tests.
+//! The paper's four interleaved orders: within a layer draws come in one order in all of them, so that they see the same samples.
+//! `stochastic` draws as `repeat-frame` does, but a polygon around each triangle's blur, whose samples a shader tests.
 
+pub mod instancing;
+pub mod layer;
+pub mod repeat_draw;
+pub mod repeat_frame;
+pub mod replicate;
 pub mod sample;
 pub mod stochastic;
 
@@ -15,15 +20,84 @@ use super::primitives::Primitives;
 use super::tuples::Table;
 use super::{NAME, full};
 use crate::error::Result;
+use crate::gpu::caps::Limits;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Layers, Traffic};
 use crate::passes::mesh;
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
+use crate::settings::Values;
 use crate::units::Extent;
 use ash::vk;
-use sample::Sample;
+use sample::{Repeats, Sample, Stages};
 use std::sync::Arc;
+
+/// What triangles are drawn as, and in which order tuples and draws come (`--visibility`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    RepeatFrame,
+    RepeatDraw,
+    Instancing,
+    Replicate,
+    Stochastic,
+}
+
+impl Visibility {
+    pub fn of(values: &Values) -> Self {
+        match values.text("visibility") {
+            "repeat-draw" => Self::RepeatDraw,
+            "instancing" => Self::Instancing,
+            "replicate" => Self::Replicate,
+            "stochastic" => Self::Stochastic,
+            _ => Self::RepeatFrame,
+        }
+    }
+
+    /// All layers are drawn into at once.
+    pub fn is_layered(self) -> bool {
+        !matches!(self, Self::RepeatFrame | Self::Stochastic)
+    }
+
+    /// Someone must say the layer, and may be chosen.
+    pub fn has_layer_from(self) -> bool {
+        matches!(self, Self::RepeatDraw | Self::Instancing)
+    }
+
+    /// How each draw call comes to its tuples; where layers are drawn one by one, those of the first.
+    pub fn repeats(self, scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
+        match self {
+            Self::RepeatFrame | Self::Stochastic => repeat_frame::repeats(0),
+            Self::RepeatDraw => repeat_draw::repeats(tuple_count),
+            Self::Instancing => instancing::repeats(tuple_count),
+            Self::Replicate => replicate::repeats(scene, limits, tuple_count),
+        }
+    }
+
+    /// How often the vertices of a draw call are fetched.
+    pub fn round_count(self, repeats: &Repeats, layer_count: u32) -> u32 {
+        if self.is_layered() { repeats.round_count() } else { layer_count }
+    }
+
+    /// Tells `draw` the layers to open, one after the other or all together, and how calls repeat in them.
+    pub fn for_layers(self, repeats: &Repeats, layer_count: u32, mut draw: impl FnMut(Layers, &Repeats)) {
+        if self.is_layered() {
+            draw(Layers::All(layer_count), repeats);
+        } else {
+            (0..layer_count).for_each(|tuple| draw(Layers::One(tuple), &repeat_frame::repeats(tuple)));
+        }
+    }
+}
+
+/// Before fragments: whatever draws the samples' triangles again needs the same stages, as drivers may round otherwise after a
+/// geometry shader. `repeats`: of the same visibility.
+pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages {
+    match choices.visibility {
+        Visibility::RepeatFrame => Stages::sharp(sample::vertex_shader(scene, repeats, "none"), None),
+        Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
+        Visibility::Replicate => replicate::stages(scene, repeats),
+        Visibility::Stochastic => stochastic::stages(choices),
+    }
+}
 
 /// One entry a sample.
 pub struct Samples {
@@ -57,47 +131,65 @@ impl Samples {
         let images = [Some(&self.spids), Some(&self.depth), self.shading_depths.as_ref()];
         images.into_iter().flatten().map(|image| image.description.bytes()).sum()
     }
+
+    fn colors(&self) -> impl Iterator<Item = &Image> {
+        std::iter::once(&self.spids).chain(self.shading_depths())
+    }
+
+    /// Opens rendering into `layers`, and clears them.
+    fn begin(&self, cmd: &mut Commands, layers: Layers) {
+        // No triangle; and the depth of nothing, which no list hears of.
+        let cleared = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
+        let targets: Vec<_> = self.colors().map(|image| ColorTarget::new(image, cleared)).collect();
+        let depth = (&self.depth, Some(0.0), Access::DepthWrite);
+        cmd.begin_layers(self.spids.description.extent, layers, &targets, Some(depth));
+    }
+}
+
+/// What is drawn, and where.
+pub struct Drawn<'a> {
+    pub sample: &'a Sample,
+    pub scene: &'a SceneGpu,
+    pub list: &'a DrawList,
+    pub primitives: &'a Primitives,
+    pub table: &'a Table,
+    pub frame: Extent,
 }
 
 /// Draws every tuple into its layer: what of it is in the frame.
-#[allow(clippy::too_many_arguments)]
 pub fn record(
     cmd: &mut Commands,
-    sample: &Sample,
-    scene: &SceneGpu,
-    list: &DrawList,
-    primitives: &Primitives,
+    drawn: &Drawn<'_>,
     bound: &[(&'static str, Bound<'_>)],
     samples: &Samples,
     counters: &Buffer,
-    (table, frame): (&Table, Extent),
+    visibility: Visibility,
 ) -> Result<()> {
     let layers = samples.spids.description.layers();
+    let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);
+    let rounds = visibility.round_count(&repeats, layers);
     let traffic = Traffic {
-        read_bytes: u64::from(layers) * mesh::read_bytes(scene, list.calls()),
+        read_bytes: u64::from(rounds) * mesh::read_bytes(drawn.scene, drawn.list.calls()),
         written_bytes: samples.bytes(),
         invocations: None,
     };
     cmd.pass(&format!("{NAME}.visibility"), traffic, |cmd| {
-        let colors: Vec<&Image> = [Some(&samples.spids), samples.shading_depths()].into_iter().flatten().collect();
-        cmd.barriers(colors.iter().map(|image| image.discard(Access::ColorWrite)));
+        cmd.barriers(samples.colors().map(|image| image.discard(Access::ColorWrite)));
         cmd.barriers([samples.depth.discard(Access::DepthWrite)]);
         cmd.barriers([counters.discard(Access::TransferWrite)]);
         cmd.clear(counters);
         cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
         let mut bound = bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
-        let sets = sample.sets(cmd, &bound)?;
-        // No triangle; and the depth of nothing, which no list hears of.
-        let cleared = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
-        for tuple in 0..layers {
-            let targets: Vec<_> = colors.iter().map(|image| ColorTarget::new(image, cleared)).collect();
-            let depth = (&samples.depth, Some(0.0), Access::DepthWrite);
-            cmd.begin_layers(samples.spids.description.extent, Layers::One(tuple), &targets, Some(depth));
-            cmd.set_scissor([0, 0], table.inside(frame, tuple));
-            sample.draw(cmd, scene, list, primitives, &sets, tuple);
+        let sets = drawn.sample.sets(cmd, &bound)?;
+        visibility.for_layers(&repeats, layers, |at, repeats| {
+            samples.begin(cmd, at);
+            if let Layers::One(tuple) = at {
+                cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, tuple));
+            }
+            drawn.sample.draw(cmd, drawn, &sets, repeats);
             cmd.end_rendering();
-        }
+        });
         Ok(())
     })
 }

@@ -1,42 +1,58 @@
-//! The draws of one tuple: sharp triangles, in the places where the tuple has them. Shaders: sample.vert, sample.frag.
+//! The draws of tuples: sharp triangles, in the places where each tuple has them. Shaders: sample.vert, sample.frag.
 
 use super::super::choices::Choices;
 use super::super::constants_of;
 use super::super::plan::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
-use super::super::primitives::Primitives;
-use super::stochastic;
+use super::super::primitives::{self, Primitives};
+use super::Drawn;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::sample::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
-use crate::resident::{DrawCall, DrawList, SceneGpu};
+use crate::resident::{DrawCall, SceneGpu};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
+
+/// How each draw call comes to its tuples.
+pub struct Repeats {
+    /// The call comes again for every `step`th of them, and is told it.
+    pub tuples: Range<u32>,
+    pub step: u32,
+    /// Of each of these. More than one: an instance is a tuple.
+    pub instance_count: u32,
+}
+
+impl Repeats {
+    /// How often a vertex is fetched.
+    pub fn round_count(&self) -> u32 {
+        (self.tuples.len() as u32).div_ceil(self.step) * self.instance_count
+    }
+}
 
 /// What triangles are drawn with.
 pub struct Stages {
     pub vertex: &'static Shader,
-    fragments: &'static [&'static Shader],
-    sides: Sides,
+    pub geometry: Option<&'static Shader>,
+    pub fragments: &'static [&'static Shader],
+    pub sides: Sides,
     /// Vertices of a triangle.
-    vertex_count: u32,
+    pub vertex_count: u32,
 }
 
-/// Of the chosen visibility; what draws the same triangles again shares its vertex stage.
-pub fn stages(scene: &SceneGpu, choices: &Choices) -> Stages {
-    if choices.is_stochastic {
-        return Stages {
-            vertex: stochastic::vertex_shader(),
-            fragments: stochastic::fragment_shaders(),
-            // The shader tells sides apart: polygons have none.
-            sides: Sides::Both,
-            vertex_count: stochastic::vertex_count(choices),
-        };
+impl Stages {
+    /// Of triangles as one tuple sees them.
+    pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
+        Self { vertex, geometry, fragments: FRAG_VARIANTS, sides: Sides::AsDrawn, vertex_count: 3 }
     }
-    let vertex = variant(VERT_VARIANTS, &[mesh::vertex_name(scene)]);
-    Stages { vertex, fragments: FRAG_VARIANTS, sides: Sides::AsDrawn, vertex_count: 3 }
+}
+
+/// The vertex stage for `scene`. `layer`: a value of its axis LAYER.
+pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str) -> &'static Shader {
+    let tuple = if repeats.instance_count > 1 { "instance" } else { "pushed" };
+    variant(VERT_VARIANTS, &[mesh::vertex_name(scene), tuple, layer])
 }
 
 /// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
@@ -46,15 +62,17 @@ pub fn draw<'a>(
     scene: &SceneGpu,
     primitives: &Primitives,
     calls: impl IntoIterator<Item = &'a DrawCall>,
-    tuple: u32,
+    repeats: &Repeats,
 ) {
     mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
-        let params = super::super::primitives::of_tuple(primitives.params(scene, call), tuple);
-        cmd.push(&pipeline.interface, bytemuck::bytes_of(&params));
+        let params = primitives.params(scene, call);
         let of = |indices: u32| indices / 3 * stages.vertex_count;
         let (count, first) = (of(call.index_count), of(call.first_index));
-        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, 1, first, 0) };
+        for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {
+            cmd.push(&pipeline.interface, bytemuck::bytes_of(&primitives::of_tuple(params, tuple)));
+            // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+            unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
+        }
     });
 }
 
@@ -71,15 +89,16 @@ impl Sample {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let depth = if choices.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
-        let stages = stages(scene, choices);
+        let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
+        let stages = super::stages(scene, choices, &repeats);
         let pipeline = |alpha| {
             let fragment = variant(stages.fragments, &[alpha, mesh::vertex_name(scene), depth]);
-            let constants = constants_of(choices, &[Some(stages.vertex), Some(fragment)]);
+            let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: stages.vertex,
-                    geometry: None,
+                    geometry: stages.geometry,
                     fragment: Some(fragment),
                     constants: &constants,
                     vertex_buffers: &[],
@@ -108,21 +127,14 @@ impl Sample {
         Ok(Sets([set(&self.opaque)?, set(&self.tested)?]))
     }
 
-    /// All draws of a tuple, inside rendering.
-    pub fn draw(
-        &self,
-        cmd: &mut Commands,
-        scene: &SceneGpu,
-        list: &DrawList,
-        primitives: &Primitives,
-        Sets([opaque, tested]): &Sets,
-        tuple: u32,
-    ) {
+    /// All draws, inside rendering.
+    pub fn draw(&self, cmd: &mut Commands, drawn: &Drawn<'_>, Sets([opaque, tested]): &Sets, repeats: &Repeats) {
+        let Drawn { scene, list, primitives, .. } = drawn;
         for (pipeline, set, calls) in [(&self.opaque, opaque, &list.opaque), (&self.tested, tested, &list.mask)] {
             if let Some(first) = calls.first() {
                 let params = primitives.params(scene, first);
                 cmd.bind_with_set(pipeline, bytemuck::bytes_of(&params), *set);
-                draw(cmd, (pipeline, &self.stages), scene, primitives, calls, tuple);
+                draw(cmd, (pipeline, &self.stages), scene, primitives, calls, repeats);
             }
         }
     }

@@ -6,23 +6,23 @@
 //! around it.
 
 use super::super::choices::Choices;
-use crate::gpu::shader::Shader;
+use super::sample::Stages;
 use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT};
+use crate::passes::mesh::Sides;
 
 /// BOUND_MOST_SIDES and BOUND_STILL_SIDES of bound.glsl.
 const MOST_SIDES: u32 = 12;
 const STILL_SIDES: u32 = 7;
 
-pub(super) fn vertex_shader() -> &'static Shader {
-    &VERT
-}
-
-pub(super) fn fragment_shaders() -> &'static [&'static Shader] {
-    FRAG_VARIANTS
-}
-
-/// Of a polygon: a fan of triangles.
-pub(super) fn vertex_count(choices: &Choices) -> u32 {
+pub(super) fn stages(choices: &Choices) -> Stages {
     let sides = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
-    3 * (sides - 2)
+    Stages {
+        vertex: &VERT,
+        geometry: None,
+        fragments: FRAG_VARIANTS,
+        // The shader tells sides apart: polygons have none.
+        sides: Sides::Both,
+        // A fan of triangles.
+        vertex_count: 3 * (sides - 2),
+    }
 }
