@@ -267,6 +267,7 @@ impl Renderer {
         let numbers = FrameBlock { sample_index: index, ..numbers };
         // The run before has ended: the device reads the block no more.
         self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
+        self.frame.begin_run(index);
         let time = self.recorded.run()?;
         self.runs.set(index + 1);
         Ok(time)

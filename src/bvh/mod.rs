@@ -1,26 +1,21 @@
 //! The tree that rays walk, for the host and for compute shaders (glsl/bvh.glsl, glsl/bvh_walk.glsl).
 //!
-//! A crate builds it (PLOC with reinsertion); this file lays it out as the shaders read it and walks it on the host, as
-//! the shaders' twin. MASK surfaces are in it: the caller of `closest_hit` decides about holes, shadow rays of `occluded`
+//! This file lays it out as the shaders read it and walks it on the host, as the shaders' twin. MASK surfaces are in it: the caller of `closest_hit` decides about holes, shadow rays of `occluded`
 //! take them as solid. BLEND surfaces stop no light of the techniques that rasterise, and are in the whole tree only,
 //! whose triangles say what a ray must ask of them (TRIANGLE_ bits).
 
+pub mod boxes;
 pub mod nodes;
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
 use crate::progress::Stage;
-use crate::scene::{AlphaMode, Bounds, Draw, Material, Scene};
-use glam::{Vec3, Vec3A};
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::builder::{build_bvh2, build_bvh2_from_tris};
+use crate::scene::{AlphaMode, Draw, Material, Scene};
+use glam::Vec3;
 use obvhs::triangle::Triangle;
 use std::sync::OnceLock;
-use std::time::Duration;
 
-/// Room of a plain walk's stack: bvh_walk.glsl's BVH_STACK.
-pub const STACK: usize = 64;
+pub use boxes::STACK;
 
 /// Its tree takes some 16 GiB.
 const MOST_TRIANGLES: u64 = 1 << 26;
@@ -121,13 +116,7 @@ impl Bvh {
     }
 
     fn of(scene: &Scene, holds: impl Fn(&Material) -> bool) -> Result<Self> {
-        let count = scene.triangle_count();
-        if count > MOST_TRIANGLES {
-            return Err(Error::request(format!(
-                "rays are cast among up to {MOST_TRIANGLES} triangles, and the scene draws {count}"
-            ))
-            .note("`--technique deferred --direct-shadow none` casts none"));
-        }
+        require_fitting(scene)?;
         let _stage = Stage::begin("building the tree of triangles");
         let mut corners = Vec::new();
         let mut closing = Vec::new();
@@ -148,23 +137,7 @@ impl Bvh {
         if corners.is_empty() {
             return Ok(Self::empty());
         }
-        let (settings, time) = (BvhBuildParams::medium_build(), &mut Duration::default());
-        let tree = if closing.is_empty() {
-            build_bvh2_from_tris(&corners, settings, time)
-        } else {
-            let boxes = corners.iter().zip(&closing).map(|(from, to)| from.aabb().union(&to.aabb()));
-            build_bvh2(&boxes.collect::<Vec<Aabb>>(), settings, time)
-        };
-        // A walk holds at most one waiting node a level, and one more.
-        let (nodes, order) = if tree.depth(0) < STACK {
-            let blocks = tree.nodes.iter().map(|node| {
-                let bounds = Bounds { min: node.aabb.min.into(), max: node.aabb.max.into() };
-                block(&bounds, node.prim_count, node.first_index)
-            });
-            (blocks.collect(), tree.primitive_indices)
-        } else {
-            halved(&corners, &closing)
-        };
+        let (nodes, order) = boxes::over(&corners, &closing);
         let order: Vec<usize> = order.into_iter().map(|index| index as usize).collect();
         let block = |index: &usize, from: &[Triangle]| {
             let Triangle { v0, v1, v2 } = from[*index];
@@ -188,7 +161,7 @@ impl Bvh {
     /// The nearest triangle along a ray, both of its sides, nearer than `limit`; `accept` may let a ray pass.
     pub fn closest_hit(&self, origin: Vec3, direction: Vec3, limit: f32, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        self.walk(origin, direction, limit, |triangle, limit| {
+        boxes::walk(&self.nodes, origin, direction, limit, |triangle, limit| {
             let hit = self.hit_of(triangle, origin, direction, limit)?;
             if !accept(&hit) {
                 return None;
@@ -218,39 +191,23 @@ impl Bvh {
     /// Whether anything lies on the ray before `limit`.
     pub fn occluded(&self, origin: Vec3, direction: Vec3, limit: f32) -> bool {
         let mut met = false;
-        self.walk(origin, direction, limit, |triangle, limit| {
+        boxes::walk(&self.nodes, origin, direction, limit, |triangle, limit| {
             met |= intersect(&self.triangles[triangle], origin, direction, limit).is_some();
             // A limit of 0 ends the walk: no box is entered any more.
             met.then_some(0.0)
         });
         met
     }
+}
 
-    /// Calls `visit` for each triangle whose leaf the ray enters; what it returns becomes the new limit.
-    fn walk(&self, origin: Vec3, direction: Vec3, mut limit: f32, mut visit: impl FnMut(usize, f32) -> Option<f32>) {
-        let inverse = Vec3::from_array(direction.to_array().map(|side| 1.0 / if side == 0.0 { 1e-20 } else { side }));
-        let mut stack = [0u32; STACK];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let node = &self.nodes[stack[depth] as usize];
-            if !enters(node, origin, inverse, limit) {
-                continue;
-            }
-            let (count, first) = (node.min_count[3].to_bits(), node.max_first[3].to_bits());
-            if count == 0 {
-                stack[depth] = first;
-                stack[depth + 1] = first + 1;
-                depth += 2;
-                continue;
-            }
-            for triangle in first..first + count {
-                if let Some(nearer) = visit(triangle as usize, limit) {
-                    limit = nearer;
-                }
-            }
-        }
+/// Errors: more triangles than a tree is built over (exit code 2).
+pub fn require_fitting(scene: &Scene) -> Result<()> {
+    let count = scene.triangle_count();
+    if count <= MOST_TRIANGLES {
+        return Ok(());
     }
+    Err(Error::request(format!("rays are cast among up to {MOST_TRIANGLES} triangles, and the scene draws {count}"))
+        .note("`--technique deferred --direct-shadow none` casts none"))
 }
 
 /// Triangle `triangle` of a draw, in world space.
@@ -268,60 +225,6 @@ fn flags_of(scene: &Scene, source: &Source) -> u32 {
     bit(material.alpha != AlphaMode::Opaque, TRIANGLE_TESTED)
         | bit(!material.double_sided, TRIANGLE_SINGLE_SIDED)
         | bit(draw.world_from_object.determinant() < 0.0, TRIANGLE_MIRRORED)
-}
-
-fn block(bounds: &Bounds, count: u32, first: u32) -> BvhNodeBlock {
-    let (Vec3 { x, y, z }, far) = (bounds.min, bounds.max);
-    BvhNodeBlock {
-        min_count: [x, y, z, f32::from_bits(count)],
-        max_first: [far.x, far.y, far.z, f32::from_bits(first)],
-    }
-}
-
-/// Nodes and triangles in leaf order of a tree whose every node halves its triangles, whatever lies where. `closing`: the
-/// same triangles where they move to, or none.
-///
-/// Why this way: PLOC joins what lies in one place one after the other, so that coincident triangles make a tree as deep
-/// as they are many. This one is never deeper than the logarithm of their number.
-fn halved(corners: &[Triangle], closing: &[Triangle]) -> (Vec<BvhNodeBlock>, Vec<u32>) {
-    const LEAF: usize = 4;
-    let sides = |triangle: &Triangle| [triangle.v0, triangle.v1, triangle.v2];
-    let swept = |index: u32| {
-        let closing = closing.get(index as usize).unwrap_or(&corners[index as usize]);
-        sides(&corners[index as usize]).into_iter().chain(sides(closing))
-    };
-    let middle = |index: u32| sides(&corners[index as usize]).into_iter().sum::<Vec3A>();
-    let mut order: Vec<u32> = (0..corners.len() as u32).collect();
-    let mut nodes = vec![BvhNodeBlock { min_count: [0.0; 4], max_first: [0.0; 4] }];
-    let mut waiting = vec![(0, 0..corners.len())];
-    while let Some((node, range)) = waiting.pop() {
-        let mut bounds = Bounds::EMPTY;
-        order[range.clone()].iter().flat_map(|index| swept(*index)).for_each(|corner| bounds.include(corner.into()));
-        if range.len() <= LEAF {
-            nodes[node] = block(&bounds, range.len() as u32, range.start as u32);
-            continue;
-        }
-        let axis = (bounds.max - bounds.min).max_position();
-        let half = range.len() / 2;
-        order[range.clone()]
-            .select_nth_unstable_by(half, |a, b| middle(*a)[axis].total_cmp(&middle(*b)[axis]).then(a.cmp(b)));
-        let first = nodes.len();
-        nodes[node] = block(&bounds, 0, first as u32);
-        nodes.extend([nodes[node]; 2]);
-        waiting.push((first, range.start..range.start + half));
-        waiting.push((first + 1, range.start + half..range.end));
-    }
-    (nodes, order)
-}
-
-fn enters(node: &BvhNodeBlock, origin: Vec3, inverse: Vec3, limit: f32) -> bool {
-    let [x, y, z, _] = node.min_count;
-    let near = (Vec3::new(x, y, z) - origin) * inverse;
-    let [x, y, z, _] = node.max_first;
-    let far = (Vec3::new(x, y, z) - origin) * inverse;
-    let entry = near.min(far).max_element().max(0.0);
-    let leave = near.max(far).min_element().min(limit);
-    entry <= leave
 }
 
 /// Distance and barycentrics, in the shader's order of operations.
@@ -347,7 +250,7 @@ fn intersect(triangle: &BvhTriangleBlock, origin: Vec3, direction: Vec3, limit: 
 mod tests {
     use super::*;
     use crate::scene::Mesh;
-    use glam::Mat4;
+    use glam::{Mat4, Vec3A};
     use proptest::prelude::*;
 
     /// A field of small triangles around the origin.
@@ -406,7 +309,7 @@ mod tests {
         let scene = field(3, 500);
         let bvh = Bvh::build(&scene).unwrap();
         let corners: Vec<Triangle> = bvh.triangles.iter().map(triangle_of).collect();
-        let (nodes, order) = halved(&corners, &[]);
+        let (nodes, order) = boxes::halved(&corners, &[]);
         let triangles = order.iter().map(|index| bvh.triangles[*index as usize]).collect();
         let other = Bvh { nodes, triangles, closing: Vec::new(), sources: Vec::new() };
         for ray in 0..200 {

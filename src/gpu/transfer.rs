@@ -1,6 +1,6 @@
-//! Transfers inside a recorded frame: filling and copying whole buffers. The caller states the barriers.
+//! Transfers inside a recorded frame: filling and copying whole resources. The caller states the barriers.
 
-use super::{Buffer, Commands};
+use super::{Access, Buffer, Commands, Image};
 use ash::vk;
 
 impl Commands {
@@ -18,5 +18,30 @@ impl Commands {
         let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size };
         // SAFETY: as above; the region lies in both.
         unsafe { self.gpu().device.cmd_copy_buffer(self.buffer(), source.handle, target.handle, &[region]) };
+    }
+
+    /// Copies the start of `source`, made with TRANSFER_SRC, into all of `target`: its levels one after the other, finest first,
+    /// each with its layers.
+    pub fn copy_to_image(&mut self, source: &Buffer, target: &Image) {
+        let description = &target.description;
+        let (needed, held) = (description.bytes(), source.bytes);
+        assert!(needed <= held, "{}: {held} bytes into {} of {needed}", source.name, target.name);
+        let texel_bytes = u64::from(super::image::texel_bytes(description.format));
+        let mut offset = 0;
+        let regions: Vec<_> = (0..description.level_count)
+            .map(|level| {
+                let width = (description.extent.width >> level).max(1);
+                let height = (description.extent.height >> level).max(1);
+                let region = vk::BufferImageCopy::default()
+                    .buffer_offset(offset)
+                    .image_subresource(target.whole_level(level))
+                    .image_extent(vk::Extent3D { width, height, depth: 1 });
+                offset += u64::from(width) * u64::from(height) * u64::from(description.layers()) * texel_bytes;
+                region
+            })
+            .collect();
+        let (from, to, layout) = (source.handle, target.handle, Access::TransferWrite.layout());
+        // SAFETY: as above; the regions lie in both.
+        unsafe { self.gpu().device.cmd_copy_buffer_to_image(self.buffer(), from, to, layout, &regions) };
     }
 }

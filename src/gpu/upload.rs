@@ -58,34 +58,10 @@ pub fn buffer_with(
 /// Fills the levels of `target` with what `fill` writes: finest first and one after the other, each with its layers. Leaves
 /// it readable as `access`.
 pub fn image(gpu: &Arc<Gpu>, target: &Image, access: Access, fill: impl FnOnce(&mut [u8])) -> Result<()> {
-    let description = &target.description;
-    let staging = staging(gpu, &target.name, description.bytes(), fill)?;
+    let staging = staging(gpu, &target.name, target.description.bytes(), fill)?;
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
-    let mut offset = 0;
-    let texel_bytes = u64::from(super::image::texel_bytes(description.format));
-    let regions: Vec<_> = (0..description.level_count)
-        .map(|level| {
-            let width = (description.extent.width >> level).max(1);
-            let height = (description.extent.height >> level).max(1);
-            let region = vk::BufferImageCopy::default()
-                .buffer_offset(offset)
-                .image_subresource(target.whole_level(level))
-                .image_extent(vk::Extent3D { width, height, depth: 1 });
-            offset += u64::from(width) * u64::from(height) * u64::from(description.layers()) * texel_bytes;
-            region
-        })
-        .collect();
-    // SAFETY: buffer and image are alive until the fence; the regions lie in both.
-    unsafe {
-        gpu.device.cmd_copy_buffer_to_image(
-            cmd.buffer(),
-            staging.handle,
-            target.handle,
-            Access::TransferWrite.layout(),
-            &regions,
-        );
-    }
+    cmd.copy_to_image(&staging, target);
     cmd.barriers([target.from(Access::TransferWrite).to(access)]);
     cmd.finish()?.run()?;
     Ok(())

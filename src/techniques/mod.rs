@@ -145,6 +145,9 @@ pub trait Frame {
         1
     }
 
+    /// The host's part of a run, before it is submitted: the run before has ended.
+    fn begin_run(&self, _run: u32) {}
+
     /// Pixels to the right and down by which the picture of this run is moved, each less than half a pixel.
     fn offset_px(&self, _run: u32) -> Vec2 {
         Vec2::ZERO

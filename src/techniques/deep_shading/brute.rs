@@ -31,12 +31,9 @@ impl Brute {
         let samples = if choices.has_lists { "strays" } else { "all" };
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = visibility::stages(scene, choices, &repeats);
-        // Depths that a shader wrote are not the polygons'. The SPIDs alone say what is seen: a triangle covers a sample once.
-        let (visibility, depth_compare) = if choices.visibility == Visibility::Stochastic {
-            ("stochastic", vk::CompareOp::ALWAYS)
-        } else {
-            ("interleaved", vk::CompareOp::EQUAL)
-        };
+        // Polygons have no depth that samples have. The SPIDs alone say what is seen: a triangle covers a sample once.
+        let has_polygons = choices.visibility.has_polygons();
+        let visibility = if has_polygons { "stochastic" } else { "interleaved" };
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows, visibility]);
         let constants = super::constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
@@ -51,9 +48,9 @@ impl Brute {
                 color_formats: &[],
                 samples: 1,
                 blending: Blending::Replace,
-                depth_format: Some(DEPTH_FORMAT),
+                depth_format: (!has_polygons).then_some(DEPTH_FORMAT),
                 depth_write: false,
-                depth_compare,
+                depth_compare: vk::CompareOp::EQUAL,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
                 conservative: false,
@@ -95,17 +92,16 @@ impl Brute {
                 cmd.barriers([colors.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
                 cmd.barriers([lists.nodes.from(Access::ComputeRead | Access::GraphicsRead).to(Access::GraphicsRead)]);
                 // Compute shaders read them first: what drew them was waited for by those alone.
-                Access::ComputeSample | Access::ColorWrite
+                Access::ComputeSample | samples.written
             } else {
                 cmd.barriers([colors.discard(Access::TransferWrite)]);
                 cmd.clear(colors);
                 cmd.barriers([colors.from(Access::TransferWrite).to(Access::FragmentWrite)]);
-                Access::ColorWrite.into()
+                samples.written.into()
             };
-            cmd.barriers([
-                samples.spids.from(spids_left).to(Access::FragmentSample),
-                samples.depth.from(Access::DepthWrite).to(Access::DepthTest),
-            ]);
+            let depth = samples.depth.as_ref().filter(|_| !self.visibility.has_polygons());
+            cmd.barriers([samples.spids.from(spids_left).to(Access::FragmentSample)]);
+            cmd.barriers(depth.map(|depth| depth.from(Access::DepthWrite).to(Access::DepthTest)));
             let mut bound = bound.to_vec();
             bound.extend(lists.map(Lists::bound).into_iter().flatten());
             bound.extend([
@@ -116,8 +112,8 @@ impl Brute {
             let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
             let Some(first) = list.calls().next() else { return Ok(()) };
             self.visibility.for_layers(&repeats, layers, |at, repeats| {
-                let depth = (&samples.depth, None, Access::DepthTest);
-                cmd.begin_layers(description.extent, at, &[], Some(depth));
+                let depth = depth.map(|depth| (depth, None, Access::DepthTest));
+                cmd.begin_layers(description.extent, at, &[], depth);
                 cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
                 sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
                 cmd.end_rendering();

@@ -8,6 +8,7 @@ use super::visibility::layer::LayerFrom;
 use super::{NAME, shade::Road};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
+use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
@@ -101,6 +102,12 @@ impl Choices {
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         })
+    }
+
+    /// What shaders know of shading space, cameras, lens and samples.
+    pub fn deep_block(&self, inputs: &Inputs<'_>) -> DeepBlock {
+        let close = self.middle.as_ref().map(|middle| &middle.closing.view);
+        self.space.block(inputs.view, close, self.lens, &self.table)
     }
 
     /// The lights that shade: those in the middle of the exposure.

@@ -13,6 +13,7 @@ use super::primitives::{self, Primitives};
 use super::resolve::Resolve;
 use super::scene::DeepScene;
 use super::shade::Shade;
+use super::visibility::ray::{Rays, Traced};
 use super::visibility::sample::Sample;
 use super::visibility::{self, Drawn, Samples, Visibility};
 use super::{NAME, full};
@@ -38,13 +39,19 @@ struct Listed {
     count: Option<Count>,
 }
 
+/// Who finds what samples see.
+enum Seen {
+    Drawn(Sample),
+    Traced(Rays),
+}
+
 pub struct DeepFrame {
     choices: Choices,
     primitives: Primitives,
     list: DrawList,
     scene: DeepScene,
     samples: Samples,
-    sample: Sample,
+    visibility: Seen,
     listed: Option<Listed>,
     brute: Option<Brute>,
     resolve: Resolve,
@@ -62,7 +69,7 @@ impl DeepFrame {
         scene: &SceneGpu,
         resources: &mut Resources,
         choices: Choices,
-        primitives: Primitives,
+        (primitives, traced): (Primitives, Option<Traced>),
     ) -> Result<Self> {
         let listed = if choices.has_lists {
             let address = choices.is_compacted && choices.has_addresses;
@@ -81,7 +88,10 @@ impl DeepFrame {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             samples: Samples::new(gpu, resources, &choices)?,
-            sample: Sample::new(gpu, scene, &choices)?,
+            visibility: match traced {
+                Some(traced) => Seen::Traced(Rays::new(resources, &choices, traced)),
+                None => Seen::Drawn(Sample::new(gpu, scene, &choices)?),
+            },
             brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices)?) } else { None },
             resolve: Resolve::new(gpu, &choices)?,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
@@ -120,9 +130,13 @@ impl Frame for DeepFrame {
         let bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
         let frame_extent = self.color.description.extent;
-        let (sample, table) = (&self.sample, &self.choices.table);
-        let drawn = Drawn { sample, scene, list, primitives, table, frame: frame_extent };
-        visibility::record(cmd, &drawn, &bound, samples, counters, self.choices.visibility)?;
+        match &self.visibility {
+            Seen::Traced(rays) => rays.record(cmd, samples, counters)?,
+            Seen::Drawn(sample) => {
+                let drawn = Drawn { sample, scene, list, primitives, table: &self.choices.table, frame: frame_extent };
+                visibility::record(cmd, &drawn, &bound, samples, counters, self.choices.visibility)?;
+            }
+        }
         if let Some(listed) = &self.listed {
             let lists = &listed.lists;
             listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;
@@ -147,7 +161,7 @@ impl Frame for DeepFrame {
         let spids_left = match (&self.listed, &self.brute) {
             (Some(_), None) => Access::ComputeSample.into(),
             (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
-            (None, _) => Access::FragmentSample | Access::ColorWrite,
+            (None, _) => Access::FragmentSample | samples.written,
         };
         self.resolve.record(cmd, &bound, (samples, spids_left), lists, colors, counters, &self.color)?;
         if let Some((listed, count)) = self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?))) {
@@ -157,6 +171,12 @@ impl Frame for DeepFrame {
             accumulate.record(cmd, NAME, frame, self.color.from(Access::ComputeWrite))?;
         }
         Ok(())
+    }
+
+    fn begin_run(&self, run: u32) {
+        if let Seen::Traced(rays) = &self.visibility {
+            rays.stage(run);
+        }
     }
 
     fn run_count(&self) -> u32 {

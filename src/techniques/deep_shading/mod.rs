@@ -59,6 +59,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use visibility::Visibility;
 use visibility::layer::LayerFrom;
+use visibility::ray::Traced;
 
 const NAME: &str = "deep_shading";
 
@@ -148,19 +149,22 @@ impl Technique for DeepShading {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let (choices, primitives) = (Choices::new(inputs)?, Primitives::new(inputs.scene)?);
-        Ok(Box::new(PreparedDeep { choices, primitives, light_count: inputs.lights.lights.len() as u32 }))
+        let is_traced = choices.visibility == Visibility::Ray;
+        let traced = if is_traced { Some(Traced::new(inputs, &choices, &primitives)?) } else { None };
+        Ok(Box::new(PreparedDeep { choices, primitives, traced, light_count: inputs.lights.lights.len() as u32 }))
     }
 }
 
 struct PreparedDeep {
     choices: Choices,
     primitives: Primitives,
+    traced: Option<Traced>,
     light_count: u32,
 }
 
 impl Prepared for PreparedDeep {
     fn host_passes(&self) -> Vec<(String, u64)> {
-        Vec::new()
+        self.traced.iter().map(|traced| (full("visibility.rays"), traced.time_ns)).collect()
     }
 
     fn counters(&self) -> BTreeMap<&'static str, f64> {
@@ -192,6 +196,6 @@ impl Prepared for PreparedDeep {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, self.primitives)?))
+        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, (self.primitives, self.traced))?))
     }
 }

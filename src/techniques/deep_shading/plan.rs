@@ -3,6 +3,7 @@
 
 use super::choices::Choices;
 use super::counters;
+use super::visibility::{Visibility, ray};
 use super::{NAME, full};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -52,9 +53,14 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         let layer_count = Some(choices.table.tuple_count());
         Shape::Image(ImageDescription { layer_count, ..ImageDescription::plain(extent, format, 1, usage) })
     };
-    let attached = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
+    let written = if choices.visibility == Visibility::Ray { Usage::TRANSFER_DST } else { Usage::COLOR_ATTACHMENT };
+    let attached = written | Usage::SAMPLED | Usage::TRANSFER_SRC;
     plan.push("frame_buffer", full(SPIDS), layers(SPID_FORMAT, attached));
-    plan.push("frame_buffer", full(DEPTH), layers(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
+    if choices.visibility == Visibility::Ray {
+        ray::plan(&mut plan, choices, inputs)?;
+    } else {
+        plan.push("frame_buffer", full(DEPTH), layers(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
+    }
     plan.buffer("deep_shading_buffer", full(COLORS), samples * COLOR_BYTES);
     if choices.has_lists {
         plan.buffer("deep_shading_buffer", full(BEGINS), shading_pixels * 4);
@@ -156,10 +162,12 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         lists.extend(choices.is_compacted.then(|| touch(LINEAR, access)));
         lists
     };
-    let mut seen = vec![touch(SPIDS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
+    let written = choices.visibility.writes();
+    let mut seen = vec![touch(SPIDS, written)];
+    seen.extend((choices.visibility != Visibility::Ray).then(|| touch(DEPTH, Access::DepthWrite)));
     seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
     if choices.has_zmax {
-        seen.push(touch(SHADING_DEPTHS, Access::ColorWrite));
+        seen.push(touch(SHADING_DEPTHS, written));
     }
     plan.pass(full("visibility"), seen);
     if choices.has_lists {
@@ -194,7 +202,8 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         plan.pass(full("shade"), shaded);
     }
     if choices.has_brute() {
-        let mut brute = vec![touch(SPIDS, Access::FragmentSample), touch(DEPTH, Access::DepthTest)];
+        let mut brute = vec![touch(SPIDS, Access::FragmentSample)];
+        brute.extend((!choices.visibility.has_polygons()).then(|| touch(DEPTH, Access::DepthTest)));
         if choices.has_lists {
             brute.push(touch(NODES, Access::GraphicsRead));
         } else {

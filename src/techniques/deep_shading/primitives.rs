@@ -43,6 +43,11 @@ impl Primitives {
         Ok(Self { offsets, count })
     }
 
+    /// The id of a draw's triangle, by the place of its first index among all that are resident.
+    pub fn id(&self, draw: u32, first_index: u32) -> u32 {
+        (first_index / 3).wrapping_add(self.offsets[draw as usize])
+    }
+
     /// What shaders are told of a draw, but for the tuple.
     pub fn params(&self, scene: &SceneGpu, call: &DrawCall) -> DrawnParams {
         let mut flags = if call.mirrored { DRAWN_MIRRORED } else { 0 };
@@ -94,7 +99,7 @@ mod tests {
         let primitives = Primitives::new(&scene).unwrap();
         assert_eq!(primitives.count, 9);
         // The second mesh's first triangle is the fifth of all indices.
-        let id = |draw: usize, place: u32| place.wrapping_add(primitives.offsets[draw]);
+        let id = |draw: u32, place: u32| primitives.id(draw, 3 * place);
         assert_eq!([id(0, 5), id(0, 6), id(1, 0), id(1, 4), id(2, 5), id(2, 6)], [0, 1, 2, 6, 7, 8]);
     }
 }

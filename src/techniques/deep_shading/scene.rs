@@ -68,8 +68,7 @@ impl DeepScene {
         let seed = inputs.values.integer("seed") as u32;
         let tuples: Vec<_> =
             (0..choices.run_count).flat_map(|run| choices.table.tuples(inputs.view.extent, seed, run)).collect();
-        let view = moved.map(|moved| &moved.closing.view);
-        let space = choices.space.block(inputs.view, view, choices.lens, &choices.table);
+        let space = choices.deep_block(inputs);
         let close = inputs.scene.closing.as_deref().map(Placed::of).unwrap_or_default();
         let maps = choices.maps.as_ref().map(|layout| {
             let posed = moved.map_or(inputs.scene, |moved| &moved.scene);

@@ -9,13 +9,13 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "visibility",
         symbol: "",
-        kind: Kind::Choice(&["repeat-frame", "repeat-draw", "instancing", "replicate", "stochastic"]),
+        kind: Kind::Choice(&["repeat-frame", "repeat-draw", "instancing", "replicate", "stochastic", "ray"]),
         default: "repeat-frame",
         unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "how samples find what they see: the frame is drawn once for each tuple, or each draw is, or each draw has an instance a \
                tuple, or a geometry shader makes a triangle for each tuple; or a polygon around each triangle's blur is drawn and its \
-               pixels' samples are tested by a shader; the same samples",
+               pixels' samples are tested by a shader; or the host casts rays; the same samples",
     },
     Setting {
         key: "layer-from",

@@ -8,7 +8,7 @@ use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::settings::Values;
 use crate::units::Extent;
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 /// Places of 16 bits a side, one of which says that there is none.
 const MOST_SIDE_PX: u64 = 65_534;
@@ -51,6 +51,19 @@ impl ShadingSpace {
             (self.guard_px + inside).min(side - 1) as usize
         });
         y * self.extent.width as usize + x
+    }
+
+    /// The pixel of a place in the middle of the exposure's clip space; None: behind the eye, before the near plane or outside,
+    /// shading space has no place for it. space.glsl's shading_pixel.
+    pub fn pixel(&self, clip: Vec4) -> Option<[u32; 2]> {
+        let scaled = Vec2::from_array(self.scaled_px);
+        let at = 0.5 * clip.xy() * scaled + clip.w * (0.5 * scaled + self.guard_px as f32);
+        let at = at / clip.w;
+        let has_place = clip.w > 0.0
+            && clip.z <= clip.w
+            && at.cmpge(Vec2::ZERO).all()
+            && at.cmplt(Vec2::new(self.extent.width as f32, self.extent.height as f32)).all();
+        has_place.then(|| [at.x as u32, at.y as u32])
     }
 
     /// What shaders know of it, of the cameras at both ends of the exposure, and of the samples.

@@ -55,8 +55,8 @@ impl Insert {
             cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
             let fresh = [Some(&lists.nodes), Some(colors), lists.addresses.as_ref()].into_iter().flatten();
             cmd.barriers(fresh.map(|buffer| buffer.discard(Access::ComputeWrite)));
-            let drawn = [Some(spids), samples.shading_depths()].into_iter().flatten();
-            cmd.barriers(drawn.map(|image| image.from(Access::ColorWrite).to(Access::ComputeSample)));
+            let seen = [Some(spids), samples.shading_depths()].into_iter().flatten();
+            cmd.barriers(seen.map(|image| image.from(samples.written).to(Access::ComputeSample)));
             let mut bound = bound.to_vec();
             bound.extend(lists.bound());
             bound.extend([

@@ -4,10 +4,11 @@
 //!         of a table's part of the frame: 8, 4 and 4 B a sample
 //!
 //! The paper's four interleaved orders: within a layer draws come in one order in all of them, so that they see the same samples.
-//! `stochastic` draws as `repeat-frame` does, but a polygon around each triangle's blur, whose samples a shader tests.
+//! `ray` asks the host. `stochastic` draws as `repeat-frame` does, but a polygon around each triangle's blur, whose samples a shader tests.
 
 pub mod instancing;
 pub mod layer;
+pub mod ray;
 pub mod repeat_draw;
 pub mod repeat_frame;
 pub mod replicate;
@@ -40,6 +41,7 @@ pub enum Visibility {
     Instancing,
     Replicate,
     Stochastic,
+    Ray,
 }
 
 impl Visibility {
@@ -49,13 +51,24 @@ impl Visibility {
             "instancing" => Self::Instancing,
             "replicate" => Self::Replicate,
             "stochastic" => Self::Stochastic,
+            "ray" => Self::Ray,
             _ => Self::RepeatFrame,
         }
     }
 
     /// All layers are drawn into at once.
     pub fn is_layered(self) -> bool {
-        !matches!(self, Self::RepeatFrame | Self::Stochastic)
+        matches!(self, Self::RepeatDraw | Self::Instancing | Self::Replicate)
+    }
+
+    /// Whatever draws the samples' triangles again draws polygons around them, and finds the samples by what they see.
+    pub fn has_polygons(self) -> bool {
+        matches!(self, Self::Stochastic | Self::Ray)
+    }
+
+    /// How samples come into their layers.
+    pub fn writes(self) -> Access {
+        if self == Self::Ray { Access::TransferWrite } else { Access::ColorWrite }
     }
 
     /// Someone must say the layer, and may be chosen.
@@ -66,7 +79,7 @@ impl Visibility {
     /// How each draw call comes to its tuples; where layers are drawn one by one, those of the first.
     pub fn repeats(self, scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
         match self {
-            Self::RepeatFrame | Self::Stochastic => repeat_frame::repeats(0),
+            Self::RepeatFrame | Self::Stochastic | Self::Ray => repeat_frame::repeats(0),
             Self::RepeatDraw => repeat_draw::repeats(tuple_count),
             Self::Instancing => instancing::repeats(tuple_count),
             Self::Replicate => replicate::repeats(scene, limits, tuple_count),
@@ -95,14 +108,17 @@ pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages 
         Visibility::RepeatFrame => Stages::sharp(sample::vertex_shader(scene, repeats, "none"), None),
         Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
         Visibility::Replicate => replicate::stages(scene, repeats),
-        Visibility::Stochastic => stochastic::stages(choices),
+        Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices),
     }
 }
 
 /// One entry a sample.
 pub struct Samples {
     pub spids: Image,
-    pub depth: Image,
+    /// Of rasterised ones.
+    pub depth: Option<Image>,
+    /// How SPIDs and depths at shading points were written.
+    pub written: Access,
     /// With `--zmax on`.
     shading_depths: Option<Image>,
     /// Texels are fetched: it only has to be there.
@@ -113,7 +129,8 @@ impl Samples {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         Ok(Self {
             spids: resources.image(&full(SPIDS)),
-            depth: resources.image(&full(DEPTH)),
+            depth: (choices.visibility != Visibility::Ray).then(|| resources.image(&full(DEPTH))),
+            written: choices.visibility.writes(),
             shading_depths: choices.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
         })
@@ -128,7 +145,7 @@ impl Samples {
     }
 
     fn bytes(&self) -> u64 {
-        let images = [Some(&self.spids), Some(&self.depth), self.shading_depths.as_ref()];
+        let images = [Some(&self.spids), self.depth.as_ref(), self.shading_depths.as_ref()];
         images.into_iter().flatten().map(|image| image.description.bytes()).sum()
     }
 
@@ -141,8 +158,8 @@ impl Samples {
         // No triangle; and the depth of nothing, which no list hears of.
         let cleared = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
         let targets: Vec<_> = self.colors().map(|image| ColorTarget::new(image, cleared)).collect();
-        let depth = (&self.depth, Some(0.0), Access::DepthWrite);
-        cmd.begin_layers(self.spids.description.extent, layers, &targets, Some(depth));
+        let depth = self.depth.as_ref().map(|depth| (depth, Some(0.0), Access::DepthWrite));
+        cmd.begin_layers(self.spids.description.extent, layers, &targets, depth);
     }
 }
 
@@ -154,6 +171,13 @@ pub struct Drawn<'a> {
     pub primitives: &'a Primitives,
     pub table: &'a Table,
     pub frame: Extent,
+}
+
+/// Sets the counters of a frame to 0, for shaders of fragments to count on.
+fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
+    cmd.barriers([counters.discard(Access::TransferWrite)]);
+    cmd.clear(counters);
+    cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
 }
 
 /// Draws every tuple into its layer: what of it is in the frame.
@@ -175,10 +199,8 @@ pub fn record(
     };
     cmd.pass(&format!("{NAME}.visibility"), traffic, |cmd| {
         cmd.barriers(samples.colors().map(|image| image.discard(Access::ColorWrite)));
-        cmd.barriers([samples.depth.discard(Access::DepthWrite)]);
-        cmd.barriers([counters.discard(Access::TransferWrite)]);
-        cmd.clear(counters);
-        cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
+        cmd.barriers(samples.depth.iter().map(|depth| depth.discard(Access::DepthWrite)));
+        begin_counters(cmd, counters);
         let mut bound = bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
         let sets = drawn.sample.sets(cmd, &bound)?;
