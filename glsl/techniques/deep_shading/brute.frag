@@ -1,6 +1,6 @@
 // Samples shaded where they are seen, each by itself: the oracle of the lists (--lists none), and what they leave out.
 // Pass: src/techniques/deep_shading/brute.rs.
-// variants: SAMPLES=all|strays VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
+// variants: SAMPLES=all|strays|direct VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
@@ -18,20 +18,37 @@ layout(location = 2) in vec3 in_weights;
 #endif
 layout(location = 6) flat in uint in_tuple;
 
+#ifdef SAMPLES_DIRECT
+layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
+#else
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
+#endif
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-#ifdef SAMPLES_STRAYS
+#if defined(SAMPLES_STRAYS) || defined(SAMPLES_DIRECT)
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 #endif
 
 void main() {
     uvec3 at = uvec3(gl_FragCoord.xy, in_tuple);
+    uint own = sample_index(deep, at);
+#ifdef SAMPLES_DIRECT
+    // Strays of the host's lists: their nodes lie where their colours do.
+    uint address = addresses[own];
+    if (address == NO_ADDRESS || (address & ADDRESS_STRAY) == 0u) {
+        discard;
+    }
+    own = address & ~ADDRESS_STRAY;
+    if (nodes[own].x != in_primitive) {
+        discard;
+    }
+    uvec2 spid = uvec2(in_primitive, NO_SHADING_PIXEL);
+#else
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
     if (spid.x != in_primitive) {
         discard;
     }
-    uint own = sample_index(deep, at);
+#endif
     bool is_stray = spid.y == NO_SHADING_PIXEL;
 #ifdef SAMPLES_STRAYS
     if (!is_stray) {

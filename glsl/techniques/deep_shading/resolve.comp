@@ -1,6 +1,6 @@
 // The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
 // samples' own places (section 3.2; appendix A, pass 4). Pass: src/techniques/deep_shading/resolve.rs.
-// variants: FETCH=own|address|linked|compact
+// variants: FETCH=own|address|direct|linked|compact
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
@@ -13,11 +13,13 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
+#ifndef FETCH_DIRECT
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
+#endif
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(set = 0, binding = 29, rgba32f) writeonly uniform image2D color;
-#ifdef FETCH_ADDRESS
+#if defined(FETCH_ADDRESS) || defined(FETCH_DIRECT)
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
 #endif
 #if defined(FETCH_LINKED) || defined(FETCH_COMPACT)
@@ -44,17 +46,24 @@ void main() {
     uint seen = 0u;
     for (uint index = 0u; index < deep.sample_count; index++) {
         uvec3 at = uvec3(pixel / table, first + index);
+        uint own = sample_index(deep, at);
+#ifdef FETCH_DIRECT
+        bool is_empty = addresses[own] == NO_ADDRESS;
+#else
         uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
-        if (spid.x == NO_PRIMITIVE) {
+        bool is_empty = spid.x == NO_PRIMITIVE;
+#endif
+        if (is_empty) {
             sum += frame.background.rgb;
             continue;
         }
         seen++;
-        uint own = sample_index(deep, at);
 #if defined(FETCH_OWN)
         uint where = own;
 #elif defined(FETCH_ADDRESS)
         uint where = addresses[own];
+#elif defined(FETCH_DIRECT)
+        uint where = addresses[own] & ~ADDRESS_STRAY;
 #else
         uint where = color_of(spid, own);
 #endif

@@ -54,6 +54,11 @@ const uint NO_PRIMITIVE = 0xffffffffu;
 // In place of a shading pixel: the sample has none.
 const uint NO_SHADING_PIXEL = 0xffffffffu;
 
+// In place of an address: the sample sees nothing.
+const uint NO_ADDRESS = 0xffffffffu;
+// A bit of the host's addresses: the sample has no place in shading space.
+const uint ADDRESS_STRAY = 0x80000000u;
+
 // Homogeneous pixels of shading space: xy through w is a place in it.
 vec2 shading_from_clip(DeepBlock deep, vec4 clip) {
     precise vec2 at = 0.5 * clip.xy * deep.scaled_px + clip.w * (0.5 * deep.scaled_px + deep.guard_px);

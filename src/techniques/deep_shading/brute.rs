@@ -13,9 +13,10 @@ use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::brute::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::{mesh, shadow_maps};
 use crate::resident::{DrawList, SceneGpu};
+use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
@@ -23,12 +24,19 @@ pub struct Brute {
     pipeline: GraphicsPipeline,
     stages: sample::Stages,
     visibility: Visibility,
+    /// One, and how many of them.
+    layers: (Extent, u32),
     name: &'static str,
 }
 
 impl Brute {
-    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let samples = if choices.has_lists { "strays" } else { "all" };
+    /// `frame`: its extent.
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices, frame: Extent) -> Result<Self> {
+        let samples = match choices {
+            Choices { is_direct: true, .. } => "direct",
+            Choices { has_lists: true, .. } => "strays",
+            _ => "all",
+        };
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = visibility::stages(scene, choices, &repeats);
         // Polygons have no depth that samples have. The SPIDs alone say what is seen: a triangle covers a sample once.
@@ -58,7 +66,8 @@ impl Brute {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Self { pipeline, stages, visibility: choices.visibility, name: choices.brute_pass() })
+        let layers = (choices.table.layer(frame), choices.table.tuple_count());
+        Ok(Self { pipeline, stages, visibility: choices.visibility, layers, name: choices.brute_pass() })
     }
 
     /// The lists of which these are the strays; the barrier of the shadow maps.
@@ -70,17 +79,17 @@ impl Brute {
         list: &DrawList,
         primitives: &Primitives,
         bound: &[(&'static str, Bound<'_>)],
-        samples: &Samples,
+        samples: Option<&Samples>,
         (lists, maps): (Option<&Lists>, Option<Barrier>),
         colors: &Buffer,
         counters: &Buffer,
     ) -> Result<()> {
-        let description = samples.spids.description;
-        let layers = description.layers();
+        let (layer, layers) = self.layers;
         let repeats = self.visibility.repeats(scene, &cmd.gpu().caps.limits, layers);
         let rounds = self.visibility.round_count(&repeats, layers);
         let traffic = Traffic {
-            read_bytes: u64::from(rounds) * mesh::read_bytes(scene, list.calls()) + description.bytes(),
+            read_bytes: u64::from(rounds) * mesh::read_bytes(scene, list.calls())
+                + samples.map_or(0, |samples| samples.spids.description.bytes()),
             // Counted after the frame.
             written_bytes: 0,
             invocations: None,
@@ -88,32 +97,37 @@ impl Brute {
         cmd.pass(&full(self.name), traffic, |cmd| {
             cmd.barriers(maps);
             cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
-            let spids_left = if let Some(lists) = lists {
+            if let Some(lists) = lists {
                 cmd.barriers([colors.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
                 cmd.barriers([lists.nodes.from(Access::ComputeRead | Access::GraphicsRead).to(Access::GraphicsRead)]);
-                // Compute shaders read them first: what drew them was waited for by those alone.
-                Access::ComputeSample | samples.written
             } else {
                 cmd.barriers([colors.discard(Access::TransferWrite)]);
                 cmd.clear(colors);
                 cmd.barriers([colors.from(Access::TransferWrite).to(Access::FragmentWrite)]);
-                samples.written.into()
-            };
-            let depth = samples.depth.as_ref().filter(|_| !self.visibility.has_polygons());
-            cmd.barriers([samples.spids.from(spids_left).to(Access::FragmentSample)]);
+            }
+            if let Some(samples) = samples {
+                // With lists compute shaders read them first: what wrote them was waited for by those alone.
+                let left = match lists {
+                    Some(_) => Access::ComputeSample | samples.written,
+                    None => AccessSet::from(samples.written),
+                };
+                cmd.barriers([samples.spids.from(left).to(Access::FragmentSample)]);
+            } else {
+                let addresses = lists.and_then(|lists| lists.addresses.as_ref());
+                cmd.barriers(addresses.map(|addresses| addresses.from(Access::ComputeWrite).to(Access::GraphicsRead)));
+            }
+            let depth = samples.and_then(|samples| samples.depth.as_ref()).filter(|_| !self.visibility.has_polygons());
             cmd.barriers(depth.map(|depth| depth.from(Access::DepthWrite).to(Access::DepthTest)));
             let mut bound = bound.to_vec();
             bound.extend(lists.map(Lists::bound).into_iter().flatten());
-            bound.extend([
-                ("Colors", Bound::Buffer(colors)),
-                ("Counters", Bound::Buffer(counters)),
-                ("spids", samples.sampled(&samples.spids, Access::FragmentSample)),
-            ]);
+            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            let spids = samples.map(|samples| samples.sampled(&samples.spids, Access::FragmentSample));
+            bound.extend(spids.map(|spids| ("spids", spids)));
             let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
             let Some(first) = list.calls().next() else { return Ok(()) };
             self.visibility.for_layers(&repeats, layers, |at, repeats| {
                 let depth = depth.map(|depth| (depth, None, Access::DepthTest));
-                cmd.begin_layers(description.extent, at, &[], depth);
+                cmd.begin_layers(layer, at, &[], depth);
                 cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
                 sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
                 cmd.end_rendering();

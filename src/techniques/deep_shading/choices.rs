@@ -33,6 +33,8 @@ pub struct Choices {
     /// The scene is another one when the shutter closes.
     pub is_moving: bool,
     pub has_lists: bool,
+    /// The host inserts into them, and samples have no SPIDs.
+    pub is_direct: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
     pub has_zmax: bool,
@@ -44,6 +46,21 @@ pub struct Choices {
     pub middle: Option<Middle>,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
+}
+
+/// Errors: `--lists direct` without rays, or without the addresses that stand for SPIDs (exit code 2).
+fn require_direct(values: &Values) -> Result<()> {
+    let refused =
+        |why: &str, advice: &str| Err(Error::request(format!("--lists direct: {why}")).within(NAME).note(advice));
+    match values.text("lists") {
+        "direct" if values.text("visibility") != "ray" => {
+            refused("only rays know a sample's triangle at once", "--visibility ray has them")
+        }
+        "direct" if !values.is_on("address-buffer") => {
+            refused("without SPIDs a sample needs its address", "--address-buffer on gives it one")
+        }
+        _ => Ok(()),
+    }
 }
 
 /// `--conservative`, `auto` resolved.
@@ -70,6 +87,8 @@ impl Choices {
                 .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
         }
         let has_lists = values.text("lists") != "none";
+        let is_direct = values.text("lists") == "direct";
+        require_direct(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture") > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
@@ -94,6 +113,7 @@ impl Choices {
             is_moving: middle.is_some(),
             middle,
             has_lists,
+            is_direct,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),

@@ -6,6 +6,7 @@ use super::count::Count;
 use super::counters;
 use super::lists::address::Address;
 use super::lists::compact::Compact;
+use super::lists::direct::Direct;
 use super::lists::insert::Insert;
 use super::lists::{self, Lists};
 use super::plan::{COLOR, COUNTERS, SPIDS};
@@ -13,7 +14,7 @@ use super::primitives::{self, Primitives};
 use super::resolve::Resolve;
 use super::scene::DeepScene;
 use super::shade::Shade;
-use super::visibility::ray::{Rays, Traced};
+use super::visibility::ray::{Rays, Sets, Traced};
 use super::visibility::sample::Sample;
 use super::visibility::{self, Drawn, Samples, Visibility};
 use super::{NAME, full};
@@ -32,17 +33,32 @@ pub const AOVS: &[&str] = &["count.lengths", SPIDS];
 /// What builds the deep shading buffer and shades it.
 struct Listed {
     lists: Lists,
-    insert: Insert,
-    compact: Option<Compact>,
-    address: Option<Address>,
+    insertion: Insertion,
     shade: Shade,
     count: Option<Count>,
 }
 
+/// Who puts triangles into lists.
+enum Insertion {
+    Device { insert: Insert, compact: Option<Compact>, address: Option<Address> },
+    Host(Direct),
+}
+
 /// Who finds what samples see.
 enum Seen {
-    Drawn(Sample),
-    Traced(Rays),
+    Drawn(Samples, Sample),
+    Traced(Samples, Rays),
+    /// With `--lists direct` the lists alone know.
+    Listed,
+}
+
+impl Seen {
+    fn samples(&self) -> Option<&Samples> {
+        match self {
+            Self::Drawn(samples, _) | Self::Traced(samples, _) => Some(samples),
+            Self::Listed => None,
+        }
+    }
 }
 
 pub struct DeepFrame {
@@ -50,7 +66,6 @@ pub struct DeepFrame {
     primitives: Primitives,
     list: DrawList,
     scene: DeepScene,
-    samples: Samples,
     visibility: Seen,
     listed: Option<Listed>,
     brute: Option<Brute>,
@@ -71,13 +86,29 @@ impl DeepFrame {
         choices: Choices,
         (primitives, traced): (Primitives, Option<Traced>),
     ) -> Result<Self> {
+        let samples = |resources: &mut Resources| Samples::new(gpu, resources, &choices);
+        let mut host_lists = None;
+        let visibility = match traced.map(|traced| traced.sets) {
+            Some(Sets::Lists(sets)) => {
+                host_lists = Some(Direct::new(resources, &choices, sets));
+                Seen::Listed
+            }
+            Some(Sets::Samples(sets)) => Seen::Traced(samples(resources)?, Rays::new(resources, &choices, sets)),
+            None => Seen::Drawn(samples(resources)?, Sample::new(gpu, scene, &choices)?),
+        };
         let listed = if choices.has_lists {
             let address = choices.is_compacted && choices.has_addresses;
+            let insertion = match host_lists {
+                Some(direct) => Insertion::Host(direct),
+                None => Insertion::Device {
+                    insert: Insert::new(gpu, &choices)?,
+                    compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
+                    address: if address { Some(Address::new(gpu)?) } else { None },
+                },
+            };
             Some(Listed {
                 lists: Lists::new(resources, &choices),
-                insert: Insert::new(gpu, &choices)?,
-                compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
-                address: if address { Some(Address::new(gpu)?) } else { None },
+                insertion,
                 shade: Shade::new(gpu, scene, &choices)?,
                 count: if choices.is_counted { Some(Count::new(gpu, resources, &choices)?) } else { None },
             })
@@ -87,12 +118,8 @@ impl DeepFrame {
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
-            samples: Samples::new(gpu, resources, &choices)?,
-            visibility: match traced {
-                Some(traced) => Seen::Traced(Rays::new(resources, &choices, traced)),
-                None => Seen::Drawn(Sample::new(gpu, scene, &choices)?),
-            },
-            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices)?) } else { None },
+            visibility,
+            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices, inputs.view.extent)?) } else { None },
             resolve: Resolve::new(gpu, &choices)?,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             colors: lists::colors(resources),
@@ -113,11 +140,22 @@ impl DeepFrame {
         Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
     }
 
+    /// Lists that the host has made.
+    fn host_lists(&self) -> Option<&Direct> {
+        match &self.listed.as_ref()?.insertion {
+            Insertion::Host(direct) => Some(direct),
+            Insertion::Device { .. } => None,
+        }
+    }
+
     /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
     ///
-    /// Errors: memory for the copy (exit code 4).
+    /// Errors: memory for the copy (exit code 4); `--lists direct` has no SPIDs (2).
     fn first_primitives(&self, gpu: &Arc<Gpu>) -> Result<Aov> {
-        let bytes = readback::image(gpu, &self.samples.spids, Access::ComputeSample)?;
+        let Some(samples) = self.visibility.samples() else {
+            return Err(left_out(NAME, SPIDS, "--lists direct has no SPIDs"));
+        };
+        let bytes = readback::image(gpu, &samples.spids, Access::ComputeSample)?;
         let spids: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
         let frame = self.color.description.extent;
         Ok(self.of_pixels(SPIDS, |pixel| spids[self.choices.table.first_sample(frame, pixel)][0]))
@@ -126,27 +164,34 @@ impl DeepFrame {
 
 impl Frame for DeepFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
-        let Self { list, primitives, samples, colors, counters, .. } = self;
+        let Self { list, primitives, visibility, colors, counters, .. } = self;
         let bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
         let frame_extent = self.color.description.extent;
-        match &self.visibility {
-            Seen::Traced(rays) => rays.record(cmd, samples, counters)?,
-            Seen::Drawn(sample) => {
+        match visibility {
+            Seen::Listed => {}
+            Seen::Traced(samples, rays) => rays.record(cmd, samples, counters)?,
+            Seen::Drawn(samples, sample) => {
                 let drawn = Drawn { sample, scene, list, primitives, table: &self.choices.table, frame: frame_extent };
                 visibility::record(cmd, &drawn, &bound, samples, counters, self.choices.visibility)?;
             }
         }
         if let Some(listed) = &self.listed {
             let lists = &listed.lists;
-            listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;
-            if let Some(compact) = &listed.compact {
-                compact.record(cmd, &bound, lists, colors, counters, self.choices.space.extent)?;
-            }
             let mut links_left = Access::ComputeWrite;
-            if let Some(address) = &listed.address {
-                address.record(cmd, &bound, samples, lists)?;
-                links_left = Access::ComputeRead;
+            match &listed.insertion {
+                Insertion::Host(direct) => direct.record(cmd, lists, colors, counters)?,
+                Insertion::Device { insert, compact, address } => {
+                    let samples = visibility.samples().expect("the host has not inserted them");
+                    insert.record(cmd, &bound, samples, lists, colors, counters)?;
+                    if let Some(compact) = compact {
+                        compact.record(cmd, &bound, lists, colors, counters, self.choices.space.extent)?;
+                    }
+                    if let Some(address) = address {
+                        address.record(cmd, &bound, samples, lists)?;
+                        links_left = Access::ComputeRead;
+                    }
+                }
             }
             let maps = self.scene.maps_barrier(Access::DepthWrite);
             let left = (lists, links_left, maps);
@@ -156,14 +201,17 @@ impl Frame for DeepFrame {
         if let Some(brute) = &self.brute {
             let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
             let left = (lists, self.scene.maps_barrier(maps_left));
-            brute.record(cmd, scene, list, primitives, &bound, samples, left, colors, counters)?;
+            brute.record(cmd, scene, list, primitives, &bound, visibility.samples(), left, colors, counters)?;
         }
-        let spids_left = match (&self.listed, &self.brute) {
-            (Some(_), None) => Access::ComputeSample.into(),
-            (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
-            (None, _) => Access::FragmentSample | samples.written,
-        };
-        self.resolve.record(cmd, &bound, (samples, spids_left), lists, colors, counters, &self.color)?;
+        let samples = visibility.samples().map(|samples| {
+            let left = match (&self.listed, &self.brute) {
+                (Some(_), None) => Access::ComputeSample.into(),
+                (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
+                (None, _) => Access::FragmentSample | samples.written,
+            };
+            (samples, left)
+        });
+        self.resolve.record(cmd, &bound, samples, lists, colors, counters, &self.color)?;
         if let Some((listed, count)) = self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?))) {
             count.record(cmd, &bound, &listed.lists, counters)?;
         }
@@ -174,8 +222,11 @@ impl Frame for DeepFrame {
     }
 
     fn begin_run(&self, run: u32) {
-        if let Seen::Traced(rays) = &self.visibility {
+        if let Seen::Traced(_, rays) = &self.visibility {
             rays.stage(run);
+        }
+        if let Some(direct) = self.host_lists() {
+            direct.stage(run);
         }
     }
 
@@ -199,7 +250,11 @@ impl Frame for DeepFrame {
         }
         let pixels = self.color.description.extent.pixel_count();
         let is_stochastic = self.choices.visibility == Visibility::Stochastic;
-        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, is_stochastic)
+        let mut counters = counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, is_stochastic)?;
+        if let Some(direct) = self.host_lists() {
+            counters.insert("samples_outside_shading_space", direct.stray_count() as f64);
+        }
+        Ok(counters)
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

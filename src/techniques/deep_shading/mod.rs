@@ -21,6 +21,7 @@
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
 //! - `--visibility stochastic` tests the tuples of the interleaved kinds, a layer a tuple, so that both see the same samples, and
 //!   the depth test finds the nearest without 64-bit atomics
+//! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no SPID is kept
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
@@ -33,6 +34,7 @@ mod counters;
 mod frame;
 mod lists;
 mod middle;
+mod passes;
 mod plan;
 mod primitives;
 mod resolve;

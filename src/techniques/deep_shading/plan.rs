@@ -3,13 +3,14 @@
 
 use super::choices::Choices;
 use super::counters;
+use super::lists::direct;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full};
+use super::{NAME, full, passes};
 use crate::error::{Error, Result};
+use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
-use crate::gpu::{Access, ImageDescription};
 use crate::memory::kinds::Use;
-use crate::passes::{accumulate, direct};
+use crate::passes::{accumulate, direct as lights};
 use crate::plan::{Plan, Shape};
 use crate::resident::VertexAttributes;
 use crate::techniques::Inputs;
@@ -34,7 +35,7 @@ pub const DEPTH_FORMAT: Format = Format::D32_SFLOAT;
 pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
-const LINEAR_COUNT: u64 = 16;
+pub const LINEAR_COUNT: u64 = 16;
 const NODE_BYTES: u64 = 8;
 /// RGBA16F.
 const COLOR_BYTES: u64 = 8;
@@ -55,7 +56,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     };
     let written = if choices.visibility == Visibility::Ray { Usage::TRANSFER_DST } else { Usage::COLOR_ATTACHMENT };
     let attached = written | Usage::SAMPLED | Usage::TRANSFER_SRC;
-    plan.push("frame_buffer", full(SPIDS), layers(SPID_FORMAT, attached));
+    if !choices.is_direct {
+        plan.push("frame_buffer", full(SPIDS), layers(SPID_FORMAT, attached));
+    }
     if choices.visibility == Visibility::Ray {
         ray::plan(&mut plan, choices, inputs)?;
     } else {
@@ -63,17 +66,25 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     }
     plan.buffer("deep_shading_buffer", full(COLORS), samples * COLOR_BYTES);
     if choices.has_lists {
-        plan.buffer("deep_shading_buffer", full(BEGINS), shading_pixels * 4);
-        plan.buffer("deep_shading_buffer", full(NODES), samples * NODE_BYTES);
+        let mut list = |group, name: &str, bytes| {
+            plan.buffer(group, full(name), bytes);
+            if choices.is_direct {
+                direct::plan(&mut plan, name, bytes);
+            }
+        };
+        list("deep_shading_buffer", BEGINS, shading_pixels * 4);
+        list("deep_shading_buffer", NODES, samples * NODE_BYTES);
         if choices.is_compacted {
-            plan.buffer("auxiliary", full(LINEAR), shading_pixels * LINEAR_COUNT * 4);
+            list("auxiliary", LINEAR, shading_pixels * LINEAR_COUNT * 4);
         }
         if choices.has_addresses {
-            plan.buffer("auxiliary", full(ADDRESSES), samples * 4);
+            list("auxiliary", ADDRESSES, samples * 4);
         }
         if choices.has_zmax {
+            list("auxiliary", ZMAX, shading_pixels * 4);
+        }
+        if choices.has_zmax && !choices.is_direct {
             plan.push("auxiliary", full(SHADING_DEPTHS), layers(SHADING_DEPTH_FORMAT, attached));
-            plan.buffer("auxiliary", full(ZMAX), shading_pixels * 4);
         }
         if choices.is_counted {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
@@ -88,14 +99,14 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     } else {
         plan.picture(full(COLOR), extent);
     }
-    plan_passes(&mut plan, choices);
+    passes::plan(&mut plan, choices);
     Ok(plan)
 }
 
 /// Lights, tree, cameras, tuples, and where the scene is when the shutter closes.
 fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
-    direct::plan(plan, NAME, inputs.lights.lights.len(), tree);
+    lights::plan(plan, NAME, inputs.lights.lights.len(), tree);
     let tuples = u64::from(choices.table.tuple_count()) * u64::from(choices.run_count);
     plan.buffer("frame", full("tuples"), tuples * size_of::<TupleBlock>() as u64);
     plan.buffer("frame", full("space"), size_of::<DeepBlock>() as u64);
@@ -152,85 +163,4 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     ))
     .within(NAME)
     .note(advice))
-}
-
-/// Who touches what, in order.
-fn plan_passes(plan: &mut Plan, choices: &Choices) {
-    let touch = |name: &str, access| (full(name), access);
-    let read_lists = |access| {
-        let mut lists = vec![touch(BEGINS, access), touch(NODES, access)];
-        lists.extend(choices.is_compacted.then(|| touch(LINEAR, access)));
-        lists
-    };
-    let written = choices.visibility.writes();
-    let mut seen = vec![touch(SPIDS, written)];
-    seen.extend((choices.visibility != Visibility::Ray).then(|| touch(DEPTH, Access::DepthWrite)));
-    seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
-    if choices.has_zmax {
-        seen.push(touch(SHADING_DEPTHS, written));
-    }
-    plan.pass(full("visibility"), seen);
-    if choices.has_lists {
-        let mut listed = vec![
-            touch(SPIDS, Access::ComputeSample),
-            touch(BEGINS, Access::TransferWrite),
-            touch(BEGINS, Access::ComputeWrite),
-            touch(COUNTERS, Access::ComputeWrite),
-            touch(NODES, Access::ComputeWrite),
-            touch(COLORS, Access::ComputeWrite),
-        ];
-        listed.extend(choices.has_addresses.then(|| touch(ADDRESSES, Access::ComputeWrite)));
-        if choices.has_zmax {
-            listed.push(touch(SHADING_DEPTHS, Access::ComputeSample));
-            listed.extend([touch(ZMAX, Access::TransferWrite), touch(ZMAX, Access::ComputeWrite)]);
-        }
-        plan.pass(full("lists"), listed);
-        if choices.is_compacted {
-            let mut compacted = read_lists(Access::ComputeWrite);
-            compacted.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
-            plan.pass(full("lists.compact"), compacted);
-            if choices.has_addresses {
-                let mut addressed = read_lists(Access::ComputeRead);
-                addressed.extend([touch(SPIDS, Access::ComputeSample), touch(ADDRESSES, Access::ComputeWrite)]);
-                plan.pass(full("lists.address"), addressed);
-            }
-        }
-        let mut shaded = read_lists(Access::GraphicsRead);
-        shaded.extend(choices.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
-        shaded.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
-        shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
-        plan.pass(full("shade"), shaded);
-    }
-    if choices.has_brute() {
-        let mut brute = vec![touch(SPIDS, Access::FragmentSample)];
-        brute.extend((!choices.visibility.has_polygons()).then(|| touch(DEPTH, Access::DepthTest)));
-        if choices.has_lists {
-            brute.push(touch(NODES, Access::GraphicsRead));
-        } else {
-            brute.push(touch(COLORS, Access::TransferWrite));
-        }
-        brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
-        brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
-        plan.pass(full(choices.brute_pass()), brute);
-    }
-    let mut resolved = vec![
-        touch(SPIDS, Access::ComputeSample),
-        touch(COLORS, Access::ComputeRead),
-        touch(COUNTERS, Access::ComputeWrite),
-        touch(COLOR, Access::ComputeWrite),
-    ];
-    if choices.has_lists && choices.has_addresses {
-        resolved.push(touch(ADDRESSES, Access::ComputeRead));
-    } else if choices.has_lists {
-        resolved.extend(read_lists(Access::ComputeRead));
-    }
-    plan.pass(full("resolve"), resolved);
-    if choices.has_lists && choices.is_counted {
-        let mut counted = read_lists(Access::ComputeRead);
-        counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
-        plan.pass(full("count"), counted);
-    }
-    if choices.run_count > 1 {
-        accumulate::plan_pass(plan, NAME, &full(COLOR));
-    }
 }

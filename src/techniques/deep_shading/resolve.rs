@@ -21,6 +21,7 @@ impl Resolve {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let fetch = match choices {
             Choices { has_lists: false, .. } => "own",
+            Choices { is_direct: true, .. } => "direct",
             Choices { has_addresses: true, .. } => "address",
             Choices { is_compacted: true, .. } => "compact",
             _ => "linked",
@@ -29,13 +30,13 @@ impl Resolve {
         Ok(Self { pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[fetch]), &constants)? })
     }
 
-    /// `spids_left`: who read the SPIDs, and who wrote them where compute shaders have not waited for it yet.
+    /// The samples, where they have SPIDs; `left`: who read the SPIDs, and who wrote them where compute shaders have not waited for it yet.
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        (samples, spids_left): (&Samples, AccessSet),
+        samples: Option<(&Samples, AccessSet)>,
         lists: Option<&Lists>,
         colors: &Buffer,
         counters: &Buffer,
@@ -43,7 +44,7 @@ impl Resolve {
     ) -> Result<()> {
         let extent = color.description.extent;
         let traffic = Traffic {
-            read_bytes: samples.spids.description.bytes()
+            read_bytes: samples.map_or(0, |(samples, _)| samples.spids.description.bytes())
                 + lists.and_then(|lists| lists.addresses.as_ref()).map_or(0, |buffer| buffer.bytes)
                 + colors.bytes,
             written_bytes: color.description.bytes(),
@@ -52,15 +53,13 @@ impl Resolve {
         cmd.pass(&full("resolve"), traffic, |cmd| {
             match lists {
                 Some(Lists { addresses: Some(addresses), .. }) => {
-                    cmd.barriers([addresses.from(Access::ComputeWrite).to(Access::ComputeRead)]);
+                    cmd.barriers([addresses.from(Access::ComputeWrite | Access::GraphicsRead).to(Access::ComputeRead)]);
                 }
                 Some(lists) => lists.links_to_compute(cmd),
                 None => {}
             }
-            cmd.barriers([
-                samples.spids.from(spids_left).to(Access::ComputeSample),
-                color.discard(Access::ComputeWrite),
-            ]);
+            cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::ComputeSample)));
+            cmd.barriers([color.discard(Access::ComputeWrite)]);
             cmd.barriers([
                 colors.from(Access::FragmentWrite).to(Access::ComputeRead),
                 counters.from(Access::FragmentWrite).to(Access::ComputeWrite),
@@ -70,9 +69,10 @@ impl Resolve {
             bound.extend([
                 ("Colors", Bound::Buffer(colors)),
                 ("Counters", Bound::Buffer(counters)),
-                ("spids", samples.sampled(&samples.spids, Access::ComputeSample)),
                 ("color", Bound::Storage(color)),
             ]);
+            let spids = samples.map(|(samples, _)| samples.sampled(&samples.spids, Access::ComputeSample));
+            bound.extend(spids.map(|spids| ("spids", spids)));
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })

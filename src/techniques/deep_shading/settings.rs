@@ -77,12 +77,13 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "lists",
         symbol: "",
-        kind: Kind::Choice(&["linked", "none"]),
+        kind: Kind::Choice(&["linked", "direct", "none"]),
         default: "linked",
         unit: "",
         paper: "Clarberg 2014, 4.3",
-        help: "linked lists of what is shaded at each pixel of shading space, or none: every sample is shaded where it is seen, at its \
-               shading point (the plain way to the same bits)",
+        help: "linked lists of what is shaded at each pixel of shading space; direct: rays put triangles into them at once, without a \
+               SPID a sample (--visibility ray); or none: every sample is shaded where it is seen, at its shading point (the plain \
+               way to the same bits)",
     },
     Setting {
         key: "duplicates",

@@ -5,6 +5,7 @@
 
 pub mod address;
 pub mod compact;
+pub mod direct;
 pub mod insert;
 
 use super::choices::Choices;
@@ -47,6 +48,11 @@ impl Lists {
     /// What holds the lists, without addresses and depths.
     pub fn links(&self) -> impl Iterator<Item = &Buffer> {
         [Some(&self.begins), Some(&self.nodes), self.linear.as_ref()].into_iter().flatten()
+    }
+
+    /// All of it that is there: begins, nodes, rows, addresses, depths.
+    pub fn all(&self) -> impl Iterator<Item = &Buffer> {
+        self.links().chain(&self.addresses).chain(&self.zmax)
     }
 
     /// All of it, by name.

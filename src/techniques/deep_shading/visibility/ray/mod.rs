@@ -5,10 +5,12 @@
 //! Differs from the paper: the tree is the project's own in place of Embree's; alpha is read from the finest texture level.
 //! Sets of `--accumulate` are traced before the first frame, which the report's row `visibility.rays` times.
 
-mod trace;
+pub mod trace;
 mod tree;
 
 use super::super::choices::Choices;
+use super::super::lists::direct::HostLists;
+use super::super::plan::LINEAR_COUNT;
 use super::super::primitives::Primitives;
 use super::super::{NAME, full};
 use super::{Samples, begin_counters};
@@ -27,6 +29,9 @@ use trace::{Hits, Spid, Tracer};
 /// Host memory that the sets of a picture may take.
 const MOST_HOST_BYTES: u64 = 4 << 30;
 
+/// Of a shading pixel: where its list begins, its first triangles, its depth.
+const LIST_BYTES: u64 = 4 * (2 + LINEAR_COUNT);
+
 const STAGED_SPIDS: &str = "visibility.rays.spids";
 const STAGED_DEPTHS: &str = "visibility.rays.shading_depths";
 
@@ -35,7 +40,8 @@ const STAGED_DEPTHS: &str = "visibility.rays.shading_depths";
 /// Errors: the host would hold too much (exit code 4).
 pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let samples = choices.samples_of(inputs.view.extent);
-    let bytes = samples * (size_of::<Spid>() + size_of::<u32>()) as u64;
+    let listed = if choices.is_direct { choices.space.extent.pixel_count() * LIST_BYTES } else { 0 };
+    let bytes = samples * (size_of::<Spid>() + size_of::<u32>()) as u64 + listed;
     let most = MOST_HOST_BYTES / bytes;
     if most < u64::from(choices.run_count) {
         let (held, limit) = (Bytes(bytes * u64::from(choices.run_count)), Bytes(MOST_HOST_BYTES));
@@ -49,6 +55,9 @@ pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<(
         );
         return Err(Error::memory(why).within(NAME).note(advice));
     }
+    if choices.is_direct {
+        return Ok(());
+    }
     let mut staged = |name: &str, bytes: u64| {
         let flags = BufferUsageFlags::TRANSFER_SRC;
         plan.push("frame_buffer_upload", full(name), Shape::Buffer { bytes, flags, usage: Use::Upload });
@@ -61,8 +70,14 @@ pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<(
 }
 
 /// What all sets of a picture see.
+pub enum Sets {
+    Samples(Vec<Hits>),
+    /// With `--lists direct`.
+    Lists(Vec<HostLists>),
+}
+
 pub struct Traced {
-    sets: Vec<Hits>,
+    pub sets: Sets,
     pub time_ns: u64,
 }
 
@@ -72,11 +87,15 @@ impl Traced {
         let started = Instant::now();
         let stage = Stage::counted("tracing rays", "sets of samples");
         let tracer = Tracer::new(inputs, choices, primitives)?;
-        let mut sets = Vec::new();
-        for run in 0..choices.run_count {
+        let traced = (0..choices.run_count).map(|run| {
             stage.reach(run.into(), choices.run_count.into());
-            sets.push(tracer.trace(run)?);
-        }
+            tracer.trace(run)
+        });
+        let sets = if choices.is_direct {
+            Sets::Lists(traced.map(|hits| Ok(HostLists::of(&hits?, choices))).collect::<Result<_>>()?)
+        } else {
+            Sets::Samples(traced.collect::<Result<_>>()?)
+        };
         Ok(Self { sets, time_ns: started.elapsed().as_nanos() as u64 })
     }
 }
@@ -90,10 +109,10 @@ pub struct Rays {
 }
 
 impl Rays {
-    pub fn new(resources: &mut Resources, choices: &Choices, traced: Traced) -> Self {
+    pub fn new(resources: &mut Resources, choices: &Choices, sets: Vec<Hits>) -> Self {
         let mut staged = |name: &str| RefCell::new(resources.buffer(&full(name)));
         let spids = staged(STAGED_SPIDS);
-        Self { sets: traced.sets, spids, shading_depths: choices.has_zmax.then(|| staged(STAGED_DEPTHS)) }
+        Self { sets, spids, shading_depths: choices.has_zmax.then(|| staged(STAGED_DEPTHS)) }
     }
 
     /// Puts a run's set where the frame takes it from.

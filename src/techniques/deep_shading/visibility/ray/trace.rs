@@ -16,7 +16,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// space.glsl's NO_PRIMITIVE and NO_SHADING_PIXEL.
-const NONE: u32 = u32::MAX;
+pub const NONE: u32 = u32::MAX;
 
 /// What a sample sees, as the layers hold it: nothing has all bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Zeroable, bytemuck::Pod)]

@@ -1,0 +1,124 @@
+//! The passes of a frame in order, and what each touches.
+
+use super::choices::Choices;
+use super::plan::{
+    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
+};
+use super::visibility::Visibility;
+use super::{NAME, full};
+use crate::gpu::Access;
+use crate::passes::accumulate;
+use crate::plan::Plan;
+
+type Touches = Vec<(String, Access)>;
+
+fn touch(name: &str, access: Access) -> (String, Access) {
+    (full(name), access)
+}
+
+fn links(choices: &Choices, access: Access) -> Touches {
+    let mut lists = vec![touch(BEGINS, access), touch(NODES, access)];
+    lists.extend(choices.is_compacted.then(|| touch(LINEAR, access)));
+    lists
+}
+
+pub fn plan(plan: &mut Plan, choices: &Choices) {
+    if choices.is_direct {
+        let copied = [BEGINS, NODES, ADDRESSES, COLORS, COUNTERS].into_iter();
+        let copied = copied.chain(choices.is_compacted.then_some(LINEAR)).chain(choices.has_zmax.then_some(ZMAX));
+        let accesses = [Access::TransferWrite, Access::ComputeWrite];
+        plan.pass(full("lists"), copied.flat_map(|name| accesses.map(|access| touch(name, access))));
+    } else {
+        plan.pass(full("visibility"), visibility(choices));
+        if choices.has_lists {
+            insertion(plan, choices);
+        }
+    }
+    if choices.has_lists {
+        let mut shaded = links(choices, Access::GraphicsRead);
+        shaded.extend(choices.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
+        shaded.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
+        shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
+        plan.pass(full("shade"), shaded);
+    }
+    if choices.has_brute() {
+        plan.pass(full(choices.brute_pass()), brute(choices));
+    }
+    plan.pass(full("resolve"), resolve(choices));
+    if choices.has_lists && choices.is_counted {
+        let mut counted = links(choices, Access::ComputeRead);
+        counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
+        plan.pass(full("count"), counted);
+    }
+    if choices.run_count > 1 {
+        accumulate::plan_pass(plan, NAME, &full(COLOR));
+    }
+}
+
+fn visibility(choices: &Choices) -> Touches {
+    let written = choices.visibility.writes();
+    let mut seen = vec![touch(SPIDS, written)];
+    seen.extend((choices.visibility != Visibility::Ray).then(|| touch(DEPTH, Access::DepthWrite)));
+    seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
+    seen.extend(choices.has_zmax.then(|| touch(SHADING_DEPTHS, written)));
+    seen
+}
+
+/// By compute shaders, with what brings the lists into order.
+fn insertion(plan: &mut Plan, choices: &Choices) {
+    let mut listed = vec![
+        touch(SPIDS, Access::ComputeSample),
+        touch(BEGINS, Access::TransferWrite),
+        touch(BEGINS, Access::ComputeWrite),
+        touch(COUNTERS, Access::ComputeWrite),
+        touch(NODES, Access::ComputeWrite),
+        touch(COLORS, Access::ComputeWrite),
+    ];
+    listed.extend(choices.has_addresses.then(|| touch(ADDRESSES, Access::ComputeWrite)));
+    if choices.has_zmax {
+        listed.push(touch(SHADING_DEPTHS, Access::ComputeSample));
+        listed.extend([touch(ZMAX, Access::TransferWrite), touch(ZMAX, Access::ComputeWrite)]);
+    }
+    plan.pass(full("lists"), listed);
+    if !choices.is_compacted {
+        return;
+    }
+    let mut compacted = links(choices, Access::ComputeWrite);
+    compacted.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
+    plan.pass(full("lists.compact"), compacted);
+    if choices.has_addresses {
+        let mut addressed = links(choices, Access::ComputeRead);
+        addressed.extend([touch(SPIDS, Access::ComputeSample), touch(ADDRESSES, Access::ComputeWrite)]);
+        plan.pass(full("lists.address"), addressed);
+    }
+}
+
+fn brute(choices: &Choices) -> Touches {
+    let mut brute = match choices.is_direct {
+        true => vec![touch(ADDRESSES, Access::GraphicsRead)],
+        false => vec![touch(SPIDS, Access::FragmentSample)],
+    };
+    brute.extend((!choices.visibility.has_polygons()).then(|| touch(DEPTH, Access::DepthTest)));
+    brute.push(match choices.has_lists {
+        true => touch(NODES, Access::GraphicsRead),
+        false => touch(COLORS, Access::TransferWrite),
+    });
+    brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
+    brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
+    brute
+}
+
+fn resolve(choices: &Choices) -> Touches {
+    let mut resolved = vec![
+        touch(COLORS, Access::ComputeRead),
+        touch(COUNTERS, Access::ComputeWrite),
+        touch(COLOR, Access::ComputeWrite),
+    ];
+    resolved.extend((!choices.is_direct).then(|| touch(SPIDS, Access::ComputeSample)));
+    if choices.has_lists && choices.has_addresses {
+        resolved.push(touch(ADDRESSES, Access::ComputeRead));
+    } else if choices.has_lists {
+        resolved.extend(links(choices, Access::ComputeRead));
+    }
+    resolved
+}
