@@ -40,8 +40,15 @@ struct Listed {
 
 /// Who puts triangles into lists.
 enum Insertion {
-    Device { insert: Insert, compact: Option<Compact>, address: Option<Address> },
+    Device(Box<Inserted>),
     Host(Direct),
+}
+
+/// Insertion by compute shaders.
+struct Inserted {
+    insert: Insert,
+    compact: Option<Compact>,
+    address: Option<Address>,
 }
 
 /// Who finds what samples see.
@@ -100,11 +107,11 @@ impl DeepFrame {
             let address = choices.is_compacted && choices.has_addresses;
             let insertion = match host_lists {
                 Some(direct) => Insertion::Host(direct),
-                None => Insertion::Device {
+                None => Insertion::Device(Box::new(Inserted {
                     insert: Insert::new(gpu, &choices)?,
                     compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
                     address: if address { Some(Address::new(gpu)?) } else { None },
-                },
+                })),
             };
             Some(Listed {
                 lists: Lists::new(resources, &choices),
@@ -144,7 +151,7 @@ impl DeepFrame {
     fn host_lists(&self) -> Option<&Direct> {
         match &self.listed.as_ref()?.insertion {
             Insertion::Host(direct) => Some(direct),
-            Insertion::Device { .. } => None,
+            Insertion::Device(_) => None,
         }
     }
 
@@ -181,7 +188,8 @@ impl Frame for DeepFrame {
             let mut links_left = Access::ComputeWrite;
             match &listed.insertion {
                 Insertion::Host(direct) => direct.record(cmd, lists, colors, counters)?,
-                Insertion::Device { insert, compact, address } => {
+                Insertion::Device(inserted) => {
+                    let Inserted { insert, compact, address } = &**inserted;
                     let samples = visibility.samples().expect("the host has not inserted them");
                     insert.record(cmd, &bound, samples, lists, colors, counters)?;
                     if let Some(compact) = compact {

@@ -63,7 +63,7 @@ impl ShadingSpace {
             && clip.z <= clip.w
             && at.cmpge(Vec2::ZERO).all()
             && at.cmplt(Vec2::new(self.extent.width as f32, self.extent.height as f32)).all();
-        has_place.then(|| [at.x as u32, at.y as u32])
+        has_place.then_some([at.x as u32, at.y as u32])
     }
 
     /// What shaders know of it, of the cameras at both ends of the exposure, and of the samples.
