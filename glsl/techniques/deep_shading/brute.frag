@@ -1,6 +1,6 @@
 // Samples shaded where they are seen, each by itself: the oracle of the lists (--lists none), and what they leave out.
 // Pass: src/techniques/deep_shading/brute.rs.
-// variants: SAMPLES=all|strays VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
+// variants: SAMPLES=all|linked|compact VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
@@ -20,8 +20,14 @@ layout(location = 2) in vec3 in_weights;
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-#ifdef SAMPLES_STRAYS
+#ifndef SAMPLES_ALL
+layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+#ifdef SAMPLES_COMPACT
+layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+#define LISTS_COMPACT
+#endif
+#include "techniques/deep_shading/nodes.glsl"
 #endif
 
 void main() {
@@ -31,9 +37,12 @@ void main() {
         discard;
     }
     uint own = sample_index(deep, at);
-    bool is_stray = spid.y == NO_SHADING_PIXEL;
-#ifdef SAMPLES_STRAYS
-    if (!is_stray) {
+    bool is_outside = spid.y == NO_SHADING_PIXEL;
+    uvec2 pixel = uvec2(spid.y & 0xffffu, spid.y >> 16);
+#ifndef SAMPLES_ALL
+    // Nearly always no list was full, and none is asked.
+    if (!is_outside && (counters[COUNTED_CROWDED] == 0u ||
+                        color_index(pixel.y * deep.shading_width_px + pixel.x, spid.x) != NO_COLOR)) {
         discard;
     }
     own = nodes[own].x;
@@ -44,7 +53,7 @@ void main() {
 #else
     vec3 weights = inside_weights(in_weights);
 #endif
-    colors[own] = color_on(in_primitive, uvec2(spid.y & 0xffffu, spid.y >> 16), is_stray, weights);
+    colors[own] = color_on(in_primitive, pixel, is_outside, weights);
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
     }

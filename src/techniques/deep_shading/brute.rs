@@ -1,6 +1,7 @@
 //! Samples shaded where they are seen, each by itself, at their shading points: all of them (`--lists none`, the oracle), or
-//! those that shading space has no place for (pass `strays`). Shaders: the vertex stage of visibility, brute.frag.
-//! reads  the scene, its lights, visibility.spids, visibility.depth      writes  shade.colors
+//! those that shading space has no place for or whose list is full (pass `strays`). Shaders: the vertex stage of visibility,
+//! brute.frag.
+//! reads  the scene, its lights, visibility.spids, visibility.depth, the lists      writes  shade.colors
 
 use super::choices::Choices;
 use super::full;
@@ -26,7 +27,11 @@ pub struct Brute {
 
 impl Brute {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let samples = if choices.has_lists { "strays" } else { "all" };
+        let samples = match choices {
+            Choices { has_lists: false, .. } => "all",
+            Choices { is_compacted: true, .. } => "compact",
+            _ => "linked",
+        };
         let stages = sample::stages(scene, choices);
         let vertex = stages.vertex;
         // Depths that a shader wrote are not the polygons'. The SPIDs alone say what is seen: a triangle covers a sample once.
@@ -88,7 +93,7 @@ impl Brute {
             cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
             let spids_left = if let Some(lists) = lists {
                 cmd.barriers([colors.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
-                cmd.barriers([lists.nodes.from(Access::ComputeRead | Access::GraphicsRead).to(Access::GraphicsRead)]);
+                lists.links_to(cmd, Access::ComputeRead | Access::GraphicsRead, Access::GraphicsRead);
                 // Compute shaders read them first: what drew them was waited for by those alone.
                 Access::ComputeSample | Access::ColorWrite
             } else {

@@ -46,7 +46,7 @@ pub struct DeepFrame {
     samples: Samples,
     sample: Sample,
     listed: Option<Listed>,
-    brute: Option<Brute>,
+    brute: Brute,
     resolve: Resolve,
     accumulate: Option<Accumulate>,
     colors: Buffer,
@@ -82,7 +82,7 @@ impl DeepFrame {
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             samples: Samples::new(gpu, resources, &choices)?,
             sample: Sample::new(gpu, scene, &choices)?,
-            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices)?) } else { None },
+            brute: Brute::new(gpu, scene, &choices)?,
             resolve: Resolve::new(gpu, &choices)?,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             colors: lists::colors(resources),
@@ -138,16 +138,11 @@ impl Frame for DeepFrame {
             listed.shade.record(cmd, scene, list, primitives, &bound, left, colors, counters)?;
         }
         let lists = self.listed.as_ref().map(|listed| &listed.lists);
-        if let Some(brute) = &self.brute {
-            let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
-            let left = (lists, self.scene.maps_barrier(maps_left));
-            brute.record(cmd, scene, list, primitives, &bound, samples, left, colors, counters)?;
-        }
-        let spids_left = match (&self.listed, &self.brute) {
-            (Some(_), None) => Access::ComputeSample.into(),
-            (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
-            (None, _) => Access::FragmentSample | Access::ColorWrite,
-        };
+        let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
+        let left = (lists, self.scene.maps_barrier(maps_left));
+        self.brute.record(cmd, scene, list, primitives, &bound, samples, left, colors, counters)?;
+        let seen_by = if lists.is_some() { Access::ComputeSample } else { Access::ColorWrite };
+        let spids_left = seen_by | Access::FragmentSample;
         self.resolve.record(cmd, &bound, (samples, spids_left), lists, colors, counters, &self.color)?;
         if let Some((listed, count)) = self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?))) {
             count.record(cmd, &bound, &listed.lists, counters)?;

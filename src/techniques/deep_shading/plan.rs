@@ -184,17 +184,15 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
     }
-    if choices.has_brute() {
-        let mut brute = vec![touch(SPIDS, Access::FragmentSample), touch(DEPTH, Access::DepthTest)];
-        if choices.has_lists {
-            brute.push(touch(NODES, Access::GraphicsRead));
-        } else {
-            brute.push(touch(COLORS, Access::TransferWrite));
-        }
-        brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
-        brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
-        plan.pass(full(choices.brute_pass()), brute);
+    let mut brute = vec![touch(SPIDS, Access::FragmentSample), touch(DEPTH, Access::DepthTest)];
+    if choices.has_lists {
+        brute.extend(read_lists(Access::GraphicsRead));
+    } else {
+        brute.push(touch(COLORS, Access::TransferWrite));
     }
+    brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
+    brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
+    plan.pass(full(choices.brute_pass()), brute);
     let mut resolved = vec![
         touch(SPIDS, Access::ComputeSample),
         touch(COLORS, Access::ComputeRead),
@@ -208,7 +206,7 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
     }
     plan.pass(full("resolve"), resolved);
     if choices.has_lists && choices.is_counted {
-        let mut counted = read_lists(Access::ComputeRead);
+        let mut counted = read_lists(Access::ComputeWrite);
         counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
         plan.pass(full("count"), counted);
     }

@@ -54,7 +54,7 @@ impl Resolve {
                 Some(Lists { addresses: Some(addresses), .. }) => {
                     cmd.barriers([addresses.from(Access::ComputeWrite).to(Access::ComputeRead)]);
                 }
-                Some(lists) => lists.links_to_compute(cmd),
+                Some(lists) => lists.links_to_compute(cmd, Access::ComputeRead),
                 None => {}
             }
             cmd.barriers([
