@@ -1,6 +1,6 @@
 // Samples shaded where they are seen, each by itself: the oracle of the lists (--lists none), and what they leave out.
 // Pass: src/techniques/deep_shading/brute.rs.
-// variants: SAMPLES=all|strays|direct VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
+// variants: SAMPLES=all|linked|compact|direct VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
@@ -25,33 +25,41 @@ layout(set = 0, binding = 27) uniform usampler2DArray spids;
 #endif
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-#if defined(SAMPLES_STRAYS) || defined(SAMPLES_DIRECT)
+#ifndef SAMPLES_ALL
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+#endif
+#if defined(SAMPLES_LINKED) || defined(SAMPLES_COMPACT)
+layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
+#ifdef SAMPLES_COMPACT
+layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+#define LISTS_COMPACT
+#endif
+#include "techniques/deep_shading/nodes.glsl"
 #endif
 
 void main() {
     uvec3 at = uvec3(gl_FragCoord.xy, in_tuple);
     uint own = sample_index(deep, at);
 #ifdef SAMPLES_DIRECT
-    // Strays of the host's lists: their nodes lie where their colours do.
+    // What the host's lists do not have: its node lies where its colour does, and says what it sees.
     uint address = addresses[own];
     if (address == NO_ADDRESS || (address & ADDRESS_STRAY) == 0u) {
         discard;
     }
     own = address & ~ADDRESS_STRAY;
-    if (nodes[own].x != in_primitive) {
-        discard;
-    }
-    uvec2 spid = uvec2(in_primitive, NO_SHADING_PIXEL);
+    uvec2 spid = nodes[own];
 #else
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+#endif
     if (spid.x != in_primitive) {
         discard;
     }
-#endif
-    bool is_stray = spid.y == NO_SHADING_PIXEL;
-#ifdef SAMPLES_STRAYS
-    if (!is_stray) {
+    bool is_outside = spid.y == NO_SHADING_PIXEL;
+    uvec2 pixel = uvec2(spid.y & 0xffffu, spid.y >> 16);
+#if defined(SAMPLES_LINKED) || defined(SAMPLES_COMPACT)
+    // Nearly always no list was full, and none is asked.
+    if (!is_outside && (counters[COUNTED_CROWDED] == 0u ||
+                        color_index(pixel.y * deep.shading_width_px + pixel.x, spid.x) != NO_COLOR)) {
         discard;
     }
     own = nodes[own].x;
@@ -62,7 +70,7 @@ void main() {
 #else
     vec3 weights = inside_weights(in_weights);
 #endif
-    colors[own] = color_on(in_primitive, uvec2(spid.y & 0xffffu, spid.y >> 16), is_stray, weights);
+    colors[own] = color_on(in_primitive, pixel, is_outside, weights);
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
     }

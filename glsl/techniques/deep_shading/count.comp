@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
-layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+layout(std430, set = 0, binding = 21) buffer Nodes { uvec2 nodes[]; };
 #ifdef LISTS_COMPACT
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #endif
@@ -17,6 +17,9 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 30) writeonly buffer Lengths { uint lengths[]; };
 
 #include "techniques/deep_shading/nodes.glsl"
+#ifdef LISTS_LINKED
+#include "techniques/deep_shading/lists/sorted.glsl"
+#endif
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
@@ -43,11 +46,11 @@ void main() {
     }
 #else
     bool overflows = false;
-    for (; node != 0u; node = nodes[node - 1u].y) {
-        bool is_again = false;
-        for (uint other = nodes[node - 1u].y; other != 0u && !is_again; other = nodes[other - 1u].y) {
-            is_again = nodes[other - 1u].x == nodes[node - 1u].x;
-        }
+    uint last = NO_PRIMITIVE;
+    // Nobody reads them any more in this frame.
+    for (node = is_listed ? sorted(node) : 0u; node != 0u; node = nodes[node - 1u].y) {
+        bool is_again = nodes[node - 1u].x == last;
+        last = nodes[node - 1u].x;
         listed += is_again ? 0u : 1u;
         again += is_again ? 1u : 0u;
     }

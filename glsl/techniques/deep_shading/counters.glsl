@@ -4,7 +4,7 @@
 
 // Colours that compaction has given out: it needs this one.
 const uint COUNTED_COLORS = 0u;
-// Samples without a shading pixel: those before it have their colours from the end on.
+// Samples without a list: those before it have their colours from the end on.
 const uint COUNTED_STRAYS = 1u;
 // Surfaces that were shaded, after the look-up.
 const uint COUNTED_SHADED = 2u;
@@ -28,6 +28,8 @@ const uint COUNTED_TESTS = 10u;
 const uint COUNTED_TESTS_CARRIED = 11u;
 // Those of the tests in which the sample lay in the triangle.
 const uint COUNTED_TESTS_HIT = 12u;
-const uint COUNTER_COUNT = 13u;
+// Samples that a list had no room for: a part of the strays.
+const uint COUNTED_CROWDED = 13u;
+const uint COUNTER_COUNT = 14u;
 
 #endif

@@ -34,8 +34,8 @@ uint color_index(uint pixel, uint primitive) {
     at = head.y;
     while (at != 0u) {
         uvec2 node = nodes[at - 1u];
-        if (node.x == primitive) {
-            return head.x + place;
+        if (node.x >= primitive) {
+            return node.x == primitive ? head.x + place : NO_COLOR;
         }
         place++;
         at = node.y;

@@ -67,7 +67,7 @@ void main() {
 #else
         uint where = color_of(spid, own);
 #endif
-        uvec2 words = where == 0xffffffffu ? uvec2(0u) : colors[where];
+        uvec2 words = where < colors.length() ? colors[where] : uvec2(0u);
         vec2 blue_alpha = unpackHalf2x16(words.y);
         // Alpha is 1 where something was shaded.
         missing += blue_alpha.y == 0.0 ? 1u : 0u;

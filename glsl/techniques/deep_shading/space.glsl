@@ -56,7 +56,7 @@ const uint NO_SHADING_PIXEL = 0xffffffffu;
 
 // In place of an address: the sample sees nothing.
 const uint NO_ADDRESS = 0xffffffffu;
-// A bit of the host's addresses: the sample has no place in shading space.
+// A bit of the host's addresses: no list has the sample.
 const uint ADDRESS_STRAY = 0x80000000u;
 
 // Homogeneous pixels of shading space: xy through w is a place in it.

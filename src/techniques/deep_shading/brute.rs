@@ -1,7 +1,7 @@
 //! Samples shaded where they are seen, each by itself, at their shading points: all of them (`--lists none`, the oracle), or
-//! those that shading space has no place for (pass `strays`). Shaders: those before fragments of visibility,
-//! brute.frag.
-//! reads  the scene, its lights, visibility.spids, visibility.depth      writes  shade.colors
+//! those that shading space has no place for or whose list is full (pass `strays`). Shaders: those before fragments of
+//! visibility, brute.frag.
+//! reads  the scene, its lights, visibility.spids, visibility.depth, the lists      writes  shade.colors
 
 use super::choices::Choices;
 use super::full;
@@ -33,9 +33,10 @@ impl Brute {
     /// `frame`: its extent.
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices, frame: Extent) -> Result<Self> {
         let samples = match choices {
+            Choices { has_lists: false, .. } => "all",
             Choices { is_direct: true, .. } => "direct",
-            Choices { has_lists: true, .. } => "strays",
-            _ => "all",
+            Choices { is_compacted: true, .. } => "compact",
+            _ => "linked",
         };
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = visibility::stages(scene, choices, &repeats);
@@ -99,7 +100,7 @@ impl Brute {
             cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
             if let Some(lists) = lists {
                 cmd.barriers([colors.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
-                cmd.barriers([lists.nodes.from(Access::ComputeRead | Access::GraphicsRead).to(Access::GraphicsRead)]);
+                lists.links_to(cmd, Access::ComputeRead | Access::GraphicsRead, Access::GraphicsRead);
             } else {
                 cmd.barriers([colors.discard(Access::TransferWrite)]);
                 cmd.clear(colors);

@@ -140,12 +140,9 @@ impl Choices {
         self.lens.is_some() || self.is_moving
     }
 
-    /// Samples are shaded where they are seen: all of them, or those that blur brings in from outside shading space.
-    pub fn has_brute(&self) -> bool {
-        !self.has_lists || self.is_blurred()
-    }
-
-    /// The name of that pass.
+    /// The name of the pass that shades samples where they are seen: all of them, or those that shading space has no place for,
+    /// which blur brings in from outside, and rounding where triangles are huge, edge-on or cut by the near plane; and those whose
+    /// lists are full.
     pub fn brute_pass(&self) -> &'static str {
         if self.has_lists { "strays" } else { "brute" }
     }

@@ -1,5 +1,6 @@
 //! Count: how long the lists are, after the frame (`--instrument on`). Shader: count.comp.
-//! reads  the lists      writes  count.lengths  buffer, 4 B a pixel of shading space; the counters
+//! reads  the lists, and sorts them, as nobody needs them any more
+//! writes  count.lengths  buffer, 4 B a pixel of shading space; the counters
 
 use super::choices::Choices;
 use super::full;
@@ -42,7 +43,7 @@ impl Count {
             invocations: Some(self.space.pixel_count()),
         };
         cmd.pass(&full("count"), traffic, |cmd| {
-            lists.links_to_compute(cmd);
+            lists.links_to_compute(cmd, Access::ComputeWrite);
             cmd.barriers([
                 self.lengths.discard(Access::ComputeWrite),
                 counters.from(Access::ComputeWrite).to(Access::ComputeWrite),

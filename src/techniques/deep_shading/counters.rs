@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 13;
+pub const COUNT: u64 = 14;
 
 /// Numbers that the last frame left in `counters`; `pixels` of the frame. `has_tests`: visibility tested samples itself.
 ///
@@ -35,12 +35,14 @@ pub fn read(
         tests,
         carried,
         hits,
+        crowded,
     ] = words;
     let mut counters = BTreeMap::from([
         ("shader_invocations", shaded),
         ("shaded_per_pixel", shaded / pixels as f64),
         ("samples_seen", samples),
-        ("samples_outside_shading_space", strays),
+        ("samples_outside_shading_space", strays - crowded),
+        ("samples_of_full_lists", crowded),
         ("samples_without_colour", missing),
         ("listed_primitives", listed),
         ("listed_again", duplicates),

@@ -75,7 +75,7 @@ pub struct DeepFrame {
     scene: DeepScene,
     visibility: Seen,
     listed: Option<Listed>,
-    brute: Option<Brute>,
+    brute: Brute,
     resolve: Resolve,
     accumulate: Option<Accumulate>,
     colors: Buffer,
@@ -126,7 +126,7 @@ impl DeepFrame {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             visibility,
-            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices, inputs.view.extent)?) } else { None },
+            brute: Brute::new(gpu, scene, &choices, inputs.view.extent)?,
             resolve: Resolve::new(gpu, &choices)?,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             colors: lists::colors(resources),
@@ -206,18 +206,12 @@ impl Frame for DeepFrame {
             listed.shade.record(cmd, scene, list, primitives, &bound, left, colors, counters)?;
         }
         let lists = self.listed.as_ref().map(|listed| &listed.lists);
-        if let Some(brute) = &self.brute {
-            let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
-            let left = (lists, self.scene.maps_barrier(maps_left));
-            brute.record(cmd, scene, list, primitives, &bound, visibility.samples(), left, colors, counters)?;
-        }
+        let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
+        let left = (lists, self.scene.maps_barrier(maps_left));
+        self.brute.record(cmd, scene, list, primitives, &bound, visibility.samples(), left, colors, counters)?;
         let samples = visibility.samples().map(|samples| {
-            let left = match (&self.listed, &self.brute) {
-                (Some(_), None) => Access::ComputeSample.into(),
-                (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
-                (None, _) => Access::FragmentSample | samples.written,
-            };
-            (samples, left)
+            let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };
+            (samples, seen_by | Access::FragmentSample)
         });
         self.resolve.record(cmd, &bound, samples, lists, colors, counters, &self.color)?;
         if let Some((listed, count)) = self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?))) {
@@ -260,7 +254,7 @@ impl Frame for DeepFrame {
         let is_stochastic = self.choices.visibility == Visibility::Stochastic;
         let mut counters = counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, is_stochastic)?;
         if let Some(direct) = self.host_lists() {
-            counters.insert("samples_outside_shading_space", direct.stray_count() as f64);
+            counters.extend(direct.stray_counts());
         }
         Ok(counters)
     }

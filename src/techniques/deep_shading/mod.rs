@@ -4,8 +4,8 @@
 //! Passes: shadow_maps (with `--direct-shadow map`), visibility (the triangle that each sample sees, and where it is in
 //! canonical shading space: its SPID), lists (of triangles, by compare-exchange), lists.compact, lists.address, shade (one
 //! conservative pass over shading space, which shades what the lists have), strays (samples that shading space has no place
-//! for, under blur) or brute (`--lists none`), resolve (box filter), count (`--instrument on`), accumulate (`--accumulate`
-//! above 1).
+//! for, and those that a list of 1024 triangles has none for) or brute (`--lists none`), resolve (box filter), count
+//! (`--instrument on`), accumulate (`--accumulate` above 1).
 //!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
@@ -17,7 +17,8 @@
 //!   needs no depth buffer in shading space, and hulls no depth
 //! - a shading point outside its triangle is brought to the triangle's nearest place; texture levels come from rates on the
 //!   triangle's plane: colours depend on triangle and pixel alone
-//! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted
+//! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted; so are
+//!   samples that see more in a pixel than the 1024 triangles that a list holds, so that work grows with samples alone
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
 //! - `--visibility stochastic` tests the tuples of the interleaved kinds, a layer a tuple, so that both see the same samples, and
 //!   the depth test finds the nearest without 64-bit atomics

@@ -41,12 +41,10 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
     }
-    if choices.has_brute() {
-        plan.pass(full(choices.brute_pass()), brute(choices));
-    }
+    plan.pass(full(choices.brute_pass()), brute(choices));
     plan.pass(full("resolve"), resolve(choices));
     if choices.has_lists && choices.is_counted {
-        let mut counted = links(choices, Access::ComputeRead);
+        let mut counted = links(choices, Access::ComputeWrite);
         counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
         plan.pass(full("count"), counted);
     }
@@ -99,9 +97,9 @@ fn brute(choices: &Choices) -> Touches {
         false => vec![touch(SPIDS, Access::FragmentSample)],
     };
     brute.extend((!choices.visibility.has_polygons()).then(|| touch(DEPTH, Access::DepthTest)));
-    brute.push(match choices.has_lists {
-        true => touch(NODES, Access::GraphicsRead),
-        false => touch(COLORS, Access::TransferWrite),
+    brute.extend(match choices.has_lists {
+        true => links(choices, Access::GraphicsRead),
+        false => vec![touch(COLORS, Access::TransferWrite)],
     });
     brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
     brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);

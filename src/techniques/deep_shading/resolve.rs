@@ -55,7 +55,7 @@ impl Resolve {
                 Some(Lists { addresses: Some(addresses), .. }) => {
                     cmd.barriers([addresses.from(Access::ComputeWrite | Access::GraphicsRead).to(Access::ComputeRead)]);
                 }
-                Some(lists) => lists.links_to_compute(cmd),
+                Some(lists) => lists.links_to_compute(cmd, Access::ComputeRead),
                 None => {}
             }
             cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::ComputeSample)));

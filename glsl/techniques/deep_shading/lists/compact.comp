@@ -1,8 +1,5 @@
 // Each list sorted and without what stands in it again; the first ids in a row (section 4.3). A thread has a list to itself.
 // Pass: src/techniques/deep_shading/lists/compact.rs.
-//
-// Why this way: the links themselves are sorted, by merging runs of 1, 2, 4 and so on, so that a list of thousands takes
-// n log n steps and no memory; nearly all have one or two.
 #version 460
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
@@ -19,50 +16,7 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 #define LISTS_COMPACT
 #include "techniques/deep_shading/nodes.glsl"
 
-uint sorted(uint list) {
-    for (uint run = 1u;; run *= 2u) {
-        uint rest = list;
-        uint tail = 0u;
-        uint merge_count = 0u;
-        list = 0u;
-        while (rest != 0u) {
-            merge_count++;
-            uint left = rest;
-            uint left_count = 0u;
-            while (left_count < run && rest != 0u) {
-                left_count++;
-                rest = nodes[rest - 1u].y;
-            }
-            uint right = rest;
-            uint right_count = run;
-            while (left_count > 0u || (right_count > 0u && right != 0u)) {
-                bool takes_left = left_count > 0u;
-                if (takes_left && right_count > 0u && right != 0u) {
-                    takes_left = nodes[left - 1u].x <= nodes[right - 1u].x;
-                }
-                uint next = takes_left ? left : right;
-                if (takes_left) {
-                    left = nodes[left - 1u].y;
-                    left_count--;
-                } else {
-                    right = nodes[right - 1u].y;
-                    right_count--;
-                }
-                if (tail == 0u) {
-                    list = next;
-                } else {
-                    nodes[tail - 1u].y = next;
-                }
-                tail = next;
-            }
-            rest = right;
-        }
-        nodes[tail - 1u].y = 0u;
-        if (merge_count <= 1u) {
-            return list;
-        }
-    }
-}
+#include "techniques/deep_shading/lists/sorted.glsl"
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;

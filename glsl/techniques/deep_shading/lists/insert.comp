@@ -30,20 +30,26 @@ layout(set = 0, binding = 28) uniform usampler2DArray shading_depths;
 layout(std430, set = 0, binding = 25) buffer ZMax { uint zmax[]; };
 #endif
 
-// Returns the node that holds `primitive`: `own`, or one that was there.
+// Triangles that a list holds at most. A thousand in one pixel are nothing to reuse any more, and what walks and sorts a list
+// stays short whatever is seen there: a sample that finds its list full is shaded by itself.
+const uint LIST_MOST = 1024u;
+
+// Returns the node that holds `primitive`: `own`, or one that was there; NO_PRIMITIVE where the list is full.
 uint insert(uint pixel, uint primitive, uint own) {
     // From `known` on the list does not hold it.
     uint known = 0u;
     uint head = begins[pixel];
     uint holder = NO_PRIMITIVE;
-    while (holder == NO_PRIMITIVE) {
+    uint length = 0u;
+    while (holder == NO_PRIMITIVE && length < LIST_MOST) {
         uint at = head;
         while (at != known && holder == NO_PRIMITIVE) {
             uvec2 node = nodes[at - 1u];
             holder = node.x == primitive ? at - 1u : NO_PRIMITIVE;
             at = node.y;
+            length++;
         }
-        if (holder == NO_PRIMITIVE) {
+        if (holder == NO_PRIMITIVE && length < LIST_MOST) {
             nodes[own] = uvec2(primitive, head);
             if (HAS_FENCES != 0u) {
                 memoryBarrierBuffer();
@@ -68,8 +74,23 @@ void main() {
         return;
     }
     uint own = sample_index(deep, at);
-    uint color = own;
-    if (spid.y == NO_SHADING_PIXEL) {
+    uint color = NO_PRIMITIVE;
+    if (spid.y != NO_SHADING_PIXEL) {
+        uint pixel = (spid.y >> 16) * deep.shading_width_px + (spid.y & 0xffffu);
+        color = insert(pixel, spid.x, own);
+        if (IS_COMPACTED == 0u && color == own) {
+            // Alpha says whether it is shaded.
+            colors[own] = uvec2(0u);
+        }
+        if (color == NO_PRIMITIVE) {
+            atomicAdd(counters[COUNTED_CROWDED], 1u);
+        }
+#ifdef ZMAX_ON
+        atomicMax(zmax[pixel], texelFetch(shading_depths, ivec3(at), 0).x);
+#endif
+    }
+    if (color == NO_PRIMITIVE) {
+        color = own;
         uint stray = atomicAdd(counters[COUNTED_STRAYS], 1u);
         if (IS_COMPACTED != 0u) {
             color = deep.tuple_count * deep.layer_width_px * deep.layer_height_px - 1u - stray;
@@ -77,16 +98,6 @@ void main() {
         // Its node serves no list: it says where the colour is.
         nodes[own] = uvec2(color, 0u);
         colors[color] = uvec2(0u);
-    } else {
-        uint pixel = (spid.y >> 16) * deep.shading_width_px + (spid.y & 0xffffu);
-        color = insert(pixel, spid.x, own);
-        if (IS_COMPACTED == 0u && color == own) {
-            // Alpha says whether it is shaded.
-            colors[own] = uvec2(0u);
-        }
-#ifdef ZMAX_ON
-        atomicMax(zmax[pixel], texelFetch(shading_depths, ivec3(at), 0).x);
-#endif
     }
 #ifdef ADDRESSES_ON
     addresses[own] = color;

@@ -2,6 +2,8 @@
 // each of its points (section 4.4; Hasselgren et al. 2005 make the same in a geometry shader).
 //
 // A square adds as many corners as it has: three and four are seven, and a triangle that the near plane has cut has eight.
+//
+// The including shader has `deep` (DeepBlock).
 #ifndef DEEP_SHADING_HULL_GLSL
 #define DEEP_SHADING_HULL_GLSL
 
@@ -10,6 +12,9 @@ const uint HULL_CORNERS = 8u;
 const float HULL_REACH_PX = 0.5 + 1.0 / 64.0;
 // Floats place what is far outside by as much of it less well.
 const float HULL_REACH_PART = 1.0 / 1048576.0;
+// What is farther out than this many sides of shading space is not placed well enough: the hull is all of it, and what is too
+// much falls out at the look-up.
+const float HULL_FARTHEST = 256.0;
 
 struct Hull {
     // Pixels, in order; `count` of them, at least 3, or 0 where all is behind the near plane.
@@ -29,6 +34,16 @@ uint added(inout vec2 points[4], uint count, vec4 point) {
     }
     points[count] = at;
     return count + 1u;
+}
+
+Hull box_of(vec2 least, vec2 greatest) {
+    Hull hull;
+    hull.corners[0] = least;
+    hull.corners[1] = vec2(greatest.x, least.y);
+    hull.corners[2] = greatest;
+    hull.corners[3] = vec2(least.x, greatest.y);
+    hull.count = 4u;
+    return hull;
 }
 
 // `a`, `b`, `c`: xy homogeneous pixels, z depth (reversed), w.
@@ -72,6 +87,10 @@ Hull hull_of(vec4 a, vec4 b, vec4 c) {
         area += from.x * to.y - from.y * to.x;
     }
     vec2 far = max(abs(least), abs(greatest));
+    vec2 space = vec2(deep.shading_width_px, deep.shading_height_px);
+    if (!(max(far.x, far.y) < HULL_FARTHEST * max(space.x, space.y))) {
+        return box_of(vec2(-1.0), space + 1.0);
+    }
     float reach = HULL_REACH_PX + HULL_REACH_PART * max(far.x, far.y);
     vec2 size = greatest - least;
     float longest = max(size.x, size.y);
@@ -79,12 +98,7 @@ Hull hull_of(vec4 a, vec4 b, vec4 c) {
     float rounding = longest * (1e-3 + 3e-7 * max(far.x, far.y) + 6e-7 * longest);
     // Thinner than what floats tell apart: the box around it holds it too, and what is too much falls out at the look-up.
     if (cut_count < 3u || abs(area) <= rounding) {
-        hull.corners[0] = least - reach;
-        hull.corners[1] = vec2(greatest.x + reach, least.y - reach);
-        hull.corners[2] = greatest + reach;
-        hull.corners[3] = vec2(least.x - reach, greatest.y + reach);
-        hull.count = 4u;
-        return hull;
+        return box_of(least - reach, greatest + reach);
     }
     float turn = area < 0.0 ? -1.0 : 1.0;
     vec2 before = cut[0] - cut[cut_count - 1u];

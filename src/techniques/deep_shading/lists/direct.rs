@@ -6,7 +6,7 @@
 use super::super::choices::Choices;
 use super::super::full;
 use super::super::plan::{ADDRESSES, BEGINS, LINEAR, LINEAR_COUNT, NODES, ZMAX};
-use super::super::visibility::ray::trace::{Hits, NONE};
+use super::super::visibility::ray::trace::{Hits, NONE, Spid};
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Traffic};
@@ -17,8 +17,11 @@ use ash::vk::BufferUsageFlags;
 use rayon::prelude::*;
 use std::cell::{Cell, RefCell};
 
-/// brute.frag's and resolve.comp's: the sample has no place in shading space.
+/// space.glsl's ADDRESS_STRAY.
 const STRAY: u32 = 1 << 31;
+
+/// insert.comp's.
+const LIST_MOST: usize = 1024;
 
 /// Among the parts of a set.
 const NODES_INDEX: usize = 1;
@@ -26,12 +29,14 @@ const NODES_INDEX: usize = 1;
 /// A set's lists, as the device's buffers begin.
 pub struct HostLists {
     begins: Vec<u32>,
-    /// Of listed triangles; those of strays lie at the buffer's end, the first stray's last.
     nodes: Vec<[u32; 2]>,
+    /// What samples see that no list has: SPIDs, from the buffer's end on.
     stray_nodes: Vec<[u32; 2]>,
     linear: Vec<u32>,
     zmax: Vec<u32>,
     addresses: Vec<u32>,
+    /// Strays that a list had no room for.
+    crowded_count: usize,
 }
 
 /// A sample that is listed, and where.
@@ -57,13 +62,12 @@ impl HostLists {
             linear: vec![0; if is_compacted { pixels * LINEAR_COUNT as usize } else { 0 }],
             zmax: vec![0; if has_zmax { pixels } else { 0 }],
             addresses: vec![NONE; hits.spids.len()],
+            crowded_count: 0,
         };
         let mut entries = Vec::new();
         for (sample, spid) in hits.spids.iter().enumerate().filter(|(_, spid)| spid.primitive != NONE) {
             if spid.pixel == NONE {
-                let color = (hits.spids.len() - 1 - lists.stray_nodes.len()) as u32;
-                lists.addresses[sample] = color | STRAY;
-                lists.stray_nodes.push([spid.primitive, 0]);
+                lists.push_stray(sample, *spid);
                 continue;
             }
             let pixel = (spid.pixel >> 16) * space.width + (spid.pixel & 0xffff);
@@ -74,17 +78,30 @@ impl HostLists {
         }
         entries.par_sort_unstable();
         for list in entries.chunk_by(|a, b| a.pixel == b.pixel) {
-            lists.push(list, is_compacted);
+            lists.push(list, space, is_compacted);
         }
         lists
     }
 
+    fn push_stray(&mut self, sample: usize, spid: Spid) {
+        let color = (self.addresses.len() - 1 - self.stray_nodes.len()) as u32;
+        self.addresses[sample] = color | STRAY;
+        self.stray_nodes.push([spid.primitive, spid.pixel]);
+    }
+
     /// Samples of one shading pixel, by triangle.
-    fn push(&mut self, list: &[Entry], is_compacted: bool) {
+    fn push(&mut self, list: &[Entry], space: Extent, is_compacted: bool) {
         let first = self.nodes.len() as u32;
         let pixel = list[0].pixel as usize;
         self.begins[pixel] = first + 1;
-        for of in list.chunk_by(|a, b| a.primitive == b.primitive) {
+        for (length, of) in list.chunk_by(|a, b| a.primitive == b.primitive).enumerate() {
+            if length >= LIST_MOST {
+                let packed = (list[0].pixel % space.width) | ((list[0].pixel / space.width) << 16);
+                let spid = Spid { primitive: of[0].primitive, pixel: packed };
+                of.iter().for_each(|entry| self.push_stray(entry.sample as usize, spid));
+                self.crowded_count += of.len();
+                continue;
+            }
             let node = self.nodes.len() as u32;
             of.iter().for_each(|entry| self.addresses[entry.sample as usize] = node);
             // Pointers are one more than indices.
@@ -139,7 +156,7 @@ impl Direct {
     /// Puts a run's lists where the frame takes them from.
     pub fn stage(&self, run: u32) {
         self.staged_run.set(run);
-        let HostLists { begins, nodes, stray_nodes, linear, zmax, addresses } = &self.sets[run as usize];
+        let HostLists { begins, nodes, stray_nodes, linear, zmax, addresses, .. } = &self.sets[run as usize];
         let nodes: &[u8] = bytemuck::cast_slice(nodes);
         let [begins, linear, addresses, zmax]: [&[u8]; 4] =
             [begins, linear, addresses, zmax].map(|words| bytemuck::cast_slice(words));
@@ -157,9 +174,11 @@ impl Direct {
         }
     }
 
-    /// Samples of the last run that shading space has no place for.
-    pub fn stray_count(&self) -> usize {
-        self.sets[self.staged_run.get() as usize].stray_nodes.len()
+    /// What insertion on the device counts of samples that no list has, of the last run.
+    pub fn stray_counts(&self) -> [(&'static str, f64); 2] {
+        let HostLists { stray_nodes, crowded_count, .. } = &self.sets[self.staged_run.get() as usize];
+        let outside = stray_nodes.len() - crowded_count;
+        [("samples_outside_shading_space", outside as f64), ("samples_of_full_lists", *crowded_count as f64)]
     }
 
     pub fn record(&self, cmd: &mut Commands, lists: &Lists, colors: &Buffer, counters: &Buffer) -> Result<()> {
@@ -180,7 +199,6 @@ impl Direct {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::visibility::ray::trace::Spid;
     use super::*;
 
     fn hits(spids: &[(u32, u32)]) -> Hits {
@@ -196,7 +214,16 @@ mod tests {
         assert_eq!(lists.begins, [0, 1, 3, 0]);
         assert_eq!(lists.nodes, [[3, 2], [7, 0], [3, 0]]);
         assert_eq!(lists.addresses, [1, NONE, 0, 1, 5 | STRAY, 2]);
-        assert_eq!((lists.stray_nodes, lists.zmax), (vec![[9, 0]], vec![0, 3, 5, 0]));
+        assert_eq!((lists.stray_nodes, lists.zmax), (vec![[9, NONE]], vec![0, 3, 5, 0]));
+    }
+
+    #[test]
+    fn a_full_list_leaves_the_rest_to_be_shaded_alone() {
+        let spids: Vec<(u32, u32)> = (0..1026).map(|primitive| (primitive, 1)).collect();
+        let lists = HostLists::with(&hits(&spids), Extent::new(2, 1), false, false);
+        assert_eq!((lists.nodes.len(), lists.nodes[1023], lists.crowded_count), (1024, [1023, 0], 2));
+        assert_eq!(lists.addresses[1023..], [1023, 1025 | STRAY, 1024 | STRAY]);
+        assert_eq!(lists.stray_nodes, [[1024, 1], [1025, 1]]);
     }
 
     #[test]

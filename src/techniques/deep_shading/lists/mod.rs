@@ -63,13 +63,9 @@ impl Lists {
         bound
     }
 
-    /// Compute shaders read the links after draws have: what wrote them was waited for by the draws alone.
-    pub fn links_to_compute(&self, cmd: &mut Commands) {
-        self.links_to(
-            cmd,
-            (Access::ComputeWrite | Access::ComputeRead).with(Access::GraphicsRead),
-            Access::ComputeRead,
-        );
+    /// Compute shaders touch the links after draws have read them: what wrote them was waited for by the draws alone.
+    pub fn links_to_compute(&self, cmd: &mut Commands, to: Access) {
+        self.links_to(cmd, (Access::ComputeWrite | Access::ComputeRead).with(Access::GraphicsRead), to);
     }
 
     /// Barriers of the links, from one access to another.
