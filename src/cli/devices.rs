@@ -107,6 +107,7 @@ fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Resul
     let all = [
         (features.geometry_shader, "geometry shaders"),
         (features.layer_from_vertex_shader, "layers from vertex shaders"),
+        (features.draw_indirect_count, "draws counted by buffers"),
         (features.shader_float16, "16-bit floats"),
         (features.conservative_rasterization, "conservative rasterisation"),
         (features.ray_query, "ray queries"),

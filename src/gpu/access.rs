@@ -36,6 +36,8 @@ pub enum Access {
     TransferWrite,
     /// Read as vertices or indices.
     VertexRead,
+    /// Commands of draws, and how many there are.
+    IndirectRead,
     /// Read by the build of an acceleration structure: a structure that it holds.
     StructureRead,
     /// Written (and read) by the build of an acceleration structure: the structure itself, or scratch.
@@ -45,7 +47,7 @@ pub enum Access {
 }
 
 impl Access {
-    const ALL: [Self; 16] = [
+    const ALL: [Self; 17] = [
         Self::ComputeRead,
         Self::ComputeWrite,
         Self::ComputeSample,
@@ -59,6 +61,7 @@ impl Access {
         Self::TransferRead,
         Self::TransferWrite,
         Self::VertexRead,
+        Self::IndirectRead,
         Self::StructureRead,
         Self::StructureWrite,
         Self::ComputeTrace,
@@ -76,6 +79,7 @@ impl Access {
             Self::StencilWrite => Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS | Stage::FRAGMENT_SHADER,
             Self::TransferRead | Self::TransferWrite => Stage::ALL_TRANSFER,
             Self::VertexRead => Stage::VERTEX_INPUT,
+            Self::IndirectRead => Stage::DRAW_INDIRECT,
             Self::StructureRead | Self::StructureWrite => Stage::ACCELERATION_STRUCTURE_BUILD_KHR,
         }
     }
@@ -98,6 +102,7 @@ impl Access {
             Self::TransferRead => Flags::TRANSFER_READ,
             Self::TransferWrite => Flags::TRANSFER_WRITE,
             Self::VertexRead => Flags::VERTEX_ATTRIBUTE_READ | Flags::INDEX_READ,
+            Self::IndirectRead => Flags::INDIRECT_COMMAND_READ,
             Self::StructureRead | Self::ComputeTrace => Flags::ACCELERATION_STRUCTURE_READ_KHR,
             Self::StructureWrite => Flags::ACCELERATION_STRUCTURE_READ_KHR | Flags::ACCELERATION_STRUCTURE_WRITE_KHR,
         }
@@ -114,7 +119,8 @@ impl Access {
             Self::StencilWrite => vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
             Self::TransferRead => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             Self::TransferWrite => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-            Self::GraphicsRead | Self::FragmentWrite | Self::VertexRead => vk::ImageLayout::UNDEFINED,
+            Self::GraphicsRead | Self::FragmentWrite => vk::ImageLayout::UNDEFINED,
+            Self::VertexRead | Self::IndirectRead => vk::ImageLayout::UNDEFINED,
             Self::StructureRead | Self::StructureWrite | Self::ComputeTrace => vk::ImageLayout::UNDEFINED,
         }
     }
@@ -124,7 +130,7 @@ impl Access {
             Self::ComputeWrite | Self::FragmentWrite | Self::ColorWrite | Self::DepthWrite => true,
             Self::StencilWrite | Self::TransferWrite | Self::StructureWrite => true,
             Self::ComputeRead | Self::ComputeSample | Self::GraphicsRead | Self::FragmentSample => false,
-            Self::DepthTest | Self::TransferRead | Self::VertexRead => false,
+            Self::DepthTest | Self::TransferRead | Self::VertexRead | Self::IndirectRead => false,
             Self::ComputeTrace | Self::StructureRead => false,
         }
     }

@@ -267,7 +267,8 @@ impl Gpu {
             .geometry_shader(caps.features.geometry_shader);
         let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
             .buffer_device_address(caps.features.ray_query)
-            .shader_output_layer(caps.features.layer_from_vertex_shader);
+            .shader_output_layer(caps.features.layer_from_vertex_shader)
+            .draw_indirect_count(caps.features.draw_indirect_count);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
         let mut extensions: Vec<*const c_char> = Vec::new();

@@ -5,6 +5,7 @@
 
 use super::choices::Choices;
 use super::full;
+use super::gate::Gate;
 use super::lists::Lists;
 use super::plan::DEPTH_FORMAT;
 use super::primitives::Primitives;
@@ -15,6 +16,7 @@ use crate::gpu::shader::techniques::deep_shading::brute::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::{mesh, shadow_maps};
+use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
 use crate::units::Extent;
 use ash::vk;
@@ -23,6 +25,7 @@ use std::sync::Arc;
 pub struct Brute {
     pipeline: GraphicsPipeline,
     stages: sample::Stages,
+    gate: Option<Gate>,
     visibility: Visibility,
     /// One, and how many of them.
     layers: (Extent, u32),
@@ -31,7 +34,13 @@ pub struct Brute {
 
 impl Brute {
     /// `frame`: its extent.
-    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices, frame: Extent) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        frame: Extent,
+    ) -> Result<Self> {
         let samples = match choices {
             Choices { has_lists: false, .. } => "all",
             Choices { is_direct: true, .. } => "direct",
@@ -67,8 +76,9 @@ impl Brute {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
+        let gate = if choices.is_gated { Some(Gate::new(gpu, resources, scene, (&stages, &repeats))?) } else { None };
         let layers = (choices.table.layer(frame), choices.table.tuple_count());
-        Ok(Self { pipeline, stages, visibility: choices.visibility, layers, name: choices.brute_pass() })
+        Ok(Self { pipeline, stages, gate, visibility: choices.visibility, layers, name: choices.brute_pass() })
     }
 
     /// The lists of which these are the strays; the barrier of the shadow maps.
@@ -97,7 +107,10 @@ impl Brute {
         };
         cmd.pass(&full(self.name), traffic, |cmd| {
             cmd.barriers(maps);
-            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
+            match &self.gate {
+                Some(gate) => gate.record(cmd, counters),
+                None => cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]),
+            }
             if let Some(lists) = lists {
                 cmd.barriers([colors.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
                 lists.links_to(cmd, Access::ComputeRead | Access::GraphicsRead, Access::GraphicsRead);
@@ -130,7 +143,14 @@ impl Brute {
                 let depth = depth.map(|depth| (depth, None, Access::DepthTest));
                 cmd.begin_layers(layer, at, &[], depth);
                 cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
-                sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
+                if let Some(gate) = &self.gate {
+                    let drawn = (&self.pipeline, self.stages.sides);
+                    sample::draw_by(cmd, drawn, scene, primitives, &scene.calls, repeats, |call| {
+                        gate.draw(cmd, call.draw);
+                    });
+                } else {
+                    sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
+                }
                 cmd.end_rendering();
             });
             Ok(())

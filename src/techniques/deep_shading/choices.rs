@@ -35,6 +35,8 @@ pub struct Choices {
     pub has_lists: bool,
     /// The host inserts into them, and samples have no SPIDs.
     pub is_direct: bool,
+    /// The device draws strays only where there are some.
+    pub is_gated: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
     pub has_zmax: bool,
@@ -114,6 +116,7 @@ impl Choices {
             middle,
             has_lists,
             is_direct,
+            is_gated: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),

@@ -126,7 +126,7 @@ impl DeepFrame {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             visibility,
-            brute: Brute::new(gpu, scene, &choices, inputs.view.extent)?,
+            brute: Brute::new(gpu, scene, resources, &choices, inputs.view.extent)?,
             resolve: Resolve::new(gpu, &choices)?,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             colors: lists::colors(resources),

@@ -33,6 +33,7 @@ mod choices;
 mod count;
 mod counters;
 mod frame;
+mod gate;
 mod lists;
 mod middle;
 mod passes;

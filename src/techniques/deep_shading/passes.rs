@@ -5,7 +5,7 @@ use super::plan::{
     ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
 };
 use super::visibility::Visibility;
-use super::{NAME, full};
+use super::{NAME, full, gate};
 use crate::gpu::Access;
 use crate::passes::accumulate;
 use crate::plan::Plan;
@@ -102,6 +102,7 @@ fn brute(choices: &Choices) -> Touches {
         false => vec![touch(COLORS, Access::TransferWrite)],
     });
     brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
+    brute.extend(choices.is_gated.then(gate::touches).into_iter().flatten());
     brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
     brute
 }

@@ -5,7 +5,7 @@ use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full, passes};
+use super::{NAME, full, gate, passes};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -89,6 +89,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         if choices.is_counted {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
         }
+    }
+    if choices.is_gated {
+        gate::plan(&mut plan, inputs.stats.draw_count);
     }
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
     plan.read_back(&full(COUNTERS));

@@ -47,6 +47,11 @@ impl Stages {
     pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
         Self { vertex, geometry, fragments: FRAG_VARIANTS, sides: Sides::AsDrawn, vertex_count: 3 }
     }
+
+    /// How many vertices a call has, and the first.
+    pub fn vertices(&self, call: &DrawCall) -> [u32; 2] {
+        [call.index_count, call.first_index].map(|indices| indices / 3 * self.vertex_count)
+    }
 }
 
 /// The vertex stage for `scene`. `layer`: a value of its axis LAYER.
@@ -64,14 +69,28 @@ pub fn draw<'a>(
     calls: impl IntoIterator<Item = &'a DrawCall>,
     repeats: &Repeats,
 ) {
-    mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
+    draw_by(cmd, (pipeline, stages.sides), scene, primitives, calls, repeats, |call| {
+        let [count, first] = stages.vertices(call);
+        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
+    });
+}
+
+/// The same for whom draws the vertices of a call itself: `draw`, for each of its repeats.
+pub fn draw_by<'a>(
+    cmd: &Commands,
+    (pipeline, sides): (&GraphicsPipeline, Sides),
+    scene: &SceneGpu,
+    primitives: &Primitives,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+    repeats: &Repeats,
+    mut draw: impl FnMut(&DrawCall),
+) {
+    mesh::for_each(cmd, pipeline, scene, sides, calls, |call| {
         let params = primitives.params(scene, call);
-        let of = |indices: u32| indices / 3 * stages.vertex_count;
-        let (count, first) = (of(call.index_count), of(call.first_index));
         for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {
             cmd.push(&pipeline.interface, bytemuck::bytes_of(&primitives::of_tuple(params, tuple)));
-            // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-            unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
+            draw(call);
         }
     });
 }

@@ -1,0 +1,80 @@
+//! The draws of strays, which the device leaves out where no sample strays: nearly always in sharp pictures, and often under
+//! blur. The number of strays is their draw count.
+//! reads  count.counters, strays.draws      writes  strays.count
+
+use super::full;
+use super::plan::COUNTERS;
+use super::visibility::sample::{Repeats, Stages};
+use crate::error::Result;
+use crate::gpu::{Access, Buffer, Commands, Gpu, upload};
+use crate::memory::kinds::Use;
+use crate::plan::{Plan, Resources, Shape};
+use crate::resident::SceneGpu;
+use ash::vk;
+use std::sync::Arc;
+
+const DRAWS: &str = "strays.draws";
+pub const COUNT: &str = "strays.count";
+
+/// COUNTED_STRAYS of counters.glsl.
+const STRAYS_WORD: u64 = 1;
+
+const COMMAND_BYTES: u64 = size_of::<vk::DrawIndirectCommand>() as u64;
+
+/// Plans a command for each of `draws`, and their count.
+pub fn plan(plan: &mut Plan, draws: u64) {
+    let flags = vk::BufferUsageFlags::INDIRECT_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+    let shape = |bytes| Shape::Buffer { bytes, flags, usage: Use::Device };
+    plan.push("scene.geometry", full(DRAWS), shape(draws * COMMAND_BYTES));
+    plan.push("counters", full(COUNT), shape(4));
+}
+
+/// What the pass touches beside others.
+pub fn touches() -> [(String, Access); 3] {
+    let touch = |name: &str, access| (full(name), access);
+    [touch(COUNTERS, Access::TransferRead), touch(COUNT, Access::TransferWrite), touch(COUNT, Access::IndirectRead)]
+}
+
+pub struct Gate {
+    draws: Buffer,
+    count: Buffer,
+}
+
+impl Gate {
+    /// Commands for all of the scene's calls, in the order of its draws.
+    ///
+    /// Errors: memory for the upload (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        scene: &SceneGpu,
+        (stages, repeats): (&Stages, &Repeats),
+    ) -> Result<Self> {
+        let mut commands = vec![[0u32; 4]; scene.calls.len()];
+        for call in &scene.calls {
+            let [vertex_count, first_vertex] = stages.vertices(call);
+            commands[call.draw as usize] = [vertex_count, repeats.instance_count, first_vertex, 0];
+        }
+        let draws = resources.buffer(&full(DRAWS));
+        upload::buffer(gpu, &draws, bytemuck::cast_slice(&commands), Access::IndirectRead)?;
+        Ok(Self { draws, count: resources.buffer(&full(COUNT)) })
+    }
+
+    /// Takes the number of strays over, before the draws. `counters`: as fragments write them, before and after.
+    pub fn record(&self, cmd: &mut Commands, counters: &Buffer) {
+        cmd.barriers([counters.from(Access::FragmentWrite).to(Access::TransferRead)]);
+        cmd.barriers([self.count.discard(Access::TransferWrite)]);
+        cmd.copy_word(counters, STRAYS_WORD, &self.count);
+        cmd.barriers([self.count.from(Access::TransferWrite).to(Access::IndirectRead)]);
+        cmd.barriers([counters.from(Access::TransferRead).to(Access::FragmentWrite)]);
+    }
+
+    /// The scene's draw of this index, if there are strays. Inside rendering.
+    pub fn draw(&self, cmd: &Commands, draw: u32) {
+        let (offset, stride) = (u64::from(draw) * COMMAND_BYTES, COMMAND_BYTES as u32);
+        let (draws, count) = (self.draws.handle, self.count.handle);
+        // SAFETY: the buffer is being recorded inside rendering; both buffers outlive the recorded frame and the command lies in
+        // the first; the importer checked that every index has its vertex.
+        unsafe { cmd.gpu().device.cmd_draw_indirect_count(cmd.buffer(), draws, offset, count, 0, 1, stride) };
+    }
+}
