@@ -3,7 +3,7 @@
 use super::brute::Brute;
 use super::choices::Choices;
 use super::count::Count;
-use super::counters;
+use super::counters::Counted;
 use super::lists::address::Address;
 use super::lists::compact::Compact;
 use super::lists::insert::Insert;
@@ -103,6 +103,10 @@ impl DeepFrame {
         Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
     }
 
+    fn counted(&self, gpu: &Arc<Gpu>) -> Result<Counted> {
+        Counted::read(gpu, &self.counters, Access::ComputeWrite)
+    }
+
     /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
     ///
     /// Errors: memory for the copy (exit code 4).
@@ -172,7 +176,13 @@ impl Frame for DeepFrame {
             return Ok(BTreeMap::new());
         }
         let pixels = self.color.description.extent.pixel_count();
-        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, self.choices.is_stochastic)
+        Ok(self.counted(gpu)?.report(pixels, self.choices.is_stochastic))
+    }
+
+    fn touched_bytes(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
+        // Without lists colours are cleared whole.
+        let has_entries = self.choices.is_counted && self.choices.has_lists;
+        Ok(if has_entries { self.counted(gpu)?.entries().bytes() } else { BTreeMap::new() })
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

@@ -34,9 +34,11 @@ pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
 const LINEAR_COUNT: u64 = 16;
-const NODE_BYTES: u64 = 8;
-/// RGBA16F.
-const COLOR_BYTES: u64 = 8;
+/// Of a row's id, a node (id, next), a colour (RGBA16F), an address.
+pub const ROW_ID_BYTES: u64 = 4;
+pub const NODE_BYTES: u64 = 8;
+pub const COLOR_BYTES: u64 = 8;
+pub const ADDRESS_BYTES: u64 = 4;
 
 /// Resources and passes of a frame.
 ///
@@ -60,10 +62,10 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         plan.buffer("deep_shading_buffer", full(BEGINS), shading_pixels * 4);
         plan.buffer("deep_shading_buffer", full(NODES), samples * NODE_BYTES);
         if choices.is_compacted {
-            plan.buffer("auxiliary", full(LINEAR), shading_pixels * LINEAR_COUNT * 4);
+            plan.buffer("auxiliary", full(LINEAR), shading_pixels * LINEAR_COUNT * ROW_ID_BYTES);
         }
         if choices.has_addresses {
-            plan.buffer("auxiliary", full(ADDRESSES), samples * 4);
+            plan.buffer("auxiliary", full(ADDRESSES), samples * ADDRESS_BYTES);
         }
         if choices.has_zmax {
             plan.push("auxiliary", full(SHADING_DEPTHS), layers(SHADING_DEPTH_FORMAT, attached));
