@@ -304,7 +304,8 @@ impl Job {
         let kinds = Kinds::new(&session.gpu.caps);
         let plans = (&session.stats.plan(), &renderer.plan);
         let sharing = renderer.sharing.clone();
-        report.memory(&MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(memory))?);
+        let table = MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(memory))?;
+        report.memory(&table.touched_as(&renderer.touched_bytes()?));
         report.counters(&renderer.measured_counters()?);
         Ok(report)
     }

@@ -359,6 +359,13 @@ impl Renderer {
         Ok(counters)
     }
 
+    /// Bytes that the last frame touched of resources of which it does not touch all, by full name.
+    ///
+    /// Errors: memory for reading counts back (exit code 4).
+    pub fn touched_bytes(&self) -> Result<BTreeMap<String, u64>> {
+        self.frame.touched_bytes(&self.gpu)
+    }
+
     /// One of the last frame's intermediate results, which `Session::renderer` was asked for: others share their bytes
     /// with what came after them.
     ///

@@ -126,6 +126,7 @@ const MEMORY: &[Row] = &[
     ("peak_bytes", "count"),
     ("peak_pass", "text"),
     ("groups.*", "count"),
+    ("touched_groups.*", "count"),
     ("resources[].name", "text"),
     ("resources[].group", "text"),
     ("resources[].format", "text?"),

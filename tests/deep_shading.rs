@@ -193,6 +193,57 @@ fn memory_is_what_the_paper_s_table_says() {
         assert_eq!(groups[group], bytes, "{group}");
         assert!((groups[group] as f64 / f64::from(1 << 20) - mebibytes).abs() < 0.05, "{group}");
     }
+    let rivals: Vec<u64> = json["techniques"][0]["rivals"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|rival| rival["bytes"].as_u64().unwrap())
+        .collect();
+    assert_eq!(rivals, [44_739_240, 357_913_920], "42.7 and 341.3");
+    let text = program.run(&arguments[..arguments.len() - 1]).fine().out;
+    assert!(
+        text.contains("Andersson et al. 2014): 8 x 2048^2 texels x 8 B x 4/3") && text.contains("341 MiB"),
+        "{text}"
+    );
+}
+
+/// Buffers are as long as the worst case; what a frame touches of them is what its shaders count.
+#[test]
+fn touched_bytes_are_what_shaders_count() {
+    let program = Program::new();
+    let common = ["render", "cornell", "--technique", DEEP, "--size", "161x91", "--aperture", "0.2", "--json"];
+    for road in [&[][..], &["--compaction", "off"], &["--address-buffer", "off", "--guard-band", "0"]] {
+        let json = program.run(&[&common, road].concat()).fine().json();
+        let count =
+            |key: &str| json["counters"][key].as_u64().or(json["counters"][key].as_f64().map(|count| count as u64));
+        let count = |key: &str| count(key).unwrap_or_else(|| panic!("{key}: {json:#}"));
+        let resources = json["memory"]["resources"].as_array().unwrap();
+        let touched = |name: &str, key: &str| {
+            let name = format!("{DEEP}.{name}");
+            let found = resources.iter().find(|row| row["name"] == name.as_str());
+            found.map(|row| row[key].as_u64().unwrap())
+        };
+        let strays = count("samples_outside_shading_space") + count("samples_of_full_lists");
+        let (listed, nodes) = (count("listed_primitives"), count("nodes_written"));
+        assert!(nodes >= listed + strays && nodes <= count("samples_seen"), "{road:?}: {nodes} nodes of {listed}");
+        let colors = listed + count("listed_again") + strays;
+        assert_eq!(touched("lists.nodes", "touched_bytes"), Some(8 * nodes), "{road:?}");
+        assert_eq!(touched("shade.colors", "touched_bytes"), Some(8 * colors), "{road:?}");
+        assert_eq!(touched("lists.begins", "touched_bytes"), touched("lists.begins", "bytes"), "{road:?}");
+        assert_eq!(count("lists_beyond_16"), 0);
+        let rows = touched("lists.linear", "bytes").map(|_| 4 * (listed + count("lists")));
+        assert_eq!(touched("lists.linear", "touched_bytes"), rows, "{road:?}");
+        let addresses = touched("lists.addresses", "bytes").map(|_| 4 * count("samples_seen"));
+        assert_eq!(touched("lists.addresses", "touched_bytes"), addresses, "{road:?}");
+        let group = 8 * nodes + 8 * colors + touched("lists.begins", "bytes").unwrap();
+        assert_eq!(json["memory"]["touched_groups"]["deep_shading_buffer"], group, "{road:?}");
+        let all = json["memory"]["groups"]["deep_shading_buffer"].as_u64().unwrap();
+        assert!(3 * group < 2 * all, "{road:?}: {group} of {all}");
+    }
+    // Nobody counts: all of it may be touched.
+    let json = program.run(&[&common[..], &["--instrument", "off"]].concat()).fine().json();
+    let memory = &json["memory"];
+    assert_eq!(memory["touched_groups"]["deep_shading_buffer"], memory["groups"]["deep_shading_buffer"]);
 }
 
 /// Ways to draw the samples on this driver, by the stage that says the layer: vertex shaders, and geometry shaders.

@@ -5,6 +5,8 @@ use crate::error::{Error, Result};
 use crate::gpu::known;
 use crate::report::whole_file::write_whole;
 use crate::study::{self, Study};
+use crate::techniques::Rival;
+use crate::units::Bytes;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::{Value, json};
 use std::io::Write;
@@ -66,8 +68,15 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
             study::made(&job)?
         };
         let technique = job.technique.name();
-        let document = document(technique, &study);
-        let text = format!("{technique}: {} on {}\n\n{}", study.scene, study.device, study.table.text());
+        let rivals = job.technique.rivals();
+        let document = document(technique, &study, &rivals);
+        let beside: String = rivals
+            .iter()
+            .map(|rival| {
+                format!("beside it {}: {} = {} ({})\n", rival.name, rival.formula, Bytes(rival.bytes), rival.paper)
+            })
+            .collect();
+        let text = format!("{technique}: {} on {}\n\n{}{beside}", study.scene, study.device, study.table.text());
         if let Some(folder) = folder {
             let file = |extension: &str| folder.join(format!("memory-{technique}.{extension}"));
             write_whole(&file("txt"), |out| write!(out, "{text}"))?;
@@ -85,6 +94,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     Ok(())
 }
 
-fn document(technique: &str, study: &Study) -> Value {
-    json!({ "technique": technique, "scene": study.scene, "device": study.device, "memory": study.table.json() })
+fn document(technique: &str, study: &Study, rivals: &[Rival]) -> Value {
+    let rival = |rival: &Rival| json!({ "name": rival.name, "paper": rival.paper, "formula": rival.formula, "bytes": rival.bytes });
+    let rivals: Vec<Value> = rivals.iter().map(rival).collect();
+    let memory = study.table.json();
+    json!({ "technique": technique, "scene": study.scene, "device": study.device, "memory": memory, "rivals": rivals })
 }

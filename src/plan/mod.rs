@@ -47,7 +47,7 @@ pub struct Planned {
     /// Row of the memory table.
     pub group: &'static str,
     pub shape: Shape,
-    /// Bytes of it that a frame touches: all, or none of a list without entries.
+    /// Bytes of it that a frame may touch: all, or none of a list without entries.
     pub touched_bytes: u64,
     /// Needed after the frame: the picture, and stages that the user asked for.
     pub read_back: bool,

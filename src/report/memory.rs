@@ -32,7 +32,7 @@ struct Row {
     shared: Option<(usize, u64)>,
     /// Who lies in some of the same bytes in other passes.
     shares_with: Vec<String>,
-    /// Bytes that passes touch.
+    /// Bytes that passes touch: counted where a frame did, else all that they may touch.
     touched_bytes: u64,
 }
 
@@ -104,6 +104,14 @@ impl MemoryTable {
         })
     }
 
+    /// The same with what a frame has counted itself, by name.
+    pub fn touched_as(mut self, counted: &BTreeMap<String, u64>) -> Self {
+        for row in &mut self.rows {
+            row.touched_bytes = counted.get(&row.name).copied().unwrap_or(row.touched_bytes);
+        }
+        self
+    }
+
     fn planned_bytes(&self) -> u64 {
         self.rows.iter().map(|row| row.bytes).sum()
     }
@@ -116,10 +124,11 @@ impl MemoryTable {
         self.rows.iter().map(|row| row.touched_bytes).sum()
     }
 
-    fn groups(&self) -> BTreeMap<&str, u64> {
+    /// Sums by group.
+    fn groups(&self, bytes: impl Fn(&Row) -> u64) -> BTreeMap<&str, u64> {
         let mut groups = BTreeMap::new();
         for row in &self.rows {
-            *groups.entry(row.group.as_str()).or_insert(0) += row.bound_bytes;
+            *groups.entry(row.group.as_str()).or_insert(0) += bytes(row);
         }
         groups
     }
@@ -134,7 +143,8 @@ impl MemoryTable {
             "arenas": self.sharing.arenas.iter().map(arena_json).collect::<Vec<_>>(),
             "peak_bytes": self.peak.bytes,
             "peak_pass": self.peak.pass,
-            "groups": self.groups(),
+            "groups": self.groups(|row| row.bound_bytes),
+            "touched_groups": self.groups(|row| row.touched_bytes),
             "resources": self.rows.iter().map(row_json).collect::<Vec<_>>(),
         });
         if let Some((bytes, blocks)) = &self.made {
@@ -187,7 +197,7 @@ impl MemoryTable {
         for (memory_type, reason) in reasons {
             writeln!(text, "type {memory_type}: {reason}")?;
         }
-        for (group, bytes) in self.groups() {
+        for (group, bytes) in self.groups(|row| row.bound_bytes) {
             writeln!(text, "{group:<18} {}", Bytes(bytes))?;
         }
         writeln!(

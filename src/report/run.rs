@@ -311,10 +311,11 @@ impl Report {
         }
         let bytes = |key: &str| Bytes(document["memory"][key].as_u64().unwrap_or_default());
         line(format!(
-            "memory: {} planned, {} allocated, {} saved by sharing, {} in memory blocks",
+            "memory: {} planned, {} allocated, {} saved by sharing, {} touched, {} in memory blocks",
             bytes("planned_bytes"),
             bytes("allocated_bytes"),
             bytes("aliased_bytes"),
+            bytes("touched_bytes"),
             bytes("memory_block_bytes")
         ));
         if let Some(errors) = document.get("errors") {

@@ -2,11 +2,17 @@
 
 use super::image_file::{Aov, AovChannels};
 use super::picture::Picture;
+use super::tonemap::linear_from_srgb;
 use crate::units::Extent;
 
+/// sRGB of the lengths of lists: 0, 1 and so on, 7 and more as the last. One is dark blue and two cyan, as in the heat maps of
+/// Clarberg & Munkberg 2014, figures 1 and 5; on go green, yellow, orange, red and white.
+const LENGTHS: [[u8; 3]; 8] =
+    [[0, 0, 0], [0, 0, 160], [0, 220, 255], [60, 220, 60], [255, 240, 0], [255, 140, 0], [220, 0, 0], [255, 255, 255]];
+
 /// The stage as light that a PNG shows: normals from -1..1 to 0..1, irradiance as a white surface would show it, depths as a part
-/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, other whole numbers as they are: flags
-/// are white.
+/// of the greatest, vectors around grey and as a part of the longest, a colour for each id and for each length of a list, other
+/// whole numbers as they are: flags are white.
 pub fn visible(aov: &Aov, extent: Extent) -> Picture {
     let is = |ending: &str| aov.name.ends_with(ending);
     let pixels = match &aov.channels {
@@ -22,6 +28,7 @@ pub fn visible(aov: &Aov, extent: Extent) -> Picture {
         }
         AovChannels::Y(values) => values.iter().map(|value| [*value; 3]).collect(),
         AovChannels::YU32(values) if is(".id") => values.iter().map(|id| color_of(*id)).collect(),
+        AovChannels::YU32(values) if is("lengths") => values.iter().map(|length| color_of_length(*length)).collect(),
         AovChannels::YU32(values) => values.iter().map(|value| [*value as f32; 3]).collect(),
     };
     Picture { extent, pixels }
@@ -43,12 +50,25 @@ fn color_of(id: u32) -> [f32; 3] {
     [red, green, blue].map(|byte| f32::from(byte) / 255.0)
 }
 
+fn color_of_length(length: u32) -> [f32; 3] {
+    LENGTHS[(length as usize).min(LENGTHS.len() - 1)].map(|code| linear_from_srgb(f64::from(code) / 255.0) as f32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::tonemap::{Srgb8, ToneMap};
 
     fn shown(name: &str, channels: AovChannels) -> Vec<[f32; 3]> {
         visible(&Aov { name: name.to_owned(), channels }, Extent::new(3, 1)).pixels
+    }
+
+    #[test]
+    fn lengths_of_lists_have_the_codes_of_their_table() {
+        let colors = shown("count.lengths", AovChannels::YU32(vec![0, 1, 2, 7, 4000]));
+        let extent = Extent::new(5, 1);
+        let codes = Srgb8::from_picture(&Picture { extent, pixels: colors }, 0.0, ToneMap::default()).pixels;
+        assert_eq!(codes, [LENGTHS[0], [0, 0, 160], [0, 220, 255], [255; 3], [255; 3]]);
     }
 
     #[test]

@@ -53,6 +53,16 @@ impl Inputs<'_> {
     }
 }
 
+/// The memory of a published rival of a technique, which stands beside its own.
+pub struct Rival {
+    pub name: &'static str,
+    /// Where it is published: the paper and its section.
+    pub paper: &'static str,
+    /// How the bytes come out, in words.
+    pub formula: String,
+    pub bytes: u64,
+}
+
 /// One way of making a picture.
 pub trait Technique: Sync {
     /// Its name on the command line, in labels and in reports.
@@ -89,6 +99,11 @@ pub trait Technique: Sync {
     /// Raised whenever the same settings give another picture than before: references that are kept are of one version.
     fn estimator_version(&self) -> u32 {
         1
+    }
+
+    /// What its paper holds its memory against.
+    fn rivals(&self) -> Vec<Rival> {
+        Vec::new()
     }
 
     /// What a frame needs. Arithmetic, but for the tree of shadow rays, whose size only building it tells.
@@ -168,6 +183,14 @@ pub trait Frame {
     ///
     /// Errors: memory for reading them back (exit code 4).
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>>;
+
+    /// Bytes that the last frame touched of resources of which it does not touch all, by full name: as it counted them itself.
+    /// Names that the plan does not have are passed over.
+    ///
+    /// Errors: memory for reading the counts back (exit code 4).
+    fn touched_bytes(&self, _: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
+        Ok(BTreeMap::new())
+    }
 
     /// One intermediate result, read back after a frame.
     ///

@@ -39,6 +39,7 @@ void main() {
             }
         }
         node = listed == LINEAR_COUNT ? nodes[node - 1u].y : 0u;
+        atomicAdd(counters[COUNTED_ROW_IDS], min(listed + 1u, LINEAR_COUNT));
     }
     bool overflows = node != 0u;
     for (; node != 0u; node = nodes[node - 1u].y) {

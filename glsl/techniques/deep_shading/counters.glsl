@@ -30,6 +30,10 @@ const uint COUNTED_TESTS_CARRIED = 11u;
 const uint COUNTED_TESTS_HIT = 12u;
 // Samples that a list had no room for: a part of the strays.
 const uint COUNTED_CROWDED = 13u;
-const uint COUNTER_COUNT = 14u;
+// Nodes that were written: of lists, of insertions that another was quicker than, and of strays.
+const uint COUNTED_NODES = 14u;
+// Entries of rows that compaction wrote, those that end them included.
+const uint COUNTED_ROW_IDS = 15u;
+const uint COUNTER_COUNT = 16u;
 
 #endif

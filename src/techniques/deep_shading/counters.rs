@@ -1,58 +1,70 @@
 //! What a frame counts in its shaders, for the report.
 
+use super::touched::Entries;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 14;
+pub const COUNT: u64 = 16;
 
-/// Numbers that the last frame left in `counters`; `pixels` of the frame. `has_tests`: visibility tested samples itself.
-///
-/// Errors: memory for the copy (exit code 4).
-pub fn read(
-    gpu: &Arc<Gpu>,
-    counters: &Buffer,
-    last: Access,
-    pixels: u64,
-    has_tests: bool,
-) -> Result<BTreeMap<&'static str, f64>> {
-    let words: Vec<u32> = bytemuck::pod_collect_to_vec(&readback::buffer(gpu, counters, 4 * COUNT, last)?);
-    let words =
-        words.try_into().map(|words: [u32; COUNT as usize]| words.map(f64::from)).expect("as many as asked for");
-    let [
-        _,
-        strays,
-        shaded,
-        missing,
-        listed,
-        duplicates,
-        longest,
-        overflows,
-        list_pixels,
-        samples,
-        tests,
-        carried,
-        hits,
-        crowded,
-    ] = words;
-    let mut counters = BTreeMap::from([
-        ("shader_invocations", shaded),
-        ("shaded_per_pixel", shaded / pixels as f64),
-        ("samples_seen", samples),
-        ("samples_outside_shading_space", strays - crowded),
-        ("samples_of_full_lists", crowded),
-        ("samples_without_colour", missing),
-        ("listed_primitives", listed),
-        ("listed_again", duplicates),
-        ("longest_list", longest),
-        ("lists", list_pixels),
-        ("lists_beyond_16", overflows),
-    ]);
-    if has_tests {
-        counters.insert("sample_tests", tests + carried * 4_294_967_296.0);
-        counters.insert("sample_tests_hit", hits);
+/// Numbers that a frame left, as counters.glsl has them.
+pub struct Counted([u32; COUNT as usize]);
+
+impl Counted {
+    /// Those of the last frame, in `counters`.
+    ///
+    /// Errors: memory for the copy (exit code 4).
+    pub fn read(gpu: &Arc<Gpu>, counters: &Buffer, last: Access) -> Result<Self> {
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&readback::buffer(gpu, counters, 4 * COUNT, last)?);
+        Ok(Self(words.try_into().expect("as many as asked for")))
     }
-    Ok(counters)
+
+    /// The report's. `pixels` of the frame. `has_tests`: visibility tested samples itself.
+    pub fn report(&self, pixels: u64, has_tests: bool) -> BTreeMap<&'static str, f64> {
+        let [
+            _,
+            strays,
+            shaded,
+            missing,
+            listed,
+            duplicates,
+            longest,
+            overflows,
+            list_pixels,
+            samples,
+            tests,
+            carried,
+            hits,
+            crowded,
+            nodes,
+            _,
+        ] = self.0.map(f64::from);
+        let mut counters = BTreeMap::from([
+            ("shader_invocations", shaded),
+            ("shaded_per_pixel", shaded / pixels as f64),
+            ("samples_seen", samples),
+            ("samples_outside_shading_space", strays - crowded),
+            ("samples_of_full_lists", crowded),
+            ("samples_without_colour", missing),
+            ("listed_primitives", listed),
+            ("listed_again", duplicates),
+            ("nodes_written", nodes),
+            ("longest_list", longest),
+            ("lists", list_pixels),
+            ("lists_beyond_16", overflows),
+        ]);
+        if has_tests {
+            counters.insert("sample_tests", tests + carried * 4_294_967_296.0);
+            counters.insert("sample_tests_hit", hits);
+        }
+        counters
+    }
+
+    /// How much of the buffers of one entry a sample was used, with lists.
+    pub fn entries(&self) -> Entries {
+        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids] = self.0.map(u64::from);
+        Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples }
+    }
 }

@@ -3,7 +3,7 @@
 use super::brute::Brute;
 use super::choices::Choices;
 use super::count::Count;
-use super::counters;
+use super::counters::Counted;
 use super::lists::address::Address;
 use super::lists::compact::Compact;
 use super::lists::direct::Direct;
@@ -155,6 +155,10 @@ impl DeepFrame {
         }
     }
 
+    fn counted(&self, gpu: &Arc<Gpu>) -> Result<Counted> {
+        Counted::read(gpu, &self.counters, Access::ComputeWrite)
+    }
+
     /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
     ///
     /// Errors: memory for the copy (exit code 4); `--lists direct` has no SPIDs (2).
@@ -252,11 +256,17 @@ impl Frame for DeepFrame {
         }
         let pixels = self.color.description.extent.pixel_count();
         let is_stochastic = self.choices.visibility == Visibility::Stochastic;
-        let mut counters = counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, is_stochastic)?;
+        let mut counters = self.counted(gpu)?.report(pixels, is_stochastic);
         if let Some(direct) = self.host_lists() {
             counters.extend(direct.stray_counts());
         }
         Ok(counters)
+    }
+
+    fn touched_bytes(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
+        // Without lists colours are cleared whole, and what the host inserts is copied whole.
+        let has_entries = self.choices.is_counted && self.choices.has_lists && !self.choices.is_direct;
+        Ok(if has_entries { self.counted(gpu)?.entries().bytes() } else { BTreeMap::new() })
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

@@ -40,14 +40,16 @@ mod passes;
 mod plan;
 mod primitives;
 mod resolve;
+mod rivals;
 mod scene;
 mod settings;
 mod shade;
 mod space;
+mod touched;
 mod tuples;
 mod visibility;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, Inputs, Prepared, Rival, Technique, light_visibility};
 use crate::error::Result;
 use crate::gpu::shader::Shader;
 use crate::gpu::{Ability, Caps, Gpu, Need};
@@ -145,6 +147,10 @@ impl Technique for DeepShading {
             ("light-visibility", light_visibility(values, lights, 0)?),
             ("emissive", "off".to_owned()),
         ])
+    }
+
+    fn rivals(&self) -> Vec<Rival> {
+        rivals::rivals()
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

@@ -36,9 +36,11 @@ pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
 pub const LINEAR_COUNT: u64 = 16;
-const NODE_BYTES: u64 = 8;
-/// RGBA16F.
-const COLOR_BYTES: u64 = 8;
+/// Of a row's id, a node (id, next), a colour (RGBA16F), an address.
+pub const ROW_ID_BYTES: u64 = 4;
+pub const NODE_BYTES: u64 = 8;
+pub const COLOR_BYTES: u64 = 8;
+pub const ADDRESS_BYTES: u64 = 4;
 
 /// Resources and passes of a frame.
 ///
@@ -75,10 +77,10 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         list("deep_shading_buffer", BEGINS, shading_pixels * 4);
         list("deep_shading_buffer", NODES, samples * NODE_BYTES);
         if choices.is_compacted {
-            list("auxiliary", LINEAR, shading_pixels * LINEAR_COUNT * 4);
+            list("auxiliary", LINEAR, shading_pixels * LINEAR_COUNT * ROW_ID_BYTES);
         }
         if choices.has_addresses {
-            list("auxiliary", ADDRESSES, samples * 4);
+            list("auxiliary", ADDRESSES, samples * ADDRESS_BYTES);
         }
         if choices.has_zmax {
             list("auxiliary", ZMAX, shading_pixels * 4);

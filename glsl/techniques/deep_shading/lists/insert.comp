@@ -10,6 +10,9 @@ layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
 // 1: colours are given out by compaction, those of strays from their end on.
 layout(constant_id = 93) const uint IS_COMPACTED = 0;
 
+// As in shade.frag.
+layout(constant_id = 94) const uint IS_COUNTED = 0;
+
 // 0: the driver takes a memory barrier for one of the whole workgroup, whose threads come here as often as they please; its
 // stores come in order without (src/gpu/caps.rs, `Identity::barriers_end_threads`).
 layout(constant_id = 95) const uint HAS_FENCES = 1;
@@ -29,6 +32,9 @@ layout(std430, set = 0, binding = 24) writeonly buffer Addresses { uint addresse
 layout(set = 0, binding = 28) uniform usampler2DArray shading_depths;
 layout(std430, set = 0, binding = 25) buffer ZMax { uint zmax[]; };
 #endif
+
+// Whether the sample's own node is used, in a list or not.
+bool has_written = false;
 
 // Triangles that a list holds at most. A thousand in one pixel are nothing to reuse any more, and what walks and sorts a list
 // stays short whatever is seen there: a sample that finds its list full is shaded by itself.
@@ -51,6 +57,7 @@ uint insert(uint pixel, uint primitive, uint own) {
         }
         if (holder == NO_PRIMITIVE && length < LIST_MOST) {
             nodes[own] = uvec2(primitive, head);
+            has_written = true;
             if (HAS_FENCES != 0u) {
                 memoryBarrierBuffer();
             }
@@ -97,9 +104,13 @@ void main() {
         }
         // Its node serves no list: it says where the colour is.
         nodes[own] = uvec2(color, 0u);
+        has_written = true;
         colors[color] = uvec2(0u);
     }
 #ifdef ADDRESSES_ON
     addresses[own] = color;
 #endif
+    if (IS_COUNTED != 0u && has_written) {
+        atomicAdd(counters[COUNTED_NODES], 1u);
+    }
 }

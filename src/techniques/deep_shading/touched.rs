@@ -1,0 +1,48 @@
+//! Bytes that a frame touches of buffers that are as long as the worst case (Clarberg & Munkberg 2014, sections 3 and 6: "about
+//! 25 MB" of the deep shading buffer at 1.5 executions a pixel). What is cleared is touched whole and not listed here.
+
+use super::full;
+use super::plan::{ADDRESS_BYTES, ADDRESSES, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ROW_ID_BYTES};
+use std::collections::BTreeMap;
+
+/// Entries that shaders counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Entries {
+    /// Written by insertion.
+    pub nodes: u64,
+    /// Of what is listed, of what stands in a list again, and of strays.
+    pub colors: u64,
+    /// Of rows of compacted lists.
+    pub row_ids: u64,
+    /// Of samples that see something.
+    pub addresses: u64,
+}
+
+impl Entries {
+    /// Bytes by full name; a frame has only some of these buffers.
+    pub fn bytes(&self) -> BTreeMap<String, u64> {
+        let of = |name: &str, count: u64, entry_bytes: u64| (full(name), count * entry_bytes);
+        BTreeMap::from([
+            of(NODES, self.nodes, NODE_BYTES),
+            of(COLORS, self.colors, COLOR_BYTES),
+            of(LINEAR, self.row_ids, ROW_ID_BYTES),
+            of(ADDRESSES, self.addresses, ADDRESS_BYTES),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The checklist's O4: 1280x720 pixels, 1.5 executions each, of a node and a colour, and the begin pointers of 1408x848.
+    #[test]
+    fn what_the_paper_s_frame_touches_is_about_25_mib() {
+        let executions = 1280 * 720 * 3 / 2;
+        let entries = Entries { nodes: executions, colors: executions, ..Entries::default() };
+        let bytes = entries.bytes();
+        let touched = bytes[&full(NODES)] + bytes[&full(COLORS)] + 1408 * 848 * 4;
+        assert_eq!(touched, 26_894_336);
+        assert_eq!(format!("{:.1}", touched as f64 / f64::from(1 << 20)), "25.6");
+    }
+}
