@@ -4,12 +4,11 @@
 #ifndef DEEP_SHADING_ALPHA_GLSL
 #define DEEP_SHADING_ALPHA_GLSL
 
+#include "techniques/deep_shading/mixed.glsl"
+
 // 0 to 1 without 1, another for each sample, draw and run: layers over each other must not let the same samples pass.
 float alpha_threshold(uvec2 at, uint tuple, uint draw) {
-    uint bits = at.x * 0x9e3779b1u ^ at.y * 0x85ebca77u ^ tuple * 0xc2b2ae3du ^ draw * 0x27d4eb2fu;
-    bits = (bits ^ (bits >> 15)) * 0x2c1b3c6du;
-    bits = (bits ^ (bits >> 12)) * 0x297a2d39u;
-    bits ^= bits >> 15;
+    uint bits = mixed(at.x * 0x9e3779b1u ^ at.y * 0x85ebca77u ^ tuple * 0xc2b2ae3du ^ draw * 0x27d4eb2fu);
     return float(bits >> 8) / 16777216.0;
 }
 

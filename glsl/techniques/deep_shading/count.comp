@@ -17,9 +17,14 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 30) writeonly buffer Lengths { uint lengths[]; };
 
 #include "techniques/deep_shading/nodes.glsl"
+#include "techniques/deep_shading/mixed.glsl"
 #ifdef LISTS_LINKED
 #include "techniques/deep_shading/lists/sorted.glsl"
 #endif
+
+uint digest_of(uint pixel, uint primitive) {
+    return mixed(pixel * 0x9e3779b1u ^ mixed(primitive));
+}
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
@@ -30,19 +35,23 @@ void main() {
     uint node = begins[pixel];
     uint listed = 0u;
     uint again = 0u;
+    uint digest = 0u;
     bool is_listed = node != 0u;
 #ifdef LISTS_COMPACT
     if (is_listed) {
         for (; listed < LINEAR_COUNT; listed++) {
-            if (linear[pixel * LINEAR_COUNT + listed] == LINEAR_END) {
+            uint primitive = linear[pixel * LINEAR_COUNT + listed];
+            if (primitive == LINEAR_END) {
                 break;
             }
+            digest += digest_of(pixel, primitive);
         }
         node = listed == LINEAR_COUNT ? nodes[node - 1u].y : 0u;
         atomicAdd(counters[COUNTED_ROW_IDS], min(listed + 1u, LINEAR_COUNT));
     }
     bool overflows = node != 0u;
     for (; node != 0u; node = nodes[node - 1u].y) {
+        digest += digest_of(pixel, nodes[node - 1u].x);
         listed++;
     }
 #else
@@ -53,12 +62,14 @@ void main() {
         bool is_again = nodes[node - 1u].x == last;
         last = nodes[node - 1u].x;
         listed += is_again ? 0u : 1u;
+        digest += is_again ? 0u : digest_of(pixel, last);
         again += is_again ? 1u : 0u;
     }
 #endif
     lengths[pixel] = listed;
     if (is_listed) {
         atomicAdd(counters[COUNTED_LISTED], listed);
+        atomicAdd(counters[COUNTED_DIGEST], digest);
         atomicAdd(counters[COUNTED_PIXELS], 1u);
         atomicMax(counters[COUNTED_LONGEST], listed);
         if (again > 0u) {

@@ -34,6 +34,8 @@ const uint COUNTED_CROWDED = 13u;
 const uint COUNTED_NODES = 14u;
 // Entries of rows that compaction wrote, those that end them included.
 const uint COUNTED_ROW_IDS = 15u;
-const uint COUNTER_COUNT = 16u;
+// The sum of a number of each pair of shading pixel and triangle, modulo 2^32: of the same pairs in any order the same.
+const uint COUNTED_DIGEST = 16u;
+const uint COUNTER_COUNT = 17u;
 
 #endif

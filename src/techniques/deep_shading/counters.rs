@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 16;
+pub const COUNT: u64 = 17;
 
 /// Numbers that a frame left, as counters.glsl has them.
 pub struct Counted([u32; COUNT as usize]);
@@ -40,6 +40,7 @@ impl Counted {
             crowded,
             nodes,
             _,
+            digest,
         ] = self.0.map(f64::from);
         let mut counters = BTreeMap::from([
             ("shader_invocations", shaded),
@@ -50,6 +51,7 @@ impl Counted {
             ("samples_without_colour", missing),
             ("listed_primitives", listed),
             ("listed_again", duplicates),
+            ("listed_digest", digest),
             ("nodes_written", nodes),
             ("longest_list", longest),
             ("lists", list_pixels),
@@ -64,7 +66,7 @@ impl Counted {
 
     /// How much of the buffers of one entry a sample was used, with lists.
     pub fn entries(&self) -> Entries {
-        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids] = self.0.map(u64::from);
+        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _] = self.0.map(u64::from);
         Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples }
     }
 }
