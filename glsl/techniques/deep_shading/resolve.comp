@@ -1,6 +1,7 @@
 // The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
-// samples' own places (section 3.2; appendix A, pass 4). Pass: src/techniques/deep_shading/resolve.rs.
-// variants: FETCH=own|address|linked|compact
+// samples' own places (section 3.2; appendix A, pass 4); of a baseline from the layers that it drew them into.
+// Pass: src/techniques/deep_shading/resolve.rs.
+// variants: FETCH=own|address|linked|compact|layers
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
@@ -13,8 +14,12 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
+#ifdef FETCH_LAYERS
+layout(set = 0, binding = 27) uniform sampler2DArray drawn;
+#else
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
+#endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(set = 0, binding = 29, rgba32f) writeonly uniform image2D color;
 #ifdef FETCH_ADDRESS
@@ -31,6 +36,30 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #include "techniques/deep_shading/spid.glsl"
 #endif
 
+// A sample of a pixel, by its tuple. Alpha: 1 where something was shaded, 0 where that is missing, -1 where it sees nothing.
+vec4 sample_at(uvec2 pixel, uint tuple) {
+    uvec3 at = uvec3(pixel / uvec2(deep.table_width_px, deep.table_height_px), tuple);
+#ifdef FETCH_LAYERS
+    vec4 texel = texelFetch(drawn, ivec3(at), 0);
+    return texel.a == 0.0 ? vec4(0.0, 0.0, 0.0, -1.0) : texel;
+#else
+    uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+    if (spid.x == NO_PRIMITIVE) {
+        return vec4(0.0, 0.0, 0.0, -1.0);
+    }
+    uint own = sample_index(deep, at);
+#if defined(FETCH_OWN)
+    uint where = own;
+#elif defined(FETCH_ADDRESS)
+    uint where = addresses[own];
+#else
+    uint where = color_of(spid, own);
+#endif
+    uvec2 words = where == 0xffffffffu ? uvec2(0u) : colors[where];
+    return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
+#endif
+}
+
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
@@ -43,26 +72,14 @@ void main() {
     uint missing = 0u;
     uint seen = 0u;
     for (uint index = 0u; index < deep.sample_count; index++) {
-        uvec3 at = uvec3(pixel / table, first + index);
-        uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
-        if (spid.x == NO_PRIMITIVE) {
+        vec4 fetched = sample_at(pixel, first + index);
+        if (fetched.a < 0.0) {
             sum += frame.background.rgb;
             continue;
         }
         seen++;
-        uint own = sample_index(deep, at);
-#if defined(FETCH_OWN)
-        uint where = own;
-#elif defined(FETCH_ADDRESS)
-        uint where = addresses[own];
-#else
-        uint where = color_of(spid, own);
-#endif
-        uvec2 words = where == 0xffffffffu ? uvec2(0u) : colors[where];
-        vec2 blue_alpha = unpackHalf2x16(words.y);
-        // Alpha is 1 where something was shaded.
-        missing += blue_alpha.y == 0.0 ? 1u : 0u;
-        sum += vec3(unpackHalf2x16(words.x), blue_alpha.x);
+        missing += fetched.a == 0.0 ? 1u : 0u;
+        sum += fetched.rgb;
     }
     imageStore(color, ivec2(pixel), vec4(sum / float(deep.sample_count), 1.0));
     if (IS_COUNTED != 0u && (missing > 0u || seen > 0u)) {

@@ -1,5 +1,6 @@
 //! What the settings come to.
 
+use super::baseline::Shading;
 use super::middle::Middle;
 use super::space::ShadingSpace;
 use super::tuples::Table;
@@ -16,6 +17,7 @@ use crate::techniques::Inputs;
 use crate::units::Extent;
 
 pub struct Choices {
+    pub shading: Shading,
     pub direct: DirectSettings,
     pub table: Table,
     /// Sets of samples that the picture is the mean of.
@@ -54,9 +56,11 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
 }
 
 impl Choices {
-    /// Errors: `--tuples` is no multiple of `--spp`; shading space is too large (exit code 2).
+    /// Errors: `--tuples` is no multiple of `--spp`; shading space is too large; settings that `--shading` does not read (exit
+    /// code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
+        let shading = Shading::new(values).map_err(|error| error.within(NAME))?;
         let samples = values.integer("spp") as u32;
         let tuples = values.integer_or_auto("tuples").map_or(4 * samples, |tuples| tuples as u32);
         if !tuples.is_multiple_of(samples) {
@@ -64,7 +68,7 @@ impl Choices {
                 .within(NAME)
                 .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
         }
-        let has_lists = values.text("lists") != "none";
+        let has_lists = shading == Shading::Deep && values.text("lists") != "none";
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture") > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
@@ -76,6 +80,7 @@ impl Choices {
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         Ok(Self {
+            shading,
             maps: maps.map_err(|error| error.within(NAME))?,
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
             table: Table::new(samples, tuples),

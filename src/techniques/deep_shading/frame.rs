@@ -1,5 +1,6 @@
 //! A frame of deep shading on the device: the passes in the order of figure 3.
 
+use super::baseline::{Baseline, Shading};
 use super::brute::Brute;
 use super::choices::Choices;
 use super::count::Count;
@@ -10,14 +11,14 @@ use super::lists::insert::Insert;
 use super::lists::{self, Lists};
 use super::plan::{COLOR, COUNTERS, SPIDS};
 use super::primitives::{self, Primitives};
-use super::resolve::Resolve;
+use super::resolve::{Resolve, Shaded};
 use super::scene::DeepScene;
 use super::shade::Shade;
 use super::visibility::sample::Sample;
 use super::visibility::{self, Samples};
 use super::{NAME, full};
 use crate::error::Result;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, readback};
 use crate::passes::accumulate::Accumulate;
 use crate::plan::Resources;
 use crate::report::image_file::{Aov, AovChannels};
@@ -38,20 +39,60 @@ struct Listed {
     count: Option<Count>,
 }
 
+/// Visibility first, then what it has seen is shaded.
+struct Apart {
+    samples: Samples,
+    sample: Sample,
+    listed: Option<Listed>,
+    brute: Option<Brute>,
+    colors: Buffer,
+}
+
+/// From the scene to samples that have colours.
+enum Shader {
+    Apart(Box<Apart>),
+    AsDrawn(Box<Baseline>),
+}
+
 pub struct DeepFrame {
     choices: Choices,
     primitives: Primitives,
     list: DrawList,
     scene: DeepScene,
-    samples: Samples,
-    sample: Sample,
-    listed: Option<Listed>,
-    brute: Option<Brute>,
+    shader: Shader,
     resolve: Resolve,
     accumulate: Option<Accumulate>,
-    colors: Buffer,
     counters: Buffer,
     color: Image,
+}
+
+impl Apart {
+    fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, resources: &mut Resources, choices: &Choices) -> Result<Self> {
+        let listed = if choices.has_lists {
+            let address = choices.is_compacted && choices.has_addresses;
+            Some(Listed {
+                lists: Lists::new(resources, choices),
+                insert: Insert::new(gpu, choices)?,
+                compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
+                address: if address { Some(Address::new(gpu)?) } else { None },
+                shade: Shade::new(gpu, scene, choices)?,
+                count: if choices.is_counted { Some(Count::new(gpu, resources, choices)?) } else { None },
+            })
+        } else {
+            None
+        };
+        Ok(Self {
+            samples: Samples::new(gpu, resources, choices)?,
+            sample: Sample::new(gpu, scene, choices)?,
+            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, choices)?) } else { None },
+            colors: lists::colors(resources),
+            listed,
+        })
+    }
+
+    fn count(&self) -> Option<(&Listed, &Count)> {
+        self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?)))
+    }
 }
 
 impl DeepFrame {
@@ -64,31 +105,18 @@ impl DeepFrame {
         choices: Choices,
         primitives: Primitives,
     ) -> Result<Self> {
-        let listed = if choices.has_lists {
-            let address = choices.is_compacted && choices.has_addresses;
-            Some(Listed {
-                lists: Lists::new(resources, &choices),
-                insert: Insert::new(gpu, &choices)?,
-                compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
-                address: if address { Some(Address::new(gpu)?) } else { None },
-                shade: Shade::new(gpu, scene, &choices)?,
-                count: if choices.is_counted { Some(Count::new(gpu, resources, &choices)?) } else { None },
-            })
-        } else {
-            None
+        let shader = match choices.shading {
+            Shading::Deep => Shader::Apart(Box::new(Apart::new(gpu, scene, resources, &choices)?)),
+            Shading::Ssaa => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?)),
         };
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
-            samples: Samples::new(gpu, resources, &choices)?,
-            sample: Sample::new(gpu, scene, &choices)?,
-            brute: if choices.has_brute() { Some(Brute::new(gpu, scene, &choices)?) } else { None },
+            shader,
             resolve: Resolve::new(gpu, &choices)?,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
-            colors: lists::colors(resources),
             counters: resources.buffer(&full(COUNTERS)),
             color: resources.image(&full(COLOR)),
-            listed,
             choices,
             primitives,
         })
@@ -106,51 +134,73 @@ impl DeepFrame {
     /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
     ///
     /// Errors: memory for the copy (exit code 4).
-    fn first_primitives(&self, gpu: &Arc<Gpu>) -> Result<Aov> {
-        let bytes = readback::image(gpu, &self.samples.spids, Access::ComputeSample)?;
+    fn first_primitives(&self, gpu: &Arc<Gpu>, samples: &Samples) -> Result<Aov> {
+        let bytes = readback::image(gpu, &samples.spids, Access::ComputeSample)?;
         let spids: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
         let frame = self.color.description.extent;
         Ok(self.of_pixels(SPIDS, |pixel| spids[self.choices.table.first_sample(frame, pixel)][0]))
+    }
+
+    /// Figure 3, from the rasterisation to the resolve, and what counts lists after it.
+    fn record_apart(
+        &self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        bound: &[(&'static str, Bound<'_>)],
+        apart: &Apart,
+    ) -> Result<()> {
+        let Self { list, primitives, counters, .. } = self;
+        let Apart { samples, sample, colors, .. } = apart;
+        let tuples = (&self.choices.table, self.color.description.extent);
+        visibility::record(cmd, sample, scene, list, primitives, bound, samples, counters, tuples)?;
+        if let Some(listed) = &apart.listed {
+            let lists = &listed.lists;
+            listed.insert.record(cmd, bound, samples, lists, colors, counters)?;
+            if let Some(compact) = &listed.compact {
+                compact.record(cmd, bound, lists, colors, counters, self.choices.space.extent)?;
+            }
+            let mut links_left = Access::ComputeWrite;
+            if let Some(address) = &listed.address {
+                address.record(cmd, bound, samples, lists)?;
+                links_left = Access::ComputeRead;
+            }
+            let maps = self.scene.maps_barrier(Access::DepthWrite);
+            let left = (lists, links_left, maps);
+            listed.shade.record(cmd, scene, list, primitives, bound, left, colors, counters)?;
+        }
+        let lists = apart.listed.as_ref().map(|listed| &listed.lists);
+        if let Some(brute) = &apart.brute {
+            let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
+            let left = (lists, self.scene.maps_barrier(maps_left));
+            brute.record(cmd, scene, list, primitives, bound, samples, left, colors, counters)?;
+        }
+        let spids_left = match (&apart.listed, &apart.brute) {
+            (Some(_), None) => Access::ComputeSample.into(),
+            (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
+            (None, _) => Access::FragmentSample | Access::ColorWrite,
+        };
+        let shaded = Shaded::Apart { samples, spids_left, lists, colors };
+        self.resolve.record(cmd, bound, shaded, counters, &self.color)?;
+        if let Some((listed, count)) = apart.count() {
+            count.record(cmd, bound, &listed.lists, counters)?;
+        }
+        Ok(())
     }
 }
 
 impl Frame for DeepFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
-        let Self { list, primitives, samples, colors, counters, .. } = self;
         let bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
-        let frame_extent = self.color.description.extent;
-        let tuples = (&self.choices.table, frame_extent);
-        visibility::record(cmd, &self.sample, scene, list, primitives, &bound, samples, counters, tuples)?;
-        if let Some(listed) = &self.listed {
-            let lists = &listed.lists;
-            listed.insert.record(cmd, &bound, samples, lists, colors, counters)?;
-            if let Some(compact) = &listed.compact {
-                compact.record(cmd, &bound, lists, colors, counters, self.choices.space.extent)?;
+        match &self.shader {
+            Shader::Apart(apart) => self.record_apart(cmd, scene, &bound, apart)?,
+            Shader::AsDrawn(baseline) => {
+                let Self { list, primitives, counters, color, .. } = self;
+                let maps = self.scene.maps_barrier(Access::DepthWrite);
+                let tuples = (&self.choices.table, color.description.extent);
+                baseline.record(cmd, scene, list, primitives, &bound, maps, counters, tuples)?;
+                self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, color)?;
             }
-            let mut links_left = Access::ComputeWrite;
-            if let Some(address) = &listed.address {
-                address.record(cmd, &bound, samples, lists)?;
-                links_left = Access::ComputeRead;
-            }
-            let maps = self.scene.maps_barrier(Access::DepthWrite);
-            let left = (lists, links_left, maps);
-            listed.shade.record(cmd, scene, list, primitives, &bound, left, colors, counters)?;
-        }
-        let lists = self.listed.as_ref().map(|listed| &listed.lists);
-        if let Some(brute) = &self.brute {
-            let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
-            let left = (lists, self.scene.maps_barrier(maps_left));
-            brute.record(cmd, scene, list, primitives, &bound, samples, left, colors, counters)?;
-        }
-        let spids_left = match (&self.listed, &self.brute) {
-            (Some(_), None) => Access::ComputeSample.into(),
-            (Some(_), Some(_)) => Access::ComputeSample | Access::FragmentSample,
-            (None, _) => Access::FragmentSample | Access::ColorWrite,
-        };
-        self.resolve.record(cmd, &bound, (samples, spids_left), lists, colors, counters, &self.color)?;
-        if let Some((listed, count)) = self.listed.as_ref().and_then(|listed| Some((listed, listed.count.as_ref()?))) {
-            count.record(cmd, &bound, &listed.lists, counters)?;
         }
         if let Some(accumulate) = &self.accumulate {
             accumulate.record(cmd, NAME, frame, self.color.from(Access::ComputeWrite))?;
@@ -177,15 +227,18 @@ impl Frame for DeepFrame {
             return Ok(BTreeMap::new());
         }
         let pixels = self.color.description.extent.pixel_count();
-        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, self.choices.is_stochastic)
+        let is_baseline = self.choices.shading != Shading::Deep;
+        counters::read(gpu, &self.counters, Access::ComputeWrite, pixels, self.choices.is_stochastic, is_baseline)
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        let Shader::Apart(apart) = &self.shader else {
+            return Err(left_out(NAME, name, "with --shading ssaa samples have colours and nothing else"));
+        };
         if name == SPIDS {
-            return self.first_primitives(gpu);
+            return self.first_primitives(gpu, &apart.samples);
         }
-        let count = self.listed.as_ref().and_then(|listed| listed.count.as_ref());
-        let Some(count) = count else {
+        let Some((_, count)) = apart.count() else {
             return Err(left_out(NAME, name, "lists are counted with --lists linked and --instrument on"));
         };
         let bytes = readback::buffer(gpu, &count.lengths, count.lengths.bytes, Access::ComputeWrite)?;

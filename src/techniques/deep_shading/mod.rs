@@ -7,6 +7,10 @@
 //! for, under blur) or brute (`--lists none`), resolve (box filter), count (`--instrument on`), accumulate (`--accumulate`
 //! above 1).
 //!
+//! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
+//! accumulate
+//! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, by whichever kind of visibility
+//!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
 //!   an insertion that another was quicker than looks at what is new, and no triangle comes into a list twice
@@ -26,6 +30,7 @@
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits. Without blur
 //! it is `forward --supersample` with samples in other places.
 
+mod baseline;
 mod brute;
 mod choices;
 mod count;
@@ -104,6 +109,7 @@ impl Technique for DeepShading {
             need("the shading pass", Ability::FragmentAtomics, ""),
         ];
         match choices::road(values, caps) {
+            _ if values.text("shading") != "deep" => {}
             shade::Road::Geometry => {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative geometry", Ability::GeometryShader, instead));

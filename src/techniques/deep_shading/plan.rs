@@ -1,6 +1,7 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them (Clarberg & Munkberg 2014, section 6, lists the
 //! groups; the checklist's O1 to O3 are their bytes).
 
+use super::baseline::{self, Shading};
 use super::choices::Choices;
 use super::counters;
 use super::{NAME, full};
@@ -45,6 +46,33 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     require_fitting(choices, inputs)?;
     let mut plan = Plan::default();
     plan_scene(&mut plan, choices, inputs)?;
+    if choices.shading == Shading::Deep {
+        plan_deep(&mut plan, choices, inputs);
+    } else {
+        baseline::plan(&mut plan, choices, inputs.view.extent);
+    }
+    plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
+    plan.read_back(&full(COUNTERS));
+    let extent = inputs.view.extent;
+    if choices.run_count > 1 {
+        plan.image("color", full(COLOR), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
+        accumulate::plan(&mut plan, NAME, extent);
+    } else {
+        plan.picture(full(COLOR), extent);
+    }
+    if choices.shading == Shading::Deep {
+        plan_passes(&mut plan, choices);
+    } else {
+        baseline::plan_passes(&mut plan, choices);
+    }
+    if choices.run_count > 1 {
+        accumulate::plan_pass(&mut plan, NAME, &full(COLOR));
+    }
+    Ok(plan)
+}
+
+/// What samples see, lists, and colours.
+fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
     let samples = choices.samples_of(inputs.view.extent);
     let shading_pixels = choices.space.extent.pixel_count();
     let layers = |format, usage| {
@@ -73,17 +101,6 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
         }
     }
-    plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
-    plan.read_back(&full(COUNTERS));
-    let extent = inputs.view.extent;
-    if choices.run_count > 1 {
-        plan.image("color", full(COLOR), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
-        accumulate::plan(&mut plan, NAME, extent);
-    } else {
-        plan.picture(full(COLOR), extent);
-    }
-    plan_passes(&mut plan, choices);
-    Ok(plan)
 }
 
 /// Lights, tree, cameras, tuples, and where the scene is when the shutter closes.
@@ -121,7 +138,8 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         );
     }
     let samples = choices.samples_of(inputs.view.extent);
-    if samples * COLOR_BYTES <= range {
+    // A baseline has images alone.
+    if choices.shading != Shading::Deep || samples * COLOR_BYTES <= range {
         return Ok(());
     }
     let (size, table) = (inputs.view.extent, choices.table);
@@ -139,7 +157,7 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     .note(advice))
 }
 
-/// Who touches what, in order.
+/// Who touches what, in order, up to the resolve and what counts after it.
 fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let read_lists = |access| {
@@ -211,8 +229,5 @@ fn plan_passes(plan: &mut Plan, choices: &Choices) {
         let mut counted = read_lists(Access::ComputeRead);
         counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
         plan.pass(full("count"), counted);
-    }
-    if choices.run_count > 1 {
-        accumulate::plan_pass(plan, NAME, &full(COLOR));
     }
 }

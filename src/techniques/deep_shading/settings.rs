@@ -7,6 +7,15 @@ const MOST_GUARD_PX: u64 = 4096;
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
+        key: "shading",
+        symbol: "",
+        kind: Kind::Choice(&["deep", "ssaa"]),
+        default: "deep",
+        unit: "",
+        paper: "Clarberg 2014, 6",
+        help: "what is shaded: what the lists have, or, as baseline, every sample that is drawn",
+    },
+    Setting {
         key: "visibility",
         symbol: "",
         kind: Kind::Choice(&["repeat-frame", "stochastic"]),

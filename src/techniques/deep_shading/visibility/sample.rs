@@ -97,7 +97,12 @@ impl Sample {
                 },
             )
         };
-        Ok(Self { opaque: pipeline("opaque")?, tested: pipeline("tested")?, stages })
+        Ok(Self::of([pipeline("opaque")?, pipeline("tested")?], stages))
+    }
+
+    /// Of solid surfaces, and of those with an alpha.
+    pub fn of([opaque, tested]: [GraphicsPipeline; 2], stages: Stages) -> Self {
+        Self { opaque, tested, stages }
     }
 
     /// One set for all tuples. `bound`: what shaders of the technique may read.

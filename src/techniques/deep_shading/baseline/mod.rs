@@ -1,0 +1,214 @@
+//! Baselines: what is drawn is shaded in screen space, as Clarberg and Munkberg 2014 (section 6, figure 8) compare with, on the
+//! same tuples, lights, shadow maps and materials. No lists, no addresses, no SPIDs: colours and depths of samples are all.
+//! reads   the scene, its lights, the tuples
+//! writes  baseline.colors and baseline.depth: arrays of images, 8 and 4 B a sample
+//!
+//! Colours are of the middle of the exposure, from the middle of the lens, as by the lists: what differs is how many there are
+//! and where on a triangle they are taken. Surfaces face as their samples see them. There is no pass for depth alone, which
+//! the paper calls no good approach for stochastic rasterisation (section 3): what something nearer covers later has been
+//! shaded, and is counted. Draws go front to back.
+
+pub mod ssaa;
+
+use super::choices::Choices;
+use super::full;
+use super::plan::{COLOR, COUNTERS, DEPTH_FORMAT};
+use super::primitives::Primitives;
+use super::settings::SETTINGS;
+use super::tuples::Table;
+use super::visibility::sample::{Sample, Stages};
+use crate::error::{Error, Result};
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::{Shader, variant};
+use crate::gpu::{
+    Access, Barrier, Bound, Buffer, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Traffic,
+};
+use crate::passes::{mesh, shadow_maps};
+use crate::plan::{Plan, Resources, Shape};
+use crate::resident::{DrawList, SceneGpu};
+use crate::settings::Values;
+use crate::units::Extent;
+use ash::vk::{self, ImageUsageFlags as Usage};
+use std::sync::Arc;
+
+const COLORS: &str = "baseline.colors";
+const DEPTH: &str = "baseline.depth";
+const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+/// Settings of shading space and of what is built in it.
+const OF_LISTS: [&str; 8] =
+    ["guard-band", "shading-scale", "lists", "duplicates", "compaction", "zmax", "address-buffer", "conservative"];
+
+/// What is shaded (`--shading`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// What the lists have.
+    Deep,
+    /// Every sample that is drawn.
+    Ssaa,
+}
+
+impl Shading {
+    /// The value of `--shading`.
+    ///
+    /// Errors: another setting is changed that it does not read (exit code 2).
+    pub fn new(values: &Values) -> Result<Self> {
+        let text = values.text("shading");
+        let shading = match text {
+            "deep" => return Ok(Self::Deep),
+            "ssaa" => Self::Ssaa,
+            other => panic!("--shading {other} was checked"),
+        };
+        let rows = SETTINGS.iter().filter(|row| OF_LISTS.contains(&row.key));
+        let mut changed = rows.filter(|row| values.text(row.key) != row.default);
+        match changed.next() {
+            None => Ok(shading),
+            Some(row) => {
+                let why = "it has no shading space and no lists";
+                let error =
+                    Error::request(format!("--{} {} with --shading {text}: {why}", row.key, values.text(row.key)));
+                Err(error
+                    .note(format!("--shading deep takes it; --shading {text} goes with --{} {}", row.key, row.default)))
+            }
+        }
+    }
+
+    /// The pass that draws.
+    fn pass(self) -> &'static str {
+        match self {
+            Self::Ssaa => "baseline.ssaa",
+            Self::Deep => unreachable!("it is no baseline"),
+        }
+    }
+}
+
+/// Layers that samples are drawn into: how many, how large, and with how many samples a pixel.
+fn layers(choices: &Choices, frame: Extent, format: vk::Format, usage: Usage) -> ImageDescription {
+    ImageDescription {
+        layer_count: Some(choices.table.tuple_count()),
+        ..ImageDescription::plain(choices.table.layer(frame), format, 1, usage)
+    }
+}
+
+/// Colours and depths of a frame's samples.
+pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
+    let attached = |format, usage| Shape::Image(layers(choices, frame, format, usage));
+    plan.push("frame_buffer", full(COLORS), attached(COLOR_FORMAT, Usage::COLOR_ATTACHMENT | Usage::SAMPLED));
+    plan.push("frame_buffer", full(DEPTH), attached(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
+}
+
+/// Who touches them.
+pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
+    let touch = |name: &str, access| (full(name), access);
+    let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
+    drawn.extend(choices.maps.iter().map(|maps| maps.read(super::NAME)));
+    drawn.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
+    plan.pass(full(choices.shading.pass()), drawn);
+    let resolved = [
+        touch(COLORS, Access::ComputeSample),
+        touch(COUNTERS, Access::ComputeWrite),
+        touch(COLOR, Access::ComputeWrite),
+    ];
+    plan.pass(full("resolve"), resolved);
+}
+
+pub struct Baseline {
+    sample: Sample,
+    pub colors: Image,
+    depth: Image,
+    /// Texels are fetched: it only has to be there.
+    nearest: Sampler,
+    pass: &'static str,
+}
+
+impl Baseline {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+        let (stages, fragment): (Stages, _) = (ssaa::stages(scene, choices), ssaa::fragment);
+        let pipeline = |alpha| pipeline(gpu, scene, choices, stages.vertex, fragment(scene, choices, alpha));
+        Ok(Self {
+            sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
+            colors: resources.image(&full(COLORS)),
+            depth: resources.image(&full(DEPTH)),
+            nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            pass: choices.shading.pass(),
+        })
+    }
+
+    /// The colours as the resolve reads them.
+    pub fn sampled(&self) -> Bound<'_> {
+        Bound::Sampled(&self.colors, self.nearest.handle, Access::ComputeSample)
+    }
+
+    /// Draws and shades every layer: what of it is in the frame. `maps`: the barrier of the shadow maps.
+    #[allow(clippy::too_many_arguments)]
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        list: &DrawList,
+        primitives: &Primitives,
+        bound: &[(&'static str, Bound<'_>)],
+        maps: Option<Barrier>,
+        counters: &Buffer,
+        (table, frame): (&Table, Extent),
+    ) -> Result<()> {
+        let description = self.colors.description;
+        let traffic = Traffic {
+            read_bytes: u64::from(description.layers()) * mesh::read_bytes(scene, list.calls()),
+            written_bytes: description.bytes() + self.depth.description.bytes(),
+            invocations: None,
+        };
+        cmd.pass(&full(self.pass), traffic, |cmd| {
+            cmd.barriers(maps);
+            cmd.barriers([self.colors.discard(Access::ColorWrite), self.depth.discard(Access::DepthWrite)]);
+            cmd.barriers([counters.discard(Access::TransferWrite)]);
+            cmd.clear(counters);
+            cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
+            let mut bound = bound.to_vec();
+            bound.push(("Counters", Bound::Buffer(counters)));
+            let sets = self.sample.sets(cmd, &bound)?;
+            for layer in 0..description.layers() {
+                // Alpha is 1 where something is.
+                let colors = ColorTarget::new(&self.colors, Some(vk::ClearColorValue { float32: [0.0; 4] }));
+                let depth = (&self.depth, Some(0.0), Access::DepthWrite);
+                cmd.begin_layers(description.extent, Layers::One(layer), &[colors], Some(depth));
+                cmd.set_scissor([0, 0], table.inside(frame, layer));
+                self.sample.draw(cmd, scene, list, primitives, &sets, layer);
+                cmd.end_rendering();
+            }
+            Ok(())
+        })
+    }
+}
+
+fn pipeline(
+    gpu: &Arc<Gpu>,
+    scene: &SceneGpu,
+    choices: &Choices,
+    vertex: &'static Shader,
+    fragment: &'static Shader,
+) -> Result<GraphicsPipeline> {
+    let constants = super::constants_of(choices, &[Some(vertex), Some(fragment)]);
+    GraphicsPipeline::new(
+        gpu,
+        &GraphicsDescription {
+            vertex,
+            geometry: None,
+            fragment: Some(fragment),
+            constants: &constants,
+            vertex_buffers: &[],
+            color_formats: &[COLOR_FORMAT],
+            samples: 1,
+            blending: Blending::Replace,
+            depth_format: Some(DEPTH_FORMAT),
+            depth_write: true,
+            depth_compare: vk::CompareOp::GREATER,
+            depth_clamp: false,
+            depth_slope_bias: 0.0,
+            conservative: false,
+            stencil: None,
+            foreign_sets: &[scene.material_layout],
+        },
+    )
+}
