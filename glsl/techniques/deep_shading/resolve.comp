@@ -1,7 +1,7 @@
 // The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
 // samples' own places (section 3.2; appendix A, pass 4); of a baseline from the layers that it drew them into.
 // Pass: src/techniques/deep_shading/resolve.rs.
-// variants: FETCH=own|address|linked|compact|layers
+// variants: FETCH=own|address|linked|compact|layers|passes|multisampled
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
@@ -14,8 +14,13 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
-#ifdef FETCH_LAYERS
+#if defined(FETCH_LAYERS) || defined(FETCH_PASSES)
 layout(set = 0, binding = 27) uniform sampler2DArray drawn;
+#elif defined(FETCH_MULTISAMPLED)
+// As in msaa.frag.
+layout(constant_id = 98) const uint PASS_SAMPLES = 1;
+
+layout(set = 0, binding = 27) uniform sampler2DMSArray drawn;
 #else
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
@@ -36,11 +41,17 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #include "techniques/deep_shading/spid.glsl"
 #endif
 
-// A sample of a pixel, by its tuple. Alpha: 1 where something was shaded, 0 where that is missing, -1 where it sees nothing.
-vec4 sample_at(uvec2 pixel, uint tuple) {
-    uvec3 at = uvec3(pixel / uvec2(deep.table_width_px, deep.table_height_px), tuple);
-#ifdef FETCH_LAYERS
+// A sample of a pixel, whose first has the tuple `first`. Alpha: 1 where something was shaded, 0 where that is missing, -1 where it sees nothing.
+vec4 sample_at(uvec2 pixel, uint first, uint index) {
+    uvec3 at = uvec3(pixel / uvec2(deep.table_width_px, deep.table_height_px), first + index);
+#if defined(FETCH_LAYERS) || defined(FETCH_PASSES) || defined(FETCH_MULTISAMPLED)
+#if defined(FETCH_LAYERS)
     vec4 texel = texelFetch(drawn, ivec3(at), 0);
+#elif defined(FETCH_PASSES)
+    vec4 texel = texelFetch(drawn, ivec3(pixel, index), 0);
+#else
+    vec4 texel = texelFetch(drawn, ivec3(pixel, index / PASS_SAMPLES), int(index % PASS_SAMPLES));
+#endif
     return texel.a == 0.0 ? vec4(0.0, 0.0, 0.0, -1.0) : texel;
 #else
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
@@ -72,7 +83,7 @@ void main() {
     uint missing = 0u;
     uint seen = 0u;
     for (uint index = 0u; index < deep.sample_count; index++) {
-        vec4 fetched = sample_at(pixel, first + index);
+        vec4 fetched = sample_at(pixel, first, index);
         if (fetched.a < 0.0) {
             sum += frame.background.rgb;
             continue;

@@ -60,8 +60,8 @@ impl Choices {
     /// code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
-        let shading = Shading::new(values).map_err(|error| error.within(NAME))?;
         let samples = values.integer("spp") as u32;
+        let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
         let tuples = values.integer_or_auto("tuples").map_or(4 * samples, |tuples| tuples as u32);
         if !tuples.is_multiple_of(samples) {
             return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
@@ -88,7 +88,7 @@ impl Choices {
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
             lens,
             is_moving: middle.is_some(),
-            is_stochastic: values.text("visibility") == "stochastic",
+            is_stochastic: matches!(shading, Shading::Msaa { .. }) || values.text("visibility") == "stochastic",
             middle,
             has_lists,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
@@ -136,6 +136,7 @@ impl Choices {
             ("TOLERATES_DUPLICATES", u32::from(self.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
+            ("PASS_SAMPLES", self.shading.pass_samples()),
         ]);
         constants
     }

@@ -107,7 +107,9 @@ impl DeepFrame {
     ) -> Result<Self> {
         let shader = match choices.shading {
             Shading::Deep => Shader::Apart(Box::new(Apart::new(gpu, scene, resources, &choices)?)),
-            Shading::Ssaa => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?)),
+            Shading::Ssaa | Shading::Msaa { .. } => {
+                Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?))
+            }
         };
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
@@ -233,7 +235,7 @@ impl Frame for DeepFrame {
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
         let Shader::Apart(apart) = &self.shader else {
-            return Err(left_out(NAME, name, "with --shading ssaa samples have colours and nothing else"));
+            return Err(left_out(NAME, name, "samples of a baseline (--shading) have colours and nothing else"));
         };
         if name == SPIDS {
             return self.first_primitives(gpu, &apart.samples);

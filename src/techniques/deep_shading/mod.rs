@@ -10,6 +10,8 @@
 //! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
 //! accumulate
 //! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, by whichever kind of visibility
+//! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that see it,
+//!   `--pass-samples` of them at a time
 //!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
@@ -57,6 +59,7 @@ use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{SHADOW_MAPS, Setting, Values};
+use baseline::Shading;
 use choices::Choices;
 use frame::DeepFrame;
 use primitives::Primitives;
@@ -120,6 +123,7 @@ impl Technique for DeepShading {
             }
             shade::Road::Vertex => {}
         }
+        needs.extend(baseline::needs(values));
         needs.extend(shadow_maps::needs(values));
         needs
     }
@@ -163,9 +167,12 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { table, road, lens, .. } = &self.choices;
+        let Choices { shading, table, road, lens, .. } = &self.choices;
         let mut resolved =
             BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
+        if let Shading::Msaa { pass_samples } = shading {
+            resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
+        }
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if let Some(lens) = lens {
             resolved.insert("focus", format!("{}", lens.focus));

@@ -132,7 +132,7 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
 fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let range = inputs.caps.limits.max_storage_buffer_range_bytes;
     let (layers, most_layers) = (choices.table.tuple_count(), inputs.caps.limits.max_image_layers);
-    if layers > most_layers {
+    if !matches!(choices.shading, Shading::Msaa { .. }) && layers > most_layers {
         return Err(
             Error::request(format!("--tuples {layers}: this device has images of {most_layers} layers")).within(NAME)
         );

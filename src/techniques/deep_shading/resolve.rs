@@ -80,13 +80,16 @@ impl Resolve {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let fetch = match choices {
             Choices { shading: Shading::Ssaa, .. } => "layers",
+            Choices { shading: Shading::Msaa { pass_samples: 1 }, .. } => "passes",
+            Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
             Choices { has_lists: false, .. } => "own",
             Choices { has_addresses: true, .. } => "address",
             Choices { is_compacted: true, .. } => "compact",
             _ => "linked",
         };
-        let constants = [("IS_COUNTED", u32::from(choices.is_counted))];
-        Ok(Self { pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[fetch]), &constants)? })
+        let shader = variant(COMP_VARIANTS, &[fetch]);
+        let constants = super::constants_of(choices, &[Some(shader)]);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 
     pub fn record(

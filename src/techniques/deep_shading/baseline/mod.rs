@@ -8,6 +8,7 @@
 //! the paper calls no good approach for stochastic rasterisation (section 3): what something nearer covers later has been
 //! shaded, and is counted. Draws go front to back.
 
+pub mod msaa;
 pub mod ssaa;
 
 use super::choices::Choices;
@@ -16,13 +17,13 @@ use super::plan::{COLOR, COUNTERS, DEPTH_FORMAT};
 use super::primitives::Primitives;
 use super::settings::SETTINGS;
 use super::tuples::Table;
-use super::visibility::sample::{Sample, Stages};
+use super::visibility::sample::{self, Sample};
 use crate::error::{Error, Result};
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{
-    Access, Barrier, Bound, Buffer, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Traffic,
+    Access, Barrier, Bound, Buffer, Caps, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Need, Traffic,
 };
 use crate::passes::{mesh, shadow_maps};
 use crate::plan::{Plan, Resources, Shape};
@@ -40,6 +41,14 @@ const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const OF_LISTS: [&str; 8] =
     ["guard-band", "shading-scale", "lists", "duplicates", "compaction", "zmax", "address-buffer", "conservative"];
 
+/// What only images of several samples a pixel read.
+const OF_PASSES: &str = "pass-samples";
+
+/// What `values` need of a device, whatever is shaded.
+pub fn needs(values: &Values) -> Option<Need> {
+    msaa::needs(values)
+}
+
 /// What is shaded (`--shading`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
@@ -47,48 +56,65 @@ pub enum Shading {
     Deep,
     /// Every sample that is drawn.
     Ssaa,
+    /// A pixel's samples that see a triangle, once.
+    Msaa {
+        /// Samples a pixel that are drawn at once.
+        pass_samples: u32,
+    },
 }
 
 impl Shading {
-    /// The value of `--shading`.
+    /// The value of `--shading`, with `spp` samples a pixel.
     ///
-    /// Errors: another setting is changed that it does not read (exit code 2).
-    pub fn new(values: &Values) -> Result<Self> {
+    /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
+    pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
         let text = values.text("shading");
-        let shading = match text {
-            "deep" => return Ok(Self::Deep),
-            "ssaa" => Self::Ssaa,
-            other => panic!("--shading {other} was checked"),
-        };
-        let rows = SETTINGS.iter().filter(|row| OF_LISTS.contains(&row.key));
-        let mut changed = rows.filter(|row| values.text(row.key) != row.default);
-        match changed.next() {
-            None => Ok(shading),
-            Some(row) => {
-                let why = "it has no shading space and no lists";
-                let error =
-                    Error::request(format!("--{} {} with --shading {text}: {why}", row.key, values.text(row.key)));
-                Err(error
-                    .note(format!("--shading deep takes it; --shading {text} goes with --{} {}", row.key, row.default)))
-            }
+        let (reads_lists, reads_passes) = (text == "deep", text == "msaa");
+        let is_unread = |key| (!reads_lists && OF_LISTS.contains(&key)) || (!reads_passes && key == OF_PASSES);
+        if let Some(row) = SETTINGS.iter().find(|row| is_unread(row.key) && values.text(row.key) != row.default) {
+            let (key, value, default) = (row.key, values.text(row.key), row.default);
+            let (why, reader) = if key == OF_PASSES {
+                ("samples are drawn one at a time", "msaa")
+            } else {
+                ("it has no shading space and no lists", "deep")
+            };
+            return Err(Error::request(format!("--{key} {value} with --shading {text}: {why}"))
+                .note(format!("--shading {reader} takes it; --{key} {default} goes with all")));
         }
+        Ok(match text {
+            "deep" => Self::Deep,
+            "ssaa" => Self::Ssaa,
+            "msaa" => Self::Msaa { pass_samples: msaa::pass_samples(values, caps, spp)? },
+            other => panic!("--shading {other} was checked"),
+        })
     }
 
     /// The pass that draws.
     fn pass(self) -> &'static str {
         match self {
             Self::Ssaa => "baseline.ssaa",
+            Self::Msaa { .. } => "baseline.msaa",
             Self::Deep => unreachable!("it is no baseline"),
+        }
+    }
+
+    /// Samples a pixel of what is drawn into.
+    pub fn pass_samples(self) -> u32 {
+        match self {
+            Self::Msaa { pass_samples } => pass_samples,
+            Self::Deep | Self::Ssaa => 1,
         }
     }
 }
 
-/// Layers that samples are drawn into: how many, how large, and with how many samples a pixel.
+/// Layers that samples are drawn into: one a tuple, of a table's part of the frame, or one a pass, of the whole frame.
 fn layers(choices: &Choices, frame: Extent, format: vk::Format, usage: Usage) -> ImageDescription {
-    ImageDescription {
-        layer_count: Some(choices.table.tuple_count()),
-        ..ImageDescription::plain(choices.table.layer(frame), format, 1, usage)
-    }
+    let (table, samples) = (&choices.table, choices.shading.pass_samples());
+    let (extent, layer_count) = match choices.shading {
+        Shading::Msaa { .. } => (frame, table.samples / samples),
+        Shading::Deep | Shading::Ssaa => (table.layer(frame), table.tuple_count()),
+    };
+    ImageDescription { layer_count: Some(layer_count), ..ImageDescription::plain(extent, format, samples, usage) }
 }
 
 /// Colours and depths of a frame's samples.
@@ -119,19 +145,22 @@ pub struct Baseline {
     depth: Image,
     /// Texels are fetched: it only has to be there.
     nearest: Sampler,
-    pass: &'static str,
+    shading: Shading,
 }
 
 impl Baseline {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let (stages, fragment): (Stages, _) = (ssaa::stages(scene, choices), ssaa::fragment);
+        let (stages, fragment): (_, fn(&SceneGpu, &Choices, &str) -> &'static Shader) = match choices.shading {
+            Shading::Msaa { .. } => (msaa::stages(), msaa::fragment),
+            Shading::Deep | Shading::Ssaa => (sample::stages(scene, choices), ssaa::fragment),
+        };
         let pipeline = |alpha| pipeline(gpu, scene, choices, stages.vertex, fragment(scene, choices, alpha));
         Ok(Self {
             sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
             colors: resources.image(&full(COLORS)),
             depth: resources.image(&full(DEPTH)),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
-            pass: choices.shading.pass(),
+            shading: choices.shading,
         })
     }
 
@@ -159,7 +188,7 @@ impl Baseline {
             written_bytes: description.bytes() + self.depth.description.bytes(),
             invocations: None,
         };
-        cmd.pass(&full(self.pass), traffic, |cmd| {
+        cmd.pass(&full(self.shading.pass()), traffic, |cmd| {
             cmd.barriers(maps);
             cmd.barriers([self.colors.discard(Access::ColorWrite), self.depth.discard(Access::DepthWrite)]);
             cmd.barriers([counters.discard(Access::TransferWrite)]);
@@ -173,8 +202,14 @@ impl Baseline {
                 let colors = ColorTarget::new(&self.colors, Some(vk::ClearColorValue { float32: [0.0; 4] }));
                 let depth = (&self.depth, Some(0.0), Access::DepthWrite);
                 cmd.begin_layers(description.extent, Layers::One(layer), &[colors], Some(depth));
-                cmd.set_scissor([0, 0], table.inside(frame, layer));
-                self.sample.draw(cmd, scene, list, primitives, &sets, layer);
+                let first_tuple = match self.shading {
+                    Shading::Msaa { pass_samples } => layer * pass_samples,
+                    Shading::Deep | Shading::Ssaa => {
+                        cmd.set_scissor([0, 0], table.inside(frame, layer));
+                        layer
+                    }
+                };
+                self.sample.draw(cmd, scene, list, primitives, &sets, first_tuple);
                 cmd.end_rendering();
             }
             Ok(())
@@ -199,7 +234,7 @@ fn pipeline(
             constants: &constants,
             vertex_buffers: &[],
             color_formats: &[COLOR_FORMAT],
-            samples: 1,
+            samples: choices.shading.pass_samples(),
             blending: Blending::Replace,
             depth_format: Some(DEPTH_FORMAT),
             depth_write: true,

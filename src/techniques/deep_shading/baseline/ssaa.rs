@@ -5,15 +5,10 @@
 //! their depth is tested.
 
 use super::super::choices::Choices;
-use super::super::visibility::sample::{self, Stages};
 use super::{mesh, shadow_maps, variant};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::ssaa::FRAG_VARIANTS;
 use crate::resident::SceneGpu;
-
-pub(super) fn stages(scene: &SceneGpu, choices: &Choices) -> Stages {
-    sample::stages(scene, choices)
-}
 
 /// `alpha`: the value of the shader's axis.
 pub(super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {

@@ -18,10 +18,9 @@ use std::sync::Arc;
 /// What triangles are drawn with.
 pub struct Stages {
     pub vertex: &'static Shader,
-    fragments: &'static [&'static Shader],
-    sides: Sides,
+    pub sides: Sides,
     /// Vertices of a triangle.
-    vertex_count: u32,
+    pub vertex_count: u32,
 }
 
 /// Of the chosen visibility; what draws the same triangles again shares its vertex stage.
@@ -29,14 +28,13 @@ pub fn stages(scene: &SceneGpu, choices: &Choices) -> Stages {
     if choices.is_stochastic {
         return Stages {
             vertex: stochastic::vertex_shader(),
-            fragments: stochastic::fragment_shaders(),
             // The shader tells sides apart: polygons have none.
             sides: Sides::Both,
             vertex_count: stochastic::vertex_count(choices),
         };
     }
     let vertex = variant(VERT_VARIANTS, &[mesh::vertex_name(scene)]);
-    Stages { vertex, fragments: FRAG_VARIANTS, sides: Sides::AsDrawn, vertex_count: 3 }
+    Stages { vertex, sides: Sides::AsDrawn, vertex_count: 3 }
 }
 
 /// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
@@ -72,8 +70,9 @@ impl Sample {
         let depth = if choices.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
         let stages = stages(scene, choices);
+        let fragments = if choices.is_stochastic { stochastic::fragment_shaders() } else { FRAG_VARIANTS };
         let pipeline = |alpha| {
-            let fragment = variant(stages.fragments, &[alpha, mesh::vertex_name(scene), depth]);
+            let fragment = variant(fragments, &[alpha, mesh::vertex_name(scene), depth]);
             let constants = constants_of(choices, &[Some(stages.vertex), Some(fragment)]);
             GraphicsPipeline::new(
                 gpu,
