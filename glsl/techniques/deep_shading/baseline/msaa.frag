@@ -44,7 +44,7 @@ void main() {
     uint covered = 0u;
     float count = 0.0;
     float depth = 0.0;
-    Place mean = Place(vec3(0.0), vec3(0.0), vec3(0.0), false);
+    Place shaded;
     for (uint index = 0u; index < PASS_SAMPLES; index++) {
         vec4 corners[3];
         for (uint corner = 0u; corner < 3u; corner++) {
@@ -59,23 +59,19 @@ void main() {
             continue;
         }
         if (covered == 0u) {
-            mean.is_front = place.is_front;
+            shaded = place;
         }
         covered |= 1u << index;
         count += 1.0;
         depth += hit_depth(corners, place.weights);
-        mean.weights += place.weights;
-        mean.right += place.right;
-        mean.down += place.down;
     }
     if (covered == 0u) {
         discard;
     }
-    mean.weights /= count;
     // A layer's pixels are a table apart.
-    mean.right /= count * float(table.x);
-    mean.down /= count * float(table.y);
-    stand_at(in_primitive, mean);
+    shaded.right /= float(table.x);
+    shaded.down /= float(table.y);
+    stand_at(in_primitive, shaded);
     vec4 base_color = base_color_at(params.material);
 #ifdef ALPHA_TESTED
     for (uint index = 0u; index < PASS_SAMPLES; index++) {

@@ -9,8 +9,9 @@
 //! Where the papers leave a choice
 //! - depth is tested a sample, and is one number a fragment: the mean of the depths at which its samples see the triangle (a
 //!   shader that is run once a pixel writes no more), which shows where surfaces nearly meet
-//! - it is shaded at the mean of the places on the triangle that its samples see, which lies inside, with the texture rates
-//!   of a pixel of the sharp triangle: larger footprints, as Loviscach 2005 takes them, are not taken
+//! - it is shaded where the first of its samples sees the triangle, with the texture rates of that sample's pixel: noise, which
+//!   more samples mend. The mean of all places kept textures sharp that are out of focus, as larger footprints (Loviscach
+//!   2005), which are not taken, would not
 //! - MASK is tested once a fragment, BLEND once a sample with the fragment's alpha; front or back is what the first sample sees
 //! - depth that a shader writes is tested after it has run: what is hidden is shaded too, and counted
 //! - the polygon around a triangle's blur is one triangle around a box, because pixels along inner edges would be run once for
