@@ -20,7 +20,7 @@ pub struct ImageDescription {
     pub level_count: u32,
     /// None: a plain image. Some: an array of so many layers, whose views are arrays, of one layer too.
     pub layer_count: Option<u32>,
-    /// Samples a pixel: 1, or another power of two where the image has one level and is only drawn into and resolved.
+    /// Samples a pixel: 1, or another power of two where the image has one level and is only drawn into, resolved, and fetched.
     pub samples: u32,
     pub usage: vk::ImageUsageFlags,
 }

@@ -1,6 +1,7 @@
 // The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
-// samples' own places (section 3.2; appendix A, pass 4). Pass: src/techniques/deep_shading/resolve.rs.
-// variants: FETCH=own|address|direct|linked|compact
+// samples' own places (section 3.2; appendix A, pass 4); of a baseline from the layers that it drew them into.
+// Pass: src/techniques/deep_shading/resolve.rs.
+// variants: FETCH=own|address|direct|linked|compact|layers|passes|multisampled
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
@@ -13,10 +14,19 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
+#if defined(FETCH_LAYERS) || defined(FETCH_PASSES)
+layout(set = 0, binding = 27) uniform sampler2DArray drawn;
+#elif defined(FETCH_MULTISAMPLED)
+// As in msaa.frag.
+layout(constant_id = 98) const uint PASS_SAMPLES = 1;
+
+layout(set = 0, binding = 27) uniform sampler2DMSArray drawn;
+#else
 #ifndef FETCH_DIRECT
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 #endif
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
+#endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(set = 0, binding = 29, rgba32f) writeonly uniform image2D color;
 #if defined(FETCH_ADDRESS) || defined(FETCH_DIRECT)
@@ -33,6 +43,44 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #include "techniques/deep_shading/spid.glsl"
 #endif
 
+// A sample of a pixel, whose first has the tuple `first`. Alpha: 1 where something was shaded, 0 where that is missing, -1 where
+// it sees nothing.
+vec4 sample_at(uvec2 pixel, uint first, uint index) {
+    uvec3 at = uvec3(pixel / uvec2(deep.table_width_px, deep.table_height_px), first + index);
+#if defined(FETCH_LAYERS) || defined(FETCH_PASSES) || defined(FETCH_MULTISAMPLED)
+#if defined(FETCH_LAYERS)
+    vec4 texel = texelFetch(drawn, ivec3(at), 0);
+#elif defined(FETCH_PASSES)
+    vec4 texel = texelFetch(drawn, ivec3(pixel, index), 0);
+#else
+    vec4 texel = texelFetch(drawn, ivec3(pixel, index / PASS_SAMPLES), int(index % PASS_SAMPLES));
+#endif
+    return texel.a == 0.0 ? vec4(0.0, 0.0, 0.0, -1.0) : texel;
+#else
+    uint own = sample_index(deep, at);
+#ifdef FETCH_DIRECT
+    bool is_empty = addresses[own] == NO_ADDRESS;
+#else
+    uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+    bool is_empty = spid.x == NO_PRIMITIVE;
+#endif
+    if (is_empty) {
+        return vec4(0.0, 0.0, 0.0, -1.0);
+    }
+#if defined(FETCH_OWN)
+    uint where = own;
+#elif defined(FETCH_ADDRESS)
+    uint where = addresses[own];
+#elif defined(FETCH_DIRECT)
+    uint where = addresses[own] & ~ADDRESS_STRAY;
+#else
+    uint where = color_of(spid, own);
+#endif
+    uvec2 words = where < colors.length() ? colors[where] : uvec2(0u);
+    return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
+#endif
+}
+
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
@@ -45,33 +93,14 @@ void main() {
     uint missing = 0u;
     uint seen = 0u;
     for (uint index = 0u; index < deep.sample_count; index++) {
-        uvec3 at = uvec3(pixel / table, first + index);
-        uint own = sample_index(deep, at);
-#ifdef FETCH_DIRECT
-        bool is_empty = addresses[own] == NO_ADDRESS;
-#else
-        uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
-        bool is_empty = spid.x == NO_PRIMITIVE;
-#endif
-        if (is_empty) {
+        vec4 fetched = sample_at(pixel, first, index);
+        if (fetched.a < 0.0) {
             sum += frame.background.rgb;
             continue;
         }
         seen++;
-#if defined(FETCH_OWN)
-        uint where = own;
-#elif defined(FETCH_ADDRESS)
-        uint where = addresses[own];
-#elif defined(FETCH_DIRECT)
-        uint where = addresses[own] & ~ADDRESS_STRAY;
-#else
-        uint where = color_of(spid, own);
-#endif
-        uvec2 words = where < colors.length() ? colors[where] : uvec2(0u);
-        vec2 blue_alpha = unpackHalf2x16(words.y);
-        // Alpha is 1 where something was shaded.
-        missing += blue_alpha.y == 0.0 ? 1u : 0u;
-        sum += vec3(unpackHalf2x16(words.x), blue_alpha.x);
+        missing += fetched.a == 0.0 ? 1u : 0u;
+        sum += fetched.rgb;
     }
     imageStore(color, ivec2(pixel), vec4(sum / float(deep.sample_count), 1.0));
     if (IS_COUNTED != 0u && (missing > 0u || seen > 0u)) {

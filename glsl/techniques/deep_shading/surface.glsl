@@ -1,4 +1,4 @@
-// The colour of a triangle at a shading point: its whole material under all lights, in the middle of the exposure.
+// The colour of a triangle at a place on it: its whole material under all lights, in the middle of the exposure.
 //
 // The including shader includes scene_buffers.glsl, has the axis VERTEX and `primitive`'s draw in `params`.
 #ifndef DEEP_SHADING_SURFACE_GLSL
@@ -94,20 +94,14 @@ Corner corner_at(uint vertex) {
     return corner;
 }
 
-// Two words: red and green, blue and 1, as half floats. `primitive`: of the draw of `params`. With `is_given` the weights
-// say where on the triangle; else it is the middle of `pixel`.
-uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
+// The corners of a triangle of the draw of `params`, by its id.
+uvec3 vertices_of(uint primitive) {
     uint corner = 3u * (primitive - params.primitive_offset);
-    uvec3 vertices = uvec3(vertex_of(corner), vertex_of(corner + 1u), vertex_of(corner + 2u));
-    Corner a = corner_at(vertices.x);
-    Corner b = corner_at(vertices.y);
-    Corner c = corner_at(vertices.z);
-    Place place = place_at(a.canonical, b.canonical, c.canonical, vec2(pixel) + 0.5);
-    if (is_given) {
-        place.weights = weights;
-        place.right = vec3(0.0);
-        place.down = vec3(0.0);
-    }
+    return uvec3(vertex_of(corner), vertex_of(corner + 1u), vertex_of(corner + 2u));
+}
+
+// Writes what is interpolated elsewhere. The triangle's corners, and a place on it with its rates of a pixel.
+void stand_on(Corner a, Corner b, Corner c, uvec3 vertices, Place place) {
     precise vec3 position_ws =
         place.weights.x * a.position_ws + place.weights.y * b.position_ws + place.weights.z * c.position_ws;
     precise vec3 normal_ws = place.weights.x * a.normal_ws + place.weights.y * b.normal_ws + place.weights.z * c.normal_ws;
@@ -137,14 +131,46 @@ uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
     in_uv_1_right = place.right.x * uv_a + place.right.y * uv_b + place.right.z * uv_c;
     in_uv_1_down = place.down.x * uv_a + place.down.y * uv_b + place.down.z * uv_c;
 #endif
-    vec4 base_color = base_color_at(params.material);
+}
+
+// Two words of the place that was written last: red and green, blue and 1, as half floats.
+uvec2 color_of_base(vec4 base_color) {
     vec3 radiance = base_color.rgb;
     if (SURFACE_EXTRAS == 0u || (params.material.flags & MATERIAL_UNLIT) == 0u) {
-        radiance = nan_if_cut(lit_at(params.material, base_color.rgb, position_ws, 0u, frame.light_count).radiance);
+        radiance =
+            nan_if_cut(lit_at(params.material, base_color.rgb, in_position_ws, 0u, frame.light_count).radiance);
     }
     // A half float holds no more.
     radiance = min(radiance, vec3(65504.0));
     return uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 1.0)));
+}
+
+// The colour of `primitive`, of the draw of `params`. With `is_given` the weights say where on the triangle; else it is the
+// middle of `pixel`.
+uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
+    uvec3 vertices = vertices_of(primitive);
+    Corner a = corner_at(vertices.x);
+    Corner b = corner_at(vertices.y);
+    Corner c = corner_at(vertices.z);
+    Place place = place_at(a.canonical, b.canonical, c.canonical, vec2(pixel) + 0.5);
+    if (is_given) {
+        place.weights = weights;
+        place.right = vec3(0.0);
+        place.down = vec3(0.0);
+    }
+    stand_on(a, b, c, vertices, place);
+    return color_of_base(base_color_at(params.material));
+}
+
+// Writes what is interpolated elsewhere, of a place on `primitive`.
+void stand_at(uint primitive, Place place) {
+    uvec3 vertices = vertices_of(primitive);
+    stand_on(corner_at(vertices.x), corner_at(vertices.y), corner_at(vertices.z), vertices, place);
+}
+
+// A colour as an attachment of half floats holds it to the bit, however the driver rounds.
+vec4 attached_color(uvec2 words) {
+    return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
 }
 
 #endif

@@ -1,5 +1,6 @@
 //! What the settings come to.
 
+use super::baseline::Shading;
 use super::middle::Middle;
 use super::space::ShadingSpace;
 use super::tuples::Table;
@@ -19,6 +20,7 @@ use crate::techniques::Inputs;
 use crate::units::Extent;
 
 pub struct Choices {
+    pub shading: Shading,
     pub direct: DirectSettings,
     pub visibility: Visibility,
     pub layer_from: LayerFrom,
@@ -78,18 +80,20 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
 }
 
 impl Choices {
-    /// Errors: `--tuples` is no multiple of `--spp`; shading space is too large (exit code 2).
+    /// Errors: `--tuples` is no multiple of `--spp`; shading space is too large; settings that `--shading` does not read (exit
+    /// code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
         let samples = values.integer("spp") as u32;
+        let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
         let tuples = values.integer_or_auto("tuples").map_or(4 * samples, |tuples| tuples as u32);
         if !tuples.is_multiple_of(samples) {
             return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
                 .within(NAME)
                 .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
         }
-        let has_lists = values.text("lists") != "none";
-        let is_direct = values.text("lists") == "direct";
+        let has_lists = shading == Shading::Deep && values.text("lists") != "none";
+        let is_direct = has_lists && values.text("lists") == "direct";
         require_direct(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture") > 0.0 {
@@ -101,8 +105,9 @@ impl Choices {
         let (scene, lights) =
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
-        let (table, visibility) = (Table::new(samples, tuples), Visibility::of(values));
+        let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
         Ok(Self {
+            shading,
             maps: maps.map_err(|error| error.within(NAME))?,
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
             visibility,
@@ -166,6 +171,7 @@ impl Choices {
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("HAS_PADDING", u32::from(self.has_padding)),
+            ("PASS_SAMPLES", self.shading.pass_samples()),
         ]);
         constants
     }

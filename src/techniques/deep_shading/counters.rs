@@ -21,8 +21,8 @@ impl Counted {
         Ok(Self(words.try_into().expect("as many as asked for")))
     }
 
-    /// The report's. `pixels` of the frame. `has_tests`: visibility tested samples itself.
-    pub fn report(&self, pixels: u64, has_tests: bool) -> BTreeMap<&'static str, f64> {
+    /// The report's. `pixels` of the frame. `has_tests`: a shader tested samples. A baseline has neither lists nor shading space.
+    pub fn report(&self, pixels: u64, has_tests: bool, is_baseline: bool) -> BTreeMap<&'static str, f64> {
         let [
             _,
             strays,
@@ -46,6 +46,15 @@ impl Counted {
             ("shader_invocations", shaded),
             ("shaded_per_pixel", shaded / pixels as f64),
             ("samples_seen", samples),
+        ]);
+        if has_tests {
+            counters.insert("sample_tests", tests + carried * 4_294_967_296.0);
+            counters.insert("sample_tests_hit", hits);
+        }
+        if is_baseline {
+            return counters;
+        }
+        counters.extend([
             ("samples_outside_shading_space", strays - crowded),
             ("samples_of_full_lists", crowded),
             ("samples_without_colour", missing),
@@ -57,10 +66,6 @@ impl Counted {
             ("lists", list_pixels),
             ("lists_beyond_16", overflows),
         ]);
-        if has_tests {
-            counters.insert("sample_tests", tests + carried * 4_294_967_296.0);
-            counters.insert("sample_tests_hit", hits);
-        }
         counters
     }
 

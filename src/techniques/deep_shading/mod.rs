@@ -7,6 +7,12 @@
 //! for, and those that a list of 1024 triangles has none for) or brute (`--lists none`), resolve (box filter), count
 //! (`--instrument on`), accumulate (`--accumulate` above 1).
 //!
+//! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
+//! accumulate
+//! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, by whichever kind of visibility
+//! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that see it,
+//!   `--pass-samples` of them at a time
+//!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
 //!   an insertion that another was quicker than looks at what is new, and no triangle comes into a list twice
@@ -28,6 +34,8 @@
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
 //! every order of `--visibility`. Without blur it is `forward --supersample` with samples in other places.
 
+mod apart;
+mod baseline;
 mod brute;
 mod choices;
 mod count;
@@ -58,6 +66,7 @@ use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{SHADOW_MAPS, Setting, Values};
+use baseline::Shading;
 use choices::Choices;
 use frame::DeepFrame;
 use primitives::Primitives;
@@ -122,6 +131,7 @@ impl Technique for DeepShading {
             needs.push(need(&of, ability, "--visibility repeat-frame works without it"));
         }
         match choices::road(values, caps) {
+            _ if values.text("shading") != "deep" => {}
             shade::Road::Geometry => {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative geometry", Ability::GeometryShader, instead));
@@ -132,6 +142,7 @@ impl Technique for DeepShading {
             }
             shade::Road::Vertex => {}
         }
+        needs.extend(baseline::needs(values));
         needs.extend(shadow_maps::needs(values));
         needs
     }
@@ -182,9 +193,12 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { table, road, lens, visibility, layer_from, .. } = &self.choices;
+        let Choices { shading, table, road, lens, visibility, layer_from, .. } = &self.choices;
         let mut resolved =
             BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
+        if let Shading::Msaa { pass_samples } = shading {
+            resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
+        }
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
             resolved.insert("layer-from", layer_from.name().to_owned());

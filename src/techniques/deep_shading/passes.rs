@@ -1,4 +1,4 @@
-//! The passes of a frame in order, and what each touches.
+//! The passes of a frame in order, up to the resolve and what counts after it, and what each touches.
 
 use super::choices::Choices;
 use super::plan::{
@@ -7,7 +7,6 @@ use super::plan::{
 use super::visibility::Visibility;
 use super::{NAME, full, gate};
 use crate::gpu::Access;
-use crate::passes::accumulate;
 use crate::plan::Plan;
 
 type Touches = Vec<(String, Access)>;
@@ -47,9 +46,6 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         let mut counted = links(choices, Access::ComputeWrite);
         counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
         plan.pass(full("count"), counted);
-    }
-    if choices.run_count > 1 {
-        accumulate::plan_pass(plan, NAME, &full(COLOR));
     }
 }
 

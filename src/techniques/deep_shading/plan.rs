@@ -1,6 +1,7 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them (Clarberg & Munkberg 2014, section 6, lists the
 //! groups; the checklist's O1 to O3 are their bytes).
 
+use super::baseline::{self, Shading};
 use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
@@ -49,6 +50,35 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     require_fitting(choices, inputs)?;
     let mut plan = Plan::default();
     plan_scene(&mut plan, choices, inputs)?;
+    if choices.shading == Shading::Deep {
+        plan_deep(&mut plan, choices, inputs)?;
+    } else {
+        baseline::plan(&mut plan, choices, inputs.view.extent);
+    }
+    plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
+    plan.read_back(&full(COUNTERS));
+    let extent = inputs.view.extent;
+    if choices.run_count > 1 {
+        plan.image("color", full(COLOR), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
+        accumulate::plan(&mut plan, NAME, extent);
+    } else {
+        plan.picture(full(COLOR), extent);
+    }
+    if choices.shading == Shading::Deep {
+        passes::plan(&mut plan, choices);
+    } else {
+        baseline::plan_passes(&mut plan, choices);
+    }
+    if choices.run_count > 1 {
+        accumulate::plan_pass(&mut plan, NAME, &full(COLOR));
+    }
+    Ok(plan)
+}
+
+/// What samples see, lists, and colours.
+///
+/// Errors: the host would hold too much (exit code 4).
+fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let samples = choices.samples_of(inputs.view.extent);
     let shading_pixels = choices.space.extent.pixel_count();
     let layers = |format, usage| {
@@ -62,7 +92,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         plan.push("frame_buffer", full(SPIDS), layers(SPID_FORMAT, attached));
     }
     if choices.visibility == Visibility::Ray {
-        ray::plan(&mut plan, choices, inputs)?;
+        ray::plan(plan, choices, inputs)?;
     } else {
         plan.push("frame_buffer", full(DEPTH), layers(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
     }
@@ -71,7 +101,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         let mut list = |group, name: &str, bytes| {
             plan.buffer(group, full(name), bytes);
             if choices.is_direct {
-                direct::plan(&mut plan, name, bytes);
+                direct::plan(plan, name, bytes);
             }
         };
         list("deep_shading_buffer", BEGINS, shading_pixels * 4);
@@ -93,19 +123,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         }
     }
     if choices.is_gated {
-        gate::plan(&mut plan, inputs.stats.draw_count);
+        gate::plan(plan, inputs.stats.draw_count);
     }
-    plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
-    plan.read_back(&full(COUNTERS));
-    let extent = inputs.view.extent;
-    if choices.run_count > 1 {
-        plan.image("color", full(COLOR), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
-        accumulate::plan(&mut plan, NAME, extent);
-    } else {
-        plan.picture(full(COLOR), extent);
-    }
-    passes::plan(&mut plan, choices);
-    Ok(plan)
+    Ok(())
 }
 
 /// Lights, tree, cameras, tuples, and where the scene is when the shutter closes.
@@ -137,7 +157,7 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
 fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let range = inputs.caps.limits.max_storage_buffer_range_bytes;
     let (layers, most_layers) = (choices.table.tuple_count(), inputs.caps.limits.max_image_layers);
-    if layers > most_layers {
+    if !matches!(choices.shading, Shading::Msaa { .. }) && layers > most_layers {
         return Err(
             Error::request(format!("--tuples {layers}: this device has images of {most_layers} layers")).within(NAME)
         );
@@ -152,7 +172,8 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         .note("--visibility repeat-frame draws into one"));
     }
     let samples = choices.samples_of(inputs.view.extent);
-    if samples * COLOR_BYTES <= range {
+    // A baseline has images alone.
+    if choices.shading != Shading::Deep || samples * COLOR_BYTES <= range {
         return Ok(());
     }
     let (size, table) = (inputs.view.extent, choices.table);

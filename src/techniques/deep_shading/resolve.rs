@@ -1,7 +1,9 @@
 //! Resolve: the mean of each pixel's samples, gathered through the address buffer, by following links, or from the samples' own
-//! places (Clarberg & Munkberg 2014, section 3.2). Shader: resolve.comp.
-//! reads  visibility.spids, shade.colors, lists.addresses or the lists      writes  resolve.color  image, RGBA32F
+//! places (Clarberg & Munkberg 2014, section 3.2); of a baseline from what it drew. Shader: resolve.comp.
+//! reads  visibility.spids, shade.colors, lists.addresses or the lists; baseline.colors
+//! writes  resolve.color  image, RGBA32F
 
+use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
 use super::full;
 use super::lists::Lists;
@@ -13,6 +15,65 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Gpu, Image, Traffic};
 use std::sync::Arc;
 
+/// Samples whose colours are there.
+#[derive(Clone, Copy)]
+pub enum Shaded<'a> {
+    /// What samples see, and its colours, apart.
+    Apart {
+        /// Where they have SPIDs; who read those, and who wrote them where compute shaders have not waited for it yet.
+        samples: Option<(&'a Samples, AccessSet)>,
+        lists: Option<&'a Lists>,
+        colors: &'a Buffer,
+    },
+    Drawn(&'a Baseline),
+}
+
+impl<'a> Shaded<'a> {
+    fn bytes(self) -> u64 {
+        match self {
+            Self::Apart { samples, lists, colors, .. } => {
+                let addresses = lists.and_then(|lists| lists.addresses.as_ref());
+                let spids = samples.map_or(0, |(samples, _)| samples.spids.description.bytes());
+                spids + addresses.map_or(0, |buffer| buffer.bytes) + colors.bytes
+            }
+            Self::Drawn(baseline) => baseline.colors.description.bytes(),
+        }
+    }
+
+    fn to_compute(self, cmd: &mut Commands) {
+        match self {
+            Self::Apart { samples, lists, colors } => {
+                match lists {
+                    Some(Lists { addresses: Some(addresses), .. }) => {
+                        let left = Access::ComputeWrite | Access::GraphicsRead;
+                        cmd.barriers([addresses.from(left).to(Access::ComputeRead)]);
+                    }
+                    Some(lists) => lists.links_to_compute(cmd, Access::ComputeRead),
+                    None => {}
+                }
+                cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::ComputeSample)));
+                cmd.barriers([colors.from(Access::FragmentWrite).to(Access::ComputeRead)]);
+            }
+            Self::Drawn(baseline) => {
+                cmd.barriers([baseline.colors.from(Access::ColorWrite).to(Access::ComputeSample)]);
+            }
+        }
+    }
+
+    fn bound(self) -> Vec<(&'static str, Bound<'a>)> {
+        match self {
+            Self::Apart { samples, lists, colors, .. } => {
+                let mut bound: Vec<_> = lists.map(Lists::bound).into_iter().flatten().collect();
+                let spids = samples.map(|(samples, _)| samples.sampled(&samples.spids, Access::ComputeSample));
+                bound.push(("Colors", Bound::Buffer(colors)));
+                bound.extend(spids.map(|spids| ("spids", spids)));
+                bound
+            }
+            Self::Drawn(baseline) => vec![("drawn", baseline.sampled())],
+        }
+    }
+}
+
 pub struct Resolve {
     pipeline: ComputePipeline,
 }
@@ -20,59 +81,41 @@ pub struct Resolve {
 impl Resolve {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let fetch = match choices {
+            Choices { shading: Shading::Ssaa, .. } => "layers",
+            Choices { shading: Shading::Msaa { pass_samples: 1 }, .. } => "passes",
+            Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
             Choices { has_lists: false, .. } => "own",
             Choices { is_direct: true, .. } => "direct",
             Choices { has_addresses: true, .. } => "address",
             Choices { is_compacted: true, .. } => "compact",
             _ => "linked",
         };
-        let constants = [("IS_COUNTED", u32::from(choices.is_counted))];
-        Ok(Self { pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[fetch]), &constants)? })
+        let shader = variant(COMP_VARIANTS, &[fetch]);
+        let constants = super::constants_of(choices, &[Some(shader)]);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 
-    /// The samples, where they have SPIDs; `left`: who read the SPIDs, and who wrote them where compute shaders have not waited for it yet.
-    #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        samples: Option<(&Samples, AccessSet)>,
-        lists: Option<&Lists>,
-        colors: &Buffer,
+        shaded: Shaded<'_>,
         counters: &Buffer,
         color: &Image,
     ) -> Result<()> {
         let extent = color.description.extent;
         let traffic = Traffic {
-            read_bytes: samples.map_or(0, |(samples, _)| samples.spids.description.bytes())
-                + lists.and_then(|lists| lists.addresses.as_ref()).map_or(0, |buffer| buffer.bytes)
-                + colors.bytes,
+            read_bytes: shaded.bytes(),
             written_bytes: color.description.bytes(),
             invocations: Some(extent.pixel_count()),
         };
         cmd.pass(&full("resolve"), traffic, |cmd| {
-            match lists {
-                Some(Lists { addresses: Some(addresses), .. }) => {
-                    cmd.barriers([addresses.from(Access::ComputeWrite | Access::GraphicsRead).to(Access::ComputeRead)]);
-                }
-                Some(lists) => lists.links_to_compute(cmd, Access::ComputeRead),
-                None => {}
-            }
-            cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::ComputeSample)));
+            shaded.to_compute(cmd);
             cmd.barriers([color.discard(Access::ComputeWrite)]);
-            cmd.barriers([
-                colors.from(Access::FragmentWrite).to(Access::ComputeRead),
-                counters.from(Access::FragmentWrite).to(Access::ComputeWrite),
-            ]);
+            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();
-            bound.extend(lists.map(Lists::bound).into_iter().flatten());
-            bound.extend([
-                ("Colors", Bound::Buffer(colors)),
-                ("Counters", Bound::Buffer(counters)),
-                ("color", Bound::Storage(color)),
-            ]);
-            let spids = samples.map(|(samples, _)| samples.sampled(&samples.spids, Access::ComputeSample));
-            bound.extend(spids.map(|spids| ("spids", spids)));
+            bound.extend(shaded.bound());
+            bound.extend([("Counters", Bound::Buffer(counters)), ("color", Bound::Storage(color))]);
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })

@@ -7,6 +7,26 @@ const MOST_GUARD_PX: u64 = 4096;
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
+        key: "shading",
+        symbol: "",
+        kind: Kind::Choice(&["deep", "ssaa", "msaa"]),
+        default: "deep",
+        unit: "",
+        paper: "Clarberg 2014, 6",
+        help: "what is shaded: what the lists have, or, as baselines, every sample that is drawn (ssaa), or what a pixel's samples see of a \
+               triangle once, by stochastic rasterisation whatever --visibility says (msaa)",
+    },
+    Setting {
+        key: "pass-samples",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "1", "4", "8"]),
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 6",
+        help: "samples a pixel that --shading msaa draws at once: --spp takes as many passes; auto: the most of these that the device \
+               has and --spp is a multiple of",
+    },
+    Setting {
         key: "visibility",
         symbol: "",
         kind: Kind::Choice(&["repeat-frame", "repeat-draw", "instancing", "replicate", "stochastic", "ray"]),

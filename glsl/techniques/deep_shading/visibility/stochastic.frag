@@ -15,6 +15,9 @@ layout(location = 1) flat in uint in_primitive;
 layout(location = 2) flat in vec4 in_corners[3];
 
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+
+#include "techniques/deep_shading/visibility/hit.glsl"
+
 #ifdef ALPHA_TESTED
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 #ifdef VERTEX_EXTENDED
@@ -53,28 +56,11 @@ layout(location = 0) out uvec2 out_spid;
 layout(location = 1) out uint out_shading_depth;
 #endif
 
-// More than a word counts: the second has what the first was carried over.
-void count_test() {
-    if (atomicAdd(counters[COUNTED_TESTS], 1u) == 0xffffffffu) {
-        atomicAdd(counters[COUNTED_TESTS_CARRIED], 1u);
-    }
-}
-
 void main() {
-    if (IS_COUNTED != 0u) {
-        count_test();
-    }
     // A layer has one sample a pixel, in its middle: the tuple's shift has put it there.
     vec2 at = gl_FragCoord.xy;
-    if (!covers(in_corners[0], in_corners[1], in_corners[2], at)) {
-        discard;
-    }
-    if (IS_COUNTED != 0u) {
-        atomicAdd(counters[COUNTED_TESTS_HIT], 1u);
-    }
-    Place place = place_at(in_corners[0], in_corners[1], in_corners[2], at);
-    bool is_front = place.is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
-    if (!is_front && (params.flags & DRAWN_DOUBLE_SIDED) == 0u) {
+    Place place;
+    if (!is_hit(in_corners, at, place)) {
         discard;
     }
     uint corner = 3u * (in_primitive - params.primitive_offset);
@@ -84,8 +70,7 @@ void main() {
         discard;
     }
 #endif
-    vec2 depth = covered_depth(in_corners[0], in_corners[1], in_corners[2], place.weights);
-    gl_FragDepth = depth.x / depth.y;
+    gl_FragDepth = hit_depth(in_corners, place.weights);
     vec4 canonical = canonical_at(corner, place.weights);
     out_spid = uvec2(in_primitive, shading_pixel(deep, canonical));
 #ifdef DEPTH_SHADING

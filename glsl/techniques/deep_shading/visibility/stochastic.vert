@@ -4,6 +4,7 @@
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/bound.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
@@ -27,16 +28,9 @@ void main() {
     TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + params.tuple];
     vec2 layer = vec2(deep.layer_width_px, deep.layer_height_px);
     Seen seen[6];
+    see_triangle(triangle, seen);
     for (uint corner = 0u; corner < 3u; corner++) {
-        uint fetched = vertex_of(3u * triangle + corner);
-        seen[corner] = seen_open(fetched);
-        seen[corner + 3u] = seen[corner];
-        if (IS_MOVING != 0u) {
-            seen[corner + 3u] = seen_close(fetched);
-        }
-        vec4 clip = clip_of(seen[corner], seen[corner + 3u], tuple);
-        precise vec2 at = 0.5 * layer * (clip.xy + clip.w);
-        out_corners[corner] = vec4(at, clip.zw);
+        out_corners[corner] = layer_corner(seen[corner], seen[corner + 3u], tuple);
     }
     out_primitive = params.primitive_offset + triangle;
     out_tuple = params.tuple;

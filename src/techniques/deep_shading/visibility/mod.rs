@@ -174,7 +174,7 @@ pub struct Drawn<'a> {
 }
 
 /// Sets the counters of a frame to 0, for shaders of fragments to count on.
-fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
+pub fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
     cmd.barriers([counters.discard(Access::TransferWrite)]);
     cmd.clear(counters);
     cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);

@@ -4,7 +4,7 @@ use super::super::choices::Choices;
 use super::super::constants_of;
 use super::super::plan::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
 use super::super::primitives::{self, Primitives};
-use super::Drawn;
+use super::{Drawn, Visibility, stochastic};
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::sample::{FRAG_VARIANTS, VERT_VARIANTS};
@@ -36,7 +36,6 @@ impl Repeats {
 pub struct Stages {
     pub vertex: &'static Shader,
     pub geometry: Option<&'static Shader>,
-    pub fragments: &'static [&'static Shader],
     pub sides: Sides,
     /// Vertices of a triangle.
     pub vertex_count: u32,
@@ -45,7 +44,7 @@ pub struct Stages {
 impl Stages {
     /// Of triangles as one tuple sees them.
     pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
-        Self { vertex, geometry, fragments: FRAG_VARIANTS, sides: Sides::AsDrawn, vertex_count: 3 }
+        Self { vertex, geometry, sides: Sides::AsDrawn, vertex_count: 3 }
     }
 
     /// How many vertices a call has, and the first.
@@ -110,8 +109,10 @@ impl Sample {
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = super::stages(scene, choices, &repeats);
+        let fragments =
+            if choices.visibility == Visibility::Stochastic { stochastic::FRAGMENTS } else { FRAG_VARIANTS };
         let pipeline = |alpha| {
-            let fragment = variant(stages.fragments, &[alpha, mesh::vertex_name(scene), depth]);
+            let fragment = variant(fragments, &[alpha, mesh::vertex_name(scene), depth]);
             let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
             GraphicsPipeline::new(
                 gpu,
@@ -135,7 +136,12 @@ impl Sample {
                 },
             )
         };
-        Ok(Self { opaque: pipeline("opaque")?, tested: pipeline("tested")?, stages })
+        Ok(Self::of([pipeline("opaque")?, pipeline("tested")?], stages))
+    }
+
+    /// Of solid surfaces, and of those with an alpha.
+    pub fn of([opaque, tested]: [GraphicsPipeline; 2], stages: Stages) -> Self {
+        Self { opaque, tested, stages }
     }
 
     /// One set for all tuples. `bound`: what shaders of the technique may read.

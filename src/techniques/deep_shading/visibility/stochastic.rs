@@ -7,6 +7,7 @@
 
 use super::super::choices::Choices;
 use super::sample::Stages;
+use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT};
 use crate::passes::mesh::Sides;
 
@@ -14,12 +15,13 @@ use crate::passes::mesh::Sides;
 const MOST_SIDES: u32 = 12;
 const STILL_SIDES: u32 = 7;
 
+pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
+
 pub(super) fn stages(choices: &Choices) -> Stages {
     let sides = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
     Stages {
         vertex: &VERT,
         geometry: None,
-        fragments: FRAG_VARIANTS,
         // The shader tells sides apart: polygons have none.
         sides: Sides::Both,
         // A fan of triangles.

@@ -1,0 +1,92 @@
+// Stochastic multisampling: a pixel tests its samples against a triangle, each at its own place, time and place on the lens,
+// and is shaded once for all that see it (section 6, "MSAA"; McGuire et al. 2010).
+// Pass: src/techniques/deep_shading/baseline/msaa.rs.
+// variants: ALPHA=opaque|tested VERTEX=plain|extended SHADOWS=traced|mapped
+#version 460
+#include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/surface.glsl"
+#include "techniques/deep_shading/counters.glsl"
+
+// As in shade.frag.
+layout(constant_id = 94) const uint IS_COUNTED = 0;
+// Samples a pixel of the attachments.
+layout(constant_id = 98) const uint PASS_SAMPLES = 1;
+
+layout(location = 1) flat in uint in_primitive;
+// As in msaa.vert.
+layout(location = 2) flat in vec4 in_open[3];
+layout(location = 5) flat in vec4 in_close[3];
+layout(location = 8) flat in vec3 in_open_depth;
+layout(location = 9) flat in vec3 in_close_depth;
+
+// surface.glsl calls the middle of the exposure `frame`.
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
+layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+
+#include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/visibility/covers.glsl"
+#include "techniques/deep_shading/visibility/hit.glsl"
+#ifdef ALPHA_TESTED
+#include "techniques/deep_shading/alpha.glsl"
+#endif
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
+    uvec2 layer_px = pixel / table;
+    uvec2 cell = pixel % table;
+    // `params.tuple`: of the pass, its first in each cell.
+    uint first = run.sample_index * deep.tuple_count + (cell.y * table.x + cell.x) * deep.sample_count + params.tuple;
+    uint covered = 0u;
+    float count = 0.0;
+    float depth = 0.0;
+    Place shaded;
+    for (uint index = 0u; index < PASS_SAMPLES; index++) {
+        vec4 corners[3];
+        for (uint corner = 0u; corner < 3u; corner++) {
+            Seen open = Seen(in_open[corner], in_open_depth[corner]);
+            Seen close = Seen(in_close[corner], in_close_depth[corner]);
+            corners[corner] = layer_corner(open, close, tuples[first + index]);
+        }
+        Place place;
+        // A driver may have cut what it draws into pieces, each of which runs the pixel with samples of its own.
+        bool is_own = (gl_SampleMaskIn[0] & (1 << index)) != 0;
+        if (!is_own || !is_hit(corners, vec2(layer_px) + 0.5, place)) {
+            continue;
+        }
+        if (covered == 0u) {
+            shaded = place;
+        }
+        covered |= 1u << index;
+        count += 1.0;
+        depth += hit_depth(corners, place.weights);
+    }
+    if (covered == 0u) {
+        discard;
+    }
+    // A layer's pixels are a table apart.
+    shaded.right /= float(table.x);
+    shaded.down /= float(table.y);
+    stand_at(in_primitive, shaded);
+    vec4 base_color = base_color_at(params.material);
+#ifdef ALPHA_TESTED
+    for (uint index = 0u; index < PASS_SAMPLES; index++) {
+        if (!is_seen(base_color.a, layer_px, first + index)) {
+            covered &= ~(1u << index);
+        }
+    }
+    if (covered == 0u) {
+        discard;
+    }
+#endif
+    gl_FragDepth = depth / count;
+    gl_SampleMask[0] = int(covered);
+    out_color = attached_color(color_of_base(base_color));
+    if (IS_COUNTED != 0u) {
+        atomicAdd(counters[COUNTED_SHADED], 1u);
+    }
+}

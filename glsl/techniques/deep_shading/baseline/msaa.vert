@@ -1,0 +1,102 @@
+// A triangle around all that a triangle covers of the frame while the shutter is open, and its corners at both ends of the
+// exposure. Pass: src/techniques/deep_shading/baseline/msaa.rs.
+//
+// Why one triangle: of a polygon of several the pixels along its inner edges would be run, and shaded, once for each side.
+#version 460
+#include "frame.glsl"
+#include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/visibility/bound.glsl"
+
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+
+layout(location = 1) flat out uint out_primitive;
+// Clip space when the shutter opens, and closes; and metres before the eye.
+layout(location = 2) flat out vec4 out_open[3];
+layout(location = 5) flat out vec4 out_close[3];
+layout(location = 8) flat out vec3 out_open_depth;
+layout(location = 9) flat out vec3 out_close_depth;
+
+// The rasteriser's own samples only say which pixels are run: all of those that a pixel has must be covered where any place
+// in it may be. A quarter is for rounding.
+const float WHOLE_PIXEL = 1.25;
+
+// A box around points, along a direction and across it, pixels.
+struct Box {
+    vec2 along;
+    vec2 least;
+    vec2 greatest;
+};
+
+vec2 turned(vec2 along, vec2 at) {
+    return vec2(dot(along, at), along.x * at.y - along.y * at.x);
+}
+
+Box box_of(Bound bound, vec2 along) {
+    Box box = Box(along, vec2(3.0e38), vec2(-3.0e38));
+    // How far a pixel's corners lie along a direction.
+    float reach = WHOLE_PIXEL * (abs(along.x) + abs(along.y));
+    for (uint index = 0u; index < bound.count; index++) {
+        vec2 at = turned(along, bound.corners[index]);
+        box.least = min(box.least, at - reach);
+        box.greatest = max(box.greatest, at + reach);
+    }
+    return box;
+}
+
+float area_of(Box box) {
+    vec2 size = box.greatest - box.least;
+    return size.x * size.y;
+}
+
+// The lesser of the box along the polygon's longest side and what the frame has of the upright one.
+Box best_box(Bound bound, vec2 frame_px) {
+    vec2 longest = vec2(1.0, 0.0);
+    for (uint index = 0u; index < bound.count; index++) {
+        vec2 side = bound.corners[(index + 1u) % bound.count] - bound.corners[index];
+        if (dot(side, side) > dot(longest, longest)) {
+            longest = side;
+        }
+    }
+    Box upright = box_of(bound, vec2(1.0, 0.0));
+    upright.least = max(upright.least, vec2(-WHOLE_PIXEL));
+    upright.greatest = max(min(upright.greatest, frame_px + WHOLE_PIXEL), upright.least);
+    Box tilted = box_of(bound, normalize(longest));
+    if (area_of(tilted) < area_of(upright)) {
+        return tilted;
+    }
+    return upright;
+}
+
+void main() {
+    uint corner = uint(gl_VertexIndex) % 3u;
+    uint triangle = uint(gl_VertexIndex) / 3u;
+    Seen seen[6];
+    see_triangle(triangle, seen);
+    for (uint index = 0u; index < 3u; index++) {
+        out_open[index] = seen[index].clip;
+        out_close[index] = seen[index + 3u].clip;
+    }
+    out_open_depth = vec3(seen[0].depth, seen[1].depth, seen[2].depth);
+    out_close_depth = vec3(seen[3].depth, seen[4].depth, seen[5].depth);
+    out_primitive = params.primitive_offset + triangle;
+    vec2 frame_px = vec2(frame.width_px, frame.height_px);
+    TupleBlock whole_frame = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0u);
+    Bound bound = bound_of(seen, whole_frame, frame_px);
+    if (bound.count == 0u) {
+        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);
+        return;
+    }
+    Box box = best_box(bound, frame_px);
+    // Twice as long and as wide as the box, whose far corner lies on its long side; towards the middle of the frame, so that
+    // it rarely leaves what drivers draw without cutting it into pieces.
+    vec2 size = box.greatest - box.least;
+    vec2 middle = turned(box.along, 0.5 * frame_px);
+    bvec2 from_least = lessThan(box.least + box.greatest, 2.0 * middle);
+    vec2 start = mix(box.greatest, box.least, from_least);
+    vec2 way = mix(-size, size, from_least);
+    vec2 at = start + 2.0 * way * vec2(corner == 1u, corner == 2u);
+    vec2 across = vec2(-box.along.y, box.along.x);
+    gl_Position = vec4((box.along * at.x + across * at.y) * 2.0 / frame_px - 1.0, 0.5, 1.0);
+}

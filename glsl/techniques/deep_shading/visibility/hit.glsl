@@ -1,0 +1,36 @@
+// A sample's test against a triangle as its tuple sees it: whether it lies in it and sees a side that is drawn (section 4.2).
+//
+// After scene_buffers.glsl, counters.glsl and covers.glsl; the including shader declares `counters[]` and IS_COUNTED.
+#ifndef DEEP_SHADING_HIT_GLSL
+#define DEEP_SHADING_HIT_GLSL
+
+// More than a word counts: the second has what the first was carried over.
+void count_test() {
+    if (atomicAdd(counters[COUNTED_TESTS], 1u) == 0xffffffffu) {
+        atomicAdd(counters[COUNTED_TESTS_CARRIED], 1u);
+    }
+}
+
+// `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `place` is of the layer's pixels, where it is true.
+bool is_hit(vec4 corners[3], vec2 at, out Place place) {
+    if (IS_COUNTED != 0u) {
+        count_test();
+    }
+    if (!covers(corners[0], corners[1], corners[2], at)) {
+        return false;
+    }
+    if (IS_COUNTED != 0u) {
+        atomicAdd(counters[COUNTED_TESTS_HIT], 1u);
+    }
+    place = place_at(corners[0], corners[1], corners[2], at);
+    bool is_front = place.is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
+    return is_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;
+}
+
+// What a sample's depth is at a place of such a triangle.
+float hit_depth(vec4 corners[3], vec3 weights) {
+    vec2 depth = covered_depth(corners[0], corners[1], corners[2], weights);
+    return depth.x / depth.y;
+}
+
+#endif

@@ -1,0 +1,225 @@
+//! Visibility first, then what it has seen is shaded: figure 3, from samples to their colours, and what counts the lists after
+//! the resolve.
+
+use super::brute::Brute;
+use super::choices::Choices;
+use super::count::Count;
+use super::lists::address::Address;
+use super::lists::compact::Compact;
+use super::lists::direct::Direct;
+use super::lists::insert::Insert;
+use super::lists::{self, Lists};
+use super::primitives::Primitives;
+use super::resolve::Shaded;
+use super::scene::DeepScene;
+use super::shade::Shade;
+use super::tuples::Table;
+use super::visibility::ray::{Rays, Sets, Traced};
+use super::visibility::sample::Sample;
+use super::visibility::{self, Drawn, Samples, Visibility};
+use crate::error::Result;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
+use crate::plan::Resources;
+use crate::resident::{DrawList, SceneGpu};
+use crate::units::Extent;
+use std::sync::Arc;
+
+/// What builds the deep shading buffer and shades it.
+struct Listed {
+    lists: Lists,
+    insertion: Insertion,
+    shade: Shade,
+    count: Option<Count>,
+}
+
+/// Who puts triangles into lists.
+enum Insertion {
+    Device(Box<Inserted>),
+    Host(Direct),
+}
+
+/// Insertion by compute shaders.
+struct Inserted {
+    insert: Insert,
+    compact: Option<Compact>,
+    address: Option<Address>,
+}
+
+/// Who finds what samples see.
+enum Seen {
+    Drawn(Samples, Sample),
+    Traced(Samples, Rays),
+    /// With `--lists direct` the lists alone know.
+    Listed,
+}
+
+/// What all passes of a frame read.
+pub struct Scene<'a> {
+    pub resident: &'a SceneGpu,
+    pub deep: &'a DeepScene,
+    pub list: &'a DrawList,
+    pub primitives: &'a Primitives,
+    pub table: &'a Table,
+    pub frame: Extent,
+}
+
+pub struct Apart {
+    seen: Seen,
+    listed: Option<Listed>,
+    brute: Brute,
+    colors: Buffer,
+    visibility: Visibility,
+    space: Extent,
+}
+
+impl Apart {
+    /// `frame`: its extent; `traced`: with `--visibility ray`.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        frame: Extent,
+        traced: Option<Traced>,
+    ) -> Result<Self> {
+        let samples = |resources: &mut Resources| Samples::new(gpu, resources, choices);
+        let mut host_lists = None;
+        let seen = match traced.map(|traced| traced.sets) {
+            Some(Sets::Lists(sets)) => {
+                host_lists = Some(Direct::new(resources, choices, sets));
+                Seen::Listed
+            }
+            Some(Sets::Samples(sets)) => Seen::Traced(samples(resources)?, Rays::new(resources, choices, sets)),
+            None => Seen::Drawn(samples(resources)?, Sample::new(gpu, scene, choices)?),
+        };
+        let listed = if choices.has_lists {
+            let address = choices.is_compacted && choices.has_addresses;
+            let insertion = match host_lists {
+                Some(direct) => Insertion::Host(direct),
+                None => Insertion::Device(Box::new(Inserted {
+                    insert: Insert::new(gpu, choices)?,
+                    compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
+                    address: if address { Some(Address::new(gpu)?) } else { None },
+                })),
+            };
+            Some(Listed {
+                lists: Lists::new(resources, choices),
+                insertion,
+                shade: Shade::new(gpu, scene, choices)?,
+                count: if choices.is_counted { Some(Count::new(gpu, resources, choices)?) } else { None },
+            })
+        } else {
+            None
+        };
+        Ok(Self {
+            seen,
+            listed,
+            brute: Brute::new(gpu, scene, resources, choices, frame)?,
+            colors: lists::colors(resources),
+            visibility: choices.visibility,
+            space: choices.space.extent,
+        })
+    }
+
+    /// None: `--lists direct`.
+    pub fn samples(&self) -> Option<&Samples> {
+        match &self.seen {
+            Seen::Drawn(samples, _) | Seen::Traced(samples, _) => Some(samples),
+            Seen::Listed => None,
+        }
+    }
+
+    /// Lists that the host has made.
+    pub fn host_lists(&self) -> Option<&Direct> {
+        match &self.listed.as_ref()?.insertion {
+            Insertion::Host(direct) => Some(direct),
+            Insertion::Device(_) => None,
+        }
+    }
+
+    pub fn count(&self) -> Option<&Count> {
+        self.listed.as_ref()?.count.as_ref()
+    }
+
+    /// Puts what the host has made of a run where the frame takes it from.
+    pub fn begin_run(&self, run: u32) {
+        if let Seen::Traced(_, rays) = &self.seen {
+            rays.stage(run);
+        }
+        if let Some(direct) = self.host_lists() {
+            direct.stage(run);
+        }
+    }
+
+    /// To samples that have colours.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        scene: &Scene<'_>,
+        bound: &[(&'static str, Bound<'_>)],
+        counters: &Buffer,
+    ) -> Result<Shaded<'_>> {
+        let Scene { resident, deep, list, primitives, table, frame } = *scene;
+        match &self.seen {
+            Seen::Listed => {}
+            Seen::Traced(samples, rays) => rays.record(cmd, samples, counters)?,
+            Seen::Drawn(samples, sample) => {
+                let drawn = Drawn { sample, scene: resident, list, primitives, table, frame };
+                visibility::record(cmd, &drawn, bound, samples, counters, self.visibility)?;
+            }
+        }
+        if let Some(listed) = &self.listed {
+            let links_left = self.record_insertion(cmd, listed, bound, counters)?;
+            let maps = deep.maps_barrier(Access::DepthWrite);
+            let left = (&listed.lists, links_left, maps);
+            listed.shade.record(cmd, resident, list, primitives, bound, left, &self.colors, counters)?;
+        }
+        let lists = self.listed.as_ref().map(|listed| &listed.lists);
+        let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
+        let left = (lists, deep.maps_barrier(maps_left));
+        self.brute.record(cmd, resident, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
+        let samples = self.samples().map(|samples| {
+            let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };
+            (samples, seen_by | Access::FragmentSample)
+        });
+        Ok(Shaded::Apart { samples, lists, colors: &self.colors })
+    }
+
+    /// Returns how the links were touched last.
+    fn record_insertion(
+        &self,
+        cmd: &mut Commands,
+        listed: &Listed,
+        bound: &[(&'static str, Bound<'_>)],
+        counters: &Buffer,
+    ) -> Result<Access> {
+        let (lists, colors) = (&listed.lists, &self.colors);
+        let Inserted { insert, compact, address } = match &listed.insertion {
+            Insertion::Device(inserted) => &**inserted,
+            Insertion::Host(direct) => {
+                direct.record(cmd, lists, colors, counters)?;
+                return Ok(Access::ComputeWrite);
+            }
+        };
+        let samples = self.samples().expect("the host has not inserted them");
+        insert.record(cmd, bound, samples, lists, colors, counters)?;
+        if let Some(compact) = compact {
+            compact.record(cmd, bound, lists, colors, counters, self.space)?;
+        }
+        let Some(address) = address else { return Ok(Access::ComputeWrite) };
+        address.record(cmd, bound, samples, lists)?;
+        Ok(Access::ComputeRead)
+    }
+
+    /// After the resolve.
+    pub fn record_count(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        counters: &Buffer,
+    ) -> Result<()> {
+        let Some(listed) = &self.listed else { return Ok(()) };
+        let Some(count) = &listed.count else { return Ok(()) };
+        count.record(cmd, bound, &listed.lists, counters)
+    }
+}

@@ -1,0 +1,263 @@
+//! Baselines: what is drawn is shaded in screen space, as Clarberg and Munkberg 2014 (section 6, figure 8) compare with, on the
+//! same tuples, lights, shadow maps and materials. No lists, no addresses, no SPIDs: colours and depths of samples are all.
+//! reads   the scene, its lights, the tuples
+//! writes  baseline.colors and baseline.depth: arrays of images, 8 and 4 B a sample
+//!
+//! Colours are of the middle of the exposure, from the middle of the lens, as by the lists: what differs is how many there are
+//! and where on a triangle they are taken. Surfaces face as their samples see them. There is no pass for depth alone, which
+//! the paper calls no good approach for stochastic rasterisation (section 3): what something nearer covers later has been
+//! shaded, and is counted. Draws go front to back.
+
+pub mod msaa;
+pub mod ssaa;
+
+use super::choices::Choices;
+use super::full;
+use super::plan::{COLOR, COUNTERS, DEPTH_FORMAT};
+use super::settings::SETTINGS;
+use super::visibility::sample::Sample;
+use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
+use crate::error::{Error, Result};
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::{Shader, variant};
+use crate::gpu::{
+    Access, Barrier, Bound, Buffer, Caps, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Need, Traffic,
+};
+use crate::passes::{mesh, shadow_maps};
+use crate::plan::{Plan, Resources, Shape};
+use crate::resident::SceneGpu;
+use crate::settings::Values;
+use crate::units::Extent;
+use ash::vk::{self, ImageUsageFlags as Usage};
+use std::sync::Arc;
+
+const COLORS: &str = "baseline.colors";
+const DEPTH: &str = "baseline.depth";
+const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+/// Settings of shading space and of what is built in it.
+const OF_LISTS: [&str; 8] =
+    ["guard-band", "shading-scale", "lists", "duplicates", "compaction", "zmax", "address-buffer", "conservative"];
+
+/// What only images of several samples a pixel read.
+const OF_PASSES: &str = "pass-samples";
+
+/// What `values` need of a device, whatever is shaded.
+pub fn needs(values: &Values) -> Option<Need> {
+    msaa::needs(values)
+}
+
+/// What is shaded (`--shading`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// What the lists have.
+    Deep,
+    /// Every sample that is drawn.
+    Ssaa,
+    /// A pixel's samples that see a triangle, once.
+    Msaa {
+        /// Samples a pixel that are drawn at once.
+        pass_samples: u32,
+    },
+}
+
+impl Shading {
+    /// The value of `--shading`, with `spp` samples a pixel.
+    ///
+    /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
+    pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
+        let text = values.text("shading");
+        let (reads_lists, reads_passes) = (text == "deep", text == "msaa");
+        let is_unread = |key| (!reads_lists && OF_LISTS.contains(&key)) || (!reads_passes && key == OF_PASSES);
+        if let Some(row) = SETTINGS.iter().find(|row| is_unread(row.key) && values.text(row.key) != row.default) {
+            let (key, value, default) = (row.key, values.text(row.key), row.default);
+            let (why, reader) = if key == OF_PASSES {
+                ("samples are drawn one at a time", "msaa")
+            } else {
+                ("it has no shading space and no lists", "deep")
+            };
+            return Err(Error::request(format!("--{key} {value} with --shading {text}: {why}"))
+                .note(format!("--shading {reader} takes it; --{key} {default} goes with all")));
+        }
+        Ok(match text {
+            "deep" => Self::Deep,
+            "ssaa" => Self::Ssaa,
+            "msaa" => Self::Msaa { pass_samples: msaa::pass_samples(values, caps, spp)? },
+            other => panic!("--shading {other} was checked"),
+        })
+    }
+
+    /// How samples find what they see.
+    ///
+    /// Errors: supersampling has no such kind (exit code 2).
+    pub fn visibility(self, values: &Values) -> Result<Visibility> {
+        let visibility = Visibility::of(values);
+        match self {
+            Self::Deep => Ok(visibility),
+            Self::Msaa { .. } => Ok(Visibility::Stochastic),
+            Self::Ssaa if matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic) => Ok(visibility),
+            Self::Ssaa => {
+                let kind = values.text("visibility");
+                let why = "samples are drawn and shaded layer by layer";
+                Err(Error::request(format!("--visibility {kind} with --shading ssaa: {why}"))
+                    .within(super::NAME)
+                    .note("--visibility repeat-frame and stochastic go with it"))
+            }
+        }
+    }
+
+    /// The pass that draws.
+    fn pass(self) -> &'static str {
+        match self {
+            Self::Ssaa => "baseline.ssaa",
+            Self::Msaa { .. } => "baseline.msaa",
+            Self::Deep => unreachable!("it is no baseline"),
+        }
+    }
+
+    /// Samples a pixel of what is drawn into.
+    pub fn pass_samples(self) -> u32 {
+        match self {
+            Self::Msaa { pass_samples } => pass_samples,
+            Self::Deep | Self::Ssaa => 1,
+        }
+    }
+}
+
+/// Layers that samples are drawn into: one a tuple, of a table's part of the frame, or one a pass, of the whole frame.
+fn layers(choices: &Choices, frame: Extent, format: vk::Format, usage: Usage) -> ImageDescription {
+    let (table, samples) = (&choices.table, choices.shading.pass_samples());
+    let (extent, layer_count) = match choices.shading {
+        Shading::Msaa { .. } => (frame, table.samples / samples),
+        Shading::Deep | Shading::Ssaa => (table.layer(frame), table.tuple_count()),
+    };
+    ImageDescription { layer_count: Some(layer_count), ..ImageDescription::plain(extent, format, samples, usage) }
+}
+
+/// Colours and depths of a frame's samples.
+pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
+    let attached = |format, usage| Shape::Image(layers(choices, frame, format, usage));
+    plan.push("frame_buffer", full(COLORS), attached(COLOR_FORMAT, Usage::COLOR_ATTACHMENT | Usage::SAMPLED));
+    plan.push("frame_buffer", full(DEPTH), attached(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
+}
+
+/// Who touches them.
+pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
+    let touch = |name: &str, access| (full(name), access);
+    let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
+    drawn.extend(choices.maps.iter().map(|maps| maps.read(super::NAME)));
+    drawn.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
+    plan.pass(full(choices.shading.pass()), drawn);
+    let resolved = [
+        touch(COLORS, Access::ComputeSample),
+        touch(COUNTERS, Access::ComputeWrite),
+        touch(COLOR, Access::ComputeWrite),
+    ];
+    plan.pass(full("resolve"), resolved);
+}
+
+pub struct Baseline {
+    pub sample: Sample,
+    pub colors: Image,
+    depth: Image,
+    /// Texels are fetched: it only has to be there.
+    nearest: Sampler,
+    shading: Shading,
+}
+
+impl Baseline {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+        let (stages, fragment): (_, fn(&SceneGpu, &Choices, &str) -> &'static Shader) = match choices.shading {
+            Shading::Msaa { .. } => (msaa::stages(), msaa::fragment),
+            Shading::Deep | Shading::Ssaa => {
+                (visibility::stages(scene, choices, &repeat_frame::repeats(0)), ssaa::fragment)
+            }
+        };
+        let pipeline = |alpha| pipeline(gpu, scene, choices, stages.vertex, fragment(scene, choices, alpha));
+        Ok(Self {
+            sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
+            colors: resources.image(&full(COLORS)),
+            depth: resources.image(&full(DEPTH)),
+            nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            shading: choices.shading,
+        })
+    }
+
+    /// The colours as the resolve reads them.
+    pub fn sampled(&self) -> Bound<'_> {
+        Bound::Sampled(&self.colors, self.nearest.handle, Access::ComputeSample)
+    }
+
+    /// Draws and shades every layer: what of it is in the frame. `maps`: the barrier of the shadow maps.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        drawn: &Drawn<'_>,
+        bound: &[(&'static str, Bound<'_>)],
+        maps: Option<Barrier>,
+        counters: &Buffer,
+    ) -> Result<()> {
+        let description = self.colors.description;
+        let traffic = Traffic {
+            read_bytes: u64::from(description.layers()) * mesh::read_bytes(drawn.scene, drawn.list.calls()),
+            written_bytes: description.bytes() + self.depth.description.bytes(),
+            invocations: None,
+        };
+        cmd.pass(&full(self.shading.pass()), traffic, |cmd| {
+            cmd.barriers(maps);
+            cmd.barriers([self.colors.discard(Access::ColorWrite), self.depth.discard(Access::DepthWrite)]);
+            begin_counters(cmd, counters);
+            let mut bound = bound.to_vec();
+            bound.push(("Counters", Bound::Buffer(counters)));
+            let sets = self.sample.sets(cmd, &bound)?;
+            for layer in 0..description.layers() {
+                // Alpha is 1 where something is.
+                let colors = ColorTarget::new(&self.colors, Some(vk::ClearColorValue { float32: [0.0; 4] }));
+                let depth = (&self.depth, Some(0.0), Access::DepthWrite);
+                cmd.begin_layers(description.extent, Layers::One(layer), &[colors], Some(depth));
+                let first_tuple = match self.shading {
+                    Shading::Msaa { pass_samples } => layer * pass_samples,
+                    Shading::Deep | Shading::Ssaa => {
+                        cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, layer));
+                        layer
+                    }
+                };
+                self.sample.draw(cmd, drawn, &sets, &repeat_frame::repeats(first_tuple));
+                cmd.end_rendering();
+            }
+            Ok(())
+        })
+    }
+}
+
+fn pipeline(
+    gpu: &Arc<Gpu>,
+    scene: &SceneGpu,
+    choices: &Choices,
+    vertex: &'static Shader,
+    fragment: &'static Shader,
+) -> Result<GraphicsPipeline> {
+    let constants = super::constants_of(choices, &[Some(vertex), Some(fragment)]);
+    GraphicsPipeline::new(
+        gpu,
+        &GraphicsDescription {
+            vertex,
+            geometry: None,
+            fragment: Some(fragment),
+            constants: &constants,
+            vertex_buffers: &[],
+            color_formats: &[COLOR_FORMAT],
+            samples: choices.shading.pass_samples(),
+            blending: Blending::Replace,
+            depth_format: Some(DEPTH_FORMAT),
+            depth_write: true,
+            depth_compare: vk::CompareOp::GREATER,
+            depth_clamp: false,
+            depth_slope_bias: 0.0,
+            conservative: false,
+            stencil: None,
+            foreign_sets: &[scene.material_layout],
+        },
+    )
+}

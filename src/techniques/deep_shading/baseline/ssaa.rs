@@ -1,0 +1,18 @@
+//! Supersampling: tuples are drawn as for the lists, layer by layer, and each fragment that passes the depth test is shaded
+//! (`--shading ssaa`; Clarberg & Munkberg 2014, section 6). Shaders: the vertex stage of visibility, ssaa.frag.
+//!
+//! Fragments that alpha may discard, and those of `--visibility stochastic`, whose depth a shader writes, are shaded before
+//! their depth is tested.
+
+use super::super::choices::Choices;
+use super::{Visibility, mesh, shadow_maps, variant};
+use crate::gpu::shader::Shader;
+use crate::gpu::shader::techniques::deep_shading::baseline::ssaa::FRAG_VARIANTS;
+use crate::resident::SceneGpu;
+
+/// `alpha`: the value of the shader's axis.
+pub(super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {
+    let visibility = if choices.visibility == Visibility::Stochastic { "stochastic" } else { "interleaved" };
+    let shadows = shadow_maps::axis(choices.maps.is_some());
+    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows, visibility])
+}
