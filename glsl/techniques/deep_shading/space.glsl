@@ -34,7 +34,9 @@ struct DeepBlock {
     // Samples a pixel, and all tuples.
     uint sample_count;
     uint tuple_count;
-    uint _unused[2];
+    // 0, which no compiler knows.
+    uint nothing;
+    uint _unused;
 };
 
 // One place in a pixel, on the lens and in time: (x, y, u, v, t) of the paper's appendix.

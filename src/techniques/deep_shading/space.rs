@@ -91,7 +91,8 @@ impl ShadingSpace {
             table_height_px: table.cells[1],
             sample_count: table.samples,
             tuple_count: table.tuple_count(),
-            _unused: [0; 2],
+            nothing: 0,
+            _unused: 0,
         }
     }
 }
