@@ -38,11 +38,13 @@ fn require_agreement(watched: &Watched, changes: Changes<'_>) {
         println!("{kind:?}, {changes:?}: {other} see another triangle, {hit} see one");
         assert!(hit > 0.3, "{kind:?}, {changes:?}: {hit}");
         let most = if has_holes && kind == RAY { MOST_OTHERS_BESIDE_HOLES } else { MOST_OTHERS };
+        // Seen with 4 bits: 0.0107 in the box.
+        let most = most * f64::from(1u32 << (8 - watched.session.gpu.caps.limits.sub_pixel_bits.min(8)).min(2));
         assert!(other <= most, "{kind:?}, {changes:?}: {other} differ");
     }
 }
 
-/// An edge is up to 1/512 of a layer's pixel elsewhere, along x and along y, so that a layer's pixel with an edge through it
+/// Of a rasteriser that places corners to 8 bits: an edge is up to 1/512 of a layer's pixel elsewhere, along x and along y, so that a layer's pixel with an edge through it
 /// differs in one of some 300 cases; where a few edges go through each, that is one in a hundred.
 const MOST_OTHERS: f64 = 0.01;
 
@@ -83,7 +85,8 @@ fn lists_of_rays_come_to_the_bits_of_every_sample_by_itself() {
 
 #[track_caller]
 fn require_the_same_bits(kind: (&str, &str), roads: &[Changes<'_>]) {
-    let blurred = [SIZE, kind, ("spp", "2"), ("tuples", "8")];
+    // Polygons as large as a layer are tested in each of its pixels.
+    let blurred = [("size", "97x55"), kind, ("spp", "2"), ("tuples", "8")];
     let watched = Watched::open("hall:triangles=8000");
     // The second brings samples in from outside shading space.
     for lens in [

@@ -39,6 +39,10 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 
 void main() {
     uvec3 at = uvec3(gl_FragCoord.xy, in_tuple);
+    // As in shade.frag.
+    if (at.x >= deep.layer_width_px || at.y >= deep.layer_height_px) {
+        discard;
+    }
     uint own = sample_index(deep, at);
 #ifdef SAMPLES_DIRECT
     // What the host's lists do not have: its node lies where its colour does, and says what it sees.

@@ -51,6 +51,10 @@ bool is_hidden(uint pixel) {
 
 void main() {
     uvec2 at = uvec2(gl_FragCoord.xy);
+    // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer.
+    if (at.x >= deep.shading_width_px || at.y >= deep.shading_height_px) {
+        discard;
+    }
     uint pixel = at.y * deep.shading_width_px + at.x;
     // Nothing was seen here.
     if (begins[pixel] == 0u) {
