@@ -9,18 +9,16 @@ use super::lists::compact::Compact;
 use super::lists::direct::Direct;
 use super::lists::insert::Insert;
 use super::lists::{self, Lists};
-use super::primitives::Primitives;
 use super::resolve::Shaded;
 use super::scene::DeepScene;
 use super::shade::Shade;
-use super::tuples::Table;
 use super::visibility::ray::{Rays, Sets, Traced};
 use super::visibility::sample::Sample;
 use super::visibility::{self, Drawn, Samples, Visibility};
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
 use crate::plan::Resources;
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::SceneGpu;
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -51,16 +49,6 @@ enum Seen {
     Traced(Samples, Rays),
     /// With `--lists direct` the lists alone know.
     Listed,
-}
-
-/// What all passes of a frame read.
-pub struct Scene<'a> {
-    pub resident: &'a SceneGpu,
-    pub deep: &'a DeepScene,
-    pub list: &'a DrawList,
-    pub primitives: &'a Primitives,
-    pub table: &'a Table,
-    pub frame: Extent,
 }
 
 pub struct Apart {
@@ -155,29 +143,29 @@ impl Apart {
     pub fn record(
         &self,
         cmd: &mut Commands,
-        scene: &Scene<'_>,
+        deep: &DeepScene,
+        drawn: Drawn<'_>,
         bound: &[(&'static str, Bound<'_>)],
         counters: &Buffer,
     ) -> Result<Shaded<'_>> {
-        let Scene { resident, deep, list, primitives, table, frame } = *scene;
+        let Drawn { scene, list, primitives, .. } = drawn;
         match &self.seen {
             Seen::Listed => {}
             Seen::Traced(samples, rays) => rays.record(cmd, samples, counters)?,
             Seen::Drawn(samples, sample) => {
-                let drawn = Drawn { sample, scene: resident, list, primitives, table, frame };
-                visibility::record(cmd, &drawn, bound, samples, counters, self.visibility)?;
+                visibility::record(cmd, sample, drawn, bound, samples, counters, self.visibility)?;
             }
         }
         if let Some(listed) = &self.listed {
             let links_left = self.record_insertion(cmd, listed, bound, counters)?;
             let maps = deep.maps_barrier(Access::DepthWrite);
             let left = (&listed.lists, links_left, maps);
-            listed.shade.record(cmd, resident, list, primitives, bound, left, &self.colors, counters)?;
+            listed.shade.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
         }
         let lists = self.listed.as_ref().map(|listed| &listed.lists);
         let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
         let left = (lists, deep.maps_barrier(maps_left));
-        self.brute.record(cmd, resident, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
+        self.brute.record(cmd, scene, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
         let samples = self.samples().map(|samples| {
             let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };
             (samples, seen_by | Access::FragmentSample)

@@ -1,6 +1,6 @@
 //! A frame of deep shading on the device: the passes in the order of figure 3, or those of a baseline.
 
-use super::apart::{self, Apart};
+use super::apart::Apart;
 use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
 use super::counters::Counted;
@@ -105,18 +105,15 @@ impl Frame for DeepFrame {
         let Self { list, primitives, counters, color, .. } = self;
         let bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
-        let (table, extent) = (&self.choices.table, color.description.extent);
+        let drawn = Drawn { scene, list, primitives, table: &self.choices.table, frame: color.description.extent };
         match &self.shader {
             Shader::Apart(apart) => {
-                let deep = &self.scene;
-                let scene = apart::Scene { resident: scene, deep, list, primitives, table, frame: extent };
-                let shaded = apart.record(cmd, &scene, &bound, counters)?;
+                let shaded = apart.record(cmd, &self.scene, drawn, &bound, counters)?;
                 self.resolve.record(cmd, &bound, shaded, counters, color)?;
                 apart.record_count(cmd, &bound, counters)?;
             }
             Shader::AsDrawn(baseline) => {
-                let drawn = Drawn { sample: &baseline.sample, scene, list, primitives, table, frame: extent };
-                baseline.record(cmd, &drawn, &bound, self.scene.maps_barrier(Access::DepthWrite), counters)?;
+                baseline.record(cmd, drawn, &bound, self.scene.maps_barrier(Access::DepthWrite), counters)?;
                 self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, color)?;
             }
         }

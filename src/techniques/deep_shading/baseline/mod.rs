@@ -158,7 +158,7 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
 }
 
 pub struct Baseline {
-    pub sample: Sample,
+    sample: Sample,
     pub colors: Image,
     depth: Image,
     /// Texels are fetched: it only has to be there.
@@ -193,7 +193,7 @@ impl Baseline {
     pub fn record(
         &self,
         cmd: &mut Commands,
-        drawn: &Drawn<'_>,
+        drawn: Drawn<'_>,
         bound: &[(&'static str, Bound<'_>)],
         maps: Option<Barrier>,
         counters: &Buffer,

@@ -164,8 +164,8 @@ impl Samples {
 }
 
 /// What is drawn, and where.
+#[derive(Clone, Copy)]
 pub struct Drawn<'a> {
-    pub sample: &'a Sample,
     pub scene: &'a SceneGpu,
     pub list: &'a DrawList,
     pub primitives: &'a Primitives,
@@ -183,7 +183,8 @@ pub fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
 /// Draws every tuple into its layer: what of it is in the frame.
 pub fn record(
     cmd: &mut Commands,
-    drawn: &Drawn<'_>,
+    sample: &Sample,
+    drawn: Drawn<'_>,
     bound: &[(&'static str, Bound<'_>)],
     samples: &Samples,
     counters: &Buffer,
@@ -203,13 +204,13 @@ pub fn record(
         begin_counters(cmd, counters);
         let mut bound = bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
-        let sets = drawn.sample.sets(cmd, &bound)?;
+        let sets = sample.sets(cmd, &bound)?;
         visibility.for_layers(&repeats, layers, |at, repeats| {
             samples.begin(cmd, at);
             if let Layers::One(tuple) = at {
                 cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, tuple));
             }
-            drawn.sample.draw(cmd, drawn, &sets, repeats);
+            sample.draw(cmd, drawn, &sets, repeats);
             cmd.end_rendering();
         });
         Ok(())

@@ -153,7 +153,7 @@ impl Sample {
     }
 
     /// All draws, inside rendering.
-    pub fn draw(&self, cmd: &mut Commands, drawn: &Drawn<'_>, Sets([opaque, tested]): &Sets, repeats: &Repeats) {
+    pub fn draw(&self, cmd: &mut Commands, drawn: Drawn<'_>, Sets([opaque, tested]): &Sets, repeats: &Repeats) {
         let Drawn { scene, list, primitives, .. } = drawn;
         for (pipeline, set, calls) in [(&self.opaque, opaque, &list.opaque), (&self.tested, tested, &list.mask)] {
             if let Some(first) = calls.first() {
