@@ -41,14 +41,14 @@ void main() {
     uvec3 at = uvec3(gl_FragCoord.xy, in_tuple);
     // As in shade.frag.
     if (at.x >= deep.layer_width_px || at.y >= deep.layer_height_px) {
-        discard;
+        return;
     }
     uint own = sample_index(deep, at);
 #ifdef SAMPLES_DIRECT
     // What the host's lists do not have: its node lies where its colour does, and says what it sees.
     uint address = addresses[own];
     if (address == NO_ADDRESS || (address & ADDRESS_STRAY) == 0u) {
-        discard;
+        return;
     }
     own = address & ~ADDRESS_STRAY;
     uvec2 spid = nodes[own];
@@ -56,7 +56,7 @@ void main() {
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
 #endif
     if (spid.x != in_primitive) {
-        discard;
+        return;
     }
     bool is_outside = spid.y == NO_SHADING_PIXEL;
     uvec2 pixel = uvec2(spid.y & 0xffffu, spid.y >> 16);
@@ -64,7 +64,7 @@ void main() {
     // Nearly always no list was full, and none is asked.
     if (!is_outside && (counters[COUNTED_CROWDED] == 0u ||
                         color_index(pixel.y * deep.shading_width_px + pixel.x, spid.x) != NO_COLOR)) {
-        discard;
+        return;
     }
     own = nodes[own].x;
 #endif

@@ -51,23 +51,25 @@ bool is_hidden(uint pixel) {
 
 void main() {
     uvec2 at = uvec2(gl_FragCoord.xy);
-    // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer.
+    // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer. Nothing is
+    // attached that could be written, so a thread returns: one that is discarded goes on as a helper of its quad (glslang
+    // takes discard for demotion) and still reads.
     if (at.x >= deep.shading_width_px || at.y >= deep.shading_height_px) {
-        discard;
+        return;
     }
     uint pixel = at.y * deep.shading_width_px + at.x;
     // Nothing was seen here.
     if (begins[pixel] == 0u) {
-        discard;
+        return;
     }
 #ifdef ZMAX_ON
     if (is_hidden(pixel)) {
-        discard;
+        return;
     }
 #endif
     uint color = color_index(pixel, in_primitive);
     if (color == NO_COLOR) {
-        discard;
+        return;
     }
     uvec2 shaded = color_on(in_primitive, at, false, vec3(0.0));
     colors[color] = shaded;
