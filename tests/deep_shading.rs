@@ -15,7 +15,7 @@ const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");
 
 /// Ways to the same picture; the first shades every sample by itself.
-const ROADS: [Changes<'_>; 8] = [
+const ROADS: [Changes<'_>; 10] = [
     &[("lists", "none")],
     &[],
     &[("compaction", "off")],
@@ -24,6 +24,8 @@ const ROADS: [Changes<'_>; 8] = [
     &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
     &[("compaction", "off"), ("duplicates", "tolerated")],
     &[("instrument", "off"), ("duplicates", "tolerated")],
+    &[("list-access", "addresses")],
+    &[("list-access", "addresses"), ("compaction", "off"), ("address-buffer", "off")],
 ];
 
 /// Both software roads of conservative rasterisation, where the driver has them.
@@ -345,12 +347,28 @@ fn what_cannot_be_is_refused_with_what_can() {
     let watched = Watched::open("cornell");
     let text = refusal(&watched, &[("spp", "8"), ("tuples", "12")]);
     assert!(text.contains("--tuples 12: it must be a multiple of --spp 8") && text.contains("--tuples 16"), "{text}");
-    // A set of one sample a pixel of this frame takes 7,372,800 bytes a buffer.
-    let most = watched.session.gpu.caps.limits.max_storage_buffer_range_bytes / (8 * 1280 * 720);
-    if most < 64 {
-        let text = refusal(&watched, &[("size", "1280x720"), ("spp", "64")]);
-        assert!(text.contains(&format!("--spp {most} fits at this size")), "{text}");
-    }
     let text = refusal(&watched, &[("size", "16384x16"), ("spp", "1"), ("shading-scale", "4"), ("guard-band", "64")]);
     assert!(text.contains("shading space has 65664 x 192 pixels"), "{text}");
+}
+
+/// Rows of 64 bytes a pixel of shading space, most of it guard band; nodes and colours of 36 million samples are as long.
+#[test]
+fn lists_longer_than_the_device_binds_are_reached_by_their_addresses() {
+    let watched = Watched::open("cornell");
+    let wide = [("size", "64x36"), ("spp", "1"), ("guard-band", "720")];
+    let is_long = watched.session.gpu.caps.limits.max_storage_buffer_range_bytes < 1504 * 1476 * 64;
+    if is_long {
+        let text = refusal(&watched, &both(&wide, &[("list-access", "descriptors")]));
+        assert!(
+            text.contains("longest buffer has 142073856 bytes") && text.contains("--list-access addresses"),
+            "{text}"
+        );
+    }
+    let access = |changes: Changes<'_>| watched.render(DEEP, changes).resolved["list-access"].clone();
+    assert_eq!(access(&wide), if is_long { "addresses" } else { "descriptors" });
+    assert_eq!(access(&both(&wide, &[("compaction", "off")])), "descriptors");
+    let short = watched.hash(DEEP, &both(&wide, &[("compaction", "off")]));
+    assert_eq!(watched.hash(DEEP, &wide), short);
+    let of_rays = |lists| watched.hash(DEEP, &both(&wide, &[("visibility", "ray"), ("lists", lists)]));
+    assert_eq!(of_rays("direct"), of_rays("none"));
 }

@@ -86,6 +86,13 @@ impl Buffer {
         found.memory_requirements
     }
 
+    /// Where shaders and builds find it, which was made with SHADER_DEVICE_ADDRESS.
+    pub fn address(&self) -> u64 {
+        let info = vk::BufferDeviceAddressInfo::default().buffer(self.handle);
+        // SAFETY: a live buffer with memory, of a live device with the feature.
+        unsafe { self.gpu.device.get_buffer_device_address(&info) }
+    }
+
     /// The host's view of the buffer. Panics where the buffer was not made for `Upload` or `Readback`.
     pub fn mapped(&self) -> &[u8] {
         let start = self.allocation.mapped.expect("only buffers for upload or readback are mapped");

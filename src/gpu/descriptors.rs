@@ -59,7 +59,9 @@ impl Descriptors {
                 .descriptor_type(binding.kind.descriptor_type());
             let write = match (binding.kind, value) {
                 (BindingKind::StorageBuffer | BindingKind::UniformBuffer, Bound::Buffer(buffer)) => {
-                    buffer_info[0] = buffer_info[0].buffer(buffer.handle).range(vk::WHOLE_SIZE);
+                    // Shaders come to what lies behind the range by the buffer's address, or the plan has refused it.
+                    let range = buffer.bytes.min(self.gpu.caps.limits.max_storage_buffer_range_bytes);
+                    buffer_info[0] = buffer_info[0].buffer(buffer.handle).range(range);
                     write.buffer_info(&buffer_info)
                 }
                 (BindingKind::StorageImage, Bound::Storage(image)) => {

@@ -266,7 +266,8 @@ impl Gpu {
             .depth_clamp(caps.features.depth_clamp)
             .geometry_shader(caps.features.geometry_shader);
         let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
-            .buffer_device_address(caps.features.ray_query)
+            // Every device of Vulkan 1.3 has it.
+            .buffer_device_address(true)
             .shader_output_layer(caps.features.layer_from_vertex_shader)
             .draw_indirect_count(caps.features.draw_indirect_count);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);

@@ -169,24 +169,17 @@ impl Drop for Structure {
 }
 
 /// First byte of `input`, made with `INPUT`, that an instance may begin at.
-pub fn input_start(gpu: &Gpu, input: &Buffer) -> u64 {
-    let address = address(gpu, input);
+pub fn input_start(input: &Buffer) -> u64 {
+    let address = input.address();
     address.next_multiple_of(INPUT_ALIGNMENT_BYTES) - address
-}
-
-/// The address of a buffer that was made with SHADER_DEVICE_ADDRESS.
-fn address(gpu: &Gpu, buffer: &Buffer) -> u64 {
-    let info = vk::BufferDeviceAddressInfo::default().buffer(buffer.handle);
-    // SAFETY: a live buffer of a live device, which has the feature where it has ray queries.
-    unsafe { gpu.device.get_buffer_device_address(&info) }
 }
 
 impl Commands {
     /// Builds `target` from what lies in `input` from byte `offset` on, with notes in `scratch`, as long as `Over::sizes` says.
     pub fn build_structure(&mut self, target: &Structure, (input, offset): (&Buffer, u64), scratch: &Buffer) {
         let gpu = self.gpu().clone();
-        let geometries = [target.over.geometry(address(&gpu, input) + offset)];
-        let notes = address(&gpu, scratch).next_multiple_of(SCRATCH_ALIGNMENT_BYTES);
+        let geometries = [target.over.geometry(input.address() + offset)];
+        let notes = scratch.address().next_multiple_of(SCRATCH_ALIGNMENT_BYTES);
         let info = target
             .over
             .build_info(&geometries)

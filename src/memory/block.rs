@@ -14,19 +14,13 @@ pub struct Block {
 unsafe impl Send for Block {}
 
 impl Block {
-    /// `has_address`: shaders and builds may go by the address of a buffer in it, which the device must have enabled.
-    pub fn allocate(
-        device: &ash::Device,
-        type_index: u32,
-        bytes: u64,
-        mapped: bool,
-        has_address: bool,
-    ) -> VkResult<Self> {
+    /// Shaders and builds may go by the address of a buffer in it.
+    pub fn allocate(device: &ash::Device, type_index: u32, bytes: u64, mapped: bool) -> VkResult<Self> {
         let mut flags = vk::MemoryAllocateFlagsInfo::default().flags(vk::MemoryAllocateFlags::DEVICE_ADDRESS);
-        let mut info = vk::MemoryAllocateInfo::default().allocation_size(bytes).memory_type_index(type_index);
-        if has_address {
-            info = info.push_next(&mut flags);
-        }
+        let info = vk::MemoryAllocateInfo::default()
+            .allocation_size(bytes)
+            .memory_type_index(type_index)
+            .push_next(&mut flags);
         // SAFETY: a live device and one of its memory types.
         let handle = unsafe { device.allocate_memory(&info, None) }?;
         let mut block = Self { handle, mapped: None };

@@ -102,9 +102,6 @@ pub struct Memory {
     device: ash::Device,
     names: Option<ash::ext::debug_utils::Device>,
     kinds: Kinds,
-    /// Memory blocks have addresses: on a device of ray queries any buffer may be one that they go by, and a block that only
-    /// some may lie in would split the pool for them.
-    has_addresses: bool,
     state: Mutex<State>,
 }
 
@@ -142,13 +139,7 @@ impl Memory {
             asks: BTreeMap::new(),
             refusal: None,
         };
-        Self {
-            device,
-            names,
-            kinds: Kinds::new(caps),
-            has_addresses: caps.features.ray_query,
-            state: Mutex::new(state),
-        }
+        Self { device, names, kinds: Kinds::new(caps), state: Mutex::new(state) }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -195,7 +186,7 @@ impl Memory {
         state.refusal = None;
         let place = state.pool.place(ask).map_err(|misfit| refuse(state, ask, name, usage, misfit))?;
         if let Some(block_bytes) = place.new_block_bytes {
-            match Block::allocate(&self.device, ask.type_index, block_bytes, ask.mapped, self.has_addresses) {
+            match Block::allocate(&self.device, ask.type_index, block_bytes, ask.mapped) {
                 Ok(block) => {
                     state.ledger.block_made(block_bytes);
                     self.name(&block, place.block);

@@ -97,6 +97,14 @@ impl Plan {
         self.resources.last_mut().expect("just pushed").touched_bytes = bytes;
     }
 
+    /// Shaders come to this buffer by its address. Nothing where the plan has none of the name.
+    pub fn addressed(&mut self, name: &str) {
+        let found = self.resources.iter_mut().find(|planned| planned.name == name);
+        if let Some(Planned { shape: Shape::Buffer { flags, .. }, .. }) = found {
+            *flags |= vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        }
+    }
+
     /// A buffer that the host writes.
     pub fn host_buffer(&mut self, group: &'static str, name: impl Into<String>, bytes: u64) {
         let flags = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -190,13 +198,15 @@ impl Plan {
         self.resources.iter().map(Planned::bytes).sum()
     }
 
-    /// Storage buffers that are longer than one binding may be are refused before anything is made.
+    /// Storage buffers that are longer than one binding may be are refused before anything is made, but those that shaders come to by
+    /// their addresses.
     ///
     /// Errors: exit code 4, naming the resource and the limit.
     pub fn check(&self, max_storage_buffer_range_bytes: u64) -> Result<()> {
         for planned in &self.resources {
             if let Shape::Buffer { bytes, flags, .. } = planned.shape
                 && flags.contains(vk::BufferUsageFlags::STORAGE_BUFFER)
+                && !flags.contains(vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS)
                 && bytes > max_storage_buffer_range_bytes
             {
                 return Err(Error::memory(format!(

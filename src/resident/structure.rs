@@ -61,7 +61,7 @@ impl SceneStructure {
         };
         let bytes = INPUT_ALIGNMENT_BYTES + INSTANCE_BYTES + TRIANGLE_BYTES * bvh.triangles.len() as u64;
         let mut input = transient("input", bytes, INPUT, Use::Upload)?;
-        let instance_at = input_start(gpu, &input);
+        let instance_at = input_start(&input);
         let triangles_at = instance_at + INSTANCE_BYTES;
         let (instance, triangles) = input.mapped_mut()[instance_at as usize..].split_at_mut(INSTANCE_BYTES as usize);
         bottom.write_instance(instance);

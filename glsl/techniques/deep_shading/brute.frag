@@ -2,6 +2,7 @@
 // Pass: src/techniques/deep_shading/brute.rs.
 // variants: SAMPLES=all|linked|compact|direct VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
 #include "techniques/deep_shading/counters.glsl"
@@ -18,20 +19,26 @@ layout(location = 2) in vec3 in_weights;
 #endif
 layout(location = 6) flat in uint in_tuple;
 
+layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
 #ifdef SAMPLES_DIRECT
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
+READS_WORDS(address_of, addresses)
 #else
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 #endif
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
+WRITES_PAIRS(set_color, colors)
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 #ifndef SAMPLES_ALL
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+READS_PAIRS(node_of, nodes)
 #endif
 #if defined(SAMPLES_LINKED) || defined(SAMPLES_COMPACT)
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
+READS_WORDS(begin_of, begins)
 #ifdef SAMPLES_COMPACT
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+READS_WORDS(row_id, linear)
 #define LISTS_COMPACT
 #endif
 #include "techniques/deep_shading/nodes.glsl"
@@ -46,12 +53,12 @@ void main() {
     uint own = sample_index(deep, at);
 #ifdef SAMPLES_DIRECT
     // What the host's lists do not have: its node lies where its colour does, and says what it sees.
-    uint address = addresses[own];
+    uint address = address_of(own);
     if (address == NO_ADDRESS || (address & ADDRESS_STRAY) == 0u) {
         return;
     }
     own = address & ~ADDRESS_STRAY;
-    uvec2 spid = nodes[own];
+    uvec2 spid = node_of(own);
 #else
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
 #endif
@@ -66,7 +73,7 @@ void main() {
                         color_index(pixel.y * deep.shading_width_px + pixel.x, spid.x) != NO_COLOR)) {
         return;
     }
-    own = nodes[own].x;
+    own = node_of(own).x;
 #endif
 #ifdef VISIBILITY_STOCHASTIC
     // What the sample sees has passed the test: its weights are inside.
@@ -74,7 +81,7 @@ void main() {
 #else
     vec3 weights = inside_weights(in_weights);
 #endif
-    colors[own] = color_on(in_primitive, pixel, is_outside, weights);
+    set_color(own, color_on(in_primitive, pixel, is_outside, weights));
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
     }

@@ -2,6 +2,7 @@
 // (--instrument; section 4.1). Pass: src/techniques/deep_shading/count.rs.
 // variants: LISTS=linked|compact
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -15,6 +16,16 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 30) writeonly buffer Lengths { uint lengths[]; };
+layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+
+READS_WORDS(begin_of, begins)
+READS_PAIRS(node_of, nodes)
+#ifdef LISTS_COMPACT
+READS_WORDS(row_id, linear)
+#else
+WRITES_SECONDS(set_next, nodes)
+#endif
+WRITES_WORDS(set_length, lengths)
 
 #include "techniques/deep_shading/nodes.glsl"
 #include "techniques/deep_shading/mixed.glsl"
@@ -32,7 +43,7 @@ void main() {
         return;
     }
     uint pixel = at.y * deep.shading_width_px + at.x;
-    uint node = begins[pixel];
+    uint node = begin_of(pixel);
     uint listed = 0u;
     uint again = 0u;
     uint digest = 0u;
@@ -40,33 +51,33 @@ void main() {
 #ifdef LISTS_COMPACT
     if (is_listed) {
         for (; listed < LINEAR_COUNT; listed++) {
-            uint primitive = linear[pixel * LINEAR_COUNT + listed];
+            uint primitive = row_id(pixel * LINEAR_COUNT + listed);
             if (primitive == LINEAR_END) {
                 break;
             }
             digest += digest_of(pixel, primitive);
         }
-        node = listed == LINEAR_COUNT ? nodes[node - 1u].y : 0u;
+        node = listed == LINEAR_COUNT ? node_of(node - 1u).y : 0u;
         atomicAdd(counters[COUNTED_ROW_IDS], min(listed + 1u, LINEAR_COUNT));
     }
     bool overflows = node != 0u;
-    for (; node != 0u; node = nodes[node - 1u].y) {
-        digest += digest_of(pixel, nodes[node - 1u].x);
+    for (; node != 0u; node = node_of(node - 1u).y) {
+        digest += digest_of(pixel, node_of(node - 1u).x);
         listed++;
     }
 #else
     bool overflows = false;
     uint last = NO_PRIMITIVE;
     // Nobody reads them any more in this frame.
-    for (node = is_listed ? sorted(node) : 0u; node != 0u; node = nodes[node - 1u].y) {
-        bool is_again = nodes[node - 1u].x == last;
-        last = nodes[node - 1u].x;
+    for (node = is_listed ? sorted(node) : 0u; node != 0u; node = node_of(node - 1u).y) {
+        bool is_again = node_of(node - 1u).x == last;
+        last = node_of(node - 1u).x;
         listed += is_again ? 0u : 1u;
         digest += is_again ? 0u : digest_of(pixel, last);
         again += is_again ? 1u : 0u;
     }
 #endif
-    lengths[pixel] = listed;
+    set_length(pixel, listed);
     if (is_listed) {
         atomicAdd(counters[COUNTED_LISTED], listed);
         atomicAdd(counters[COUNTED_DIGEST], digest);

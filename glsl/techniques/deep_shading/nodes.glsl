@@ -6,7 +6,7 @@
 //
 // After compaction the node that `begins` points to holds where the list's colours begin, and the first of the linked rest.
 //
-// The including shader declares begins[], nodes[] and, with LISTS=compact, linear[].
+// The including shader declares begin_of, node_of and, with LISTS=compact, row_id of reach.glsl.
 #ifndef DEEP_SHADING_NODES_GLSL
 #define DEEP_SHADING_NODES_GLSL
 
@@ -18,22 +18,22 @@ const uint LINEAR_END = 0xffffffffu;
 
 // Where the colour of a triangle at a pixel of shading space lies; NO_COLOR: it is not in the list.
 uint color_index(uint pixel, uint primitive) {
-    uint at = begins[pixel];
+    uint at = begin_of(pixel);
     if (at == 0u) {
         return NO_COLOR;
     }
 #ifdef LISTS_COMPACT
-    uvec2 head = nodes[at - 1u];
+    uvec2 head = node_of(at - 1u);
     uint place = 0u;
     for (; place < LINEAR_COUNT; place++) {
-        uint id = linear[pixel * LINEAR_COUNT + place];
+        uint id = row_id(pixel * LINEAR_COUNT + place);
         if (id >= primitive) {
             return id == primitive ? head.x + place : NO_COLOR;
         }
     }
     at = head.y;
     while (at != 0u) {
-        uvec2 node = nodes[at - 1u];
+        uvec2 node = node_of(at - 1u);
         if (node.x >= primitive) {
             return node.x == primitive ? head.x + place : NO_COLOR;
         }
@@ -42,7 +42,7 @@ uint color_index(uint pixel, uint primitive) {
     }
 #else
     while (at != 0u) {
-        uvec2 node = nodes[at - 1u];
+        uvec2 node = node_of(at - 1u);
         if (node.x == primitive) {
             return at - 1u;
         }

@@ -4,6 +4,7 @@
 // variants: FETCH=own|address|direct|linked|compact|layers|passes|multisampled
 #version 460
 #include "frame.glsl"
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -26,17 +27,23 @@ layout(set = 0, binding = 27) uniform sampler2DMSArray drawn;
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 #endif
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
+layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+READS_PAIRS(stored_color, colors)
 #endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(set = 0, binding = 29, rgba32f) writeonly uniform image2D color;
 #if defined(FETCH_ADDRESS) || defined(FETCH_DIRECT)
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
+READS_WORDS(address_of, addresses)
 #endif
 #if defined(FETCH_LINKED) || defined(FETCH_COMPACT)
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
+READS_WORDS(begin_of, begins)
+READS_PAIRS(node_of, nodes)
 #ifdef FETCH_COMPACT
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+READS_WORDS(row_id, linear)
 #define LISTS_COMPACT
 #endif
 #include "techniques/deep_shading/nodes.glsl"
@@ -59,7 +66,7 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
 #else
     uint own = sample_index(deep, at);
 #ifdef FETCH_DIRECT
-    bool is_empty = addresses[own] == NO_ADDRESS;
+    bool is_empty = address_of(own) == NO_ADDRESS;
 #else
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
     bool is_empty = spid.x == NO_PRIMITIVE;
@@ -70,13 +77,13 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
 #if defined(FETCH_OWN)
     uint where = own;
 #elif defined(FETCH_ADDRESS)
-    uint where = addresses[own];
+    uint where = address_of(own);
 #elif defined(FETCH_DIRECT)
-    uint where = addresses[own] & ~ADDRESS_STRAY;
+    uint where = address_of(own) & ~ADDRESS_STRAY;
 #else
     uint where = color_of(spid, own);
 #endif
-    uvec2 words = where < colors.length() ? colors[where] : uvec2(0u);
+    uvec2 words = where < sample_total(deep) ? stored_color(where) : uvec2(0u);
     return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
 #endif
 }

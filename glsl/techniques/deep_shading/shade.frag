@@ -2,6 +2,7 @@
 // Pass: src/techniques/deep_shading/shade/mod.rs.
 // variants: LISTS=linked|compact ZMAX=off|on VERTEX=plain|extended SHADOWS=traced|mapped
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
 #include "techniques/deep_shading/counters.glsl"
@@ -16,11 +17,18 @@ layout(location = 0) flat in uint in_primitive;
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
+layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+
+READS_WORDS(begin_of, begins)
+READS_PAIRS(node_of, nodes)
+WRITES_PAIRS(set_color, colors)
 #ifdef LISTS_COMPACT
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
+READS_WORDS(row_id, linear)
 #endif
 #ifdef ZMAX_ON
 layout(std430, set = 0, binding = 25) readonly buffer ZMax { uint zmax[]; };
+READS_WORDS(zmax_of, zmax)
 #endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
@@ -44,7 +52,7 @@ bool is_hidden(uint pixel) {
         nearest = max(nearest, depth);
         farthest = min(farthest, depth);
     }
-    float farthest_seen = uintBitsToFloat(~zmax[pixel]);
+    float farthest_seen = uintBitsToFloat(~zmax_of(pixel));
     return nearest + 0.05 * (nearest - farthest) + 1e-3 * nearest < farthest_seen;
 }
 #endif
@@ -59,7 +67,7 @@ void main() {
     }
     uint pixel = at.y * deep.shading_width_px + at.x;
     // Nothing was seen here.
-    if (begins[pixel] == 0u) {
+    if (begin_of(pixel) == 0u) {
         return;
     }
 #ifdef ZMAX_ON
@@ -72,13 +80,13 @@ void main() {
         return;
     }
     uvec2 shaded = color_on(in_primitive, at, false, vec3(0.0));
-    colors[color] = shaded;
+    set_color(color, shaded);
 #ifdef LISTS_LINKED
     if (TOLERATES_DUPLICATES != 0u) {
         // Samples may point to any of them.
-        for (uint node = nodes[color].y; node != 0u; node = nodes[node - 1u].y) {
-            if (nodes[node - 1u].x == in_primitive) {
-                colors[node - 1u] = shaded;
+        for (uint node = node_of(color).y; node != 0u; node = node_of(node - 1u).y) {
+            if (node_of(node - 1u).x == in_primitive) {
+                set_color(node - 1u, shaded);
             }
         }
     }

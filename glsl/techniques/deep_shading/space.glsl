@@ -83,7 +83,12 @@ uint shading_depth(vec4 canonical) {
     return ~floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
 }
 
-// Of a sample in the buffers that have one entry a sample: layer by layer, row by row.
+// Entries of the buffers that have one a sample.
+uint sample_total(DeepBlock deep) {
+    return deep.tuple_count * deep.layer_width_px * deep.layer_height_px;
+}
+
+// Of a sample in those buffers: layer by layer, row by row.
 uint sample_index(DeepBlock deep, uvec3 at) {
     return (at.z * deep.layer_height_px + at.y) * deep.layer_width_px + at.x;
 }

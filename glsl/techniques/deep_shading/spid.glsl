@@ -8,7 +8,7 @@ uint color_of(uvec2 spid, uint own) {
     if (spid.y != NO_SHADING_PIXEL) {
         color = color_index((spid.y >> 16) * deep.shading_width_px + (spid.y & 0xffffu), spid.x);
     }
-    return color == NO_COLOR ? nodes[own].x : color;
+    return color == NO_COLOR ? node_of(own).x : color;
 }
 
 #endif

@@ -86,8 +86,8 @@ impl Apart {
                 Some(direct) => Insertion::Host(direct),
                 None => Insertion::Device(Box::new(Inserted {
                     insert: Insert::new(gpu, choices)?,
-                    compact: if choices.is_compacted { Some(Compact::new(gpu)?) } else { None },
-                    address: if address { Some(Address::new(gpu)?) } else { None },
+                    compact: if choices.is_compacted { Some(Compact::new(gpu, choices)?) } else { None },
+                    address: if address { Some(Address::new(gpu, choices)?) } else { None },
                 })),
             };
             Some(Listed {
@@ -127,6 +127,13 @@ impl Apart {
 
     pub fn count(&self) -> Option<&Count> {
         self.listed.as_ref()?.count.as_ref()
+    }
+
+    /// The buffers of lists and colours.
+    pub fn buffers(&self) -> impl Iterator<Item = &Buffer> {
+        let listed = self.listed.iter();
+        let lists = listed.flat_map(|listed| listed.lists.all().chain(listed.count.iter().map(|count| &count.lengths)));
+        lists.chain([&self.colors])
     }
 
     /// Puts what the host has made of a run where the frame takes it from.

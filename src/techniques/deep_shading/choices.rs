@@ -6,7 +6,7 @@ use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::visibility::Visibility;
 use super::visibility::layer::LayerFrom;
-use super::{NAME, shade::Road};
+use super::{NAME, reach, shade::Road};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
 use crate::gpu::shader::structs::DeepBlock;
@@ -44,6 +44,8 @@ pub struct Choices {
     pub has_zmax: bool,
     pub has_addresses: bool,
     pub is_counted: bool,
+    /// Shaders come to lists and colours by the buffers' addresses.
+    pub is_by_address: bool,
     pub road: Road,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
@@ -106,6 +108,8 @@ impl Choices {
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
+        let space = ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?;
+        let samples_of_set = table.sample_total(inputs.view.extent);
         Ok(Self {
             shading,
             maps: maps.map_err(|error| error.within(NAME))?,
@@ -115,7 +119,7 @@ impl Choices {
             has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
             table,
             run_count: values.integer("accumulate") as u32,
-            space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
+            space,
             lens,
             is_moving: middle.is_some(),
             middle,
@@ -127,6 +131,8 @@ impl Choices {
             has_zmax: has_lists && values.is_on("zmax"),
             has_addresses: has_lists && values.is_on("address-buffer"),
             is_counted: values.is_on("instrument"),
+            is_by_address: shading == Shading::Deep
+                && reach::is_by_address(values, inputs.caps, samples_of_set, &space, is_compacted),
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         })
@@ -157,7 +163,7 @@ impl Choices {
 
     /// Samples of one set, padding included.
     pub fn samples_of(&self, frame: Extent) -> u64 {
-        self.table.layer(frame).pixel_count() * u64::from(self.table.tuple_count())
+        self.table.sample_total(frame)
     }
 
     /// Constants that several shaders have.
@@ -171,6 +177,7 @@ impl Choices {
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("HAS_PADDING", u32::from(self.has_padding)),
+            ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("PASS_SAMPLES", self.shading.pass_samples()),
         ]);
         constants

@@ -24,7 +24,8 @@ pub struct Count {
 impl Count {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         let lists = if choices.is_compacted { "compact" } else { "linked" };
-        let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[lists]), &[])?;
+        let shader = variant(COMP_VARIANTS, &[lists]);
+        let pipeline = ComputePipeline::new(gpu, shader, &super::constants_of(choices, &[Some(shader)]))?;
         let lengths = resources.buffer(&full(super::plan::LENGTHS));
         Ok(Self { pipeline, lengths, space: choices.space.extent })
     }

@@ -6,6 +6,7 @@ use super::choices::Choices;
 use super::counters::Counted;
 use super::plan::{COLOR, COUNTERS, SPIDS};
 use super::primitives::{self, Primitives};
+use super::reach::Reach;
 use super::resolve::{Resolve, Shaded};
 use super::scene::DeepScene;
 use super::visibility::ray::Traced;
@@ -25,7 +26,7 @@ pub const AOVS: &[&str] = &["count.lengths", SPIDS];
 
 /// From the scene to samples that have colours.
 enum Shader {
-    Apart(Box<Apart>),
+    Apart(Box<Apart>, Reach),
     AsDrawn(Box<Baseline>),
 }
 
@@ -53,7 +54,11 @@ impl DeepFrame {
     ) -> Result<Self> {
         let frame = inputs.view.extent;
         let shader = match choices.shading {
-            Shading::Deep => Shader::Apart(Box::new(Apart::new(gpu, scene, resources, &choices, frame, traced)?)),
+            Shading::Deep => {
+                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
+                let reach = Reach::new(gpu, resources, choices.is_by_address, apart.buffers())?;
+                Shader::Apart(Box::new(apart), reach)
+            }
             Shading::Ssaa | Shading::Msaa { .. } => {
                 Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?))
             }
@@ -73,7 +78,7 @@ impl DeepFrame {
 
     fn apart(&self) -> Option<&Apart> {
         match &self.shader {
-            Shader::Apart(apart) => Some(apart),
+            Shader::Apart(apart, _) => Some(apart),
             Shader::AsDrawn(_) => None,
         }
     }
@@ -103,11 +108,12 @@ impl DeepFrame {
 impl Frame for DeepFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let Self { list, primitives, counters, color, .. } = self;
-        let bound = self.scene.bound(frame, scene);
+        let mut bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
         let drawn = Drawn { scene, list, primitives, table: &self.choices.table, frame: color.description.extent };
         match &self.shader {
-            Shader::Apart(apart) => {
+            Shader::Apart(apart, reach) => {
+                bound.push(reach.bound());
                 let shaded = apart.record(cmd, &self.scene, drawn, &bound, counters)?;
                 self.resolve.record(cmd, &bound, shaded, counters, color)?;
                 apart.record_count(cmd, &bound, counters)?;

@@ -47,6 +47,7 @@ mod middle;
 mod passes;
 mod plan;
 mod primitives;
+mod reach;
 mod resolve;
 mod rivals;
 mod scene;
@@ -202,6 +203,9 @@ impl Prepared for PreparedDeep {
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
             resolved.insert("layer-from", layer_from.name().to_owned());
+        }
+        if *shading == Shading::Deep {
+            resolved.insert("list-access", reach::name(self.choices.is_by_address).to_owned());
         }
         if let Some(lens) = lens {
             resolved.insert("focus", format!("{}", lens.focus));

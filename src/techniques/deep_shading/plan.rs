@@ -6,7 +6,7 @@ use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full, gate, passes};
+use super::{NAME, full, gate, passes, reach};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -37,6 +37,8 @@ pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
 pub const LINEAR_COUNT: u64 = 16;
+/// Of a list's pointer.
+pub const BEGIN_BYTES: u64 = 4;
 /// Of a row's id, a node (id, next), a colour (RGBA16F), an address.
 pub const ROW_ID_BYTES: u64 = 4;
 pub const NODE_BYTES: u64 = 8;
@@ -104,7 +106,7 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<
                 direct::plan(plan, name, bytes);
             }
         };
-        list("deep_shading_buffer", BEGINS, shading_pixels * 4);
+        list("deep_shading_buffer", BEGINS, shading_pixels * BEGIN_BYTES);
         list("deep_shading_buffer", NODES, samples * NODE_BYTES);
         if choices.is_compacted {
             list("auxiliary", LINEAR, shading_pixels * LINEAR_COUNT * ROW_ID_BYTES);
@@ -125,6 +127,7 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<
     if choices.is_gated {
         gate::plan(plan, inputs.stats.draw_count);
     }
+    reach::plan(plan, choices.is_by_address);
     Ok(())
 }
 
@@ -153,9 +156,8 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
     Ok(())
 }
 
-/// Errors: a buffer of one entry a sample is longer than the device binds; more tuples than layers.
+/// Errors: more tuples than layers; buffers out of shaders' reach.
 fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
-    let range = inputs.caps.limits.max_storage_buffer_range_bytes;
     let (layers, most_layers) = (choices.table.tuple_count(), inputs.caps.limits.max_image_layers);
     if !matches!(choices.shading, Shading::Msaa { .. }) && layers > most_layers {
         return Err(
@@ -171,22 +173,9 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         .within(NAME)
         .note("--visibility repeat-frame draws into one"));
     }
-    let samples = choices.samples_of(inputs.view.extent);
-    // A baseline has images alone.
-    if choices.shading != Shading::Deep || samples * COLOR_BYTES <= range {
-        return Ok(());
+    match choices.shading {
+        Shading::Deep => reach::require_fitting(choices, inputs),
+        // A baseline has images alone.
+        Shading::Ssaa | Shading::Msaa { .. } => Ok(()),
     }
-    let (size, table) = (inputs.view.extent, choices.table);
-    let a_sample = samples / u64::from(table.samples);
-    let most = range / (a_sample * COLOR_BYTES);
-    let advice = match most {
-        0 => "a smaller --size would fit".to_owned(),
-        most => format!("--spp {most} fits at this size; --accumulate sums sets of them up"),
-    };
-    Err(Error::memory(format!(
-        "--spp {} at {size}: {samples} samples of {COLOR_BYTES} bytes a buffer, and this device binds {range} bytes at once",
-        table.samples
-    ))
-    .within(NAME)
-    .note(advice))
 }

@@ -106,6 +106,15 @@ pub const SETTINGS: &[Setting] = &[
                way to the same bits)",
     },
     Setting {
+        key: "list-access",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "descriptors", "addresses"]),
+        default: "auto",
+        unit: "",
+        paper: "",
+        help: "how shaders come to lists and colours: through descriptors, which reach as far as the device binds, or by the buffers'                addresses, however long they are; the same picture; auto: addresses where a buffer is longer than the device binds",
+    },
+    Setting {
         key: "duplicates",
         symbol: "",
         kind: Kind::Choice(&["avoided", "tolerated"]),

@@ -25,6 +25,11 @@ impl Table {
         Self { cells: [cells / height, height], samples }
     }
 
+    /// Samples of one set at this size of the frame, padding included.
+    pub fn sample_total(&self, frame: Extent) -> u64 {
+        self.layer(frame).pixel_count() * u64::from(self.tuple_count())
+    }
+
     pub fn tuple_count(&self) -> u32 {
         self.cells[0] * self.cells[1] * self.samples
     }

@@ -1,6 +1,7 @@
 // Each list sorted and without what stands in it again; the first ids in a row (section 4.3). A thread has a list to itself.
 // Pass: src/techniques/deep_shading/lists/compact.rs.
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -12,6 +13,16 @@ layout(std430, set = 0, binding = 21) buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 23) buffer Linear { uint linear[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+
+READS_WORDS(begin_of, begins)
+WRITES_WORDS(set_begin, begins)
+READS_PAIRS(node_of, nodes)
+WRITES_PAIRS(set_node, nodes)
+WRITES_SECONDS(set_next, nodes)
+WRITES_PAIRS(set_color, colors)
+READS_WORDS(row_id, linear)
+WRITES_WORDS(set_row_id, linear)
 
 #define LISTS_COMPACT
 #include "techniques/deep_shading/nodes.glsl"
@@ -24,11 +35,11 @@ void main() {
         return;
     }
     uint pixel = at.y * deep.shading_width_px + at.x;
-    uint list = begins[pixel];
+    uint list = begin_of(pixel);
     if (list == 0u) {
         return;
     }
-    if (nodes[list - 1u].y != 0u) {
+    if (node_of(list - 1u).y != 0u) {
         list = sorted(list);
     }
     uint count = 0u;
@@ -36,16 +47,16 @@ void main() {
     uint rest = 0u;
     uint tail = 0u;
     for (uint node = list; node != 0u;) {
-        uvec2 held = nodes[node - 1u];
+        uvec2 held = node_of(node - 1u);
         if (held.x != last) {
             last = held.x;
             if (count < LINEAR_COUNT) {
-                linear[pixel * LINEAR_COUNT + count] = held.x;
+                set_row_id(pixel * LINEAR_COUNT + count, held.x);
             } else {
                 if (tail == 0u) {
                     rest = node;
                 } else {
-                    nodes[tail - 1u].y = node;
+                    set_next(tail - 1u, node);
                 }
                 tail = node;
             }
@@ -54,16 +65,16 @@ void main() {
         node = held.y;
     }
     if (tail != 0u) {
-        nodes[tail - 1u].y = 0u;
+        set_next(tail - 1u, 0u);
     }
     if (count < LINEAR_COUNT) {
-        linear[pixel * LINEAR_COUNT + count] = LINEAR_END;
+        set_row_id(pixel * LINEAR_COUNT + count, LINEAR_END);
     }
     uint first = atomicAdd(counters[COUNTED_COLORS], count);
     for (uint color = 0u; color < count; color++) {
-        colors[first + color] = uvec2(0u);
+        set_color(first + color, uvec2(0u));
     }
     // Its id lies in the row: the node can carry what belongs to the list.
-    nodes[list - 1u] = uvec2(first, rest);
-    begins[pixel] = list;
+    set_node(list - 1u, uvec2(first, rest));
+    set_begin(pixel, list);
 }

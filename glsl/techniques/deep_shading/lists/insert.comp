@@ -2,6 +2,7 @@
 // Pass: src/techniques/deep_shading/lists/insert.rs.
 // variants: ZMAX=off|on ADDRESSES=off|on
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -25,13 +26,22 @@ layout(std430, set = 0, binding = 20) coherent buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) coherent buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
 #ifdef ADDRESSES_ON
 layout(std430, set = 0, binding = 24) writeonly buffer Addresses { uint addresses[]; };
+WRITES_WORDS(set_address, addresses)
 #endif
 #ifdef ZMAX_ON
 layout(set = 0, binding = 28) uniform usampler2DArray shading_depths;
 layout(std430, set = 0, binding = 25) buffer ZMax { uint zmax[]; };
+RAISES_WORDS(raise_zmax, zmax)
 #endif
+
+READS_WORDS(begin_of, begins)
+SWAPS_WORDS(swap_begin, begins)
+READS_PAIRS(node_of, nodes)
+WRITES_PAIRS(set_node, nodes)
+WRITES_PAIRS(set_color, colors)
 
 // Whether the sample's own node is used, in a list or not.
 bool has_written = false;
@@ -44,24 +54,24 @@ const uint LIST_MOST = 1024u;
 uint insert(uint pixel, uint primitive, uint own) {
     // From `known` on the list does not hold it.
     uint known = 0u;
-    uint head = begins[pixel];
+    uint head = begin_of(pixel);
     uint holder = NO_PRIMITIVE;
     uint length = 0u;
     while (holder == NO_PRIMITIVE && length < LIST_MOST) {
         uint at = head;
         while (at != known && holder == NO_PRIMITIVE) {
-            uvec2 node = nodes[at - 1u];
+            uvec2 node = node_of(at - 1u);
             holder = node.x == primitive ? at - 1u : NO_PRIMITIVE;
             at = node.y;
             length++;
         }
         if (holder == NO_PRIMITIVE && length < LIST_MOST) {
-            nodes[own] = uvec2(primitive, head);
+            set_node(own, uvec2(primitive, head));
             has_written = true;
             if (HAS_FENCES != 0u) {
                 memoryBarrierBuffer();
             }
-            uint found = atomicCompSwap(begins[pixel], head, own + 1u);
+            uint found = swap_begin(pixel, head, own + 1u);
             holder = found == head ? own : NO_PRIMITIVE;
             // Somebody was quicker: only what is new need be looked at.
             known = TOLERATES_DUPLICATES != 0u ? found : head;
@@ -87,28 +97,28 @@ void main() {
         color = insert(pixel, spid.x, own);
         if (IS_COMPACTED == 0u && color == own) {
             // Alpha says whether it is shaded.
-            colors[own] = uvec2(0u);
+            set_color(own, uvec2(0u));
         }
         if (color == NO_PRIMITIVE) {
             atomicAdd(counters[COUNTED_CROWDED], 1u);
         }
 #ifdef ZMAX_ON
-        atomicMax(zmax[pixel], texelFetch(shading_depths, ivec3(at), 0).x);
+        raise_zmax(pixel, texelFetch(shading_depths, ivec3(at), 0).x);
 #endif
     }
     if (color == NO_PRIMITIVE) {
         color = own;
         uint stray = atomicAdd(counters[COUNTED_STRAYS], 1u);
         if (IS_COMPACTED != 0u) {
-            color = deep.tuple_count * deep.layer_width_px * deep.layer_height_px - 1u - stray;
+            color = sample_total(deep) - 1u - stray;
         }
         // Its node serves no list: it says where the colour is.
-        nodes[own] = uvec2(color, 0u);
+        set_node(own, uvec2(color, 0u));
         has_written = true;
-        colors[color] = uvec2(0u);
+        set_color(color, uvec2(0u));
     }
 #ifdef ADDRESSES_ON
-    addresses[own] = color;
+    set_address(own, color);
 #endif
     if (IS_COUNTED != 0u && has_written) {
         atomicAdd(counters[COUNTED_NODES], 1u);

@@ -1,7 +1,7 @@
 // Lists in the order of their ids: the links themselves are sorted, by merging runs of 1, 2, 4 and so on, so that a list of a
 // thousand takes n log n steps and no memory; nearly all have one or two.
 //
-// The including shader declares nodes[].
+// The including shader declares node_of and set_next of reach.glsl.
 #ifndef DEEP_SHADING_SORTED_GLSL
 #define DEEP_SHADING_SORTED_GLSL
 
@@ -18,33 +18,33 @@ uint sorted(uint list) {
             uint left_count = 0u;
             while (left_count < run && rest != 0u) {
                 left_count++;
-                rest = nodes[rest - 1u].y;
+                rest = node_of(rest - 1u).y;
             }
             uint right = rest;
             uint right_count = run;
             while (left_count > 0u || (right_count > 0u && right != 0u)) {
                 bool takes_left = left_count > 0u;
                 if (takes_left && right_count > 0u && right != 0u) {
-                    takes_left = nodes[left - 1u].x <= nodes[right - 1u].x;
+                    takes_left = node_of(left - 1u).x <= node_of(right - 1u).x;
                 }
                 uint next = takes_left ? left : right;
                 if (takes_left) {
-                    left = nodes[left - 1u].y;
+                    left = node_of(left - 1u).y;
                     left_count--;
                 } else {
-                    right = nodes[right - 1u].y;
+                    right = node_of(right - 1u).y;
                     right_count--;
                 }
                 if (tail == 0u) {
                     list = next;
                 } else {
-                    nodes[tail - 1u].y = next;
+                    set_next(tail - 1u, next);
                 }
                 tail = next;
             }
             rest = right;
         }
-        nodes[tail - 1u].y = 0u;
+        set_next(tail - 1u, 0u);
         if (merge_count <= 1u) {
             return list;
         }

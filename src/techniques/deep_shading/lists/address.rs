@@ -1,8 +1,9 @@
 //! Addresses: where each sample's colour will lie in a compacted list, looked up once. Shader: address.comp.
 //! reads  visibility.spids, the lists      writes  lists.addresses
 
-use super::super::full;
+use super::super::choices::Choices;
 use super::super::visibility::Samples;
+use super::super::{constants_of, full};
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
@@ -15,8 +16,9 @@ pub struct Address {
 }
 
 impl Address {
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        let constants = constants_of(choices, &[Some(&COMP)]);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants)? })
     }
 
     /// After compaction.

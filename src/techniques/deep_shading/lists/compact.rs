@@ -2,7 +2,8 @@
 //! compact.comp.
 //! reads and writes  lists.begins, lists.nodes      writes  lists.linear; begins alphas of colours at 0
 
-use super::super::full;
+use super::super::choices::Choices;
+use super::super::{constants_of, full};
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
@@ -16,8 +17,9 @@ pub struct Compact {
 }
 
 impl Compact {
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        let constants = constants_of(choices, &[Some(&COMP)]);
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants)? })
     }
 
     /// `space`: pixels of shading space. After insertion.

@@ -25,6 +25,7 @@ impl Insert {
             ("TOLERATES_DUPLICATES", u32::from(choices.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(choices.is_compacted)),
             ("IS_COUNTED", u32::from(choices.is_counted)),
+            ("BY_ADDRESS", u32::from(choices.is_by_address)),
             ("HAS_FENCES", u32::from(!gpu.caps.identity.barriers_end_threads())),
         ];
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })

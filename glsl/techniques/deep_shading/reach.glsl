@@ -1,0 +1,85 @@
+// How shaders come to the buffers of lists and colours: through descriptors, or by the buffers' addresses where one is longer than
+// the device binds (--list-access). Written by src/techniques/deep_shading/reach.rs.
+//
+// Included first, as extensions want it; each shader says below what it binds which of these it calls.
+#ifndef DEEP_SHADING_REACH_GLSL
+#define DEEP_SHADING_REACH_GLSL
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// 1: by their addresses.
+layout(constant_id = 97) const uint BY_ADDRESS = 0;
+
+// Addresses, low word first; 0 with descriptors, and of what the frame does not have.
+struct ReachBlock {
+    uvec2 begins;
+    uvec2 nodes;
+    uvec2 colors;
+    uvec2 linear;
+    uvec2 addresses;
+    uvec2 zmax;
+    uvec2 lengths;
+};
+
+// Threads of one dispatch read what others wrote.
+layout(buffer_reference, std430, buffer_reference_align = 4) coherent buffer Words { uint words[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) coherent buffer Pairs { uvec2 pairs[]; };
+
+// Functions over a buffer of words or of pairs that is bound as `name`.
+#define READS_WORDS(function, name)                  \
+    uint function(uint index) {                      \
+        if (BY_ADDRESS != 0u) {                      \
+            return Words(reach.name).words[index];   \
+        }                                            \
+        return name[index];                          \
+    }
+#define WRITES_WORDS(function, name)                 \
+    void function(uint index, uint word) {           \
+        if (BY_ADDRESS != 0u) {                      \
+            Words(reach.name).words[index] = word;   \
+        } else {                                     \
+            name[index] = word;                      \
+        }                                            \
+    }
+#define RAISES_WORDS(function, name)                          \
+    void function(uint index, uint word) {                    \
+        if (BY_ADDRESS != 0u) {                               \
+            atomicMax(Words(reach.name).words[index], word);  \
+        } else {                                              \
+            atomicMax(name[index], word);                     \
+        }                                                     \
+    }
+// Returns what was there.
+#define SWAPS_WORDS(function, name)                                                   \
+    uint function(uint index, uint expected, uint word) {                             \
+        if (BY_ADDRESS != 0u) {                                                       \
+            return atomicCompSwap(Words(reach.name).words[index], expected, word);    \
+        }                                                                             \
+        return atomicCompSwap(name[index], expected, word);                           \
+    }
+#define READS_PAIRS(function, name)                  \
+    uvec2 function(uint index) {                     \
+        if (BY_ADDRESS != 0u) {                      \
+            return Pairs(reach.name).pairs[index];   \
+        }                                            \
+        return name[index];                          \
+    }
+#define WRITES_PAIRS(function, name)                 \
+    void function(uint index, uvec2 pair) {          \
+        if (BY_ADDRESS != 0u) {                      \
+            Pairs(reach.name).pairs[index] = pair;   \
+        } else {                                     \
+            name[index] = pair;                      \
+        }                                            \
+    }
+// The second of a pair alone.
+#define WRITES_SECONDS(function, name)               \
+    void function(uint index, uint word) {           \
+        if (BY_ADDRESS != 0u) {                      \
+            Pairs(reach.name).pairs[index].y = word; \
+        } else {                                     \
+            name[index].y = word;                    \
+        }                                            \
+    }
+
+#endif
