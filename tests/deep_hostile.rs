@@ -101,7 +101,7 @@ fn slivers_have_all_their_colours() {
     let watched = Watched::with_scene(file_of(&slivers()).load().unwrap());
     assert!(require_whole(&watched, &[])["samples_seen"] > 500.0);
     require_whole(&watched, &[("aperture", "0.4"), ("focus", "8")]);
-    require_whole(&watched, &[("guard-band", "0"), ("shading-scale", "0.3")]);
+    require_whole(&watched, &[("guard-band", "0"), ("shading-scale", "0.3"), ("shading-warp", "foveated")]);
 }
 
 #[test]
@@ -151,7 +151,8 @@ fn triangles_that_fly_through_the_eye_have_all_their_colours() {
     let watched = Watched::with_scene(moving(&through_the_eye(), "translation", [0.0, 0.0, -1.0], [0.2, 0.0, 1.5]));
     let counters = require_whole(&watched, &[]);
     assert!(counters["samples_outside_shading_space"] > 0.0, "{counters:?}");
-    require_whole(&watched, &[("aperture", "0.3"), ("focus", "2"), ("guard-band", "0")]);
+    let warped = [("shading-warp", "foveated"), ("warp-falloff", "4")];
+    require_whole(&watched, &both(&warped, &[("aperture", "0.3"), ("focus", "2"), ("guard-band", "0")]));
 }
 
 /// Corners at these coordinates, over all of the screen.

@@ -5,7 +5,9 @@ mod support;
 
 use quincunx::error::Result;
 use quincunx::metrics;
+use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AnimationChoice, Scene};
+use quincunx::session::Renderer;
 use std::collections::BTreeMap;
 use support::program::Program;
 use support::watched::{Changes, Watched, both};
@@ -13,6 +15,7 @@ use support::{Feature, has};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");
+const FOVEATED: (&str, &str) = ("shading-warp", "foveated");
 
 /// Ways to the same picture; the first shades every sample by itself.
 const ROADS: [Changes<'_>; 10] = [
@@ -61,6 +64,7 @@ fn every_road_shades_as_every_sample_by_itself_would_be() {
         &[SIZE, ("spp", "4")][..],
         &[SIZE, ("spp", "2"), ("tuples", "12"), ("shading-scale", "0.5"), ("direct-shadow", "ray")],
         &[SIZE, ("spp", "1"), ("tuples", "1"), ("guard-band", "0")],
+        &[SIZE, ("spp", "2"), ("aperture", "0.1"), ("guard-band", "8"), FOVEATED, ("warp-falloff", "3")],
     ] {
         require_one_picture(&watched, common);
     }
@@ -104,6 +108,44 @@ fn samples_that_shading_space_has_no_place_for_are_shaded_too() {
     let wide = both(&common, &[("guard-band", "400")]);
     let fewer = watched.render(DEEP, &wide).measured_counters().unwrap()["samples_outside_shading_space"];
     assert!(fewer < 0.5 * outside, "{fewer} with a guard band, {outside} without");
+}
+
+/// Mean differences in the middle third of both sides and at the rim, between two pictures; light above 1 is cut.
+fn middle_and_rim(one: &Picture, other: &Picture) -> [f64; 2] {
+    let [width, height] = [one.extent.width as usize, one.extent.height as usize];
+    let mut sums = [(0.0, 0.0); 2];
+    for (index, (a, b)) in one.pixels.iter().zip(&other.pixels).enumerate() {
+        let is_middle = |at: usize, side: usize| 3 * at >= side && 3 * at < 2 * side;
+        let is_rim = !(is_middle(index % width, width) && is_middle(index / width, height));
+        let far: f32 = (0..3).map(|channel| (a[channel].min(1.0) - b[channel].min(1.0)).abs()).sum();
+        let (sum, count) = sums[usize::from(is_rim)];
+        sums[usize::from(is_rim)] = (sum + f64::from(far) / 3.0, count + 1.0);
+    }
+    sums.map(|(sum, count): (f64, f64)| sum / count)
+}
+
+#[test]
+fn a_foveated_space_shades_less_towards_the_rim() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [SIZE, ("spp", "4"), ("guard-band", "0"), ("brdf", "lambert")];
+    let even = watched.render(DEEP, &common);
+    let foveated = watched.render(DEEP, &both(&common, &[FOVEATED]));
+    let shaded = |of: &Renderer| of.measured_counters().unwrap()["shader_invocations"];
+    let lists = |of: &Renderer| of.measured_counters().unwrap()["lists"];
+    // A quarter of the pixels.
+    assert!((0.2..0.3).contains(&(lists(&foveated) / lists(&even))), "{} of {}", lists(&foveated), lists(&even));
+    assert!(shaded(&foveated) < 0.8 * shaded(&even), "{} of {}", shaded(&foveated), shaded(&even));
+    // As many pixels, laid out evenly.
+    let halved = watched.picture(DEEP, &both(&common, &[("shading-scale", "0.5")]));
+    let even = even.picture().unwrap();
+    let [middle, rim] = middle_and_rim(&foveated.picture().unwrap(), &even);
+    let [halved_middle, halved_rim] = middle_and_rim(&halved, &even);
+    println!("{middle} in the middle, {rim} at the rim; {halved_middle} and {halved_rim} of an even space");
+    assert!(middle < 0.8 * halved_middle && rim > halved_rim, "{middle}, {rim}; {halved_middle}, {halved_rim}");
+    let text = refusal(&watched, &[FOVEATED, ("conservative", "hardware")]);
+    let has_hardware = watched.session.gpu.caps.features.conservative_rasterization;
+    let why = if has_hardware { "are not straight" } else { "--conservative vertex works without it" };
+    assert!(text.contains(why), "{text}");
 }
 
 #[test]
@@ -158,7 +200,7 @@ fn one_sample_in_the_middle_is_forward_shading() {
     }
 }
 
-fn rmse(watched: &Watched, changes: Changes<'_>, reference: &quincunx::report::picture::Picture) -> f64 {
+fn rmse(watched: &Watched, changes: Changes<'_>, reference: &Picture) -> f64 {
     metrics::compare(&watched.picture(DEEP, changes), reference, 0.1).unwrap().metrics.rmse
 }
 

@@ -36,7 +36,8 @@ struct DeepBlock {
     uint tuple_count;
     // 0, which no compiler knows.
     uint nothing;
-    uint _unused;
+    // How much coarser shading space is towards its rim (warp.glsl); 0: nowhere.
+    float warp_falloff;
 };
 
 // One place in a pixel, on the lens and in time: (x, y, u, v, t) of the paper's appendix.
@@ -61,15 +62,17 @@ const uint NO_ADDRESS = 0xffffffffu;
 // A bit of the host's addresses: no list has the sample.
 const uint ADDRESS_STRAY = 0x80000000u;
 
-// Homogeneous pixels of shading space: xy through w is a place in it.
+#include "techniques/deep_shading/warp.glsl"
+
+// Homogeneous pixels of even shading space, as fine everywhere as in its middle: xy through w is a place in it.
 vec2 shading_from_clip(DeepBlock deep, vec4 clip) {
     precise vec2 at = 0.5 * clip.xy * deep.scaled_px + clip.w * (0.5 * deep.scaled_px + deep.guard_px);
     return at;
 }
 
-// The pixel of a place, 16 bits a side, or NO_SHADING_PIXEL. `canonical`: xy homogeneous pixels, zw depth and w.
+// The pixel of a place, 16 bits a side, or NO_SHADING_PIXEL. `canonical`: xy homogeneous even pixels, zw depth and w.
 uint shading_pixel(DeepBlock deep, vec4 canonical) {
-    vec2 at = canonical.xy / canonical.w;
+    vec2 at = warped(deep, canonical.xy / canonical.w);
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
     // Behind the eye, before the near plane or outside: shading space has no place for it.
     bool has_place = canonical.w > 0.0 && canonical.z <= canonical.w && all(greaterThanEqual(at, vec2(0.0))) &&

@@ -152,7 +152,13 @@ uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
     Corner a = corner_at(vertices.x);
     Corner b = corner_at(vertices.y);
     Corner c = corner_at(vertices.z);
-    Place place = place_at(a.canonical, b.canonical, c.canonical, vec2(pixel) + 0.5);
+    EvenPixel even = even_pixel(deep, pixel);
+    Place place = place_at(a.canonical, b.canonical, c.canonical, even.middle);
+    vec3 right = place.right;
+    if (deep.warp_falloff != 0.0) {
+        place.right = even.right.x * right + even.right.y * place.down;
+        place.down = even.down.x * right + even.down.y * place.down;
+    }
     if (is_given) {
         place.weights = weights;
         place.right = vec3(0.0);

@@ -46,6 +46,8 @@ pub struct Choices {
     pub is_counted: bool,
     /// Shaders come to lists and colours by the buffers' addresses.
     pub is_by_address: bool,
+    /// Of what the rasteriser snaps corners to.
+    sub_pixel_bits: u32,
     pub road: Road,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
@@ -75,10 +77,21 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
         "hardware" => Road::Hardware,
         "geometry" => Road::Geometry,
         "vertex" => Road::Vertex,
-        _ if caps.features.conservative_rasterization => Road::Hardware,
+        // Triangles that are bent have no corners that the device could draw them by.
+        _ if caps.features.conservative_rasterization && values.text("shading-warp") == "even" => Road::Hardware,
         _ if caps.features.geometry_shader => Road::Geometry,
         _ => Road::Vertex,
     }
+}
+
+/// Errors: the device draws triangles itself that shading space has bent (exit code 2).
+fn require_straight(values: &Values) -> Result<()> {
+    if values.text("conservative") == "hardware" && values.text("shading-warp") == "foveated" {
+        return Err(Error::request("--conservative hardware: in a foveated shading space triangles are not straight")
+            .within(NAME)
+            .note("--conservative geometry and vertex draw what holds them"));
+    }
+    Ok(())
 }
 
 impl Choices {
@@ -97,6 +110,7 @@ impl Choices {
         let has_lists = shading == Shading::Deep && values.text("lists") != "none";
         let is_direct = has_lists && values.text("lists") == "direct";
         require_direct(values)?;
+        require_straight(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture") > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
@@ -133,6 +147,7 @@ impl Choices {
             is_counted: values.is_on("instrument"),
             is_by_address: shading == Shading::Deep
                 && reach::is_by_address(values, inputs.caps, samples_of_set, &space, is_compacted),
+            sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         })
@@ -177,6 +192,7 @@ impl Choices {
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("HAS_PADDING", u32::from(self.has_padding)),
+            ("SUB_PIXEL_BITS", self.sub_pixel_bits.min(16)),
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("PASS_SAMPLES", self.shading.pass_samples()),
         ]);

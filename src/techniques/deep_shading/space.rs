@@ -19,19 +19,24 @@ pub struct ShadingSpace {
     guard_px: u32,
     /// Pixels of it along a pixel of the frame.
     scale: f64,
-    /// What the frame takes of it.
+    /// What the frame takes of it where it is even.
     scaled_px: [f32; 2],
+    /// 0: it is even.
+    warp_falloff: f64,
     pub extent: Extent,
 }
 
 impl ShadingSpace {
-    /// Reads `--guard-band` and `--shading-scale`.
+    /// Reads `--guard-band`, `--shading-scale`, `--shading-warp` and `--warp-falloff`.
     ///
     /// Errors: a side is longer than shading points can be packed (exit code 2).
     pub fn new(values: &Values, frame: Extent) -> Result<Self> {
         let (guard_px, scale) = (values.integer("guard-band") as u32, values.number("shading-scale"));
         let scaled = [frame.width, frame.height].map(|side| f64::from(side) * scale);
-        let [width, height] = scaled.map(|side| side.ceil() as u64 + 2 * u64::from(guard_px));
+        let warp_falloff = if values.text("shading-warp") == "foveated" { values.number("warp-falloff") } else { 0.0 };
+        let even = scaled.map(|side| side.ceil() + 2.0 * f64::from(guard_px));
+        // Its middle stays as fine.
+        let [width, height] = even.map(|side| (side / (1.0 + warp_falloff)).ceil() as u64);
         if width.max(height) > MOST_SIDE_PX {
             return Err(Error::request(format!(
                 "--guard-band {guard_px}, --shading-scale {scale}: shading space has {width} x {height} pixels, and a side holds \
@@ -40,17 +45,30 @@ impl ShadingSpace {
             .note("a smaller --size or --shading-scale would fit"));
         }
         let scaled_px = scaled.map(|side| side as f32);
-        Ok(Self { guard_px, scale, scaled_px, extent: Extent::new(width as u32, height as u32) })
+        Ok(Self { guard_px, scale, scaled_px, warp_falloff, extent: Extent::new(width as u32, height as u32) })
     }
 
     /// The pixel of shading space, row by row, that is under the middle of a pixel of the frame.
     pub fn index_under(&self, frame_px: [u32; 2]) -> usize {
-        let [x, y] = [0, 1].map(|axis| {
-            let inside = ((f64::from(frame_px[axis]) + 0.5) * self.scale) as u32;
-            let side = [self.extent.width, self.extent.height][axis];
-            (self.guard_px + inside).min(side - 1) as usize
-        });
-        y * self.extent.width as usize + x
+        let even = frame_px.map(|at| ((f64::from(at) + 0.5) * self.scale) as f32 + self.guard_px as f32);
+        let at = self.warped(Vec2::from_array(even)).as_uvec2();
+        let last = [self.extent.width - 1, self.extent.height - 1];
+        at.y.min(last[1]) as usize * self.extent.width as usize + at.x.min(last[0]) as usize
+    }
+
+    /// The place of one of even shading space, pixels. warp.glsl's.
+    fn warped(&self, at: Vec2) -> Vec2 {
+        if self.warp_falloff == 0.0 {
+            return at;
+        }
+        let half = 0.5 * Vec2::from_array(self.scaled_px) + self.guard_px as f32;
+        let (from_middle, falloff) = ((at - half) / half, self.warp_falloff as f32);
+        let to = from_middle * ((1.0 + falloff) / (1.0 + falloff * from_middle.abs().max_element()));
+        0.5 * self.side_px() * (1.0 + to)
+    }
+
+    fn side_px(&self) -> Vec2 {
+        Vec2::new(self.extent.width as f32, self.extent.height as f32)
     }
 
     /// The pixel of a place in the middle of the exposure's clip space; None: behind the eye, before the near plane or outside,
@@ -58,11 +76,9 @@ impl ShadingSpace {
     pub fn pixel(&self, clip: Vec4) -> Option<[u32; 2]> {
         let scaled = Vec2::from_array(self.scaled_px);
         let at = 0.5 * clip.xy() * scaled + clip.w * (0.5 * scaled + self.guard_px as f32);
-        let at = at / clip.w;
-        let has_place = clip.w > 0.0
-            && clip.z <= clip.w
-            && at.cmpge(Vec2::ZERO).all()
-            && at.cmplt(Vec2::new(self.extent.width as f32, self.extent.height as f32)).all();
+        let at = self.warped(at / clip.w);
+        let has_place =
+            clip.w > 0.0 && clip.z <= clip.w && at.cmpge(Vec2::ZERO).all() && at.cmplt(self.side_px()).all();
         has_place.then_some([at.x as u32, at.y as u32])
     }
 
@@ -92,7 +108,7 @@ impl ShadingSpace {
             sample_count: table.samples,
             tuple_count: table.tuple_count(),
             nothing: 0,
-            _unused: 0,
+            warp_falloff: self.warp_falloff as f32,
         }
     }
 }
@@ -124,5 +140,24 @@ mod tests {
         assert_eq!(side(space("0", "0.5", Extent::new(101, 31)).unwrap()), (51, 16));
         let error = space("4096", "4", Extent::new(16384, 16)).unwrap_err();
         assert!(error.to_string().contains("73728 x 8256"), "{error}");
+    }
+
+    /// Middles stay middles, the rim stays the rim, and a step there is shorter as the falloff says.
+    #[test]
+    fn a_foveated_space_is_finest_in_its_middle() {
+        let even = space("0", "1", Extent::new(400, 200)).unwrap();
+        let warped = ShadingSpace { warp_falloff: 1.0, extent: Extent::new(200, 100), ..even };
+        let place = |x: f32, y: f32| warped.warped(Vec2::new(x, y));
+        assert_eq!([place(200.0, 100.0), place(400.0, 100.0)], [Vec2::new(100.0, 50.0), Vec2::new(200.0, 50.0)]);
+        let step = |x: f32| (place(x + 0.5, 100.0) - place(x - 0.5, 100.0)).x;
+        assert!(
+            (step(200.0) - 1.0).abs() < 0.01 && (step(399.5) - 0.25).abs() < 0.01,
+            "{} {}",
+            step(200.0),
+            step(399.5)
+        );
+        // Across the way to the rim it shrinks as the square root of that.
+        let across = (place(399.5, 100.5) - place(399.5, 99.5)).y;
+        assert!((across - 0.5).abs() < 0.01, "{across}");
     }
 }

@@ -8,8 +8,8 @@
 #define DEEP_SHADING_HULL_GLSL
 
 const uint HULL_CORNERS = 8u;
-// Half a pixel, and what the rasteriser's snapping of corners to 1/256 of a pixel may take away, four times.
-const float HULL_REACH_PX = 0.5 + 1.0 / 64.0;
+// The rasteriser snaps corners to 2^-SUB_PIXEL_BITS of a pixel.
+layout(constant_id = 100) const uint SUB_PIXEL_BITS = 8;
 // Floats place what is far outside by as much of it less well.
 const float HULL_REACH_PART = 1.0 / 1048576.0;
 // What is farther out than this many sides of shading space is not placed well enough: the hull is all of it, and what is too
@@ -21,6 +21,11 @@ struct Hull {
     vec2 corners[HULL_CORNERS];
     uint count;
 };
+
+// Half a pixel, and four steps of that, of which snapping may take half a one away.
+float reach_px() {
+    return 0.5 + 4.0 / float(1u << SUB_PIXEL_BITS);
+}
 
 vec2 signs(vec2 of) {
     return vec2(of.x < 0.0 ? -1.0 : 1.0, of.y < 0.0 ? -1.0 : 1.0);
@@ -46,8 +51,8 @@ Hull box_of(vec2 least, vec2 greatest) {
     return hull;
 }
 
-// `a`, `b`, `c`: xy homogeneous pixels, z depth (reversed), w.
-Hull hull_of(vec4 a, vec4 b, vec4 c) {
+// In even shading space, or in one sector of it that is warped. `a`, `b`, `c`: xy homogeneous pixels, z depth (reversed), w.
+Hull even_hull_of(vec4 a, vec4 b, vec4 c) {
     vec4 given[3] = vec4[3](a, b, c);
     vec2 cut[4];
     uint cut_count = 0u;
@@ -87,11 +92,11 @@ Hull hull_of(vec4 a, vec4 b, vec4 c) {
         area += from.x * to.y - from.y * to.x;
     }
     vec2 far = max(abs(least), abs(greatest));
-    vec2 space = vec2(deep.shading_width_px, deep.shading_height_px);
+    vec2 space = 2.0 * even_half_px(deep) + 1.0;
     if (!(max(far.x, far.y) < HULL_FARTHEST * max(space.x, space.y))) {
         return box_of(vec2(-1.0), space + 1.0);
     }
-    float reach = HULL_REACH_PX + HULL_REACH_PART * max(far.x, far.y);
+    float reach = reach_px() + HULL_REACH_PART * max(far.x, far.y);
     vec2 size = greatest - least;
     float longest = max(size.x, size.y);
     // Of corners that are rounded to 2^-24 of their places, and of products.
@@ -121,6 +126,65 @@ Hull hull_of(vec4 a, vec4 b, vec4 c) {
         before = after;
     }
     return hull;
+}
+
+// The sector between the diagonals that a point before the eye lies in, from the middle of shading space on: where x is greater
+// than y or not, and the sign of that one.
+uvec2 sector_of(vec2 from_middle) {
+    bool is_wide = abs(from_middle.x) > abs(from_middle.y);
+    return uvec2(is_wide, (is_wide ? from_middle.x : from_middle.y) < 0.0);
+}
+
+// Places that lie in `least` to `greatest`, warped, lie in this box: towards the middle they move the more the farther out
+// they are on the other axis.
+Hull warped_box_of(vec2 least, vec2 greatest) {
+    vec2 half_px = even_half_px(deep);
+    vec2 low = (least - half_px) / half_px;
+    vec2 high = (greatest - half_px) / half_px;
+    vec2 nearest = max(vec2(0.0), max(low, -high));
+    vec2 farthest = max(abs(low), abs(high));
+    float falloff = deep.warp_falloff;
+    vec2 low_other = vec2(low.x < 0.0 ? nearest.y : farthest.y, low.y < 0.0 ? nearest.x : farthest.x);
+    vec2 high_other = vec2(high.x > 0.0 ? nearest.y : farthest.y, high.y > 0.0 ? nearest.x : farthest.x);
+    vec2 from = low * (1.0 + falloff) / (1.0 + falloff * max(abs(low), low_other));
+    vec2 to = high * (1.0 + falloff) / (1.0 + falloff * max(abs(high), high_other));
+    vec2 warped_half_px = 0.5 * vec2(deep.shading_width_px, deep.shading_height_px);
+    return box_of(warped_half_px * (1.0 + from) - reach_px(), warped_half_px * (1.0 + to) + reach_px());
+}
+
+// In shading space. Corners as above, in even shading space.
+Hull hull_of(vec4 a, vec4 b, vec4 c) {
+    if (deep.warp_falloff == 0.0) {
+        return even_hull_of(a, b, c);
+    }
+    vec2 half_px = even_half_px(deep);
+    vec2 warped_half_px = 0.5 * vec2(deep.shading_width_px, deep.shading_height_px);
+    vec4 given[3] = vec4[3](a, b, c);
+    bool has_sector = true;
+    uvec2 sector = sector_of(a.xy / (a.w * half_px) - 1.0);
+    for (uint index = 0u; index < 3u; index++) {
+        vec4 corner = given[index];
+        vec2 from_middle = corner.xy / half_px - corner.w;
+        has_sector = has_sector && corner.w > 0.0 && sector_of(from_middle / corner.w) == sector;
+        float far = sector.x == 1u ? abs(from_middle.x) : abs(from_middle.y);
+        float w = (corner.w + deep.warp_falloff * far) / (1.0 + deep.warp_falloff);
+        // What is before the near plane stays so.
+        given[index] = vec4(warped_half_px * (from_middle + w), corner.z + w - corner.w, w);
+    }
+    if (has_sector) {
+        return even_hull_of(given[0], given[1], given[2]);
+    }
+    Hull whole = even_hull_of(a, b, c);
+    vec2 least = whole.corners[0];
+    vec2 greatest = whole.corners[0];
+    for (uint index = 1u; index < whole.count; index++) {
+        least = min(least, whole.corners[index]);
+        greatest = max(greatest, whole.corners[index]);
+    }
+    if (whole.count == 0u) {
+        return whole;
+    }
+    return warped_box_of(least, greatest);
 }
 
 // A strip's order of a convex polygon's corners: 0, 1, last, 2, last but one and so on.

@@ -37,8 +37,19 @@ const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Settings of shading space and of what is built in it.
-const OF_LISTS: [&str; 8] =
-    ["guard-band", "shading-scale", "lists", "duplicates", "compaction", "zmax", "address-buffer", "conservative"];
+const OF_LISTS: [&str; 11] = [
+    "guard-band",
+    "shading-scale",
+    "shading-warp",
+    "warp-falloff",
+    "lists",
+    "list-access",
+    "duplicates",
+    "compaction",
+    "zmax",
+    "address-buffer",
+    "conservative",
+];
 
 /// What only images of several samples a pixel read.
 const OF_PASSES: &str = "pass-samples";
