@@ -34,6 +34,7 @@
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
 //! every order of `--visibility`. Without blur it is `forward --supersample` with samples in other places.
 
+mod again;
 mod apart;
 mod baseline;
 mod brute;
