@@ -158,13 +158,13 @@ impl Apart {
         }
         if let Some(listed) = &self.listed {
             let links_left = self.record_insertion(cmd, listed, bound, counters)?;
-            let maps = deep.maps_barrier(Access::DepthWrite);
+            let maps = deep.maps_barrier(Access::DepthWrite, Access::FragmentSample);
             let left = (&listed.lists, links_left, maps);
             listed.shade.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
         }
         let lists = self.listed.as_ref().map(|listed| &listed.lists);
         let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
-        let left = (lists, deep.maps_barrier(maps_left));
+        let left = (lists, deep.maps_barrier(maps_left, Access::FragmentSample));
         self.brute.record(cmd, scene, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
         let samples = self.samples().map(|samples| {
             let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };

@@ -113,7 +113,8 @@ impl Frame for DeepFrame {
                 apart.record_count(cmd, &bound, counters)?;
             }
             Shader::AsDrawn(baseline) => {
-                baseline.record(cmd, drawn, &bound, self.scene.maps_barrier(Access::DepthWrite), counters)?;
+                let maps = self.scene.maps_barrier(Access::DepthWrite, Access::FragmentSample);
+                baseline.record(cmd, drawn, &bound, maps, counters)?;
                 self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, color)?;
             }
         }
