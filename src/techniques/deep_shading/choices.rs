@@ -43,6 +43,8 @@ pub struct Choices {
     pub is_compacted: bool,
     pub has_zmax: bool,
     pub has_addresses: bool,
+    /// Of the cache of `--shading indirect-gbuffer`.
+    pub cache_entries: u64,
     pub is_counted: bool,
     pub road: Road,
     pub geometry: GeometryChoice,
@@ -106,6 +108,7 @@ impl Choices {
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
+        let cache_entries = values.integer_or_auto("shading-cache");
         Ok(Self {
             shading,
             maps: maps.map_err(|error| error.within(NAME))?,
@@ -126,6 +129,7 @@ impl Choices {
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),
             has_addresses: has_lists && values.is_on("address-buffer"),
+            cache_entries: cache_entries.unwrap_or_else(|| table.sample_count(inputs.view.extent)),
             is_counted: values.is_on("instrument"),
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
@@ -157,7 +161,7 @@ impl Choices {
 
     /// Samples of one set, padding included.
     pub fn samples_of(&self, frame: Extent) -> u64 {
-        self.table.layer(frame).pixel_count() * u64::from(self.table.tuple_count())
+        self.table.sample_count(frame)
     }
 
     /// Constants that several shaders have.
@@ -171,6 +175,7 @@ impl Choices {
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("HAS_PADDING", u32::from(self.has_padding)),
+            ("CACHE_ENTRIES", self.cache_entries as u32),
             ("PASS_SAMPLES", self.shading.pass_samples()),
         ]);
         constants

@@ -34,6 +34,11 @@ impl Table {
         Extent::new(frame.width.div_ceil(self.cells[0]), frame.height.div_ceil(self.cells[1]))
     }
 
+    /// Of all layers, what lies beyond the frame included.
+    pub fn sample_count(&self, frame: Extent) -> u64 {
+        self.layer(frame).pixel_count() * u64::from(self.tuple_count())
+    }
+
     /// Whether all of every layer lies in the frame.
     pub fn divides(&self, frame: Extent) -> bool {
         frame.width.is_multiple_of(self.cells[0]) && frame.height.is_multiple_of(self.cells[1])
