@@ -55,7 +55,7 @@ enum Seen {
 
 /// Who shades samples that no list has.
 enum Rest {
-    Alone(Brute),
+    Alone(Box<Brute>),
     /// All of them.
     Indirect(Box<Indirect>),
 }
@@ -111,7 +111,7 @@ impl Apart {
         let rest = if choices.shading == Shading::IndirectGbuffer {
             Rest::Indirect(Box::new(Indirect::new(gpu, scene, resources, choices, frame)?))
         } else {
-            Rest::Alone(Brute::new(gpu, scene, resources, choices, frame)?)
+            Rest::Alone(Box::new(Brute::new(gpu, scene, resources, choices, frame)?))
         };
         Ok(Self {
             seen,
