@@ -126,7 +126,7 @@ fn settings_that_it_does_not_read_are_refused() {
         (&[INDIRECT, ("conservative", "vertex")], "--conservative vertex with --shading indirect-gbuffer"),
         (&[("shading-cache", "9")], "--shading-cache 9 with --shading deep: it has no cache"),
         (&[("shading", "ssaa"), ("shading-cache", "9")], "--shading-cache 9 with --shading ssaa"),
-        (&[INDIRECT, ("size", "4096x4096"), ("spp", "4")], "samples of 16 bytes a buffer"),
+        (&[INDIRECT, ("size", "4096x4096"), ("spp", "64")], "samples of 16 bytes a buffer"),
     ] {
         let error = watched.try_renderer(DEEP, changes, &[], Submits::One).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains(said), "{changes:?}: {error}");
