@@ -5,7 +5,7 @@
 #ifndef SHADING_LIT_GLSL
 #define SHADING_LIT_GLSL
 
-#include "shading/shade_lights.glsl"
+#include "shading/sum_lights.glsl"
 
 struct Lit {
     Surface surface;
@@ -14,13 +14,12 @@ struct Lit {
     vec3 radiance;
 };
 
-// `first`, `count`: the stretch of the list, or of the lights where there is none.
-Lit lit_at(MaterialBlock material, vec3 base_color, vec3 position_ws, uint first, uint count) {
+// Before any light of a list reaches it.
+Lit dark_at(MaterialBlock material, vec3 base_color) {
     Lit lit;
     vec2 metallic_roughness = metallic_roughness_at(material);
     lit.normal_ws = normal_at(material);
     lit.surface = Surface(base_color, metallic_roughness.x, metallic_roughness.y, DEFAULT_DIELECTRIC_F0);
-    vec3 eye_ws = to_eye(frame, position_ws);
     float openness = 1.0;
     if (SURFACE_EXTRAS != 0u) {
         uint extras = extras_at(material);
@@ -29,17 +28,14 @@ Lit lit_at(MaterialBlock material, vec3 base_color, vec3 position_ws, uint first
     }
     precise vec3 radiance =
         emissive_at(material) + ambient_reflectance(BRDF_KIND, lit.surface) * frame.ambient.rgb * openness;
-    uint index = 0u;
-    for (; index < count; index++) {
-#ifdef LISTS_OBJECT
-        LightBlock light = lights[light_lists[first + index]];
-#else
-        LightBlock light = lights[first + index];
-#endif
-        radiance += shade_light(light, lit.surface, position_ws, lit.normal_ws, eye_ws);
-    }
-    expect_done(index == count);
     lit.radiance = radiance;
+    return lit;
+}
+
+// `first`, `count`: the stretch of the list, or of the lights where there is none.
+Lit lit_at(MaterialBlock material, vec3 base_color, vec3 position_ws, uint first, uint count) {
+    Lit lit = dark_at(material, base_color);
+    lit.radiance = sum_lights(lit.radiance, lit.surface, position_ws, lit.normal_ws, first, count);
     return lit;
 }
 

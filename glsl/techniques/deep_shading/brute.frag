@@ -5,21 +5,13 @@
 #include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
+#include "techniques/deep_shading/again.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
 // As in shade.frag.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
 
-layout(location = 1) flat in uint in_primitive;
-#ifdef VISIBILITY_STOCHASTIC
-// Of stochastic.vert.
-layout(location = 2) flat in vec4 in_corners[3];
-#else
-layout(location = 2) in vec3 in_weights;
-#endif
-layout(location = 6) flat in uint in_tuple;
-
-layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 #ifdef SAMPLES_DIRECT
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
 READS_WORDS(address_of, addresses)
@@ -75,13 +67,7 @@ void main() {
     }
     own = node_of(own).x;
 #endif
-#ifdef VISIBILITY_STOCHASTIC
-    // What the sample sees has passed the test: its weights are inside.
-    vec3 weights = place_at(in_corners[0], in_corners[1], in_corners[2], gl_FragCoord.xy).weights;
-#else
-    vec3 weights = inside_weights(in_weights);
-#endif
-    set_color(own, color_on(in_primitive, pixel, is_outside, weights));
+    set_color(own, color_on(in_primitive, pixel, is_outside, seen_weights()));
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
     }

@@ -16,7 +16,7 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 30) writeonly buffer Lengths { uint lengths[]; };
-layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 
 READS_WORDS(begin_of, begins)
 READS_PAIRS(node_of, nodes)

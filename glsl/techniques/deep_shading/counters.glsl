@@ -2,7 +2,7 @@
 #ifndef DEEP_SHADING_COUNTERS_GLSL
 #define DEEP_SHADING_COUNTERS_GLSL
 
-// Colours that compaction has given out: it needs this one.
+// Colours that compaction has given out, or entries of a compact geometry buffer: they need this one.
 const uint COUNTED_COLORS = 0u;
 // Samples without a list: those before it have their colours from the end on.
 const uint COUNTED_STRAYS = 1u;
@@ -36,6 +36,8 @@ const uint COUNTED_NODES = 14u;
 const uint COUNTED_ROW_IDS = 15u;
 // The sum of a number of each pair of shading pixel and triangle, modulo 2^32: of the same pairs in any order the same.
 const uint COUNTED_DIGEST = 16u;
-const uint COUNTER_COUNT = 17u;
+// Shading samples that a full cache forgot (--shading indirect-gbuffer).
+const uint COUNTED_FORGOTTEN = 17u;
+const uint COUNTER_COUNT = 18u;
 
 #endif

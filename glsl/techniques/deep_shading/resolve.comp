@@ -1,7 +1,7 @@
 // The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
 // samples' own places (section 3.2; appendix A, pass 4); of a baseline from the layers that it drew them into.
 // Pass: src/techniques/deep_shading/resolve.rs.
-// variants: FETCH=own|address|direct|linked|compact|layers|passes|multisampled
+// variants: FETCH=own|address|direct|linked|compact|pointer|layers|passes|multisampled
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/reach.glsl"
@@ -27,14 +27,18 @@ layout(set = 0, binding = 27) uniform sampler2DMSArray drawn;
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 #endif
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
-layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
-READS_PAIRS(stored_color, colors)
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+READS_PAIRS(kept_color, colors)
 #endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(set = 0, binding = 29, rgba32f) writeonly uniform image2D color;
 #if defined(FETCH_ADDRESS) || defined(FETCH_DIRECT)
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
 READS_WORDS(address_of, addresses)
+#endif
+#ifdef FETCH_POINTER
+layout(std430, set = 0, binding = 34) readonly buffer Pointers { uint pointers[]; };
+#include "techniques/deep_shading/indirect/pointers.glsl"
 #endif
 #if defined(FETCH_LINKED) || defined(FETCH_COMPACT)
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
@@ -80,10 +84,17 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
     uint where = address_of(own);
 #elif defined(FETCH_DIRECT)
     uint where = address_of(own) & ~ADDRESS_STRAY;
+#elif defined(FETCH_POINTER)
+    uint pointer = pointers[own];
+    if (pointer != 0u && (pointer & POINTER_OWNS) == 0u) {
+        pointer = pointers[pointer - 1u];
+    }
+    // A sample without an entry has no colour.
+    uint where = pointer == 0u ? NO_PRIMITIVE : pointer & ~POINTER_OWNS;
 #else
     uint where = color_of(spid, own);
 #endif
-    uvec2 words = where < sample_total(deep) ? stored_color(where) : uvec2(0u);
+    uvec2 words = where < sample_total(deep) ? kept_color(where) : uvec2(0u);
     return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
 #endif
 }

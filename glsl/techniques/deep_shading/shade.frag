@@ -17,7 +17,7 @@ layout(location = 0) flat in uint in_primitive;
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
-layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 
 READS_WORDS(begin_of, begins)
 READS_PAIRS(node_of, nodes)

@@ -10,6 +10,7 @@
 #include "shading/light.glsl"
 #include "techniques/deep_shading/attributes.glsl"
 #include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/stored.glsl"
 
 // BRDF_ and SHADOW_ values.
 layout(constant_id = 2) const uint BRDF_KIND = 2;
@@ -133,21 +134,24 @@ void stand_on(Corner a, Corner b, Corner c, uvec3 vertices, Place place) {
 #endif
 }
 
-// Two words of the place that was written last: red and green, blue and 1, as half floats.
+// The material says that light does not change it.
+bool is_unlit() {
+    return SURFACE_EXTRAS != 0u && (params.material.flags & MATERIAL_UNLIT) != 0u;
+}
+
+// Of the place that was written last.
 uvec2 color_of_base(vec4 base_color) {
     vec3 radiance = base_color.rgb;
-    if (SURFACE_EXTRAS == 0u || (params.material.flags & MATERIAL_UNLIT) == 0u) {
+    if (!is_unlit()) {
         radiance =
             nan_if_cut(lit_at(params.material, base_color.rgb, in_position_ws, 0u, frame.light_count).radiance);
     }
-    // A half float holds no more.
-    radiance = min(radiance, vec3(65504.0));
-    return uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 1.0)));
+    return stored_color(radiance);
 }
 
-// The colour of `primitive`, of the draw of `params`. With `is_given` the weights say where on the triangle; else it is the
-// middle of `pixel`.
-uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
+// Writes what is interpolated elsewhere, of `primitive`, of the draw of `params`. With `is_given` the weights say where on the
+// triangle; else it is the middle of `pixel`.
+void stand_in(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
     uvec3 vertices = vertices_of(primitive);
     Corner a = corner_at(vertices.x);
     Corner b = corner_at(vertices.y);
@@ -165,6 +169,11 @@ uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
         place.down = vec3(0.0);
     }
     stand_on(a, b, c, vertices, place);
+}
+
+// The colour there.
+uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
+    stand_in(primitive, pixel, is_given, weights);
     return color_of_base(base_color_at(params.material));
 }
 

@@ -139,7 +139,12 @@ impl MapLayout {
 
     /// What a pass touches whose fragments ask the maps.
     pub fn read(&self, technique: &str) -> (String, Access) {
-        (depth_name(technique), Access::FragmentSample)
+        self.read_by(technique, Access::FragmentSample)
+    }
+
+    /// The same of one that does so by `access`.
+    pub fn read_by(&self, technique: &str, access: Access) -> (String, Access) {
+        (depth_name(technique), access)
     }
 
     /// SHADOW_BIAS and SHADOW_FILTER.

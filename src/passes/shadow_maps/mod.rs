@@ -173,7 +173,7 @@ impl ShadowMaps {
         };
         let mask = variant(FRAG_VARIANTS, &[vertex_name]);
         let blocks = resources.buffer(&blocks_name(technique));
-        upload::buffer(gpu, &blocks, bytemuck::cast_slice(&layout.blocks), Access::GraphicsRead)?;
+        upload::buffer(gpu, &blocks, bytemuck::cast_slice(&layout.blocks), Access::ComputeRead | Access::GraphicsRead)?;
         let layers = layout.views.iter().map(|view| Layer {
             clip_from_world: view.clip_from_world(),
             casters: DrawList::of_casters(posed, scene, view, layout.casters),
@@ -225,10 +225,10 @@ impl ShadowMaps {
         })
     }
 
-    /// What a pass waits for whose fragments ask the maps. `from`: who touched them last, `Access::DepthWrite` or another
-    /// such pass.
-    pub fn barrier(&self, from: Access) -> Barrier {
-        self.depth.from(from).to(Access::FragmentSample)
+    /// What a pass waits for whose fragments, or threads, ask the maps: `to`. `from`: who touched them last,
+    /// `Access::DepthWrite` or another such pass.
+    pub fn barrier(&self, from: Access, to: Access) -> Barrier {
+        self.depth.from(from).to(to)
     }
 
     /// What shadow_maps.glsl declares.

@@ -1,9 +1,11 @@
 //! Visibility first, then what it has seen is shaded: figure 3, from samples to their colours, and what counts the lists after
 //! the resolve.
 
+use super::baseline::Shading;
 use super::brute::Brute;
 use super::choices::Choices;
 use super::count::Count;
+use super::indirect::Indirect;
 use super::lists::address::Address;
 use super::lists::compact::Compact;
 use super::lists::direct::Direct;
@@ -51,10 +53,17 @@ enum Seen {
     Listed,
 }
 
+/// Who shades samples that no list has.
+enum Rest {
+    Alone(Box<Brute>),
+    /// All of them.
+    Indirect(Box<Indirect>),
+}
+
 pub struct Apart {
     seen: Seen,
     listed: Option<Listed>,
-    brute: Brute,
+    rest: Rest,
     colors: Buffer,
     visibility: Visibility,
     space: Extent,
@@ -99,10 +108,15 @@ impl Apart {
         } else {
             None
         };
+        let rest = if choices.shading == Shading::IndirectGbuffer {
+            Rest::Indirect(Box::new(Indirect::new(gpu, scene, resources, choices, frame)?))
+        } else {
+            Rest::Alone(Box::new(Brute::new(gpu, scene, resources, choices, frame)?))
+        };
         Ok(Self {
             seen,
             listed,
-            brute: Brute::new(gpu, scene, resources, choices, frame)?,
+            rest,
             colors: lists::colors(resources),
             visibility: choices.visibility,
             space: choices.space.extent,
@@ -165,14 +179,24 @@ impl Apart {
         }
         if let Some(listed) = &self.listed {
             let links_left = self.record_insertion(cmd, listed, bound, counters)?;
-            let maps = deep.maps_barrier(Access::DepthWrite);
+            let maps = deep.maps_barrier(Access::DepthWrite, Access::FragmentSample);
             let left = (&listed.lists, links_left, maps);
             listed.shade.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
         }
+        let brute = match &self.rest {
+            Rest::Alone(brute) => brute,
+            Rest::Indirect(indirect) => {
+                let samples = self.samples().expect("there are no lists");
+                let left = (samples, deep.maps_barrier(Access::DepthWrite, Access::ComputeSample));
+                indirect.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
+                let samples = (samples, samples.written | Access::FragmentSample);
+                return Ok(Shaded::Pointed { samples, pointers: &indirect.pointers, colors: &self.colors });
+            }
+        };
         let lists = self.listed.as_ref().map(|listed| &listed.lists);
         let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
-        let left = (lists, deep.maps_barrier(maps_left));
-        self.brute.record(cmd, scene, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
+        let left = (lists, deep.maps_barrier(maps_left, Access::FragmentSample));
+        brute.record(cmd, scene, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
         let samples = self.samples().map(|samples| {
             let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };
             (samples, seen_by | Access::FragmentSample)

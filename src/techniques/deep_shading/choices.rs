@@ -43,6 +43,8 @@ pub struct Choices {
     pub is_compacted: bool,
     pub has_zmax: bool,
     pub has_addresses: bool,
+    /// Of the cache of `--shading indirect-gbuffer`.
+    pub cache_entries: u64,
     pub is_counted: bool,
     /// Shaders come to lists and colours by the buffers' addresses.
     pub is_by_address: bool,
@@ -123,7 +125,8 @@ impl Choices {
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
         let space = ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?;
-        let samples_of_set = table.sample_total(inputs.view.extent);
+        let samples_of_set = table.sample_count(inputs.view.extent);
+        let cache_entries = values.integer_or_auto("shading-cache");
         Ok(Self {
             shading,
             maps: maps.map_err(|error| error.within(NAME))?,
@@ -144,6 +147,7 @@ impl Choices {
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),
             has_addresses: has_lists && values.is_on("address-buffer"),
+            cache_entries: cache_entries.unwrap_or(samples_of_set),
             is_counted: values.is_on("instrument"),
             is_by_address: shading == Shading::Deep
                 && reach::is_by_address(values, inputs.caps, samples_of_set, &space, is_compacted),
@@ -178,7 +182,7 @@ impl Choices {
 
     /// Samples of one set, padding included.
     pub fn samples_of(&self, frame: Extent) -> u64 {
-        self.table.sample_total(frame)
+        self.table.sample_count(frame)
     }
 
     /// Constants that several shaders have.
@@ -194,6 +198,7 @@ impl Choices {
             ("HAS_PADDING", u32::from(self.has_padding)),
             ("SUB_PIXEL_BITS", self.sub_pixel_bits.min(16)),
             ("BY_ADDRESS", u32::from(self.is_by_address)),
+            ("CACHE_ENTRIES", self.cache_entries as u32),
             ("PASS_SAMPLES", self.shading.pass_samples()),
         ]);
         constants

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 17;
+pub const COUNT: u64 = 18;
 
 /// Numbers that a frame left, as counters.glsl has them.
 pub struct Counted([u32; COUNT as usize]);
@@ -21,27 +21,9 @@ impl Counted {
         Ok(Self(words.try_into().expect("as many as asked for")))
     }
 
-    /// The report's. `pixels` of the frame. `has_tests`: a shader tested samples. A baseline has neither lists nor shading space.
-    pub fn report(&self, pixels: u64, has_tests: bool, is_baseline: bool) -> BTreeMap<&'static str, f64> {
-        let [
-            _,
-            strays,
-            shaded,
-            missing,
-            listed,
-            duplicates,
-            longest,
-            overflows,
-            list_pixels,
-            samples,
-            tests,
-            carried,
-            hits,
-            crowded,
-            nodes,
-            _,
-            digest,
-        ] = self.0.map(f64::from);
+    /// The report's, whatever is shaded. `pixels` of the frame. `has_tests`: a shader tested samples.
+    pub fn report(&self, pixels: u64, has_tests: bool) -> BTreeMap<&'static str, f64> {
+        let [_, _, shaded, _, _, _, _, _, _, samples, tests, carried, hits, ..] = self.0.map(f64::from);
         let mut counters = BTreeMap::from([
             ("shader_invocations", shaded),
             ("shaded_per_pixel", shaded / pixels as f64),
@@ -51,10 +33,32 @@ impl Counted {
             counters.insert("sample_tests", tests + carried * 4_294_967_296.0);
             counters.insert("sample_tests_hit", hits);
         }
-        if is_baseline {
-            return counters;
-        }
-        counters.extend([
+        counters
+    }
+
+    /// Of lists in shading space.
+    pub fn of_lists(&self) -> [(&'static str, f64); 10] {
+        let [
+            _,
+            strays,
+            _,
+            missing,
+            listed,
+            duplicates,
+            longest,
+            overflows,
+            list_pixels,
+            _,
+            _,
+            _,
+            _,
+            crowded,
+            nodes,
+            _,
+            digest,
+            _,
+        ] = self.0.map(f64::from);
+        [
             ("samples_outside_shading_space", strays - crowded),
             ("samples_of_full_lists", crowded),
             ("samples_without_colour", missing),
@@ -65,13 +69,28 @@ impl Counted {
             ("longest_list", longest),
             ("lists", list_pixels),
             ("lists_beyond_16", overflows),
-        ]);
-        counters
+        ]
+    }
+
+    /// Of a compact geometry buffer.
+    pub fn of_entries(&self) -> [(&'static str, f64); 3] {
+        let [_, strays, _, missing, .., forgotten] = self.0.map(f64::from);
+        [
+            ("samples_outside_shading_space", strays),
+            ("samples_without_colour", missing),
+            ("shading_samples_forgotten", forgotten),
+        ]
+    }
+
+    /// Entries of a compact geometry buffer.
+    pub fn entry_count(&self) -> u64 {
+        let [entries, ..] = self.0;
+        entries.into()
     }
 
     /// How much of the buffers of one entry a sample was used, with lists.
     pub fn entries(&self) -> Entries {
-        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _] = self.0.map(u64::from);
+        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _] = self.0.map(u64::from);
         Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples }
     }
 }

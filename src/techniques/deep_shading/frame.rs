@@ -4,6 +4,7 @@ use super::apart::Apart;
 use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
 use super::counters::Counted;
+use super::indirect;
 use super::plan::{COLOR, COUNTERS, SPIDS};
 use super::primitives::{self, Primitives};
 use super::reach::Reach;
@@ -54,7 +55,7 @@ impl DeepFrame {
     ) -> Result<Self> {
         let frame = inputs.view.extent;
         let shader = match choices.shading {
-            Shading::Deep => {
+            Shading::Deep | Shading::IndirectGbuffer => {
                 let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
                 let reach = Reach::new(gpu, resources, choices.is_by_address, apart.buffers())?;
                 Shader::Apart(Box::new(apart), reach)
@@ -119,7 +120,8 @@ impl Frame for DeepFrame {
                 apart.record_count(cmd, &bound, counters)?;
             }
             Shader::AsDrawn(baseline) => {
-                baseline.record(cmd, drawn, &bound, self.scene.maps_barrier(Access::DepthWrite), counters)?;
+                let maps = self.scene.maps_barrier(Access::DepthWrite, Access::FragmentSample);
+                baseline.record(cmd, drawn, &bound, maps, counters)?;
                 self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, color)?;
             }
         }
@@ -155,7 +157,13 @@ impl Frame for DeepFrame {
         }
         let pixels = self.color.description.extent.pixel_count();
         let has_tests = self.choices.visibility == Visibility::Stochastic;
-        let mut counters = self.counted(gpu)?.report(pixels, has_tests, self.apart().is_none());
+        let counted = self.counted(gpu)?;
+        let mut counters = counted.report(pixels, has_tests);
+        match self.choices.shading {
+            Shading::Deep => counters.extend(counted.of_lists()),
+            Shading::IndirectGbuffer => counters.extend(counted.of_entries()),
+            Shading::Ssaa | Shading::Msaa { .. } => {}
+        }
         if let Some(direct) = self.apart().and_then(Apart::host_lists) {
             counters.extend(direct.stray_counts());
         }
@@ -163,6 +171,9 @@ impl Frame for DeepFrame {
     }
 
     fn touched_bytes(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
+        if self.choices.is_counted && self.choices.shading == Shading::IndirectGbuffer {
+            return Ok(indirect::touched_bytes(&self.counted(gpu)?));
+        }
         // Without lists colours are cleared whole, and what the host inserts is copied whole.
         let has_entries = self.choices.is_counted && self.choices.has_lists && !self.choices.is_direct;
         Ok(if has_entries { self.counted(gpu)?.entries().bytes() } else { BTreeMap::new() })

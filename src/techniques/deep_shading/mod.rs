@@ -8,10 +8,12 @@
 //! (`--instrument on`), accumulate (`--accumulate` above 1).
 //!
 //! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
-//! accumulate
+//! accumulate, or those of `indirect-gbuffer`
 //! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, by whichever kind of visibility
 //! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that see it,
 //!   `--pass-samples` of them at a time
+//! - `indirect-gbuffer`: decoupled deferred shading (Liktor and Dachsbacher 2012): the same samples find what is shaded in a cache
+//!   and point to it in a compact geometry buffer (indirect/mod.rs); passes visibility, indirect.gbuffer, indirect.shade
 //!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
@@ -34,6 +36,7 @@
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
 //! every order of `--visibility`. Without blur it is `forward --supersample` with samples in other places.
 
+mod again;
 mod apart;
 mod baseline;
 mod brute;
@@ -42,6 +45,7 @@ mod count;
 mod counters;
 mod frame;
 mod gate;
+mod indirect;
 mod lists;
 mod middle;
 mod passes;
@@ -199,6 +203,9 @@ impl Prepared for PreparedDeep {
             BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
         if let Shading::Msaa { pass_samples } = shading {
             resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
+        }
+        if *shading == Shading::IndirectGbuffer {
+            resolved.insert("shading-cache", self.choices.cache_entries.to_string());
         }
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {

@@ -1,11 +1,12 @@
 //! The passes of a frame in order, up to the resolve and what counts after it, and what each touches.
 
+use super::baseline::Shading;
 use super::choices::Choices;
 use super::plan::{
     ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
 };
 use super::visibility::Visibility;
-use super::{NAME, full, gate};
+use super::{NAME, full, gate, indirect};
 use crate::gpu::Access;
 use crate::plan::Plan;
 
@@ -32,6 +33,10 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         if choices.has_lists {
             insertion(plan, choices);
         }
+    }
+    if choices.shading == Shading::IndirectGbuffer {
+        indirect::plan_passes(plan, choices);
+        return;
     }
     if choices.has_lists {
         let mut shaded = links(choices, Access::GraphicsRead);

@@ -6,7 +6,7 @@ use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full, gate, passes, reach};
+use super::{NAME, full, gate, indirect, passes, reach};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -52,10 +52,18 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     require_fitting(choices, inputs)?;
     let mut plan = Plan::default();
     plan_scene(&mut plan, choices, inputs)?;
-    if choices.shading == Shading::Deep {
-        plan_deep(&mut plan, choices, inputs)?;
-    } else {
-        baseline::plan(&mut plan, choices, inputs.view.extent);
+    match choices.shading {
+        Shading::Deep => {
+            plan_samples(&mut plan, choices, inputs)?;
+            plan_deep(&mut plan, choices, inputs);
+            reach::plan(&mut plan, choices.is_by_address);
+        }
+        Shading::IndirectGbuffer => {
+            plan_samples(&mut plan, choices, inputs)?;
+            indirect::plan(&mut plan, choices, choices.samples_of(inputs.view.extent));
+            reach::plan(&mut plan, false);
+        }
+        Shading::Ssaa | Shading::Msaa { .. } => baseline::plan(&mut plan, choices, inputs.view.extent),
     }
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
     plan.read_back(&full(COUNTERS));
@@ -66,10 +74,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     } else {
         plan.picture(full(COLOR), extent);
     }
-    if choices.shading == Shading::Deep {
-        passes::plan(&mut plan, choices);
-    } else {
-        baseline::plan_passes(&mut plan, choices);
+    match choices.shading {
+        Shading::Deep | Shading::IndirectGbuffer => passes::plan(&mut plan, choices),
+        Shading::Ssaa | Shading::Msaa { .. } => baseline::plan_passes(&mut plan, choices),
     }
     if choices.run_count > 1 {
         accumulate::plan_pass(&mut plan, NAME, &full(COLOR));
@@ -77,27 +84,39 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     Ok(plan)
 }
 
-/// What samples see, lists, and colours.
+/// An image of a layer a tuple.
+fn layers(choices: &Choices, inputs: &Inputs<'_>, format: Format, usage: Usage) -> Shape {
+    let extent = choices.table.layer(inputs.view.extent);
+    let layer_count = Some(choices.table.tuple_count());
+    Shape::Image(ImageDescription { layer_count, ..ImageDescription::plain(extent, format, 1, usage) })
+}
+
+/// How what samples see comes into images, and is read.
+fn attached(choices: &Choices) -> Usage {
+    let written = if choices.visibility == Visibility::Ray { Usage::TRANSFER_DST } else { Usage::COLOR_ATTACHMENT };
+    written | Usage::SAMPLED | Usage::TRANSFER_SRC
+}
+
+/// What samples see.
 ///
 /// Errors: the host would hold too much (exit code 4).
-fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
-    let samples = choices.samples_of(inputs.view.extent);
-    let shading_pixels = choices.space.extent.pixel_count();
-    let layers = |format, usage| {
-        let extent = choices.table.layer(inputs.view.extent);
-        let layer_count = Some(choices.table.tuple_count());
-        Shape::Image(ImageDescription { layer_count, ..ImageDescription::plain(extent, format, 1, usage) })
-    };
-    let written = if choices.visibility == Visibility::Ray { Usage::TRANSFER_DST } else { Usage::COLOR_ATTACHMENT };
-    let attached = written | Usage::SAMPLED | Usage::TRANSFER_SRC;
+fn plan_samples(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     if !choices.is_direct {
-        plan.push("frame_buffer", full(SPIDS), layers(SPID_FORMAT, attached));
+        plan.push("frame_buffer", full(SPIDS), layers(choices, inputs, SPID_FORMAT, attached(choices)));
     }
     if choices.visibility == Visibility::Ray {
-        ray::plan(plan, choices, inputs)?;
+        ray::plan(plan, choices, inputs)
     } else {
-        plan.push("frame_buffer", full(DEPTH), layers(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
+        let depth = layers(choices, inputs, DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
+        plan.push("frame_buffer", full(DEPTH), depth);
+        Ok(())
     }
+}
+
+/// Lists, and colours.
+fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
+    let samples = choices.samples_of(inputs.view.extent);
+    let shading_pixels = choices.space.extent.pixel_count();
     plan.buffer("deep_shading_buffer", full(COLORS), samples * COLOR_BYTES);
     if choices.has_lists {
         let mut list = |group, name: &str, bytes| {
@@ -118,7 +137,8 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<
             list("auxiliary", ZMAX, shading_pixels * 4);
         }
         if choices.has_zmax && !choices.is_direct {
-            plan.push("auxiliary", full(SHADING_DEPTHS), layers(SHADING_DEPTH_FORMAT, attached));
+            let depths = layers(choices, inputs, SHADING_DEPTH_FORMAT, attached(choices));
+            plan.push("auxiliary", full(SHADING_DEPTHS), depths);
         }
         if choices.is_counted {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
@@ -127,8 +147,6 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<
     if choices.is_gated {
         gate::plan(plan, inputs.stats.draw_count);
     }
-    reach::plan(plan, choices.is_by_address);
-    Ok(())
 }
 
 /// Lights, tree, cameras, tuples, and where the scene is when the shutter closes.
@@ -175,7 +193,8 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     }
     match choices.shading {
         Shading::Deep => reach::require_fitting(choices, inputs),
-        // A baseline has images alone.
+        Shading::IndirectGbuffer => indirect::require_fitting(choices, inputs),
+        // They have images alone.
         Shading::Ssaa | Shading::Msaa { .. } => Ok(()),
     }
 }

@@ -25,6 +25,13 @@ pub enum Shaded<'a> {
         lists: Option<&'a Lists>,
         colors: &'a Buffer,
     },
+    /// In a compact geometry buffer that samples point to. Who read the SPIDs, and who wrote them where compute shaders have not
+    /// waited for it yet.
+    Pointed {
+        samples: (&'a Samples, AccessSet),
+        pointers: &'a Buffer,
+        colors: &'a Buffer,
+    },
     Drawn(&'a Baseline),
 }
 
@@ -36,8 +43,15 @@ impl<'a> Shaded<'a> {
                 let spids = samples.map_or(0, |(samples, _)| samples.spids.description.bytes());
                 spids + addresses.map_or(0, |buffer| buffer.bytes) + colors.bytes
             }
+            // Of colours those that there are, which are counted after the frame.
+            Self::Pointed { samples: (samples, _), pointers, .. } => samples.spids.description.bytes() + pointers.bytes,
             Self::Drawn(baseline) => baseline.colors.description.bytes(),
         }
+    }
+
+    /// Who counted last.
+    fn counted(self) -> Access {
+        if matches!(self, Self::Pointed { .. }) { Access::ComputeWrite } else { Access::FragmentWrite }
     }
 
     fn to_compute(self, cmd: &mut Commands) {
@@ -54,6 +68,13 @@ impl<'a> Shaded<'a> {
                 cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::ComputeSample)));
                 cmd.barriers([colors.from(Access::FragmentWrite).to(Access::ComputeRead)]);
             }
+            Self::Pointed { samples: (samples, left), pointers, colors } => {
+                cmd.barriers([samples.spids.from(left).to(Access::ComputeSample)]);
+                cmd.barriers([
+                    pointers.from(Access::FragmentWrite).to(Access::ComputeRead),
+                    colors.from(Access::ComputeWrite).to(Access::ComputeRead),
+                ]);
+            }
             Self::Drawn(baseline) => {
                 cmd.barriers([baseline.colors.from(Access::ColorWrite).to(Access::ComputeSample)]);
             }
@@ -69,6 +90,11 @@ impl<'a> Shaded<'a> {
                 bound.extend(spids.map(|spids| ("spids", spids)));
                 bound
             }
+            Self::Pointed { samples: (samples, _), pointers, colors } => vec![
+                ("spids", samples.sampled(&samples.spids, Access::ComputeSample)),
+                ("Pointers", Bound::Buffer(pointers)),
+                ("Colors", Bound::Buffer(colors)),
+            ],
             Self::Drawn(baseline) => vec![("drawn", baseline.sampled())],
         }
     }
@@ -84,6 +110,7 @@ impl Resolve {
             Choices { shading: Shading::Ssaa, .. } => "layers",
             Choices { shading: Shading::Msaa { pass_samples: 1 }, .. } => "passes",
             Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
+            Choices { shading: Shading::IndirectGbuffer, .. } => "pointer",
             Choices { has_lists: false, .. } => "own",
             Choices { is_direct: true, .. } => "direct",
             Choices { has_addresses: true, .. } => "address",
@@ -112,7 +139,7 @@ impl Resolve {
         cmd.pass(&full("resolve"), traffic, |cmd| {
             shaded.to_compute(cmd);
             cmd.barriers([color.discard(Access::ComputeWrite)]);
-            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
+            cmd.barriers([counters.from(shaded.counted()).to(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();
             bound.extend(shaded.bound());
             bound.extend([("Counters", Bound::Buffer(counters)), ("color", Bound::Storage(color))]);

@@ -110,8 +110,8 @@ impl DeepScene {
     }
 
     /// What a pass waits for that lights, after the one that touched the shadow maps last.
-    pub fn maps_barrier(&self, from: Access) -> Option<Barrier> {
-        self.maps.as_ref().map(|maps| maps.barrier(from))
+    pub fn maps_barrier(&self, from: Access, to: Access) -> Option<Barrier> {
+        self.maps.as_ref().map(|maps| maps.barrier(from, to))
     }
 
     /// Everything that a shader of the technique may read of it, by name.

@@ -9,12 +9,23 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "shading",
         symbol: "",
-        kind: Kind::Choice(&["deep", "ssaa", "msaa"]),
+        kind: Kind::Choice(&["deep", "ssaa", "msaa", "indirect-gbuffer"]),
         default: "deep",
         unit: "",
         paper: "Clarberg 2014, 6",
         help: "what is shaded: what the lists have, or, as baselines, every sample that is drawn (ssaa), or what a pixel's samples see of a \
-               triangle once, by stochastic rasterisation whatever --visibility says (msaa)",
+               triangle once, by stochastic rasterisation whatever --visibility says (msaa), or, by a compute shader, what samples point to \
+               in a compact geometry buffer (indirect-gbuffer; Liktor and Dachsbacher 2012)",
+    },
+    Setting {
+        key: "shading-cache",
+        symbol: "",
+        kind: Kind::IntegerOrAuto { min: 1, max: 1 << 26 },
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 2",
+        help: "entries of the cache in which --shading indirect-gbuffer finds what has been seen before; what a full one forgets is \
+               shaded again, to the same picture; auto: as many as samples",
     },
     Setting {
         key: "pass-samples",

@@ -25,11 +25,6 @@ impl Table {
         Self { cells: [cells / height, height], samples }
     }
 
-    /// Samples of one set at this size of the frame, padding included.
-    pub fn sample_total(&self, frame: Extent) -> u64 {
-        self.layer(frame).pixel_count() * u64::from(self.tuple_count())
-    }
-
     pub fn tuple_count(&self) -> u32 {
         self.cells[0] * self.cells[1] * self.samples
     }
@@ -37,6 +32,11 @@ impl Table {
     /// Pixels of a layer: one for each cell that begins in the frame.
     pub fn layer(&self, frame: Extent) -> Extent {
         Extent::new(frame.width.div_ceil(self.cells[0]), frame.height.div_ceil(self.cells[1]))
+    }
+
+    /// Of all layers, what lies beyond the frame included.
+    pub fn sample_count(&self, frame: Extent) -> u64 {
+        self.layer(frame).pixel_count() * u64::from(self.tuple_count())
     }
 
     /// Whether all of every layer lies in the frame.

@@ -12,7 +12,7 @@ layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 layout(std430, set = 0, binding = 24) writeonly buffer Addresses { uint addresses[]; };
-layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 
 READS_WORDS(begin_of, begins)
 READS_PAIRS(node_of, nodes)

@@ -13,7 +13,7 @@ layout(std430, set = 0, binding = 21) buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 23) buffer Linear { uint linear[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-layout(std430, set = 0, binding = 33) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 
 READS_WORDS(begin_of, begins)
 WRITES_WORDS(set_begin, begins)

@@ -36,23 +36,25 @@ const COLORS: &str = "baseline.colors";
 const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
-/// Settings of shading space and of what is built in it.
-const OF_LISTS: [&str; 11] = [
-    "guard-band",
-    "shading-scale",
-    "shading-warp",
-    "warp-falloff",
-    "lists",
-    "list-access",
-    "duplicates",
-    "compaction",
-    "zmax",
-    "address-buffer",
-    "conservative",
+/// Settings that not everything that is shaded reads: who does, and why others do not.
+const OF_SOME: [(&str, &[&str], &str); 13] = [
+    ("guard-band", OF_SPACE, NO_SPACE),
+    ("shading-scale", OF_SPACE, NO_SPACE),
+    ("shading-warp", OF_SPACE, NO_SPACE),
+    ("warp-falloff", OF_SPACE, NO_SPACE),
+    ("lists", &["deep"], NO_LISTS),
+    ("list-access", &["deep"], NO_LISTS),
+    ("duplicates", &["deep"], NO_LISTS),
+    ("compaction", &["deep"], NO_LISTS),
+    ("zmax", &["deep"], NO_LISTS),
+    ("address-buffer", &["deep"], NO_LISTS),
+    ("conservative", &["deep"], NO_LISTS),
+    ("pass-samples", &["msaa"], "samples are drawn one at a time"),
+    ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
 ];
-
-/// What only images of several samples a pixel read.
-const OF_PASSES: &str = "pass-samples";
+const OF_SPACE: &[&str] = &["deep", "indirect-gbuffer"];
+const NO_SPACE: &str = "it has no shading space";
+const NO_LISTS: &str = "it has no lists";
 
 /// What `values` need of a device, whatever is shaded.
 pub fn needs(values: &Values) -> Option<Need> {
@@ -64,6 +66,8 @@ pub fn needs(values: &Values) -> Option<Need> {
 pub enum Shading {
     /// What the lists have.
     Deep,
+    /// What samples point to in a compact geometry buffer.
+    IndirectGbuffer,
     /// Every sample that is drawn.
     Ssaa,
     /// A pixel's samples that see a triangle, once.
@@ -79,20 +83,17 @@ impl Shading {
     /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
     pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
         let text = values.text("shading");
-        let (reads_lists, reads_passes) = (text == "deep", text == "msaa");
-        let is_unread = |key| (!reads_lists && OF_LISTS.contains(&key)) || (!reads_passes && key == OF_PASSES);
-        if let Some(row) = SETTINGS.iter().find(|row| is_unread(row.key) && values.text(row.key) != row.default) {
-            let (key, value, default) = (row.key, values.text(row.key), row.default);
-            let (why, reader) = if key == OF_PASSES {
-                ("samples are drawn one at a time", "msaa")
-            } else {
-                ("it has no shading space and no lists", "deep")
-            };
-            return Err(Error::request(format!("--{key} {value} with --shading {text}: {why}"))
-                .note(format!("--shading {reader} takes it; --{key} {default} goes with all")));
+        for (key, readers, why) in OF_SOME {
+            let default = SETTINGS.iter().find(|row| row.key == key).expect("it is a setting").default;
+            let value = values.text(key);
+            if value != default && !readers.contains(&text) {
+                return Err(Error::request(format!("--{key} {value} with --shading {text}: {why}"))
+                    .note(format!("--shading {} takes it; --{key} {default} goes with all", readers.join(" and "))));
+            }
         }
         Ok(match text {
             "deep" => Self::Deep,
+            "indirect-gbuffer" => Self::IndirectGbuffer,
             "ssaa" => Self::Ssaa,
             "msaa" => Self::Msaa { pass_samples: msaa::pass_samples(values, caps, spp)? },
             other => panic!("--shading {other} was checked"),
@@ -105,7 +106,7 @@ impl Shading {
     pub fn visibility(self, values: &Values) -> Result<Visibility> {
         let visibility = Visibility::of(values);
         match self {
-            Self::Deep => Ok(visibility),
+            Self::Deep | Self::IndirectGbuffer => Ok(visibility),
             Self::Msaa { .. } => Ok(Visibility::Stochastic),
             Self::Ssaa if matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic) => Ok(visibility),
             Self::Ssaa => {
@@ -123,7 +124,7 @@ impl Shading {
         match self {
             Self::Ssaa => "baseline.ssaa",
             Self::Msaa { .. } => "baseline.msaa",
-            Self::Deep => unreachable!("it is no baseline"),
+            Self::Deep | Self::IndirectGbuffer => unreachable!("visibility is a pass of its own"),
         }
     }
 
@@ -131,7 +132,7 @@ impl Shading {
     pub fn pass_samples(self) -> u32 {
         match self {
             Self::Msaa { pass_samples } => pass_samples,
-            Self::Deep | Self::Ssaa => 1,
+            Self::Deep | Self::IndirectGbuffer | Self::Ssaa => 1,
         }
     }
 }
@@ -141,7 +142,7 @@ fn layers(choices: &Choices, frame: Extent, format: vk::Format, usage: Usage) ->
     let (table, samples) = (&choices.table, choices.shading.pass_samples());
     let (extent, layer_count) = match choices.shading {
         Shading::Msaa { .. } => (frame, table.samples / samples),
-        Shading::Deep | Shading::Ssaa => (table.layer(frame), table.tuple_count()),
+        _ => (table.layer(frame), table.tuple_count()),
     };
     ImageDescription { layer_count: Some(layer_count), ..ImageDescription::plain(extent, format, samples, usage) }
 }
@@ -181,9 +182,7 @@ impl Baseline {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let (stages, fragment): (_, fn(&SceneGpu, &Choices, &str) -> &'static Shader) = match choices.shading {
             Shading::Msaa { .. } => (msaa::stages(), msaa::fragment),
-            Shading::Deep | Shading::Ssaa => {
-                (visibility::stages(scene, choices, &repeat_frame::repeats(0)), ssaa::fragment)
-            }
+            _ => (visibility::stages(scene, choices, &repeat_frame::repeats(0)), ssaa::fragment),
         };
         let pipeline = |alpha| pipeline(gpu, scene, choices, stages.vertex, fragment(scene, choices, alpha));
         Ok(Self {
@@ -229,7 +228,7 @@ impl Baseline {
                 cmd.begin_layers(description.extent, Layers::One(layer), &[colors], Some(depth));
                 let first_tuple = match self.shading {
                     Shading::Msaa { pass_samples } => layer * pass_samples,
-                    Shading::Deep | Shading::Ssaa => {
+                    _ => {
                         cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, layer));
                         layer
                     }

@@ -1,0 +1,27 @@
+// The triangles of samples, drawn once more by the stages that drew them for visibility: what comes in of them, and where on its
+// triangle a sample is. Pass: src/techniques/deep_shading/again.rs.
+//
+// After place.glsl and corners.glsl; with the axis VISIBILITY.
+#ifndef DEEP_SHADING_AGAIN_GLSL
+#define DEEP_SHADING_AGAIN_GLSL
+
+layout(location = 1) flat in uint in_primitive;
+#ifdef VISIBILITY_STOCHASTIC
+// Of stochastic.vert.
+layout(location = 2) flat in vec4 in_corners[3];
+#else
+layout(location = 2) in vec3 in_weights;
+#endif
+layout(location = 6) flat in uint in_tuple;
+
+// Of a sample that sees `in_primitive`.
+vec3 seen_weights() {
+#ifdef VISIBILITY_STOCHASTIC
+    // What the sample sees has passed the test: its weights are inside.
+    return place_at(in_corners[0], in_corners[1], in_corners[2], gl_FragCoord.xy).weights;
+#else
+    return inside_weights(in_weights);
+#endif
+}
+
+#endif

@@ -1,0 +1,50 @@
+// A cache of shading samples (Liktor & Dachsbacher 2012): which sample has the entry of the same triangle and shading pixel.
+//
+// A word of it is one more than the index of a sample, whose SPID is the key: SPIDs are all written before, so that an entry is
+// there at once and nobody waits for another. What finds no room where it may stand takes the place of something else,
+// which is then shaded once more where it is needed again.
+//
+// The including shader declares `deep`, `spids`, `counters[]` and IS_COUNTED, after space.glsl and counters.glsl.
+#ifndef DEEP_SHADING_CACHE_GLSL
+#define DEEP_SHADING_CACHE_GLSL
+
+#include "techniques/deep_shading/mixed.glsl"
+
+layout(constant_id = 99) const uint CACHE_ENTRIES = 1;
+
+layout(std430, set = 0, binding = 33) coherent buffer Cache { uint cache[]; };
+
+// Places that a shading sample may stand at, in a row.
+const uint CACHE_WAYS = 8u;
+
+// Twin of sample_index.
+uvec2 spid_of(uint index) {
+    uint row = index / deep.layer_width_px;
+    uvec3 at = uvec3(index % deep.layer_width_px, row % deep.layer_height_px, row / deep.layer_height_px);
+    return texelFetch(spids, ivec3(at), 0).xy;
+}
+
+// The sample that has the entry of `spid`: `own`, the asking one, where nobody had.
+uint memoised(uvec2 spid, uint own) {
+    uint first = mixed(spid.y * 0x9e3779b1u ^ mixed(spid.x)) % CACHE_ENTRIES;
+    for (uint way = 0u; way < CACHE_WAYS; way++) {
+        uint at = (first + way) % CACHE_ENTRIES;
+        uint found = cache[at];
+        if (found == 0u) {
+            found = atomicCompSwap(cache[at], 0u, own + 1u);
+        }
+        if (found == 0u) {
+            return own;
+        }
+        if (spid_of(found - 1u) == spid) {
+            return found - 1u;
+        }
+    }
+    atomicExchange(cache[(first + mixed(own) % CACHE_WAYS) % CACHE_ENTRIES], own + 1u);
+    if (IS_COUNTED != 0u) {
+        atomicAdd(counters[COUNTED_FORGOTTEN], 1u);
+    }
+    return own;
+}
+
+#endif

@@ -1,0 +1,127 @@
+//! The triangles of samples drawn once more, by the stages that drew them for visibility: every sample that sees one is found by
+//! what it sees, once, and the shader that comes after says what is done with it. Shaders: those before fragments of
+//! visibility, again.glsl.
+//! reads  the scene, visibility.spids, visibility.depth
+
+use super::choices::Choices;
+use super::constants_of;
+use super::gate::Gate;
+use super::plan::DEPTH_FORMAT;
+use super::primitives::Primitives;
+use super::visibility::{self, Samples, Visibility, sample};
+use crate::error::Result;
+use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::Shader;
+use crate::gpu::{Access, AccessSet, Bound, Commands, Gpu};
+use crate::passes::mesh;
+use crate::plan::Resources;
+use crate::resident::{DrawList, SceneGpu};
+use crate::units::Extent;
+use ash::vk;
+use std::sync::Arc;
+
+pub struct Again {
+    pipeline: GraphicsPipeline,
+    stages: sample::Stages,
+    gate: Option<Gate>,
+    visibility: Visibility,
+    /// One, and how many of them.
+    layers: (Extent, u32),
+}
+
+/// The value of the shaders' axis VISIBILITY: polygons have no depth that samples have. The SPIDs alone say what is seen: a
+/// triangle covers a sample once.
+pub fn axis(choices: &Choices) -> &'static str {
+    if choices.visibility.has_polygons() { "stochastic" } else { "interleaved" }
+}
+
+impl Again {
+    /// `frame`: its extent; `fragment`: what is done with a sample.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        frame: Extent,
+        fragment: &'static Shader,
+    ) -> Result<Self> {
+        let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
+        let stages = visibility::stages(scene, choices, &repeats);
+        let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
+        let pipeline = GraphicsPipeline::new(
+            gpu,
+            &GraphicsDescription {
+                vertex: stages.vertex,
+                geometry: stages.geometry,
+                fragment: Some(fragment),
+                constants: &constants,
+                vertex_buffers: &[],
+                color_formats: &[],
+                samples: 1,
+                blending: Blending::Replace,
+                depth_format: (!choices.visibility.has_polygons()).then_some(DEPTH_FORMAT),
+                depth_write: false,
+                depth_compare: vk::CompareOp::EQUAL,
+                depth_clamp: false,
+                depth_slope_bias: 0.0,
+                conservative: false,
+                stencil: None,
+                foreign_sets: &[scene.material_layout],
+            },
+        )?;
+        let gate = if choices.is_gated { Some(Gate::new(gpu, resources, scene, (&stages, &repeats))?) } else { None };
+        let layers = (choices.table.layer(frame), choices.table.tuple_count());
+        Ok(Self { pipeline, stages, gate, visibility: choices.visibility, layers })
+    }
+
+    /// Whether draws depend on a count.
+    pub fn gate(&self) -> Option<&Gate> {
+        self.gate.as_ref()
+    }
+
+    /// Bytes of vertices and of what says what samples see.
+    pub fn read_bytes(&self, gpu: &Gpu, scene: &SceneGpu, list: &DrawList, samples: Option<&Samples>) -> u64 {
+        let (_, layers) = self.layers;
+        let repeats = self.visibility.repeats(scene, &gpu.caps.limits, layers);
+        let rounds = self.visibility.round_count(&repeats, layers);
+        u64::from(rounds) * mesh::read_bytes(scene, list.calls())
+            + samples.map_or(0, |samples| samples.spids.description.bytes())
+    }
+
+    /// Waits for the samples, who may have been read by compute shaders, and draws. `left`: who touched the SPIDs last. `bound`:
+    /// all that shaders read and write but for SPIDs.
+    pub fn record<'a>(
+        &self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        list: &DrawList,
+        primitives: &Primitives,
+        samples: Option<(&'a Samples, AccessSet)>,
+        mut bound: Vec<(&'static str, Bound<'a>)>,
+    ) -> Result<()> {
+        let (layer, layers) = self.layers;
+        let repeats = self.visibility.repeats(scene, &cmd.gpu().caps.limits, layers);
+        cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::FragmentSample)));
+        let depth = samples.and_then(|(samples, _)| samples.depth.as_ref()).filter(|_| !self.visibility.has_polygons());
+        cmd.barriers(depth.map(|depth| depth.from(Access::DepthWrite).to(Access::DepthTest)));
+        let spids = samples.map(|(samples, _)| samples.sampled(&samples.spids, Access::FragmentSample));
+        bound.extend(spids.map(|spids| ("spids", spids)));
+        let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
+        let Some(first) = list.calls().next() else { return Ok(()) };
+        self.visibility.for_layers(&repeats, layers, |at, repeats| {
+            let depth = depth.map(|depth| (depth, None, Access::DepthTest));
+            cmd.begin_layers(layer, at, &[], depth);
+            cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
+            if let Some(gate) = &self.gate {
+                let drawn = (&self.pipeline, self.stages.sides);
+                sample::draw_by(cmd, drawn, scene, primitives, &scene.calls, repeats, |call| {
+                    gate.draw(cmd, call.draw);
+                });
+            } else {
+                sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
+            }
+            cmd.end_rendering();
+        });
+        Ok(())
+    }
+}

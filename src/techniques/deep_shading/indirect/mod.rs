@@ -1,0 +1,165 @@
+//! Baseline `--shading indirect-gbuffer`: Liktor and Dachsbacher 2012, "Decoupled Deferred Shading for Hardware Rasterization",
+//! which Clarberg and Munkberg 2014 compare the memory with (section 6). What is shaded is named as by the lists, a triangle at a
+//! pixel of shading space, and found again in a cache while triangles are drawn; of each there is one entry in a compact geometry
+//! buffer, to which samples point, and a compute shader shades the entries.
+//! reads   the scene, visibility.spids, visibility.depth
+//! writes  indirect.pointers  buffer, 4 B a sample; indirect.cache  buffer, 4 B an entry of it (`--shading-cache`);
+//!         indirect.places, .normals, .base_colors, .radiances  buffers, 16 B a shading sample each; shade.colors  8 B
+//!
+//! There are as many entries as samples, because each sample makes one at most: the worst case fits, and nothing can overflow.
+//!
+//! Our reading, where the papers leave a choice or drivers none
+//! - triangles come a second time, after visibility is known: theirs come once, and entries of what is covered later stay, of
+//!   which nobody can say how many there are before they are drawn
+//! - the cache is one of all samples, their first kind; its words are samples, whose SPIDs are the keys, so that no thread waits
+//!   for another: lanes of a subgroup that did would wait forever. Where eight places in a row are taken, one forgets what it
+//!   had: what is asked for again is shaded again, and counted (`shading_samples_forgotten`)
+//! - an entry has floats, 64 bytes, so that its colour has the bits of the lists'
+//! - samples that shading space has no place for have entries of their own
+
+pub mod gbuffer;
+pub mod shade;
+
+use super::choices::Choices;
+use super::counters::Counted;
+use super::plan::{COLOR, COLOR_BYTES, COLORS, COUNTERS, DEPTH, SPIDS};
+use super::primitives::Primitives;
+use super::visibility::Samples;
+use super::{NAME, full};
+use crate::error::{Error, Result};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu};
+use crate::plan::{Plan, Resources};
+use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::Inputs;
+use crate::units::Extent;
+use gbuffer::Gbuffer;
+use shade::Shade;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const POINTERS: &str = "indirect.pointers";
+const CACHE: &str = "indirect.cache";
+/// Buffers of the entries, as entries.glsl names them in order.
+const ENTRIES: [(&str, &str); 4] = [
+    ("indirect.places", "EntryPlaces"),
+    ("indirect.normals", "EntryNormals"),
+    ("indirect.base_colors", "EntryBaseColors"),
+    ("indirect.radiances", "EntryRadiances"),
+];
+
+/// Of an entry in one of its buffers, a pointer, a word of the cache.
+pub const ENTRY_BYTES: u64 = 16;
+const POINTER_BYTES: u64 = 4;
+const CACHE_BYTES: u64 = 4;
+
+/// Errors: a buffer of one entry a sample is longer than the device binds (exit code 4, and how many would fit).
+pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
+    let range = inputs.caps.limits.max_storage_buffer_range_bytes;
+    let (size, samples, set) = (inputs.view.extent, choices.samples_of(inputs.view.extent), choices.table.samples);
+    if samples * ENTRY_BYTES <= range {
+        return Ok(());
+    }
+    let most = range / (samples / u64::from(set) * ENTRY_BYTES);
+    let advice = match most {
+        0 => "a smaller --size would fit".to_owned(),
+        most => format!("--spp {most} fits at this size; --accumulate sums sets of them up"),
+    };
+    Err(Error::memory(format!(
+        "--spp {set} at {size}: {samples} samples of {ENTRY_BYTES} bytes a buffer, and this device binds {range} bytes at once"
+    ))
+    .within(NAME)
+    .note(advice))
+}
+
+/// Pointers, cache, entries, and their colours, for `samples`.
+pub fn plan(plan: &mut Plan, choices: &Choices, samples: u64) {
+    plan.buffer("indirect_frame_buffer", full(POINTERS), samples * POINTER_BYTES);
+    plan.buffer("shading_cache", full(CACHE), choices.cache_entries * CACHE_BYTES);
+    for (name, _) in ENTRIES {
+        plan.buffer("compact_geometry_buffer", full(name), samples * ENTRY_BYTES);
+    }
+    plan.buffer("compact_geometry_buffer", full(COLORS), samples * COLOR_BYTES);
+}
+
+/// Who touches them, after visibility and up to the resolve.
+pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
+    let touch = |name: &str, access| (full(name), access);
+    let mut drawn = vec![touch(SPIDS, Access::FragmentSample)];
+    drawn.extend((!choices.visibility.has_polygons()).then(|| touch(DEPTH, Access::DepthTest)));
+    for cleared in [POINTERS, CACHE] {
+        drawn.extend([touch(cleared, Access::TransferWrite), touch(cleared, Access::FragmentWrite)]);
+    }
+    drawn.extend(ENTRIES.map(|(name, _)| touch(name, Access::FragmentWrite)));
+    drawn.push(touch(COUNTERS, Access::FragmentWrite));
+    plan.pass(full("indirect.gbuffer"), drawn);
+    let mut shaded: Vec<_> = ENTRIES.map(|(name, _)| touch(name, Access::ComputeRead)).into();
+    shaded.extend(choices.maps.iter().map(|maps| maps.read_by(NAME, Access::ComputeSample)));
+    shaded.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
+    plan.pass(full("indirect.shade"), shaded);
+    let resolved = [
+        touch(SPIDS, Access::ComputeSample),
+        touch(POINTERS, Access::ComputeRead),
+        touch(COLORS, Access::ComputeRead),
+        touch(COUNTERS, Access::ComputeWrite),
+        touch(COLOR, Access::ComputeWrite),
+    ];
+    plan.pass(full("resolve"), resolved);
+}
+
+/// Bytes that a frame touches of buffers that are as long as the worst case; what is cleared is touched whole and not listed.
+pub fn touched_bytes(counted: &Counted) -> BTreeMap<String, u64> {
+    let entries = counted.entry_count();
+    let of = |(name, _): (&str, &str)| (full(name), entries * ENTRY_BYTES);
+    ENTRIES.map(of).into_iter().chain([(full(COLORS), entries * COLOR_BYTES)]).collect()
+}
+
+/// Samples' way from what they see to colours, by a compact geometry buffer.
+pub struct Indirect {
+    /// 4 B a sample: pointers.glsl says what.
+    pub pointers: Buffer,
+    cache: Buffer,
+    entries: [Buffer; 4],
+    gbuffer: Gbuffer,
+    shade: Shade,
+}
+
+impl Indirect {
+    /// `frame`: its extent.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        frame: Extent,
+    ) -> Result<Self> {
+        Ok(Self {
+            gbuffer: Gbuffer::new(gpu, scene, resources, choices, frame)?,
+            shade: Shade::new(gpu, choices, frame)?,
+            pointers: resources.buffer(&full(POINTERS)),
+            cache: resources.buffer(&full(CACHE)),
+            entries: ENTRIES.map(|(name, _)| resources.buffer(&full(name))),
+        })
+    }
+
+    fn bound(&self) -> impl Iterator<Item = (&'static str, Bound<'_>)> {
+        let entries = ENTRIES.iter().zip(&self.entries).map(|((_, name), buffer)| (*name, Bound::Buffer(buffer)));
+        entries.chain([("Pointers", Bound::Buffer(&self.pointers)), ("Cache", Bound::Buffer(&self.cache))])
+    }
+
+    /// After visibility. `maps`: what shading from shadow maps waits for.
+    #[allow(clippy::too_many_arguments)]
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        list: &DrawList,
+        primitives: &Primitives,
+        bound: &[(&'static str, Bound<'_>)],
+        (samples, maps): (&Samples, Option<Barrier>),
+        colors: &Buffer,
+        counters: &Buffer,
+    ) -> Result<()> {
+        self.gbuffer.record(cmd, (scene, list, primitives), bound, samples, self, counters)?;
+        self.shade.record(cmd, bound, self, maps, colors, counters)
+    }
+}

@@ -1,0 +1,59 @@
+//! Shade: the entries of the compact geometry buffer, each once (Liktor & Dachsbacher 2012). Shader: shade.comp.
+//! reads   indirect.places, .normals, .base_colors, .radiances, the lights
+//! writes  shade.colors  buffer, 8 B an entry: RGBA16F
+
+use super::super::choices::Choices;
+use super::super::{constants_of, full};
+use super::Indirect;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::indirect::shade::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::passes::shadow_maps;
+use crate::units::Extent;
+use std::sync::Arc;
+
+pub struct Shade {
+    pipeline: ComputePipeline,
+    /// As many threads as samples: so many entries there may be.
+    threads: [u32; 3],
+}
+
+impl Shade {
+    /// `frame`: its extent.
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, frame: Extent) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[shadow_maps::axis(choices.maps.is_some())]);
+        let layer = choices.table.layer(frame);
+        Ok(Self {
+            pipeline: ComputePipeline::new(gpu, shader, &constants_of(choices, &[Some(shader)]))?,
+            threads: [layer.width, layer.height, choices.table.tuple_count()],
+        })
+    }
+
+    /// `maps`: what asking the shadow maps waits for.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        indirect: &Indirect,
+        maps: Option<Barrier>,
+        colors: &Buffer,
+        counters: &Buffer,
+    ) -> Result<()> {
+        // Entries are counted after the frame.
+        let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
+        cmd.pass(&full("indirect.shade"), traffic, |cmd| {
+            cmd.barriers(maps);
+            let entries = indirect.entries.iter();
+            cmd.barriers(entries.map(|buffer| buffer.from(Access::FragmentWrite).to(Access::ComputeRead)));
+            cmd.barriers([colors.discard(Access::ComputeWrite)]);
+            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
+            let mut bound = bound.to_vec();
+            bound.extend(indirect.bound());
+            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            let groups = self.pipeline.groups(self.threads);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}
