@@ -2,6 +2,7 @@
 
 use super::baseline::Shading;
 use super::middle::Middle;
+use super::reconstruct;
 use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::visibility::Visibility;
@@ -44,6 +45,8 @@ pub struct Choices {
     pub has_zmax: bool,
     pub has_addresses: bool,
     pub is_counted: bool,
+    /// Something is blurred, and its colours are filtered.
+    pub is_reconstructed: bool,
     pub road: Road,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
@@ -95,6 +98,7 @@ impl Choices {
         let has_lists = shading == Shading::Deep && values.text("lists") != "none";
         let is_direct = has_lists && values.text("lists") == "direct";
         require_direct(values)?;
+        reconstruct::require_spids(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture") > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
@@ -116,9 +120,7 @@ impl Choices {
             table,
             run_count: values.integer("accumulate") as u32,
             space: ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?,
-            lens,
             is_moving: middle.is_some(),
-            middle,
             has_lists,
             is_direct,
             is_gated: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
@@ -127,6 +129,9 @@ impl Choices {
             has_zmax: has_lists && values.is_on("zmax"),
             has_addresses: has_lists && values.is_on("address-buffer"),
             is_counted: values.is_on("instrument"),
+            is_reconstructed: values.is_on("reconstruct") && (lens.is_some() || middle.is_some()),
+            lens,
+            middle,
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         })

@@ -6,6 +6,7 @@ use super::choices::Choices;
 use super::counters::Counted;
 use super::plan::{COLOR, COUNTERS, SPIDS};
 use super::primitives::{self, Primitives};
+use super::reconstruct::Reconstruct;
 use super::resolve::{Resolve, Shaded};
 use super::scene::DeepScene;
 use super::visibility::ray::Traced;
@@ -36,6 +37,7 @@ pub struct DeepFrame {
     scene: DeepScene,
     shader: Shader,
     resolve: Resolve,
+    reconstruct: Option<Reconstruct>,
     accumulate: Option<Accumulate>,
     counters: Buffer,
     color: Image,
@@ -58,11 +60,16 @@ impl DeepFrame {
                 Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?))
             }
         };
+        let reconstruct = match choices.is_reconstructed {
+            true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
+            false => None,
+        };
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             shader,
             resolve: Resolve::new(gpu, &choices)?,
+            reconstruct,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             counters: resources.buffer(&full(COUNTERS)),
             color: resources.image(&full(COLOR)),
@@ -83,6 +90,11 @@ impl DeepFrame {
         let frame = self.color.description.extent;
         let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
         Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
+    }
+
+    /// Of one set of samples.
+    fn run_picture(&self) -> &Image {
+        self.reconstruct.as_ref().map_or(&self.color, |reconstruct| &reconstruct.color)
     }
 
     fn counted(&self, gpu: &Arc<Gpu>) -> Result<Counted> {
@@ -110,6 +122,9 @@ impl Frame for DeepFrame {
             Shader::Apart(apart) => {
                 let shaded = apart.record(cmd, &self.scene, drawn, &bound, counters)?;
                 self.resolve.record(cmd, &bound, shaded, counters, color)?;
+                if let Some(reconstruct) = &self.reconstruct {
+                    reconstruct.record(cmd, &bound, shaded, color)?;
+                }
                 apart.record_count(cmd, &bound, counters)?;
             }
             Shader::AsDrawn(baseline) => {
@@ -118,7 +133,7 @@ impl Frame for DeepFrame {
             }
         }
         if let Some(accumulate) = &self.accumulate {
-            accumulate.record(cmd, NAME, frame, self.color.from(Access::ComputeWrite))?;
+            accumulate.record(cmd, NAME, frame, self.run_picture().from(Access::ComputeWrite))?;
         }
         Ok(())
     }
@@ -140,7 +155,7 @@ impl Frame for DeepFrame {
     }
 
     fn picture(&self) -> (&Image, Access) {
-        (self.accumulate.as_ref().map_or(&self.color, |accumulate| &accumulate.color), Access::ComputeWrite)
+        (self.accumulate.as_ref().map_or(self.run_picture(), |accumulate| &accumulate.color), Access::ComputeWrite)
     }
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {

@@ -6,7 +6,7 @@ use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full, gate, passes};
+use super::{NAME, full, gate, passes, reconstruct};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -58,11 +58,19 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
     plan.read_back(&full(COUNTERS));
     let extent = inputs.view.extent;
+    let run = if choices.is_reconstructed { reconstruct::COLOR } else { COLOR };
+    let stored = |plan: &mut Plan, name| {
+        plan.image("color", full(name), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
+    };
+    if choices.is_reconstructed {
+        stored(&mut plan, COLOR);
+        reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
+    }
     if choices.run_count > 1 {
-        plan.image("color", full(COLOR), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
+        stored(&mut plan, run);
         accumulate::plan(&mut plan, NAME, extent);
     } else {
-        plan.picture(full(COLOR), extent);
+        plan.picture(full(run), extent);
     }
     if choices.shading == Shading::Deep {
         passes::plan(&mut plan, choices);
@@ -70,7 +78,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         baseline::plan_passes(&mut plan, choices);
     }
     if choices.run_count > 1 {
-        accumulate::plan_pass(&mut plan, NAME, &full(COLOR));
+        accumulate::plan_pass(&mut plan, NAME, &full(run));
     }
     Ok(plan)
 }
