@@ -61,17 +61,20 @@ impl<'a> Shaded<'a> {
         }
     }
 
-    /// For the next compute shader that reads the same.
+    /// For the next compute shader that reads the same: it has been waited for.
     pub fn stay_in_compute(self, cmd: &mut Commands) {
         let Self::Apart { samples, lists, colors } = self else { return };
-        let read = |buffer: &Buffer| buffer.from(Access::ComputeRead).to(Access::ComputeRead);
+        let read = Access::ComputeRead | Access::GraphicsRead;
         match lists {
-            Some(Lists { addresses: Some(addresses), .. }) => cmd.barriers([read(addresses)]),
-            Some(lists) => lists.links_to(cmd, Access::ComputeRead, Access::ComputeRead),
+            Some(Lists { addresses: Some(addresses), .. }) => {
+                cmd.barriers([addresses.from(read).to(Access::ComputeRead)]);
+            }
+            Some(lists) => lists.links_to(cmd, read, Access::ComputeRead),
             None => {}
         }
-        let spids = samples.map(|(samples, _)| samples.spids.from(Access::ComputeSample).to(Access::ComputeSample));
-        cmd.barriers(spids.into_iter().chain([read(colors)]));
+        let sampled = Access::ComputeSample | Access::FragmentSample;
+        cmd.barriers(samples.map(|(samples, _)| samples.spids.from(sampled).to(Access::ComputeSample)));
+        cmd.barriers([colors.from(Access::ComputeRead).to(Access::ComputeRead)]);
     }
 
     /// The same, by the names that shaders have for it.
