@@ -50,7 +50,8 @@ const TILE_PX: u32 = 16;
 pub fn require_spids(values: &Values) -> Result<()> {
     let refused = |setting: &str, instead: &str| {
         let kind = values.text(setting);
-        let why = format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
+        let why =
+            format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
         Err(Error::request(why).within(super::NAME).note(format!("--{setting} {instead} keeps them")))
     };
     match (values.is_on("reconstruct"), values.text("shading"), values.text("lists")) {
