@@ -24,7 +24,12 @@ struct DrawnParams {
     uint flags;
 };
 
+#ifdef DRAW_OF_TRIANGLE
+// The shader finds out which draw a triangle is of.
+DrawnParams params;
+#else
 layout(push_constant) uniform Push { DrawnParams params; };
+#endif
 layout(std430, set = 0, binding = 1) readonly buffer Draws { DrawBlock draws[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 31) readonly buffer Indices { uint indices[]; };

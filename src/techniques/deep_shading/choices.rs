@@ -2,6 +2,7 @@
 
 use super::baseline::Shading;
 use super::middle::Middle;
+use super::reconstruct;
 use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::visibility::Visibility;
@@ -50,6 +51,8 @@ pub struct Choices {
     pub is_by_address: bool,
     /// Of what the rasteriser snaps corners to.
     sub_pixel_bits: u32,
+    /// Something is blurred, and its colours are filtered.
+    pub is_reconstructed: bool,
     pub road: Road,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
@@ -113,6 +116,7 @@ impl Choices {
         let is_direct = has_lists && values.text("lists") == "direct";
         require_direct(values)?;
         require_straight(values)?;
+        reconstruct::require_spids(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture") > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
@@ -137,9 +141,7 @@ impl Choices {
             table,
             run_count: values.integer("accumulate") as u32,
             space,
-            lens,
             is_moving: middle.is_some(),
-            middle,
             has_lists,
             is_direct,
             is_gated: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
@@ -152,6 +154,9 @@ impl Choices {
             is_by_address: shading == Shading::Deep
                 && reach::is_by_address(values, inputs.caps, samples_of_set, &space, is_compacted),
             sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
+            is_reconstructed: values.is_on("reconstruct") && (lens.is_some() || middle.is_some()),
+            lens,
+            middle,
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         })

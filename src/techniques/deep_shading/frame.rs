@@ -8,6 +8,7 @@ use super::indirect;
 use super::plan::{COLOR, COUNTERS, SPIDS};
 use super::primitives::{self, Primitives};
 use super::reach::Reach;
+use super::reconstruct::Reconstruct;
 use super::resolve::{Resolve, Shaded};
 use super::scene::DeepScene;
 use super::visibility::ray::Traced;
@@ -38,6 +39,7 @@ pub struct DeepFrame {
     scene: DeepScene,
     shader: Shader,
     resolve: Resolve,
+    reconstruct: Option<Reconstruct>,
     accumulate: Option<Accumulate>,
     counters: Buffer,
     color: Image,
@@ -64,11 +66,16 @@ impl DeepFrame {
                 Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?))
             }
         };
+        let reconstruct = match choices.is_reconstructed {
+            true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
+            false => None,
+        };
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
             scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
             shader,
             resolve: Resolve::new(gpu, &choices)?,
+            reconstruct,
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             counters: resources.buffer(&full(COUNTERS)),
             color: resources.image(&full(COLOR)),
@@ -89,6 +96,11 @@ impl DeepFrame {
         let frame = self.color.description.extent;
         let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
         Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
+    }
+
+    /// Of one set of samples.
+    fn run_picture(&self) -> &Image {
+        self.reconstruct.as_ref().map_or(&self.color, |reconstruct| &reconstruct.color)
     }
 
     fn counted(&self, gpu: &Arc<Gpu>) -> Result<Counted> {
@@ -117,6 +129,9 @@ impl Frame for DeepFrame {
                 bound.push(reach.bound());
                 let shaded = apart.record(cmd, &self.scene, drawn, &bound, counters)?;
                 self.resolve.record(cmd, &bound, shaded, counters, color)?;
+                if let Some(reconstruct) = &self.reconstruct {
+                    reconstruct.record(cmd, &bound, shaded, color)?;
+                }
                 apart.record_count(cmd, &bound, counters)?;
             }
             Shader::AsDrawn(baseline) => {
@@ -126,7 +141,7 @@ impl Frame for DeepFrame {
             }
         }
         if let Some(accumulate) = &self.accumulate {
-            accumulate.record(cmd, NAME, frame, self.color.from(Access::ComputeWrite))?;
+            accumulate.record(cmd, NAME, frame, self.run_picture().from(Access::ComputeWrite))?;
         }
         Ok(())
     }
@@ -148,7 +163,7 @@ impl Frame for DeepFrame {
     }
 
     fn picture(&self) -> (&Image, Access) {
-        (self.accumulate.as_ref().map_or(&self.color, |accumulate| &accumulate.color), Access::ComputeWrite)
+        (self.accumulate.as_ref().map_or(self.run_picture(), |accumulate| &accumulate.color), Access::ComputeWrite)
     }
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {

@@ -4,8 +4,9 @@
 //! Passes: shadow_maps (with `--direct-shadow map`), visibility (the triangle that each sample sees, and where it is in
 //! canonical shading space: its SPID), lists (of triangles, by compare-exchange), lists.compact, lists.address, shade (one
 //! conservative pass over shading space, which shades what the lists have), strays (samples that shading space has no place
-//! for, and those that a list of 1024 triangles has none for) or brute (`--lists none`), resolve (box filter), count
-//! (`--instrument on`), accumulate (`--accumulate` above 1).
+//! for, and those that a list of 1024 triangles has none for) or brute (`--lists none`), resolve (box filter), with `--reconstruct on`
+//! reconstruct.samples (motion and depth), reconstruct.layers and reconstruct.filter, count (`--instrument on`), accumulate
+//! (`--accumulate` above 1).
 //!
 //! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
 //! accumulate, or those of `indirect-gbuffer`
@@ -31,6 +32,7 @@
 //! - `--visibility stochastic` tests the tuples of the interleaved kinds, a layer a tuple, so that both see the same samples, and
 //!   the depth test finds the nearest without 64-bit atomics
 //! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no SPID is kept
+//! - the reconstruction is a filter of our choice; motion vectors come from SPIDs after visibility (reconstruct/mod.rs)
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
@@ -52,6 +54,7 @@ mod passes;
 mod plan;
 mod primitives;
 mod reach;
+mod reconstruct;
 mod resolve;
 mod rivals;
 mod scene;
@@ -216,6 +219,9 @@ impl Prepared for PreparedDeep {
         }
         if let Some(lens) = lens {
             resolved.insert("focus", format!("{}", lens.focus));
+        }
+        if !self.choices.is_reconstructed {
+            resolved.insert("reconstruct", "off".to_owned());
         }
         resolved
     }

@@ -6,7 +6,7 @@ use super::plan::{
     ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
 };
 use super::visibility::Visibility;
-use super::{NAME, full, gate, indirect};
+use super::{NAME, full, gate, indirect, reconstruct};
 use crate::gpu::Access;
 use crate::plan::Plan;
 
@@ -46,7 +46,11 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         plan.pass(full("shade"), shaded);
     }
     plan.pass(full(choices.brute_pass()), brute(choices));
-    plan.pass(full("resolve"), resolve(choices));
+    let written = [touch(COUNTERS, Access::ComputeWrite), touch(COLOR, Access::ComputeWrite)];
+    plan.pass(full("resolve"), shaded(choices).into_iter().chain(written));
+    if choices.is_reconstructed {
+        reconstruct::plan_passes(plan, shaded(choices), COLOR);
+    }
     if choices.has_lists && choices.is_counted {
         let mut counted = links(choices, Access::ComputeWrite);
         counted.extend([touch(COUNTERS, Access::ComputeWrite), touch(LENGTHS, Access::ComputeWrite)]);
@@ -108,17 +112,14 @@ fn brute(choices: &Choices) -> Touches {
     brute
 }
 
-fn resolve(choices: &Choices) -> Touches {
-    let mut resolved = vec![
-        touch(COLORS, Access::ComputeRead),
-        touch(COUNTERS, Access::ComputeWrite),
-        touch(COLOR, Access::ComputeWrite),
-    ];
-    resolved.extend((!choices.is_direct).then(|| touch(SPIDS, Access::ComputeSample)));
+/// What says which colours samples have.
+fn shaded(choices: &Choices) -> Touches {
+    let mut shaded = vec![touch(COLORS, Access::ComputeRead)];
+    shaded.extend((!choices.is_direct).then(|| touch(SPIDS, Access::ComputeSample)));
     if choices.has_lists && choices.has_addresses {
-        resolved.push(touch(ADDRESSES, Access::ComputeRead));
+        shaded.push(touch(ADDRESSES, Access::ComputeRead));
     } else if choices.has_lists {
-        resolved.extend(links(choices, Access::ComputeRead));
+        shaded.extend(links(choices, Access::ComputeRead));
     }
-    resolved
+    shaded
 }

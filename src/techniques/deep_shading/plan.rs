@@ -6,7 +6,7 @@ use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full, gate, indirect, passes, reach};
+use super::{NAME, full, gate, indirect, passes, reach, reconstruct};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -68,18 +68,26 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
     plan.read_back(&full(COUNTERS));
     let extent = inputs.view.extent;
+    let run = if choices.is_reconstructed { reconstruct::COLOR } else { COLOR };
+    let stored = |plan: &mut Plan, name| {
+        plan.image("color", full(name), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
+    };
+    if choices.is_reconstructed {
+        stored(&mut plan, COLOR);
+        reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
+    }
     if choices.run_count > 1 {
-        plan.image("color", full(COLOR), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
+        stored(&mut plan, run);
         accumulate::plan(&mut plan, NAME, extent);
     } else {
-        plan.picture(full(COLOR), extent);
+        plan.picture(full(run), extent);
     }
     match choices.shading {
         Shading::Deep | Shading::IndirectGbuffer => passes::plan(&mut plan, choices),
         Shading::Ssaa | Shading::Msaa { .. } => baseline::plan_passes(&mut plan, choices),
     }
     if choices.run_count > 1 {
-        accumulate::plan_pass(&mut plan, NAME, &full(COLOR));
+        accumulate::plan_pass(&mut plan, NAME, &full(run));
     }
     Ok(plan)
 }

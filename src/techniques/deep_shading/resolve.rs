@@ -36,7 +36,8 @@ pub enum Shaded<'a> {
 }
 
 impl<'a> Shaded<'a> {
-    fn bytes(self) -> u64 {
+    /// Bytes of all that says what samples' colours are.
+    pub fn bytes(self) -> u64 {
         match self {
             Self::Apart { samples, lists, colors, .. } => {
                 let addresses = lists.and_then(|lists| lists.addresses.as_ref());
@@ -81,7 +82,24 @@ impl<'a> Shaded<'a> {
         }
     }
 
-    fn bound(self) -> Vec<(&'static str, Bound<'a>)> {
+    /// For the next compute shader that reads the same: it has been waited for.
+    pub fn stay_in_compute(self, cmd: &mut Commands) {
+        let Self::Apart { samples, lists, colors } = self else { return };
+        let read = Access::ComputeRead | Access::GraphicsRead;
+        match lists {
+            Some(Lists { addresses: Some(addresses), .. }) => {
+                cmd.barriers([addresses.from(read).to(Access::ComputeRead)]);
+            }
+            Some(lists) => lists.links_to(cmd, read, Access::ComputeRead),
+            None => {}
+        }
+        let sampled = Access::ComputeSample | Access::FragmentSample;
+        cmd.barriers(samples.map(|(samples, _)| samples.spids.from(sampled).to(Access::ComputeSample)));
+        cmd.barriers([colors.from(Access::ComputeRead).to(Access::ComputeRead)]);
+    }
+
+    /// The same, by the names that shaders have for it.
+    pub fn bound(self) -> Vec<(&'static str, Bound<'a>)> {
         match self {
             Self::Apart { samples, lists, colors, .. } => {
                 let mut bound: Vec<_> = lists.map(Lists::bound).into_iter().flatten().collect();
@@ -100,24 +118,28 @@ impl<'a> Shaded<'a> {
     }
 }
 
+/// How shaders find a sample's colour: a value of their axis FETCH.
+pub fn fetch(choices: &Choices) -> &'static str {
+    match choices {
+        Choices { shading: Shading::Ssaa, .. } => "layers",
+        Choices { shading: Shading::Msaa { pass_samples: 1 }, .. } => "passes",
+        Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
+        Choices { shading: Shading::IndirectGbuffer, .. } => "pointer",
+        Choices { has_lists: false, .. } => "own",
+        Choices { is_direct: true, .. } => "direct",
+        Choices { has_addresses: true, .. } => "address",
+        Choices { is_compacted: true, .. } => "compact",
+        _ => "linked",
+    }
+}
+
 pub struct Resolve {
     pipeline: ComputePipeline,
 }
 
 impl Resolve {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let fetch = match choices {
-            Choices { shading: Shading::Ssaa, .. } => "layers",
-            Choices { shading: Shading::Msaa { pass_samples: 1 }, .. } => "passes",
-            Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
-            Choices { shading: Shading::IndirectGbuffer, .. } => "pointer",
-            Choices { has_lists: false, .. } => "own",
-            Choices { is_direct: true, .. } => "direct",
-            Choices { has_addresses: true, .. } => "address",
-            Choices { is_compacted: true, .. } => "compact",
-            _ => "linked",
-        };
-        let shader = variant(COMP_VARIANTS, &[fetch]);
+        let shader = variant(COMP_VARIANTS, &[fetch(choices)]);
         let constants = super::constants_of(choices, &[Some(shader)]);
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }

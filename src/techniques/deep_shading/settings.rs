@@ -190,6 +190,16 @@ pub const SETTINGS: &[Setting] = &[
                device's own conservative rasterisation; the same picture; auto: the last of these that the device has, of the first two the first",
     },
     Setting {
+        key: "reconstruct",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "off",
+        unit: "",
+        paper: "Clarberg 2014, 4.5",
+        help: "what is blurred is filtered in layers of depth, as far as its blur allows, in place of the mean of each pixel's own \
+               samples; not the paper's filter",
+    },
+    Setting {
         key: "instrument",
         symbol: "",
         kind: Kind::Choice(&["on", "off"]),

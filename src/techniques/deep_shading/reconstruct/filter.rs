@@ -1,0 +1,52 @@
+//! Layers filtered and put over each other. Shader: filter.comp.
+//! reads   reconstruct.samples.colors, reconstruct.samples.vectors, reconstruct.layers.tiles, resolve.color
+//! writes  reconstruct.filter.color   image, RGBA32F, frame extent
+
+use super::super::full;
+use super::Reconstructed;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::filter::COMP;
+use crate::gpu::{Access, Bound, Commands, Edge, Gpu, Image, Traffic};
+use std::sync::Arc;
+
+pub const PASS: &str = "reconstruct.filter";
+
+pub struct Filter {
+    pipeline: ComputePipeline,
+}
+
+impl Filter {
+    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    }
+
+    /// After the layers.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        reconstructed: &Reconstructed,
+        resolved: Edge<'_, Image>,
+        color: &Image,
+    ) -> Result<()> {
+        let extent = color.description.extent;
+        // Blur decides how often samples are read: at least once.
+        let traffic = Traffic {
+            read_bytes: reconstructed.sample_bytes() + reconstructed.tiles.bytes + color.description.bytes(),
+            written_bytes: color.description.bytes(),
+            invocations: Some(extent.pixel_count()),
+        };
+        cmd.pass(&full(PASS), traffic, |cmd| {
+            let Reconstructed { colors, vectors, tiles } = reconstructed;
+            cmd.barriers([colors, vectors].map(|buffer| buffer.from(Access::ComputeRead).to(Access::ComputeRead)));
+            cmd.barriers([tiles.from(Access::ComputeWrite).to(Access::ComputeRead)]);
+            cmd.barriers([resolved.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
+            let mut bound = bound.to_vec();
+            bound.extend(reconstructed.bound());
+            bound.extend([("resolved", Bound::Storage(resolved.resource)), ("color", Bound::Storage(color))]);
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}

@@ -1,0 +1,47 @@
+//! The depths that part a tile's samples into layers of like blur, and how far filters reach in it. Shader: layers.comp.
+//! reads   reconstruct.samples.colors, reconstruct.samples.vectors
+//! writes  reconstruct.layers.tiles   buffer, 96 B a tile of 16x16 pixels
+
+use super::super::full;
+use super::Reconstructed;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::layers::COMP;
+use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use std::sync::Arc;
+
+pub const PASS: &str = "reconstruct.layers";
+
+pub struct Layers {
+    pipeline: ComputePipeline,
+}
+
+impl Layers {
+    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    }
+
+    /// After the samples. `tiles` across and down: a workgroup each.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        reconstructed: &Reconstructed,
+        [across, down]: [u32; 2],
+    ) -> Result<()> {
+        // A tile and the eight around it, twice.
+        let traffic = Traffic {
+            read_bytes: 18 * reconstructed.sample_bytes(),
+            written_bytes: reconstructed.tiles.bytes,
+            invocations: Some(u64::from(across) * u64::from(down) * u64::from(self.pipeline.workgroup[0])),
+        };
+        cmd.pass(&full(PASS), traffic, |cmd| {
+            let Reconstructed { colors, vectors, tiles } = reconstructed;
+            cmd.barriers([colors, vectors].map(|buffer| buffer.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            cmd.barriers([tiles.discard(Access::ComputeWrite)]);
+            let mut bound = bound.to_vec();
+            bound.extend(reconstructed.bound());
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), [across, down, 1])
+        })
+    }
+}

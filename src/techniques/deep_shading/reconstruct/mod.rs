@@ -1,0 +1,170 @@
+//! Reconstruct: the picture from few samples under blur, in place of the mean of each pixel's own (`--reconstruct on`).
+//!
+//! Clarberg & Munkberg 2014 (section 4.5) hand their samples' colours, motion vectors and depths to the filter of Munkberg et
+//! al. 2014, "Layered Reconstruction for Defocus and Motion Blur", which their paper does not describe. The filter here is not
+//! theirs: it is of our choice, from two ideas of the literature
+//! - axis-aligned filtering (Mehta, Wang & Ramamoorthi 2012; of several effects Mehta et al. 2014; Egan et al. 2009 say why):
+//!   what a lens and motion have blurred has no detail finer than its blur, so that colours may be spread as far as a fixed
+//!   part of it. A sample's circle of confusion and its way on the screen give the filter's ellipse (blur.glsl)
+//! - depth layers of a tile (Munkberg et al. 2014; Vaidyanathan et al. 2015): what is filtered together must be blurred alike, so
+//!   that a tile's samples are parted by depth into up to four layers; each is filtered for its colour and for the part that it
+//!   hides of what lies behind it, and they are put over each other from front to back (layers.comp, filter.comp)
+//!
+//! Colours and parts are ratios of sums with the same weights: one colour stays one colour, and nothing gets darker. A pixel
+//! whose layers are sharp has the bits of the resolve. Filters end after 16 pixels: blur with a radius over 32 pixels, or a way
+//! of over 56, keeps noise.
+
+mod filter;
+mod layers;
+mod samples;
+
+use super::choices::Choices;
+use super::full;
+use super::primitives::Primitives;
+use super::resolve::{Shaded, fetch};
+use crate::error::{Error, Result};
+use crate::gpu::shader::structs::TileBlock;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
+use crate::plan::{Plan, Resources};
+use crate::resident::SceneGpu;
+use crate::settings::Values;
+use crate::units::Extent;
+use filter::Filter;
+use layers::Layers;
+use samples::Gather;
+use std::sync::Arc;
+
+pub const COLOR: &str = "reconstruct.filter.color";
+const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
+const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
+const RANGES: &str = "reconstruct.samples.draws";
+const TILES: &str = "reconstruct.layers.tiles";
+
+/// Of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; two of motion, and a depth.
+const SAMPLE_BYTES: u64 = 8;
+
+/// TILE_PX of blur.glsl.
+const TILE_PX: u32 = 16;
+
+/// Errors: samples have no SPIDs, from which their blur is found (exit code 2).
+pub fn require_spids(values: &Values) -> Result<()> {
+    let refused = |setting: &str, instead: &str| {
+        let kind = values.text(setting);
+        let why =
+            format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
+        Err(Error::request(why).within(super::NAME).note(format!("--{setting} {instead} keeps them")))
+    };
+    match (values.is_on("reconstruct"), values.text("shading"), values.text("lists")) {
+        (false, ..) => Ok(()),
+        (true, "deep", "direct") => refused("lists", "linked"),
+        (true, "deep", _) => Ok(()),
+        (true, shading, _) => {
+            let why = format!("--reconstruct on with --shading {shading}: it filters what the lists' samples see");
+            Err(Error::request(why).within(super::NAME).note("--shading deep has them"))
+        }
+    }
+}
+
+/// Tiles across and down.
+fn tiles(frame: Extent) -> [u32; 2] {
+    [frame.width.div_ceil(TILE_PX), frame.height.div_ceil(TILE_PX)]
+}
+
+/// Everything but the picture. `draws` of the scene.
+pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent, draws: u64) {
+    let bytes = frame.pixel_count() * u64::from(choices.table.samples) * SAMPLE_BYTES;
+    plan.buffer("scene.geometry", full(RANGES), draws * samples::RANGE_BYTES);
+    plan.buffer("reconstruction", full(SAMPLE_COLORS), bytes);
+    plan.buffer("reconstruction", full(SAMPLE_VECTORS), bytes);
+    let [across, down] = tiles(frame).map(u64::from);
+    plan.buffer("reconstruction", full(TILES), across * down * size_of::<TileBlock>() as u64);
+}
+
+/// The passes, after the resolve. `shaded`: what that one reads; `resolved`: what it leaves.
+pub fn plan_passes(plan: &mut Plan, shaded: Vec<(String, Access)>, resolved: &str) {
+    let both = |access| [SAMPLE_COLORS, SAMPLE_VECTORS].map(|name| (full(name), access));
+    plan.pass(full(samples::PASS), shaded.into_iter().chain(both(Access::ComputeWrite)));
+    let tiles = |access| (full(TILES), access);
+    plan.pass(full(layers::PASS), both(Access::ComputeRead).into_iter().chain([tiles(Access::ComputeWrite)]));
+    let pictures = [(full(resolved), Access::ComputeRead), (full(COLOR), Access::ComputeWrite)];
+    let filtered = both(Access::ComputeRead).into_iter().chain([tiles(Access::ComputeRead)]).chain(pictures);
+    plan.pass(full(filter::PASS), filtered);
+}
+
+/// One entry a sample of the frame, and one a tile.
+struct Reconstructed {
+    colors: Buffer,
+    vectors: Buffer,
+    tiles: Buffer,
+}
+
+impl Reconstructed {
+    fn bound(&self) -> [(&'static str, Bound<'_>); 3] {
+        [
+            ("SampleColors", Bound::Buffer(&self.colors)),
+            ("SampleVectors", Bound::Buffer(&self.vectors)),
+            ("Tiles", Bound::Buffer(&self.tiles)),
+        ]
+    }
+
+    fn sample_bytes(&self) -> u64 {
+        self.colors.bytes + self.vectors.bytes
+    }
+}
+
+pub struct Reconstruct {
+    gather: Gather,
+    layers: Layers,
+    filter: Filter,
+    reconstructed: Reconstructed,
+    /// The picture.
+    pub color: Image,
+}
+
+impl Reconstruct {
+    /// Errors: memory for the upload (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        scene: &SceneGpu,
+        choices: &Choices,
+        primitives: &Primitives,
+    ) -> Result<Self> {
+        Ok(Self {
+            gather: Gather::new(gpu, resources, scene, primitives, choices, fetch(choices))?,
+            layers: Layers::new(gpu)?,
+            filter: Filter::new(gpu)?,
+            reconstructed: Reconstructed {
+                colors: resources.buffer(&full(SAMPLE_COLORS)),
+                vectors: resources.buffer(&full(SAMPLE_VECTORS)),
+                tiles: resources.buffer(&full(TILES)),
+            },
+            color: resources.image(&full(COLOR)),
+        })
+    }
+
+    /// After the resolve, which has left `resolved`.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        shaded: Shaded<'_>,
+        resolved: &Image,
+    ) -> Result<()> {
+        self.gather.record(cmd, bound, shaded, &self.reconstructed, resolved.description.extent)?;
+        self.layers.record(cmd, bound, &self.reconstructed, tiles(resolved.description.extent))?;
+        self.filter.record(cmd, bound, &self.reconstructed, resolved.from(Access::ComputeWrite), &self.color)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_a_frame_that_they_do_not_divide() {
+        assert_eq!(tiles(Extent::new(1280, 720)), [80, 45]);
+        assert_eq!(tiles(Extent::new(161, 91)), [11, 6]);
+        assert_eq!(tiles(Extent::new(1, 16)), [1, 1]);
+    }
+}

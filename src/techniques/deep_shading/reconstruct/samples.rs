@@ -1,0 +1,88 @@
+//! What the reconstruction reads of each sample: its colour, circle of confusion, motion and depth (Clarberg & Munkberg 2014,
+//! section 4.5, keep the last two). Shader: samples.comp.
+//! reads   the scene, the tuples, visibility.spids, shade.colors, lists.addresses or the lists
+//! writes  reconstruct.samples.colors and reconstruct.samples.vectors: buffers, 8 B a sample each
+//!
+//! Differs from the paper: visibility leaves no motion vectors; a SPID and a tuple say what they are, whoever found the SPID.
+
+use super::super::full;
+use super::super::primitives::Primitives;
+use super::super::resolve::Shaded;
+use super::{Choices, RANGES, Reconstructed};
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::DrawnRangeBlock;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::samples::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic, upload};
+use crate::plan::Resources;
+use crate::resident::SceneGpu;
+use crate::units::Extent;
+use bytemuck::Zeroable;
+use std::sync::Arc;
+
+pub const PASS: &str = "reconstruct.samples";
+
+pub const RANGE_BYTES: u64 = size_of::<DrawnRangeBlock>() as u64;
+
+pub struct Gather {
+    pipeline: ComputePipeline,
+    ranges: Buffer,
+}
+
+impl Gather {
+    /// `fetch`: how colours are found, as the resolve has it.
+    ///
+    /// Errors: memory for the upload (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        scene: &SceneGpu,
+        primitives: &Primitives,
+        choices: &Choices,
+        fetch: &str,
+    ) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[fetch]);
+        let constants = super::super::constants_of(choices, &[Some(shader)]);
+        let mut blocks = vec![DrawnRangeBlock::zeroed(); scene.calls.len()];
+        for call in &scene.calls {
+            let params = primitives.params(scene, call);
+            blocks[call.draw as usize] = DrawnRangeBlock {
+                first_primitive: primitives.id(call.draw, call.first_index),
+                vertex_offset: params.vertex_offset,
+                primitive_offset: params.primitive_offset,
+                _unused: 0,
+            };
+        }
+        let ranges = resources.buffer(&full(RANGES));
+        upload::buffer(gpu, &ranges, bytemuck::cast_slice(&blocks), Access::ComputeRead)?;
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, ranges })
+    }
+
+    /// After the resolve, for whom `shaded` came to compute shaders.
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        bound: &[(&'static str, Bound<'_>)],
+        shaded: Shaded<'_>,
+        reconstructed: &Reconstructed,
+        frame: Extent,
+    ) -> Result<()> {
+        let traffic = Traffic {
+            read_bytes: shaded.bytes(),
+            written_bytes: reconstructed.sample_bytes(),
+            invocations: Some(frame.pixel_count()),
+        };
+        cmd.pass(&full(PASS), traffic, |cmd| {
+            shaded.stay_in_compute(cmd);
+            let Reconstructed { colors, vectors, .. } = reconstructed;
+            cmd.barriers([colors, vectors].map(|buffer| buffer.discard(Access::ComputeWrite)));
+            let mut bound = bound.to_vec();
+            bound.extend(shaded.bound());
+            bound.extend(reconstructed.bound());
+            bound.push(("DrawnRanges", Bound::Buffer(&self.ranges)));
+            let groups = self.pipeline.groups([frame.width, frame.height, 1]);
+            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+        })
+    }
+}

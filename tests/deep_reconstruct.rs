@@ -1,0 +1,217 @@
+//! The reconstruction of deep shading: less error from few samples where something is blurred, the same bits where nothing is;
+//! one colour stays one colour, and what is sharp takes nothing from what is behind it.
+
+mod support;
+
+use glam::Vec3;
+use quincunx::metrics;
+use quincunx::report::picture::Picture;
+use quincunx::scene::{self, AnimationChoice, Material, Scene};
+use std::collections::BTreeMap;
+use support::boxes::{camera, panel, rectangle};
+use support::program::Program;
+use support::watched::{Changes, Watched, both};
+
+const DEEP: &str = "deep_shading";
+const SIZE: (&str, &str) = ("size", "96x54");
+const ON: (&str, &str) = ("reconstruct", "on");
+
+fn rmse(picture: &Picture, reference: &Picture) -> f64 {
+    metrics::compare(picture, reference, 0.1).unwrap().metrics.rmse
+}
+
+/// The fence's rotor turns by a quarter of a turn.
+fn rotor() -> Scene {
+    scene::open("fence:lights=6", 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap()
+}
+
+/// A lens, and what moves under one.
+const LENS: Changes<'_> = &[SIZE, ("aperture", "0.8"), ("focus", "5")];
+const BOTH: Changes<'_> = &[SIZE, ("camera", "rotor"), ("aperture", "0.2"), ("focus", "4")];
+
+/// The lists' roads to a sample's colour.
+const ROADS: [Changes<'_>; 5] = [
+    &[("lists", "none")],
+    &[("compaction", "off")],
+    &[("address-buffer", "off")],
+    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
+    &[("instrument", "off")],
+];
+
+#[test]
+fn every_road_to_a_sample_s_colour_comes_to_one_picture() {
+    for (watched, common) in [
+        (Watched::open("hall:triangles=8000"), both(LENS, &[("spp", "4")])),
+        (Watched::with_scene(rotor()), both(BOTH, &[("spp", "4"), ("accumulate", "2")])),
+    ] {
+        let common = both(&common, &[ON]);
+        let first = watched.hash(DEEP, &common);
+        assert_ne!(first, watched.hash(DEEP, &both(&common, &[("reconstruct", "off")])), "something is blurred");
+        for road in ROADS {
+            assert_eq!(watched.hash(DEEP, &both(&common, road)), first, "{road:?}, {common:?}");
+        }
+    }
+}
+
+/// Both kinds of samples, in which noise is another: interleaved ones in a dither pattern.
+#[test]
+fn eight_samples_have_less_error_than_the_mean_of_many_more() {
+    let mean = |scene: &Watched, common: Changes<'_>, sets: &str| {
+        scene.picture(DEEP, &both(common, &[("spp", "8"), ("accumulate", sets)]))
+    };
+    for (name, watched, common, least) in [
+        ("lens", Watched::open("hall:triangles=8000"), LENS, 0.85),
+        ("motion", Watched::with_scene(passing()), &[SIZE], 0.8),
+        ("both", Watched::with_scene(passing()), FLAT, 0.8),
+    ] {
+        let reference = mean(&watched, common, "32");
+        let errors = ["1", "2"].map(|sets| rmse(&mean(&watched, common, sets), &reference));
+        let filtered = |kind| watched.picture(DEEP, &both(common, &[("spp", "8"), ON, ("visibility", kind)]));
+        let far = ["repeat-frame", "stochastic"].map(|kind| rmse(&filtered(kind), &reference));
+        println!("{name}: {far:?} reconstructed from 8 samples, {errors:?} the mean of 8, 16");
+        assert!(far.iter().all(|far| *far < least * errors[0] && *far < errors[1]), "{name}: {far:?}, {errors:?}");
+    }
+}
+
+/// Whatever is blurred before whatever, and before nothing.
+#[test]
+fn one_colour_stays_one_colour() {
+    let grey = 0.6015625;
+    let mut scene = rotor();
+    for material in &mut scene.materials {
+        *material = Material { unlit: true, ..Material::diffuse("grey", Vec3::splat(grey)) };
+    }
+    let watched = Watched::with_scene(scene);
+    let picture = watched.picture(DEEP, &both(BOTH, &[("spp", "4"), ("background", "0.6015625"), ON]));
+    let far = picture.pixels.iter().flatten().map(|value| (value - grey).abs()).fold(0.0, f32::max);
+    assert!(far < 1e-6, "{far}");
+}
+
+/// Stripes of `colors` one beside the other, that have this size together, `depth` metres before the eye.
+fn stripes(scene: &mut Scene, colors: &[Vec3], half_size: [f32; 2], depth: f32) {
+    let half = half_size[0] / colors.len() as f32;
+    for (index, color) in colors.iter().enumerate() {
+        let center = Vec3::new(half * (2.0 * index as f32 + 1.0) - half_size[0], 0.0, -depth);
+        rectangle(scene, center, half * Vec3::X, half_size[1] * Vec3::Y, panel(*color));
+    }
+}
+
+/// The frame is 4 m wide at 4 m before the eye.
+fn eye(scene: &mut Scene) {
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 2.0 * (0.5f32 * 54.0 / 96.0).atan()));
+}
+
+/// A panel that passes by a wall of stripes by a third of the frame's width.
+fn passing() -> Scene {
+    let at = |x: f32, hash: &str| {
+        let mut scene = Scene { name: "passing".to_owned(), hash: hash.to_owned(), ..Scene::default() };
+        let white = panel(Vec3::ONE);
+        rectangle(&mut scene, Vec3::new(x, 0.0, -3.0), 0.4 * Vec3::X, 0.4 * Vec3::Y, white);
+        stripes(&mut scene, &[Vec3::splat(0.4), Vec3::ZERO, Vec3::splat(0.2)], [10.0, 8.0], 8.0);
+        eye(&mut scene);
+        scene
+    };
+    at(-0.5, "open").closing_as(at(0.5, "closed")).unwrap()
+}
+
+const FLAT: Changes<'_> = &[SIZE, ("spp", "8"), ("aperture", "0.4"), ("focus", "4")];
+
+/// What is in focus, sharp to its rim, before stripes that are blurred over 20 pixels: it keeps the bits of its samples' mean,
+/// and so do those that see nothing else.
+#[test]
+fn what_is_sharp_takes_nothing_from_what_is_behind() {
+    let mut scene = Scene { name: "sharp".to_owned(), ..Scene::default() };
+    let (red, green) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
+    stripes(&mut scene, &[red, 0.5 * red, red, 0.25 * red], [1.0, 0.6], 4.0);
+    stripes(&mut scene, &[green, Vec3::ZERO, green, Vec3::ZERO, green, 3.0 * green], [12.0, 8.0], 16.0);
+    eye(&mut scene);
+    let watched = Watched::with_scene(scene);
+    let [mean, filtered] = ["off", "on"].map(|is| watched.picture(DEEP, &both(FLAT, &[("reconstruct", is)])));
+    let mut changed = 0;
+    for (index, (mean, filtered)) in mean.pixels.iter().zip(&filtered.pixels).enumerate() {
+        let at = [index % 96, index / 96];
+        // Two metres of four, and 1.2 of 2.25.
+        let is_sharp = (24..72).contains(&at[0]) && (13..41).contains(&at[1]);
+        if is_sharp && mean[1] == 0.0 {
+            assert_eq!(mean, filtered, "{at:?}");
+        }
+        // The rim shows as much of what is in focus as the pixel's own samples see.
+        assert!((mean[0] - filtered[0]).abs() < 2e-6, "{at:?}: {mean:?}, {filtered:?}");
+        changed += usize::from(mean != filtered);
+    }
+    assert!(changed > 96 * 54 / 10, "{changed} pixels are filtered");
+}
+
+/// A blurred panel before sharp stripes: half as much error as without the filter at least, and as much light.
+#[test]
+fn what_is_blurred_before_what_is_sharp_gets_smooth_and_no_darker() {
+    let mut scene = Scene { name: "near".to_owned(), ..Scene::default() };
+    stripes(&mut scene, &[Vec3::new(0.2, 0.4, 1.0)], [0.25, 0.25], 1.5);
+    stripes(&mut scene, &[Vec3::ONE, Vec3::splat(0.8), Vec3::ONE, Vec3::splat(0.6)], [3.0, 2.0], 4.0);
+    eye(&mut scene);
+    let watched = Watched::with_scene(scene);
+    let of = |changes: Changes<'_>| watched.picture(DEEP, &both(FLAT, changes));
+    let (mean, filtered, reference) = (of(&[]), of(&[ON]), of(&[("accumulate", "64")]));
+    let errors = [&mean, &filtered].map(|picture| rmse(picture, &reference));
+    println!("{errors:?}, means {:?}, {:?}, {:?}", mean.mean(), filtered.mean(), reference.mean());
+    assert!(errors[1] < 0.5 * errors[0], "{errors:?}");
+    for (light, should) in filtered.mean().iter().zip(reference.mean()) {
+        assert!((light - should).abs() < 2e-3 * should, "{light}, {should}");
+    }
+}
+
+/// Without blur there is nothing to do: no pass, no memory.
+#[test]
+fn a_sharp_picture_is_the_mean_and_costs_nothing_more() {
+    let program = Program::new();
+    let json = |settings: &[&str]| {
+        let common = ["render", "cornell", "--technique", DEEP, "--size", "33x17", "--spp", "2", "--json", "--quiet"];
+        program.run(&[&common, settings].concat()).fine().json()
+    };
+    let (on, off) = (json(&["--reconstruct", "on"]), json(&[]));
+    assert_eq!(on["settings"]["reconstruct"], "off");
+    assert_eq!(on["image"]["hash"], off["image"]["hash"]);
+    assert_eq!(on["memory"]["planned_bytes"], off["memory"]["planned_bytes"]);
+}
+
+/// Two buffers of eight bytes a sample, whatever the table of tuples pads; 96 bytes a tile of 16x16 pixels; 16 a draw; and the
+/// mean, from which the picture is made.
+#[test]
+fn memory_is_planned_to_the_byte() {
+    let program = Program::new();
+    let planned = |size: &str, reconstruct: &str| {
+        let arguments = ["memory", "hall:draws=392", "--technique", DEEP, "--plan", "--size", size, "--spp", "8"];
+        let settings = ["--aperture", "0.1", "--reconstruct", reconstruct, "--json"];
+        let json = program.run(&[&arguments[..], &settings].concat()).fine().json();
+        let memory = json["techniques"][0]["memory"].clone();
+        let groups: BTreeMap<String, u64> = serde_json::from_value(memory["groups"].clone()).unwrap();
+        (groups, memory["planned_bytes"].as_u64().unwrap())
+    };
+    for (size, pixels, tiles) in [("1280x720", 1280 * 720, 80 * 45), ("161x91", 161 * 91, 11 * 6)] {
+        let ((off, all_off), (on, all_on)) = (planned(size, "off"), planned(size, "on"));
+        let own = 2 * 8 * 8 * pixels + 96 * tiles;
+        assert_eq!(on["reconstruction"], own, "{size}");
+        // Groups have images as the driver pads them.
+        assert_eq!(on["color"], off["picture"], "{size}");
+        assert_eq!(all_on - all_off, own + 16 * pixels + 16 * 392, "{size}");
+        for group in ["frame_buffer", "deep_shading_buffer", "auxiliary"] {
+            assert_eq!(on[group], off[group], "{size}: {group}");
+        }
+    }
+}
+
+#[test]
+fn samples_without_spids_are_refused() {
+    let watched = Watched::open("cornell");
+    for (changes, said) in [
+        (&[("lists", "direct"), ("visibility", "ray")][..], "--reconstruct on with --lists direct"),
+        (&[("shading", "ssaa")], "--reconstruct on with --shading ssaa"),
+        (&[("shading", "msaa")], "--reconstruct on with --shading msaa"),
+    ] {
+        let made =
+            watched.try_renderer(DEEP, &both(changes, &[ON]), &[], quincunx::gpu::commands::Submits::One).map(|_| ());
+        let error = made.unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{changes:?}");
+        assert!(error.to_string().contains(said), "{changes:?}: {error}");
+    }
+}
