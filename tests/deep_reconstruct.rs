@@ -30,19 +30,18 @@ const LENS: Changes<'_> = &[SIZE, ("aperture", "0.8"), ("focus", "5")];
 const BOTH: Changes<'_> = &[SIZE, ("camera", "rotor"), ("aperture", "0.2"), ("focus", "4")];
 
 /// The lists' roads to a sample's colour.
-const ROADS: [Changes<'_>; 5] = [
+const ROADS: [Changes<'_>; 4] = [
     &[("lists", "none")],
-    &[("compaction", "off")],
+    &[("list-access", "addresses")],
     &[("address-buffer", "off")],
-    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
-    &[("instrument", "off")],
+    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off"), ("instrument", "off")],
 ];
 
 #[test]
 fn every_road_to_a_sample_s_colour_comes_to_one_picture() {
     for (watched, common) in [
-        (Watched::open("hall:triangles=8000"), both(LENS, &[("spp", "4")])),
-        (Watched::with_scene(rotor()), both(BOTH, &[("spp", "4"), ("accumulate", "2")])),
+        (Watched::open("hall:triangles=8000"), both(LENS, &[("spp", "2")])),
+        (Watched::with_scene(rotor()), both(BOTH, &[("spp", "2"), ("accumulate", "2")])),
     ] {
         let common = both(&common, &[ON]);
         let first = watched.hash(DEEP, &common);
@@ -64,7 +63,7 @@ fn eight_samples_have_less_error_than_the_mean_of_many_more() {
         ("motion", Watched::with_scene(passing()), &[SIZE], 0.8),
         ("both", Watched::with_scene(passing()), FLAT, 0.8),
     ] {
-        let reference = mean(&watched, common, "32");
+        let reference = mean(&watched, common, "12");
         let errors = ["1", "2"].map(|sets| rmse(&mean(&watched, common, sets), &reference));
         let filtered = |kind| watched.picture(DEEP, &both(common, &[("spp", "8"), ON, ("visibility", kind)]));
         let far = ["repeat-frame", "stochastic"].map(|kind| rmse(&filtered(kind), &reference));
@@ -180,7 +179,7 @@ fn a_sharp_picture_is_the_mean_and_costs_nothing_more() {
 fn memory_is_planned_to_the_byte() {
     let program = Program::new();
     let planned = |size: &str, reconstruct: &str| {
-        let arguments = ["memory", "hall:draws=392", "--technique", DEEP, "--plan", "--size", size, "--spp", "8"];
+        let arguments = ["memory", "cornell", "--technique", DEEP, "--plan", "--size", size, "--spp", "8"];
         let settings = ["--aperture", "0.1", "--reconstruct", reconstruct, "--json"];
         let json = program.run(&[&arguments[..], &settings].concat()).fine().json();
         let memory = json["techniques"][0]["memory"].clone();
@@ -193,7 +192,7 @@ fn memory_is_planned_to_the_byte() {
         assert_eq!(on["reconstruction"], own, "{size}");
         // Groups have images as the driver pads them.
         assert_eq!(on["color"], off["picture"], "{size}");
-        assert_eq!(all_on - all_off, own + 16 * pixels + 16 * 392, "{size}");
+        assert_eq!(all_on - all_off, own + 16 * pixels + 16 * 8, "{size}");
         for group in ["frame_buffer", "deep_shading_buffer", "auxiliary"] {
             assert_eq!(on[group], off[group], "{size}: {group}");
         }
