@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use support::boxes::{camera, rectangle};
 use support::program::Program;
 use support::watched::{Changes, Watched, both};
-use support::{Feature, has};
+use support::{Feature, has, placing_steps};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");
@@ -93,7 +93,8 @@ fn one_sample_in_the_middle_has_the_textures_of_the_lists() {
         let supersampled = watched.picture(DEEP, &both(&common, &[SSAA, ("visibility", visibility)]));
         let far = rmse(&supersampled, &deep);
         println!("{visibility}: {far}");
-        assert!(far < 0.01, "{visibility}: {far}");
+        // Highlights on small balls are where their triangles are drawn: seen with 4 bits, 0.035.
+        assert!(far < 0.01 * placing_steps(&watched.session.gpu.caps), "{visibility}: {far}");
     }
 }
 

@@ -57,6 +57,12 @@ pub fn driver() -> Caps {
     Gpu::open(&DeviceRequest::default()).unwrap().caps.clone()
 }
 
+/// How many times as coarse as to a 256th of a pixel the driver places vertices, eight at most: bounds of what depends on it are
+/// as many times as wide.
+pub fn placing_steps(caps: &Caps) -> f64 {
+    f64::from(1u32 << 8u32.saturating_sub(caps.limits.sub_pixel_bits).min(3))
+}
+
 /// What a test needs of the driver that it runs on.
 #[derive(Clone, Copy, Debug)]
 pub enum Feature {

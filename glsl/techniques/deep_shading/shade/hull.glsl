@@ -7,9 +7,9 @@
 #ifndef DEEP_SHADING_HULL_GLSL
 #define DEEP_SHADING_HULL_GLSL
 
+#include "techniques/deep_shading/snap.glsl"
+
 const uint HULL_CORNERS = 8u;
-// The rasteriser snaps corners to 2^-SUB_PIXEL_BITS of a pixel.
-layout(constant_id = 100) const uint SUB_PIXEL_BITS = 8;
 // Floats place what is far outside by as much of it less well.
 const float HULL_REACH_PART = 1.0 / 1048576.0;
 // What is farther out than this many sides of shading space is not placed well enough: the hull is all of it, and what is too
@@ -22,9 +22,9 @@ struct Hull {
     uint count;
 };
 
-// Half a pixel, and four steps of that, of which snapping may take half a one away.
+// From a pixel's middle to its rim.
 float reach_px() {
-    return 0.5 + 4.0 / float(1u << SUB_PIXEL_BITS);
+    return 0.5 + snap_px();
 }
 
 vec2 signs(vec2 of) {

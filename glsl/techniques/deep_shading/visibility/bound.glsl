@@ -8,12 +8,12 @@
 #ifndef DEEP_SHADING_BOUND_GLSL
 #define DEEP_SHADING_BOUND_GLSL
 
+#include "techniques/deep_shading/snap.glsl"
+
 // Of the screen, of the triangle's edges at both ends, and of its way.
 const uint BOUND_MOST_SIDES = 12u;
 // Without motion the triangle has one place and no way.
 const uint BOUND_STILL_SIDES = 7u;
-// What the rasteriser's snapping of corners to 1/256 of a pixel may take away, four times.
-const float BOUND_REACH_PX = 1.0 / 64.0;
 // Floats place what is far outside by as much of it less well.
 const float BOUND_REACH_PART = 1.0 / 1048576.0;
 // What is farther out than this many sides of a layer is not placed well enough: all of the layer is tested.
@@ -136,7 +136,7 @@ Bound bound_of(Seen seen[6], TupleBlock tuple, vec2 layer) {
     if (!is_apart(sides[apart - 1u], sides[0])) {
         apart--;
     }
-    float reach = BOUND_REACH_PX + BOUND_REACH_PART * farthest;
+    float reach = snap_px() + BOUND_REACH_PART * farthest;
     float distances[BOUND_MOST_SIDES];
     for (uint index = 0u; index < apart; index++) {
         distances[index] = -3.0e38;
