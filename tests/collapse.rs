@@ -10,7 +10,7 @@ use support::watched::{Changes, Watched, both};
 const INTERLEAVED: &str = "interleaved_deferred";
 const PATTERNS: [&str; 7] = ["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"];
 /// The second is divided by none of the patterns, and by no SIMD width.
-const SIZES: [&str; 2] = ["640x360", "641x359"];
+const SIZES: [&str; 2] = ["320x180", "319x179"];
 
 /// Every road of `--split` that must give the picture of `branch`, in every storage and form of copy that it knows.
 const ROADS: [Changes<'_>; 19] = [

@@ -87,7 +87,7 @@ fn lists_of_rays_come_to_the_bits_of_every_sample_by_itself() {
 #[track_caller]
 fn require_the_same_bits(kind: (&str, &str), roads: &[Changes<'_>]) {
     // Polygons as large as a layer are tested in each of its pixels.
-    let blurred = [("size", "97x55"), kind, ("spp", "2"), ("tuples", "8")];
+    let blurred = [("size", "65x37"), kind, ("spp", "2"), ("tuples", "8")];
     let watched = Watched::open("hall:triangles=8000");
     // The second brings samples in from outside shading space.
     for lens in [
