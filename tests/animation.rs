@@ -1,16 +1,14 @@
 //! Moving glTF files: nodes, skins and morph targets where their curves have them, built here in the small, and the shared
 //! scenes where QUINCUNX_SCENES names their folder.
 
-mod support;
-
 use std::f32::consts::FRAC_1_SQRT_2;
 
+use crate::support::gltf_file::{GltfFile, U8, U16, png};
+use crate::support::shared_scenes;
 use glam::{Quat, Vec3};
 use quincunx::scene::gltf::Model;
 use quincunx::scene::{AnimationChoice, LightKind, Scene};
 use serde_json::json;
-use support::gltf_file::{GltfFile, U8, U16, png};
-use support::shared_scenes;
 
 /// The two scenes have the same meshes, vertices, triangles and draws in the same order.
 #[track_caller]

@@ -1,11 +1,9 @@
 //! Animations, skins and morph targets that must be refused: each with one request error that names its element.
 
-mod support;
-
+use crate::support::gltf_file::{GltfFile, U8, expect, load_bytes};
 use proptest::prelude::*;
 use quincunx::scene::AnimationChoice;
 use serde_json::{Value, json};
-use support::gltf_file::{GltfFile, U8, expect, load_bytes};
 
 /// The triangle that `channel` moves, after a change to its document, must be refused with these words.
 #[track_caller]

@@ -1,11 +1,9 @@
 //! `bench` from outside: rows with their keys, what is skipped, what is resumed. Never how long anything takes.
 
-mod support;
-
+use crate::support::program::Program;
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use support::program::Program;
 
 /// Frames that cost next to nothing.
 const SMALL: [&str; 7] = ["cornell", "--size", "64x48", "--vpls", "16", "--repeat", "2"];

@@ -1,7 +1,7 @@
 //! Budgets: never passed, not even for a moment; refused in words that help; and what they promise is true.
 
-mod support;
-
+use crate::support::counted::{STRATEGIES, begin, counted_device, counter, live_bytes};
+use crate::support::watched::{Changes, Watched, require_silence, values};
 use quincunx::error::{Error, Result};
 use quincunx::gpu::DeviceRequest;
 use quincunx::gpu::commands::Submits;
@@ -11,8 +11,6 @@ use quincunx::report::picture::Picture;
 use quincunx::scene::{self, Scene};
 use quincunx::session::Session;
 use quincunx::techniques;
-use support::counted::{STRATEGIES, begin, counted_device, counter, live_bytes};
-use support::watched::{Changes, Watched, require_silence, values};
 
 const MIB: u64 = 1 << 20;
 /// Textures of 512 and 1024 pixels, 64 MiB of them.

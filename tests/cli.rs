@@ -1,10 +1,8 @@
 //! The program from outside: exit codes, what it says, and which files it leaves.
 
-mod support;
-
+use crate::support::program::Program;
 use serde_json::Value;
 use std::path::Path;
-use support::program::Program;
 
 /// A picture that costs next to nothing.
 const SMALL: [&str; 6] = ["render", "cornell", "--size", "32x18", "--vpls", "16"];

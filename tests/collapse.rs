@@ -1,11 +1,10 @@
 //! Roads that must agree bit for bit: a technique at its degenerate setting, culling on and off, one submit and many.
 
-mod support;
-
+use crate::support;
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::memory::Strategy;
 use std::collections::BTreeMap;
-use support::watched::{Changes, Watched, both};
 
 const INTERLEAVED: &str = "interleaved_deferred";
 const PATTERNS: [&str; 7] = ["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"];

@@ -1,10 +1,8 @@
 //! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document
 //! (design.md, sections 1 and 2).
 
-mod support;
-
+use crate::support::program::Program;
 use serde_json::Value;
-use support::program::Program;
 
 const NOWHERE: [(&str, &str); 2] = [("VK_DRIVER_FILES", "/nowhere.json"), ("VK_ICD_FILENAMES", "/nowhere.json")];
 const SMALL: [&str; 5] = ["cornell", "--size", "32x18", "--vpls", "16"];

@@ -1,17 +1,15 @@
 //! Baselines of deep shading: on the same samples supersampling comes to the lists' picture, exactly where a triangle has one
 //! colour; multisampling to nearly the same; and what both shade is counted.
 
-mod support;
-
+use crate::support::boxes::{camera, rectangle};
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
+use crate::support::{Feature, has, placing_steps};
 use glam::{Mat4, Vec3};
 use quincunx::metrics;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AnimationChoice, Camera, Material, Projection, Scene};
 use std::collections::BTreeMap;
-use support::boxes::{camera, rectangle};
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
-use support::{Feature, has, placing_steps};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");

@@ -2,14 +2,12 @@
 //! in one pixel; and lenses so wide that nothing stays where it was. Every sample that sees something has its colour, which is
 //! the one it has by itself, and what shading space has no place for is counted.
 
-mod support;
-
+use crate::support::gltf_file::{GltfFile, U32};
+use crate::support::watched::{Changes, Watched, both};
+use crate::support::{Feature, has};
 use quincunx::scene::{AnimationChoice, Model, Scene};
 use serde_json::json;
 use std::collections::BTreeMap;
-use support::gltf_file::{GltfFile, U32};
-use support::watched::{Changes, Watched, both};
-use support::{Feature, has};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "97x61");

@@ -1,16 +1,14 @@
 //! The reconstruction of deep shading: less error from few samples where something is blurred, the same bits where nothing is;
 //! one colour stays one colour, and what is sharp takes nothing from what is behind it.
 
-mod support;
-
+use crate::support::boxes::{camera, panel, rectangle};
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
 use glam::Vec3;
 use quincunx::metrics;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AnimationChoice, Material, Scene};
 use std::collections::BTreeMap;
-use support::boxes::{camera, panel, rectangle};
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "96x54");

@@ -1,13 +1,11 @@
 //! Rivals of deep shading on its own samples: a compact geometry buffer with a cache before it (Liktor & Dachsbacher 2012) comes
 //! to the oracle's picture, shades what the lists shade while nothing is forgotten, and has the memory that it says.
 
-mod support;
-
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::scene::{self, AnimationChoice, Scene};
 use std::collections::BTreeMap;
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "65x37");

@@ -1,17 +1,15 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
 //! shaded is what is listed, each once; blur comes to what path tracing sees.
 
-mod support;
-
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
+use crate::support::{Feature, has};
 use quincunx::error::Result;
 use quincunx::metrics;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AnimationChoice, Scene};
 use quincunx::session::Renderer;
 use std::collections::BTreeMap;
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
-use support::{Feature, has};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");

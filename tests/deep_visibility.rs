@@ -2,12 +2,10 @@
 //! rasteriser places to a 256th of a layer's pixel and their tests to a float. Lists and strays come to the same bits as
 //! without them.
 
-mod support;
-
+use crate::support::placing_steps;
+use crate::support::watched::{Changes, Watched, both};
 use glam::Mat4;
 use quincunx::scene::{self, AlphaMode, AnimationChoice, Projection, Scene};
-use support::placing_steps;
-use support::watched::{Changes, Watched, both};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");

@@ -1,12 +1,11 @@
 //! Pictures of one driver beside those of the reference driver, which QUINCUNX_REFERENCE_DRIVER names by its manifest
 //! (tools/test sets it). On the reference itself they are the same.
 
-mod support;
-
+use crate::support;
+use crate::support::program::Program;
 use quincunx::metrics;
 use quincunx::report::image_file;
 use quincunx::report::picture::Picture;
-use support::program::Program;
 
 /// Drivers round sums otherwise, and place vertices to another part of a pixel (a sixteenth on SwiftShader, a 256th on
 /// lavapipe). Along edges a pixel then falls to the other surface and differs by all that surfaces differ: such pixels

@@ -1,7 +1,6 @@
 //! The Gaussians that stop at discontinuities, against a few lines of Rust (Segovia 2006, section 4.5).
 
-mod support;
-
+use crate::support::watched::{Watched, both, require_silence, watched_device};
 use ash::vk;
 use glam::Vec3;
 use half::f16;
@@ -13,7 +12,6 @@ use quincunx::passes::filter::gauss::Gauss;
 use quincunx::passes::filter::{Kernel, StopBits};
 use quincunx::units::Extent;
 use std::sync::Arc;
-use support::watched::{Watched, both, require_silence, watched_device};
 
 const TECHNIQUE: &str = "interleaved_deferred";
 /// What these tests read back.

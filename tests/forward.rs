@@ -1,12 +1,11 @@
 //! Forward shading: its plain ways give its own bits, it is deferred shading but for what a G-buffer rounds, and several
 //! samples bring edges nearer to what every place of a pixel shows.
 
-mod support;
-
+use crate::support;
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::report::image_file::AovChannels;
 use quincunx::report::picture::Picture;
-use support::watched::{Changes, Watched, both};
 
 const FORWARD: &str = "forward";
 const SIZE: (&str, &str) = ("size", "161x91");

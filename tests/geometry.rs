@@ -1,9 +1,8 @@
 //! `--geometry culled` leaves out what makes no fragment: the same pixels as `all`, and fewer triangles.
 
-mod support;
-
+use crate::support;
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::session::Renderer;
-use support::watched::{Changes, Watched, both};
 
 /// Renders with both choices; returns the counters of `culled`: triangles and clusters drawn, clusters left out.
 fn require_same_picture(watched: &Watched, technique: &str, changes: Changes<'_>) -> [f64; 3] {

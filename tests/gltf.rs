@@ -1,16 +1,14 @@
 //! glTF files that load: built here in the small, and the shared scenes where QUINCUNX_SCENES names their folder.
 
-mod support;
-
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::support::gltf_file::{F32, GltfFile, U8, U16, U32, load_bytes, png, write};
+use crate::support::shared_scenes;
 use glam::{Mat3, Vec2, Vec3};
 use quincunx::scene::{AlphaMode, ColorSpace, LightKind, Projection, Scene, Wrap, gltf};
 use serde_json::json;
-use support::gltf_file::{F32, GltfFile, U8, U16, U32, load_bytes, png, write};
-use support::shared_scenes;
 
 #[test]
 fn a_bare_triangle_gets_flat_normals_and_the_default_material() {

@@ -1,9 +1,7 @@
 //! What glTF allows and readers trip over: it is read, and what is left out of it is said.
 
-mod support;
-
+use crate::support::gltf_file::{GltfFile, U8, load_bytes};
 use serde_json::json;
-use support::gltf_file::{GltfFile, U8, load_bytes};
 
 #[test]
 fn a_scene_without_nodes_is_an_empty_one() {

@@ -1,11 +1,9 @@
 //! glTF files that must be refused: each with one request error that names the file and the element, never a panic.
 
-mod support;
-
+use crate::support::gltf_file::{F32, GltfFile, U8, U16, U32, expect, load_bytes, write};
 use proptest::prelude::*;
 use quincunx::scene::gltf;
 use serde_json::{Value, json};
-use support::gltf_file::{F32, GltfFile, U8, U16, U32, expect, load_bytes, write};
 
 /// The triangle after a change to its document must be refused with these words.
 #[track_caller]

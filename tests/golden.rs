@@ -1,16 +1,15 @@
 //! Small pictures that must stay as they are, within a bound, on the pinned software driver.
 //!
-//! `BLESS=NAME cargo test --test golden` (or `BLESS=all`) rewrites a golden. A miss leaves NAME.actual.png,
+//! `BLESS=NAME cargo test golden` (or `BLESS=all`) rewrites a golden. A miss leaves NAME.actual.png,
 //! NAME.expected.png and NAME.difference.png in target/golden/.
 
-mod support;
-
+use crate::support;
+use crate::support::Feature;
+use crate::support::watched::{Changes, Watched};
 use quincunx::metrics;
 use quincunx::report::image_file::{self, write_srgb8};
 use quincunx::report::tonemap::{Srgb8, ToneMap};
 use std::path::{Path, PathBuf};
-use support::Feature;
-use support::watched::{Changes, Watched};
 
 /// Greatest root mean square of the differences of all 8-bit codes. Another CPU rounds sums otherwise: some codes move by
 /// one, and a pixel on an edge may fall to the other side. A quarter of all codes moved by one is 0.5; twelve pixels
@@ -60,7 +59,7 @@ fn require_golden(name: &str, spec: &str, technique: &str, changes: Changes<'_>)
         println!("blessed {}", path.display());
         return;
     }
-    let bless = format!("if it is right: BLESS={name} cargo test --test golden");
+    let bless = format!("if it is right: BLESS={name} cargo test golden");
     if !path.is_file() {
         let folder = leave(name, &actual, None);
         panic!("{name}: there is no {}; the picture is in {}\n{bless}", path.display(), folder.display());

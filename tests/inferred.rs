@@ -1,14 +1,12 @@
 //! Inferred lighting (Kircher 2009): where it must equal plain deferred shading, and what its roads must share.
 
-mod support;
-
+use crate::support::boxes::{edge, point_light};
+use crate::support::watched::{Changes, Watched, both};
 use glam::vec3;
 use quincunx::report::image_file::AovChannels;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AlphaMode, Light, LightKind, Projection, Scene};
 use quincunx::units::Extent;
-use support::boxes::{edge, point_light};
-use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "inferred_lighting";
 

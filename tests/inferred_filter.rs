@@ -1,11 +1,9 @@
 //! Inferred lighting's filter (Kircher 2009, section 3): whose light a pixel takes, and how near that is to many samples.
 
-mod support;
-
+use crate::support::boxes::{edge, rectangle};
+use crate::support::watched::{Watched, both};
 use glam::{Vec3, vec3};
 use quincunx::scene::Material;
-use support::boxes::{edge, rectangle};
-use support::watched::{Watched, both};
 
 const NAME: &str = "inferred_lighting";
 

@@ -1,16 +1,14 @@
 //! What inferred lighting's geometry pass leaves (Kircher 2009, sections 2.1 and 5): packings, what they lose, motion.
 
-mod support;
-
+use crate::support::boxes::{camera, point_light, rectangle};
+use crate::support::difference::greatest_part;
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec2, Vec3, vec3};
 use quincunx::report::image_file::AovChannels;
 use quincunx::report::picture::Picture;
 use quincunx::scene::procedural::Thing;
 use quincunx::scene::{self, AnimationChoice, Material, Model, Scene, object_ids};
 use quincunx::techniques::inferred_lighting::encoding::Packing;
-use support::boxes::{camera, point_light, rectangle};
-use support::difference::greatest_part;
-use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "inferred_lighting";
 

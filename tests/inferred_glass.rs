@@ -1,16 +1,14 @@
 //! BLEND surfaces in inferred lighting (Kircher 2009, section 4): each is lit by its own texels of the stipple.
 
-mod support;
-
+use crate::support::boxes::{camera, point_light, rectangle};
+use crate::support::difference::greatest_part;
+use crate::support::gltf_file::GltfFile;
+use crate::support::watched::{Watched, both};
 use glam::{Vec3, vec3};
 use quincunx::report::image_file::AovChannels;
 use quincunx::scene::{AlphaMode, Material, Scene};
 use serde_json::json;
 use std::collections::BTreeSet;
-use support::boxes::{camera, point_light, rectangle};
-use support::difference::greatest_part;
-use support::gltf_file::GltfFile;
-use support::watched::{Watched, both};
 
 const NAME: &str = "inferred_lighting";
 

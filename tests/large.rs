@@ -5,14 +5,12 @@
 //! QUINCUNX_LARGE=full draws a million triangles, 5,000 draws, 2,000 lights and 200 textures of 1024 px; without it all
 //! of that is smaller.
 
-mod support;
-
+use crate::support::gltf_file::{GltfFile, U32};
+use crate::support::program::Program;
 use image::{ExtendedColorType, ImageEncoder};
 use quincunx::memory::pool::SHARED_BLOCK_BYTES;
 use quincunx::scene::gltf;
 use serde_json::json;
-use support::gltf_file::{GltfFile, U32};
-use support::program::Program;
 
 /// What a scene is built of.
 struct Size {

@@ -1,7 +1,6 @@
 //! The house rules that a program can check: the mirror, the walls between rooms, the size of files, valid shaders.
 
-mod support;
-
+use crate::support;
 use quincunx::gpu::shader;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
@@ -111,6 +110,21 @@ fn no_file_is_longer_than_can_be_read_at_once() {
         }
     }
     assert_eq!(long, [] as [&str; 0]);
+}
+
+/// A file that tests/main.rs does not name is not compiled, and its tests do not run.
+#[test]
+fn every_file_of_tests_is_one_of_the_program() {
+    let main = std::fs::read_to_string(root().join("tests/main.rs")).unwrap();
+    let named: BTreeSet<&str> = main.lines().filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';')).collect();
+    let there: BTreeSet<String> = std::fs::read_dir(root().join("tests"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.join("mod.rs").is_file() || path.extension().is_some_and(|extension| extension == "rs"))
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+        .filter(|name| name != "main")
+        .collect();
+    assert_eq!(named, there.iter().map(String::as_str).collect());
 }
 
 #[test]

@@ -1,11 +1,9 @@
 //! Lenses: the edge of what is out of focus against the edge spread of a disc.
 
-mod support;
-
+use crate::support::boxes::{camera, rectangle};
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, vec3};
 use quincunx::scene::{Camera, Material, Projection, Scene};
-use support::boxes::{camera, rectangle};
-use support::watched::{Changes, Watched, both};
 
 const WIDTH: usize = 64;
 

@@ -3,8 +3,9 @@
 //! The plane, its camera and its lights are turned by one rotation, so that nothing lies along an axis; the formulas are
 //! written in the plane's own space, where it is y = 0.
 
-mod support;
-
+use crate::support;
+use crate::support::Feature;
+use crate::support::watched::{Changes, Watched, both};
 use glam::{DVec3, Mat4, Quat, Vec3, dvec3, vec3};
 use quincunx::bvh::Bvh;
 use quincunx::lights::vpl;
@@ -15,8 +16,6 @@ use quincunx::techniques::interleaved_deferred::mapping::mapping;
 use quincunx::techniques::interleaved_deferred::subsets::subsets;
 use quincunx::units::Extent;
 use std::f64::consts::PI;
-use support::Feature;
-use support::watched::{Changes, Watched, both};
 
 /// Normals of 16 bits are off by up to 1.5e-5 a component, which at an incidence of 85 degrees is 2e-4 of the cosine;
 /// albedo in half floats is off by 2.4e-4, positions in float by next to nothing. Their sum, doubled.

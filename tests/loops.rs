@@ -1,9 +1,8 @@
 //! A driver that ends long loops without a word must not be believed: `Identity::loop_turns`, glsl/loops.glsl.
 
-mod support;
-
-use support::shared_scenes;
-use support::watched::Watched;
+use crate::support;
+use crate::support::shared_scenes;
+use crate::support::watched::Watched;
 
 /// One light more than the turns of the defect; a driver without it adds them all.
 #[test]

@@ -1,7 +1,8 @@
 //! A device that is lost, and submits that fail: one clear error, exit code 4, nothing left behind, no file touched.
 
-mod support;
-
+use crate::support::counted::{begin, live_bytes};
+use crate::support::failing::{Call, Failure, failing_device, has_failed, submit_count};
+use crate::support::watched::{require_silence, values};
 use ash::vk;
 use quincunx::error::Result;
 use quincunx::gpu::DeviceRequest;
@@ -9,9 +10,6 @@ use quincunx::gpu::commands::Submits;
 use quincunx::job::Job;
 use quincunx::session::Session;
 use quincunx::{scene, techniques};
-use support::counted::{begin, live_bytes};
-use support::failing::{Call, Failure, failing_device, has_failed, submit_count};
-use support::watched::{require_silence, values};
 
 const TECHNIQUE: &str = "interleaved_deferred";
 const SMALL: [(&str, &str); 3] = [("size", "33x17"), ("vpls", "16"), ("pattern", "2x2")];

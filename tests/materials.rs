@@ -1,8 +1,8 @@
 //! What materials and vertices say, from the file to the pixel: each rule against its closed form, or against the twin
 //! that the host looks materials up with.
 
-mod support;
-
+use crate::support::gltf_file::{GltfFile, U8, U16};
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Affine2, Mat4, Vec2, Vec3, Vec4};
 use quincunx::scene::{
     AlphaMode, Camera, ColorSpace, Draw, Image, Light, LightKind, Material, Mesh, Placement, Projection, Sampler,
@@ -11,8 +11,6 @@ use quincunx::scene::{
 use quincunx::shading::material::{self, MeshPoint};
 use serde_json::{Value, json};
 use std::sync::Arc;
-use support::gltf_file::{GltfFile, U8, U16};
-use support::watched::{Changes, Watched, both};
 
 /// Pixels of a side: a square that fills the picture, so that the pixel's middle says its coordinates.
 const SIDE: usize = 32;

@@ -1,15 +1,13 @@
 //! Path tracing in a homogeneous medium against integrals of double precision, along a ray and over a panel, and against
 //! what holds in every medium that absorbs nothing.
 
-mod support;
-
+use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};
+use crate::support::watched::{Watched, both};
 use glam::{DVec3, Vec3, dvec3, vec3};
 use quincunx::gpu::commands::Submits;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{Light, LightKind, Material, Scene};
 use quincunx::shading::medium::Medium;
-use support::boxes::{camera, closed_box, panel, point_light, rectangle};
-use support::watched::{Watched, both};
 
 const NAME: &str = "path_traced";
 /// How far the wall is from the eye, which is in the origin and looks along -z.

@@ -1,7 +1,7 @@
 //! The ledger against a counter of its own around vkAllocateMemory and vkFreeMemory, to the byte.
 
-mod support;
-
+use crate::support::counted::{STRATEGIES, begin, counted, counted_device, counter, live_bytes};
+use crate::support::watched::{Changes, Watched, both};
 use ash::vk;
 use quincunx::error::Result;
 use quincunx::gpu::commands::Submits;
@@ -12,8 +12,6 @@ use quincunx::scene;
 use quincunx::session::Session;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use support::counted::{STRATEGIES, begin, counted, counted_device, counter, live_bytes};
-use support::watched::{Changes, Watched, both};
 
 fn require_ledger_as_counted(snapshot: &Snapshot, what: &str) {
     assert_eq!(snapshot.memory_block_bytes, live_bytes(), "{what}: in memory blocks");

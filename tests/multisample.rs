@@ -1,14 +1,12 @@
 //! Images with several samples a pixel: their bytes, and their mean as rendering resolves it.
 
-mod support;
-
+use crate::support::watched::{require_silence, watched_device};
 use ash::vk;
 use quincunx::gpu::commands::Submits;
 use quincunx::gpu::{Access, Berth, ColorTarget, Commands, Gpu, Image, ImageDescription, known, readback};
 use quincunx::plan::{Requirements, Shape};
 use quincunx::units::Extent;
 use std::sync::Arc;
-use support::watched::{require_silence, watched_device};
 
 const EXTENT: Extent = Extent { width: 37, height: 11 };
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;

@@ -1,15 +1,14 @@
 //! Path tracing against closed forms, and the other techniques against path tracing of the same transport.
 
-mod support;
-
+use crate::support;
+use crate::support::Feature;
+use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, Vec4, vec3};
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AlphaMode, Material, Scene};
 use quincunx::shading::brdf::{self, Brdf, Surface};
 use std::f32::consts::PI;
-use support::Feature;
-use support::boxes::{camera, closed_box, panel, point_light, rectangle};
-use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "path_traced";
 

@@ -1,12 +1,10 @@
 //! What is said while something takes long: lines where standard error is no terminal, a bar where it is one.
 
-mod support;
-
+use crate::support::program::{Program, Ran};
 use std::fs::File;
 use std::io::Read;
 use std::os::fd::{AsRawFd, FromRawFd};
 use std::process::{Command, Stdio};
-use support::program::{Program, Ran};
 
 const PATHS: [&str; 6] = ["render", "cornell", "--technique", "path_traced", "--size", "64x64"];
 /// Far enough above the second from which on something is said.

@@ -1,7 +1,7 @@
 //! Pictures that grow by samples: how far off they say they are, when they end, and going on with one from a file.
 
-mod support;
-
+use crate::support::program::Program;
+use crate::support::watched::{Watched, both};
 use quincunx::earlier::layers;
 use quincunx::metrics;
 use quincunx::report::image_file::{self, Texts, WriteOptions};
@@ -11,8 +11,6 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use support::program::Program;
-use support::watched::{Watched, both};
 
 const NAME: &str = "path_traced";
 const SMALL: [&str; 6] = ["render", "cornell", "--technique", NAME, "--size", "24x20"];

@@ -1,14 +1,13 @@
 //! Ray queries: `path_traced --rays query` beside `--rays tree`, where the driver has them, and the refusal where not.
 
-mod support;
-
+use crate::support;
+use crate::support::Feature;
+use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, vec3};
 use quincunx::report::picture::Picture;
 use quincunx::scene::{AlphaMode, ColorSpace, Image, Material, Sampler, Scene, Texture};
-use support::Feature;
-use support::boxes::{camera, closed_box, panel, point_light, rectangle};
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "path_traced";
 /// Pixels that may differ in any bit: those whose paths hold a ray that grazes an edge, which the driver may see on the other

@@ -1,9 +1,8 @@
 //! `bench rays`: every walk of the tree meets what the host meets, and its rows say how fast.
 
-mod support;
-
+use crate::support;
+use crate::support::program::Program;
 use serde_json::Value;
-use support::program::Program;
 
 const HALL: [&str; 5] = ["bench", "rays", "hall:triangles=8000", "--rays", "20000"];
 

@@ -1,7 +1,7 @@
 //! References: from a file, made, kept, broken; what is judged against them, and what is refused.
 
-mod support;
-
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, values};
 use quincunx::reference::cache::Cache;
 use quincunx::reference::made::{Made, Watch, reference_picture};
 use quincunx::reference::recipe::Recipe;
@@ -14,8 +14,6 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
-use support::program::Program;
-use support::watched::{Changes, Watched, values};
 
 const SMALL: [&str; 6] = ["render", "cornell", "--size", "32x18", "--vpls", "16"];
 

@@ -1,15 +1,13 @@
 //! `scene inspect` and `scene export` from outside, and what an exported scene is when it is read back.
 
-mod support;
-
+use crate::support::gltf_file::{GltfFile, U8};
+use crate::support::program::Program;
+use crate::support::watched::Watched;
 use glam::Vec3;
 use quincunx::scene::procedural::{self, Made};
 use quincunx::scene::{self, Scene, glb, gltf};
 use quincunx::scene::{AnimationChoice, LightKind, Texture};
 use serde_json::{Value, json};
-use support::gltf_file::{GltfFile, U8};
-use support::program::Program;
-use support::watched::Watched;
 
 fn inspected(program: &Program, scene: &str) -> Value {
     program.run(&["scene", "inspect", scene, "--json"]).fine().json()

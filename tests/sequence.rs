@@ -1,15 +1,13 @@
 //! `render --time` and `render --frames` from outside: which files, which reports, which exit codes.
 
-mod support;
-
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::support::gltf_file::{GltfFile, painted_png};
+use crate::support::program::Program;
+use crate::support::watched::Watched;
 use quincunx::scene::{AnimationChoice, Scene};
 use serde_json::json;
-use support::gltf_file::{GltfFile, painted_png};
-use support::program::Program;
-use support::watched::Watched;
 
 /// A triangle with a picture on it that crosses the frame within a second.
 fn moving_file() -> GltfFile {

@@ -1,16 +1,15 @@
 //! Shadow maps against shadow rays: the nearer the more texels a map has; dark where light cannot come, and the same bits
 //! as unshadowed light where nothing is between; the plain ways give the same.
 
-mod support;
-
+use crate::support;
+use crate::support::boxes::{camera, closed_box, rectangle};
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, Vec4, vec3};
 use quincunx::gpu::commands::Submits;
 use quincunx::job::Job;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{AlphaMode, ColorSpace, Image, Light, LightKind, Material, Sampler, Scene, Texture, Wrap};
 use quincunx::techniques;
-use support::boxes::{camera, closed_box, rectangle};
-use support::watched::{Changes, Watched, both};
 
 const FORWARD: &str = "forward";
 /// One matt reflection, no light but the scene's.

@@ -1,15 +1,14 @@
 //! Stencil shadow volumes of inferred lighting (Kircher 2009, section 4): where shadow rays find shadow, they must too, on
 //! solid surfaces and on layers of glass, wherever eye and light stand.
 
-mod support;
-
+use crate::support;
+use crate::support::boxes::{camera, point_light, rectangle};
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Quat, Vec3, vec3};
 use quincunx::gpu::commands::Submits;
 use quincunx::scene::{self, AlphaMode, Camera, Draw, Light, LightKind, Material, Mesh, Projection, Scene};
 use quincunx::session::Renderer;
-use support::boxes::{camera, point_light, rectangle};
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "inferred_lighting";
 const IRRADIANCE: &str = "light.l_buffer.irradiance";

@@ -1,13 +1,12 @@
 //! Shutters: what moves while one is open against the time that it covers a pixel.
 
-mod support;
-
+use crate::support;
+use crate::support::boxes::{point_light, rectangle};
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Quat, Vec3, vec3};
 use quincunx::job::Job;
 use quincunx::scene::{Camera, Material, Projection, Scene};
 use quincunx::techniques;
-use support::boxes::{point_light, rectangle};
-use support::watched::{Changes, Watched, both};
 
 const WIDTH: usize = 64;
 

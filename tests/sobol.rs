@@ -1,7 +1,6 @@
 //! The Sobol sequence of shaders against its twin in Rust: every bit of many points.
 
-mod support;
-
+use crate::support::watched::{require_silence, watched_device};
 use bytemuck::{bytes_of, cast_slice, pod_collect_to_vec};
 use quincunx::gpu::commands::Submits;
 use quincunx::gpu::pipeline::ComputePipeline;
@@ -11,7 +10,6 @@ use quincunx::gpu::{Access, Bound, Buffer, Commands, Gpu, readback};
 use quincunx::memory::kinds::Use;
 use quincunx::sampling::sobol;
 use std::sync::Arc;
-use support::watched::{require_silence, watched_device};
 
 const PIXELS: u32 = 24;
 

@@ -1,11 +1,9 @@
 //! Split then gather is the identity on the device, seen in the stages that a frame leaves (Segovia 2006, figure 3).
 
-mod support;
-
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::techniques::interleaved_deferred::mapping::mapping;
 use quincunx::units::Extent;
-use support::watched::{Changes, Watched, both};
 
 const TECHNIQUE: &str = "interleaved_deferred";
 /// What these tests read back.

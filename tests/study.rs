@@ -1,7 +1,6 @@
 //! `memory`: what is planned without a device, by a known driver's rules, is what that driver asks for and what is made.
 
-mod support;
-
+use crate::support;
 use quincunx::gpu::structure::Over;
 use quincunx::gpu::{Caps, DeviceRequest, Gpu, known};
 use quincunx::job::Job;

@@ -1,15 +1,14 @@
 //! The shaders of path tracing against their twins in Rust: where samples lie, what textures say there.
 
-mod support;
-
+use crate::support;
+use crate::support::boxes::rectangle;
+use crate::support::watched::{Changes, Watched};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use quincunx::sampling::sobol;
 use quincunx::scene::{
     Camera, ColorSpace, Image, Material, Placement, Projection, Sampler, Scene, Texture, TextureSlot, Wrap, mipmaps,
 };
 use quincunx::shading::material::{self, MeshPoint};
-use support::boxes::rectangle;
-use support::watched::{Changes, Watched};
 
 const SIDE: u32 = 16;
 

@@ -1,10 +1,8 @@
 //! Path tracing through every kind of tree and stack: the same picture, in as much memory as the plan says.
 
-mod support;
-
+use crate::support::shared_scenes;
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::scene::{self, AlphaMode};
-use support::shared_scenes;
-use support::watched::{Changes, Watched, both};
 
 const NAME: &str = "path_traced";
 

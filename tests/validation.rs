@@ -1,13 +1,11 @@
 //! The watchman is awake: a planted missing barrier is reported, a wrong left side panics.
 
-mod support;
-
+use crate::support::watched::{require_silence, watched_device};
 use ash::vk;
 use quincunx::gpu::commands::Submits;
 use quincunx::gpu::{Access, AccessSet, Berth, Buffer, Commands, Gpu};
 use quincunx::memory::kinds::Use;
 use std::sync::Arc;
-use support::watched::{require_silence, watched_device};
 
 const BYTES: u64 = 4096;
 

@@ -1,7 +1,7 @@
 //! A .glb cut at every edge and beside it, chunks that lie about their length, JSON that is none.
 
 use super::Case;
-use super::support::gltf_file::GltfFile;
+use crate::support::gltf_file::GltfFile;
 use serde_json::json;
 
 pub fn cases() -> Vec<Case> {

@@ -1,7 +1,7 @@
 //! Pictures that claim what they do not hold, or hold more than their bytes let expect.
 
 use super::Case;
-use super::support::gltf_file::{GltfFile, png};
+use crate::support::gltf_file::{GltfFile, png};
 use serde_json::json;
 
 /// The triangle under a texture of these bytes.

@@ -1,7 +1,7 @@
 //! Counts, offsets and strides beyond what is there, and numbers that no scene has.
 
 use super::Case;
-use super::support::gltf_file::{GltfFile, U8, U16, U32};
+use crate::support::gltf_file::{GltfFile, U8, U16, U32};
 use serde_json::{Value, json};
 
 /// The triangle with all that accessors may have: indices, normals, coordinates, colours, sparse values.

@@ -1,7 +1,7 @@
 //! URIs, links and files that would make the renderer read what does not belong to the scene, or never end.
 
 use super::Case;
-use super::support::gltf_file::GltfFile;
+use crate::support::gltf_file::GltfFile;
 use serde_json::json;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 //! ask for much.
 
 use super::Case;
-use super::support::gltf_file::{GltfFile, U8, U16};
+use crate::support::gltf_file::{GltfFile, U8, U16};
 use serde_json::{Value, json};
 
 pub fn cases() -> Vec<Case> {

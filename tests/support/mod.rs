@@ -1,8 +1,5 @@
 //! What several test files share.
 
-// Each test file is a program of its own and uses a part of this.
-#![allow(dead_code)]
-
 pub mod boxes;
 pub mod counted;
 pub mod difference;

@@ -1,20 +1,18 @@
 //! Broken and hostile files, each given to the program as a stranger would: it ends with exit code 2 and one message that
 //! names file, element and fault, or draws a picture without NaN, soon and in little memory.
 //!
-//! `cargo test --test gltf_broken_corpus -- --nocapture` prints the table: what is broken, what is said, and what it took.
+//! `cargo test gltf_broken_corpus -- --nocapture` prints the table: what is broken, what is said, and what it took.
 
 mod containers;
 mod images;
 mod numbers;
 mod paths;
 mod structure;
-#[path = "../support/mod.rs"]
-mod support;
 
+use crate::support::gltf_file::GltfFile;
+use crate::support::program::Program;
 use std::path::Path;
 use std::time::Duration;
-use support::gltf_file::GltfFile;
-use support::program::Program;
 
 /// Of a processor, over all threads: a clock would count what else the machine does. Of a picture also what the driver
 /// takes to compile shaders.
