@@ -4,6 +4,7 @@
 use crate::support::boxes::{camera, panel, rectangle};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
+use crate::support::{Feature, has};
 use glam::Vec3;
 use quincunx::metrics;
 use quincunx::report::picture::Picture;
@@ -66,7 +67,9 @@ fn eight_samples_have_less_error_than_the_mean_of_many_more() {
         let filtered = |kind| watched.picture(DEEP, &both(common, &[("spp", "8"), ON, ("visibility", kind)]));
         let far = ["repeat-frame", "stochastic"].map(|kind| rmse(&filtered(kind), &reference));
         println!("{name}: {far:?} reconstructed from 8 samples, {errors:?} the mean of 8, 16");
-        assert!(far.iter().all(|far| *far < least * errors[0] && *far < errors[1]), "{name}: {far:?}, {errors:?}");
+        // Each tuple draws triangles in other places, to a step of a pixel: coarse steps leave an error that no filter takes away.
+        let most = if has(&watched.session.gpu.caps, Feature::ExactPositions) { errors[1] } else { errors[0] };
+        assert!(far.iter().all(|far| *far < least * errors[0] && *far < most), "{name}: {far:?}, {errors:?}");
     }
 }
 

@@ -135,9 +135,10 @@ fn tests_grow_with_the_aperture() {
         })
         .collect();
     println!("tests and hits: {counted:?}");
-    // A sharp triangle's polygon is the triangle.
+    // A sharp triangle's polygon is the triangle, but for how far it reaches because corners are snapped.
+    let most = 1.0 + 0.03 * placing_steps(&watched.session.gpu.caps);
     let [tests, hits] = counted[0];
-    assert!(hits > 0.0 && tests < 1.1 * hits, "{counted:?}");
+    assert!(hits > 0.0 && tests < most * hits, "{counted:?}");
     assert!(counted.windows(2).all(|pair| pair[1][0] > 1.02 * pair[0][0]), "{counted:?}");
     assert!(counted.iter().all(|[_, now]| (now / hits - 1.0).abs() < 0.2), "{counted:?}");
     let interleaved = watched.render(DEEP, &[SIZE, ("spp", "4"), ("aperture", "0.4")]).measured_counters().unwrap();
