@@ -121,7 +121,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "",
-        help: "c of --shading-warp foveated: a pixel of shading space is 1 + c r as wide as in the middle and the square of that along the                way to the rim, r of which is 1; shading space has 1/(1 + c)^2 of the pixels",
+        help: "c of --shading-warp foveated: a pixel of shading space is 1 + c r as wide as in the middle and the square of that along the \
+               way to the rim, r of which is 1; shading space has 1/(1 + c)^2 of the pixels",
     },
     Setting {
         key: "lists",
@@ -141,7 +142,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "how shaders come to lists and colours: through descriptors, which reach as far as the device binds, or by the buffers'                addresses, however long they are; the same picture; auto: addresses where a buffer is longer than the device binds",
+        help: "how shaders come to lists and colours: through descriptors, which reach as far as the device binds, or by the buffers' \
+               addresses, however long they are; the same picture; auto: addresses where a buffer is longer than the device binds",
     },
     Setting {
         key: "duplicates",
