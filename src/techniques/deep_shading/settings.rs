@@ -1,6 +1,6 @@
 //! The settings that only this technique reads.
 
-use crate::settings::{APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, Setting};
+use crate::settings::{APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting};
 
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
 const MOST_GUARD_PX: u64 = 4096;
@@ -65,7 +65,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "8",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "samples a pixel in one set of buffers",
+        help: "samples a pixel in one set of buffers, of each eye with --stereo",
     },
     Setting {
         key: "tuples",
@@ -75,7 +75,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "places in a pixel, on the lens and in time that all samples share, spread over a table of N/n pixels; a multiple of \
-               --spp; auto: four times --spp",
+               --spp; of each eye with --stereo; auto: four times --spp",
     },
     Setting {
         key: "accumulate",
@@ -212,6 +212,8 @@ pub const SETTINGS: &[Setting] = &[
     },
     APERTURE,
     FOCUS,
+    STEREO,
+    STEREO_EYES,
     SHUTTER,
     BRDF,
     GEOMETRY,
