@@ -1,6 +1,8 @@
 //! The settings that only this technique reads.
 
-use crate::settings::{APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting};
+use crate::settings::{
+    APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
+};
 
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
 const MOST_GUARD_PX: u64 = 4096;

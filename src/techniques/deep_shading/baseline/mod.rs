@@ -12,11 +12,11 @@ pub mod msaa;
 pub mod ssaa;
 
 use super::choices::Choices;
-use super::{full, stereo};
 use super::plan::{COUNTERS, DEPTH_FORMAT};
 use super::settings::SETTINGS;
 use super::visibility::sample::Sample;
 use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
+use super::{full, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
