@@ -8,7 +8,9 @@ mod shadow_maps;
 mod tables;
 mod tree;
 
-pub use optics::{APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, earlier_s, exposure_s};
+pub use optics::{
+    APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, earlier_s, exposure_s,
+};
 pub use shadow_maps::{MAPPED_DIRECT_SHADOW, SHADOW_MAPS};
 pub use tables::{
     BRDF, COMMON, DIRECT_SHADOW, EMISSIVE, GEOMETRY, MULTISAMPLE, NORMAL_THRESHOLD, SHADING, TEXELS, VPL_CLAMP,

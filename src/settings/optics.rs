@@ -22,8 +22,32 @@ pub const FOCUS: Setting = Setting {
     default: "auto",
     unit: "m",
     paper: "",
-    help: "of --aperture: how far before the camera the plane in focus lies; auto: where the middle of the picture sees \
-           something, else through the middle of the scene",
+    help: "of --aperture and --stereo: how far before the camera the plane in focus lies; auto: where the middle of the picture \
+           sees something, else through the middle of the scene",
+};
+
+/// How far two eyes are apart.
+pub const STEREO: Setting = Setting {
+    key: "stereo",
+    symbol: "",
+    kind: Kind::Number { min: 0.0, max: 1e6 },
+    default: "0",
+    unit: "m",
+    paper: "Clarberg 2014, 7",
+    help: "distance between two eyes, to the camera's left and right, each with a lens of --aperture; both see what lies at --focus \
+           in one place, and the picture is the left one's; 0: one eye, the camera's",
+};
+
+/// Which of them see.
+pub const STEREO_EYES: Setting = Setting {
+    key: "stereo-eyes",
+    symbol: "",
+    kind: Kind::Choice(&["both", "left", "right"]),
+    default: "both",
+    unit: "",
+    paper: "Clarberg 2014, 7",
+    help: "of --stereo: deep_shading shades both eyes' samples at once, as seen from between them, and has the right one's picture in \
+           the stage stereo.right; or one eye's alone, as that one sees them",
 };
 
 /// How long the film is exposed.

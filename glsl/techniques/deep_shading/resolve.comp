@@ -1,4 +1,4 @@
-// The mean of each pixel's samples: their colours are gathered through the address buffer, by following links, or from the
+// The mean of each pixel's samples of one eye: their colours are gathered through the address buffer, by following links, or from the
 // samples' own places (section 3.2; appendix A, pass 4); of a baseline from the layers that it drew them into.
 // Pass: src/techniques/deep_shading/resolve.rs.
 // variants: FETCH=own|address|direct|linked|compact|pointer|layers|passes|multisampled
@@ -13,6 +13,12 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 layout(local_size_x = 64) in;
 
+struct ResolveParams {
+    // Whose samples: 0 the left one or the only one, 1 the right one.
+    uint eye;
+};
+
+layout(push_constant) uniform Push { ResolveParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
@@ -27,7 +33,7 @@ void main() {
     }
     uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
     uvec2 cell = pixel % table;
-    uint first = (cell.y * table.x + cell.x) * deep.sample_count;
+    uint first = params.eye * eye_tuples(deep) + (cell.y * table.x + cell.x) * deep.sample_count;
     precise vec3 sum = vec3(0.0);
     uint missing = 0u;
     uint seen = 0u;

@@ -15,7 +15,8 @@ struct DeepBlock {
     // How many metres before the eye a point lies: its product with xyz, plus w.
     vec4 open_depth;
     vec4 close_depth;
-    // By how much clip space's x and y move a metre beside the eye's plane when the eye moves by the lens's radius.
+    // By how much clip space's x and y move a metre beside the eye's plane when the eye moves by the lens's radius; of two eyes
+    // by that of a disk that has both lenses in it.
     vec2 lens;
     // One through the distance of the plane in focus, 1/m.
     float inverse_focus;
@@ -31,7 +32,7 @@ struct DeepBlock {
     // Pixels over which the table of tuples is spread.
     uint table_width_px;
     uint table_height_px;
-    // Samples a pixel, and all tuples.
+    // Samples a pixel of one eye, and all tuples: of two eyes the left one's and then as many of the right one.
     uint sample_count;
     uint tuple_count;
     // 0, which no compiler knows.
@@ -49,7 +50,8 @@ struct TupleBlock {
     vec2 lens;
     // 0: the shutter opens; 1: it closes.
     float time;
-    uint _unused;
+    // Where on the disk the middle of the eye's lens is, on the first axis; that lens touches the disk's rim. 0: it is the disk.
+    float eye;
 };
 
 // Where no surface is.
@@ -84,6 +86,16 @@ uint shading_pixel(DeepBlock deep, vec4 canonical) {
 // Its depth, greater the farther, as the bits of floats without sign compare.
 uint shading_depth(vec4 canonical) {
     return ~floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
+}
+
+// Tuples of one eye.
+uint eye_tuples(DeepBlock deep) {
+    return deep.table_width_px * deep.table_height_px * deep.sample_count;
+}
+
+// Of a tuple among all runs': both eyes have the same numbers.
+uint tuple_number(DeepBlock deep, uint run, uint tuple) {
+    return run * eye_tuples(deep) + tuple % eye_tuples(deep);
 }
 
 // Entries of the buffers that have one a sample.

@@ -24,7 +24,7 @@ layout(constant_id = 8) const uint IS_WALKED = 0;
 layout(constant_id = 9) const uint WALK_LANDINGS = 0;
 // MEDIUM_ (airlight.glsl).
 layout(constant_id = 10) const uint MEDIUM = 0;
-// 1: rays leave all over a lens.
+// 1: rays leave all over a lens, or from beside the camera.
 layout(constant_id = 11) const uint HAS_LENS = 0;
 
 struct SampleParams {
@@ -41,6 +41,8 @@ struct SampleParams {
     // Of the lens, in metres, and how far before it the plane in focus lies.
     float lens_radius;
     float focus;
+    // How far to the camera's right its middle is, metres.
+    float lens_aside;
     // Of TEXTURE_CONE: width of a pixel at the eye, metres, and by how much it grows a metre.
     float cone_width;
     float cone_spread;

@@ -33,7 +33,7 @@ struct Path {
     float cone_spread;
 };
 
-// Moves a ray of `view` from the lens's middle to another point of the lens; both meet in the plane in focus. `near`: how
+// Moves a ray of `view` from the camera's place to a point of the lens; both meet in the plane in focus. `near`: how
 // far before the lens its origin lies.
 void through_lens(FrameBlock view, inout Path path, vec2 numbers, float near) {
     vec3 right = normalize(view.world_from_clip[0].xyz);
@@ -41,6 +41,7 @@ void through_lens(FrameBlock view, inout Path path, vec2 numbers, float near) {
     vec3 forward = view.forward_ws.xyz;
     float angle = 2.0 * PI * numbers.y;
     vec3 aside = (right * cos(angle) + down * sin(angle)) * (params.lens_radius * sqrt(numbers.x));
+    aside += right * params.lens_aside;
     float steepness = dot(path.direction, forward);
     // From the origin on: next to it floats are finer than next to the world's.
     vec3 focused = path.direction * (params.focus / steepness);

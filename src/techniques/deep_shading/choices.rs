@@ -7,7 +7,7 @@ use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::visibility::Visibility;
 use super::visibility::layer::LayerFrom;
-use super::{NAME, reach, shade::Road};
+use super::{NAME, reach, shade::Road, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
 use crate::gpu::shader::structs::DeepBlock;
@@ -31,7 +31,7 @@ pub struct Choices {
     /// Sets of samples that the picture is the mean of.
     pub run_count: u32,
     pub space: ShadingSpace,
-    /// None: a pinhole.
+    /// None: a pinhole, where the camera is.
     pub lens: Option<Lens>,
     /// The scene is another one when the shutter closes.
     pub is_moving: bool,
@@ -117,8 +117,9 @@ impl Choices {
         require_direct(values)?;
         require_straight(values)?;
         reconstruct::require_spids(values)?;
+        stereo::require_both(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
-        let lens = if values.number("aperture") > 0.0 {
+        let lens = if values.number("aperture").max(values.number("stereo")) > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
         } else {
             None
@@ -128,6 +129,7 @@ impl Choices {
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
+        let table = Table { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
         let space = ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
         let cache_entries = values.integer_or_auto("shading-cache");
@@ -154,7 +156,8 @@ impl Choices {
             is_by_address: shading == Shading::Deep
                 && reach::is_by_address(values, inputs.caps, samples_of_set, &space, is_compacted),
             sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
-            is_reconstructed: values.is_on("reconstruct") && (lens.is_some() || middle.is_some()),
+            is_reconstructed: values.is_on("reconstruct")
+                && (lens.is_some_and(|lens| lens.radius > 0.0) || middle.is_some()),
             lens,
             middle,
             road: road(values, inputs.caps),
@@ -173,7 +176,17 @@ impl Choices {
         self.middle.as_ref().map_or(inputs.lights, |middle| &middle.lights)
     }
 
-    /// Something is seen from elsewhere than shading space shows it from.
+    /// Where the lenses of the eyes are on the unit disk.
+    pub fn eyes(&self) -> Vec<f32> {
+        self.lens.map_or_else(|| vec![0.0], |lens| lens.places())
+    }
+
+    /// Both eyes are seen by at once.
+    pub fn has_right_eye(&self) -> bool {
+        self.table.eyes > 1
+    }
+
+    /// Something is seen from elsewhere than the camera shows it from.
     pub fn is_blurred(&self) -> bool {
         self.lens.is_some() || self.is_moving
     }
@@ -196,7 +209,7 @@ impl Choices {
         constants.extend(self.maps.iter().flat_map(MapLayout::constants));
         constants.extend([
             ("IS_MOVING", u32::from(self.is_moving)),
-            ("HAS_LENS", u32::from(self.lens.is_some())),
+            ("HAS_LENS", u32::from(self.lens.is_some_and(|lens| lens.reach() > 0.0))),
             ("TOLERATES_DUPLICATES", u32::from(self.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),

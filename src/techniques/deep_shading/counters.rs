@@ -21,7 +21,8 @@ impl Counted {
         Ok(Self(words.try_into().expect("as many as asked for")))
     }
 
-    /// The report's, whatever is shaded. `pixels` of the frame. `has_tests`: a shader tested samples.
+    /// The report's, whatever is shaded. `pixels` of the frame: executions a pixel are of one view's, however many eyes it is seen by.
+    /// `has_tests`: a shader tested samples.
     pub fn report(&self, pixels: u64, has_tests: bool) -> BTreeMap<&'static str, f64> {
         let [_, _, shaded, _, _, _, _, _, _, samples, tests, carried, hits, ..] = self.0.map(f64::from);
         let mut counters = BTreeMap::from([

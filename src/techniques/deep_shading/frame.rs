@@ -11,6 +11,7 @@ use super::reach::Reach;
 use super::reconstruct::Reconstruct;
 use super::resolve::{Resolve, Shaded};
 use super::scene::DeepScene;
+use super::stereo::{self, RightEye};
 use super::visibility::ray::Traced;
 use super::visibility::{Drawn, Samples, Visibility};
 use super::{NAME, full};
@@ -24,7 +25,7 @@ use crate::techniques::{Frame, Inputs, left_out};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub const AOVS: &[&str] = &["count.lengths", SPIDS];
+pub const AOVS: &[&str] = &["count.lengths", SPIDS, stereo::RIGHT];
 
 /// From the scene to samples that have colours.
 enum Shader {
@@ -43,6 +44,7 @@ pub struct DeepFrame {
     accumulate: Option<Accumulate>,
     counters: Buffer,
     color: Image,
+    right: Option<RightEye>,
 }
 
 impl DeepFrame {
@@ -79,6 +81,7 @@ impl DeepFrame {
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             counters: resources.buffer(&full(COUNTERS)),
             color: resources.image(&full(COLOR)),
+            right: RightEye::new(gpu, resources, &choices)?,
             choices,
             primitives,
         })
@@ -120,7 +123,8 @@ impl DeepFrame {
 
 impl Frame for DeepFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
-        let Self { list, primitives, counters, color, .. } = self;
+        let Self { list, primitives, counters, color, right, .. } = self;
+        let eyes: Vec<&Image> = [color].into_iter().chain(right.iter().map(|right| &right.color)).collect();
         let mut bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
         let drawn = Drawn { scene, list, primitives, table: &self.choices.table, frame: color.description.extent };
@@ -128,7 +132,7 @@ impl Frame for DeepFrame {
             Shader::Apart(apart, reach) => {
                 bound.push(reach.bound());
                 let shaded = apart.record(cmd, &self.scene, drawn, &bound, counters)?;
-                self.resolve.record(cmd, &bound, shaded, counters, color)?;
+                self.resolve.record(cmd, &bound, shaded, counters, &eyes)?;
                 if let Some(reconstruct) = &self.reconstruct {
                     reconstruct.record(cmd, &bound, shaded, color)?;
                 }
@@ -137,11 +141,14 @@ impl Frame for DeepFrame {
             Shader::AsDrawn(baseline) => {
                 let maps = self.scene.maps_barrier(Access::DepthWrite, Access::FragmentSample);
                 baseline.record(cmd, drawn, &bound, maps, counters)?;
-                self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, color)?;
+                self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, &eyes)?;
             }
         }
         if let Some(accumulate) = &self.accumulate {
             accumulate.record(cmd, NAME, frame, self.run_picture().from(Access::ComputeWrite))?;
+        }
+        if let Some(right) = right {
+            right.record(cmd, frame)?;
         }
         Ok(())
     }
@@ -195,6 +202,10 @@ impl Frame for DeepFrame {
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        if name == stereo::RIGHT {
+            let why = "two eyes see with --stereo above 0 and --stereo-eyes both";
+            return self.right.as_ref().ok_or_else(|| left_out(NAME, name, why))?.stage(gpu);
+        }
         let Some(apart) = self.apart() else {
             return Err(left_out(NAME, name, "samples of a baseline (--shading) have colours and nothing else"));
         };

@@ -33,6 +33,7 @@
 //!   the depth test finds the nearest without 64-bit atomics
 //! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no SPID is kept
 //! - the reconstruction is a filter of our choice; motion vectors come from SPIDs after visibility (reconstruct/mod.rs)
+//! - two eyes (`--stereo`) share one buffer, which the paper has as future work (section 7; stereo.rs)
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
@@ -61,6 +62,7 @@ mod scene;
 mod settings;
 mod shade;
 mod space;
+mod stereo;
 mod touched;
 mod tuples;
 mod visibility;
@@ -203,7 +205,7 @@ impl Prepared for PreparedDeep {
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let Choices { shading, table, road, lens, visibility, layer_from, .. } = &self.choices;
         let mut resolved =
-            BTreeMap::from([("tuples", table.tuple_count().to_string()), ("conservative", road.name().to_owned())]);
+            BTreeMap::from([("tuples", table.tuples_of_eye().to_string()), ("conservative", road.name().to_owned())]);
         if let Shading::Msaa { pass_samples } = shading {
             resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
         }

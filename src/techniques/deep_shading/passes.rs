@@ -6,7 +6,7 @@ use super::plan::{
     ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
 };
 use super::visibility::Visibility;
-use super::{NAME, full, gate, indirect, reconstruct};
+use super::{NAME, full, gate, indirect, reconstruct, stereo};
 use crate::gpu::Access;
 use crate::plan::Plan;
 
@@ -46,7 +46,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         plan.pass(full("shade"), shaded);
     }
     plan.pass(full(choices.brute_pass()), brute(choices));
-    let written = [touch(COUNTERS, Access::ComputeWrite), touch(COLOR, Access::ComputeWrite)];
+    let written = [touch(COUNTERS, Access::ComputeWrite)].into_iter().chain(stereo::resolved(choices));
     plan.pass(full("resolve"), shaded(choices).into_iter().chain(written));
     if choices.is_reconstructed {
         reconstruct::plan_passes(plan, shaded(choices), COLOR);

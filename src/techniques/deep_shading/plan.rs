@@ -5,8 +5,9 @@ use super::baseline::{self, Shading};
 use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
+use super::tuples::Table;
 use super::visibility::{Visibility, ray};
-use super::{NAME, full, gate, indirect, passes, reach, reconstruct};
+use super::{NAME, full, gate, indirect, passes, reach, reconstruct, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -15,6 +16,7 @@ use crate::passes::{accumulate, direct as lights};
 use crate::plan::{Plan, Shape};
 use crate::resident::VertexAttributes;
 use crate::techniques::Inputs;
+use crate::units::Extent;
 use ash::vk::{BufferUsageFlags, Format, ImageUsageFlags as Usage};
 
 pub const SPIDS: &str = "visibility.spids";
@@ -69,19 +71,17 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     plan.read_back(&full(COUNTERS));
     let extent = inputs.view.extent;
     let run = if choices.is_reconstructed { reconstruct::COLOR } else { COLOR };
-    let stored = |plan: &mut Plan, name| {
-        plan.image("color", full(name), extent, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
-    };
     if choices.is_reconstructed {
-        stored(&mut plan, COLOR);
+        stored(&mut plan, COLOR, extent);
         reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
     }
     if choices.run_count > 1 {
-        stored(&mut plan, run);
+        stored(&mut plan, run, extent);
         accumulate::plan(&mut plan, NAME, extent);
     } else {
         plan.picture(full(run), extent);
     }
+    stereo::plan(&mut plan, choices, extent);
     match choices.shading {
         Shading::Deep | Shading::IndirectGbuffer => passes::plan(&mut plan, choices),
         Shading::Ssaa | Shading::Msaa { .. } => baseline::plan_passes(&mut plan, choices),
@@ -89,7 +89,13 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     if choices.run_count > 1 {
         accumulate::plan_pass(&mut plan, NAME, &full(run));
     }
+    stereo::plan_pass(&mut plan, choices);
     Ok(plan)
+}
+
+/// A picture that is not the last one.
+pub fn stored(plan: &mut Plan, name: &str, frame: Extent) {
+    plan.image("color", full(name), frame, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
 }
 
 /// An image of a layer a tuple.
@@ -185,15 +191,17 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
 /// Errors: more tuples than layers; buffers out of shaders' reach.
 fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let (layers, most_layers) = (choices.table.tuple_count(), inputs.caps.limits.max_image_layers);
+    let asked = match choices.table {
+        Table { eyes: 1, .. } => format!("--tuples {layers}"),
+        table => format!("--tuples {} of {} eyes", table.tuples_of_eye(), table.eyes),
+    };
     if !matches!(choices.shading, Shading::Msaa { .. }) && layers > most_layers {
-        return Err(
-            Error::request(format!("--tuples {layers}: this device has images of {most_layers} layers")).within(NAME)
-        );
+        return Err(Error::request(format!("{asked}: this device has images of {most_layers} layers")).within(NAME));
     }
     let most_drawn = inputs.caps.limits.max_framebuffer_layers;
     if choices.visibility.is_layered() && layers > most_drawn {
         return Err(Error::request(format!(
-            "--visibility {}, --tuples {layers}: this device draws into {most_drawn} layers at once",
+            "--visibility {}, {asked}: this device draws into {most_drawn} layers at once",
             inputs.values.text("visibility")
         ))
         .within(NAME)

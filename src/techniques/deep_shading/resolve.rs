@@ -1,7 +1,7 @@
 //! Resolve: the mean of each pixel's samples, gathered through the address buffer, by following links, or from the samples' own
 //! places (Clarberg & Munkberg 2014, section 3.2); of a baseline from what it drew. Shader: resolve.comp.
 //! reads  visibility.spids, shade.colors, lists.addresses or the lists; baseline.colors
-//! writes  resolve.color  image, RGBA32F
+//! writes  resolve.color  image, RGBA32F; stereo.right, the same of the right one of two eyes
 
 use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
@@ -10,6 +10,7 @@ use super::lists::Lists;
 use super::visibility::Samples;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::ResolveParams;
 use crate::gpu::shader::techniques::deep_shading::resolve::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Gpu, Image, Traffic};
@@ -144,29 +145,37 @@ impl Resolve {
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 
+    /// `eyes`: the picture of each, the left one's first.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
         shaded: Shaded<'_>,
         counters: &Buffer,
-        color: &Image,
+        eyes: &[&Image],
     ) -> Result<()> {
-        let extent = color.description.extent;
+        let extent = eyes[0].description.extent;
         let traffic = Traffic {
             read_bytes: shaded.bytes(),
-            written_bytes: color.description.bytes(),
-            invocations: Some(extent.pixel_count()),
+            written_bytes: eyes.iter().map(|color| color.description.bytes()).sum(),
+            invocations: Some(eyes.len() as u64 * extent.pixel_count()),
         };
         cmd.pass(&full("resolve"), traffic, |cmd| {
             shaded.to_compute(cmd);
-            cmd.barriers([color.discard(Access::ComputeWrite)]);
-            cmd.barriers([counters.from(shaded.counted()).to(Access::ComputeWrite)]);
-            let mut bound = bound.to_vec();
-            bound.extend(shaded.bound());
-            bound.extend([("Counters", Bound::Buffer(counters)), ("color", Bound::Storage(color))]);
-            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
-            cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
+            cmd.barriers(eyes.iter().map(|color| color.discard(Access::ComputeWrite)));
+            let mut counted = shaded.counted();
+            for (eye, color) in (0..).zip(eyes) {
+                cmd.barriers([counters.from(counted).to(Access::ComputeWrite)]);
+                counted = Access::ComputeWrite;
+                let mut bound = bound.to_vec();
+                bound.extend(shaded.bound());
+                bound.extend([("Counters", Bound::Buffer(counters)), ("color", Bound::Storage(color))]);
+                let params = ResolveParams { eye };
+                let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+                let own = self.pipeline.interface.own(&bound);
+                cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&params), &own, groups)?;
+            }
+            Ok(())
         })
     }
 }

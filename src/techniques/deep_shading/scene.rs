@@ -2,7 +2,7 @@
 //! middle, the cameras and the tuples.
 
 use super::choices::Choices;
-use super::{NAME, full};
+use super::{NAME, full, stereo};
 use crate::error::Result;
 use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, upload};
 use crate::passes::direct::{self, DirectGpu};
@@ -63,11 +63,13 @@ impl DeepScene {
         let background = inputs.values.color("background");
         let open = inputs.view.block(&bounds, background, inputs.lights.ambient, lights.len() as u32, 0);
         let middle = moved.map_or(open, |moved| moved.frame(inputs, &open));
+        let middle = stereo::seen_from(middle, choices.lens);
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?;
         let seed = inputs.values.integer("seed") as u32;
+        let eyes = choices.eyes();
         let tuples: Vec<_> =
-            (0..choices.run_count).flat_map(|run| choices.table.tuples(inputs.view.extent, seed, run)).collect();
+            (0..choices.run_count).flat_map(|run| choices.table.tuples(inputs.view.extent, seed, run, &eyes)).collect();
         let space = choices.deep_block(inputs);
         let close = inputs.scene.closing.as_deref().map(Placed::of).unwrap_or_default();
         let maps = choices.maps.as_ref().map(|layout| {

@@ -1,6 +1,8 @@
 //! The settings that only this technique reads.
 
-use crate::settings::{APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, Setting};
+use crate::settings::{
+    APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
+};
 
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
 const MOST_GUARD_PX: u64 = 4096;
@@ -65,7 +67,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "8",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "samples a pixel in one set of buffers",
+        help: "samples a pixel in one set of buffers, of each eye with --stereo",
     },
     Setting {
         key: "tuples",
@@ -75,7 +77,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "places in a pixel, on the lens and in time that all samples share, spread over a table of N/n pixels; a multiple of \
-               --spp; auto: four times --spp",
+               --spp; of each eye with --stereo; auto: four times --spp",
     },
     Setting {
         key: "accumulate",
@@ -121,7 +123,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "",
-        help: "c of --shading-warp foveated: a pixel of shading space is 1 + c r as wide as in the middle and the square of that along the                way to the rim, r of which is 1; shading space has 1/(1 + c)^2 of the pixels",
+        help: "c of --shading-warp foveated: a pixel of shading space is 1 + c r as wide as in the middle and the square of that along the \
+               way to the rim, r of which is 1; shading space has 1/(1 + c)^2 of the pixels",
     },
     Setting {
         key: "lists",
@@ -141,7 +144,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "how shaders come to lists and colours: through descriptors, which reach as far as the device binds, or by the buffers'                addresses, however long they are; the same picture; auto: addresses where a buffer is longer than the device binds",
+        help: "how shaders come to lists and colours: through descriptors, which reach as far as the device binds, or by the buffers' \
+               addresses, however long they are; the same picture; auto: addresses where a buffer is longer than the device binds",
     },
     Setting {
         key: "duplicates",
@@ -210,6 +214,8 @@ pub const SETTINGS: &[Setting] = &[
     },
     APERTURE,
     FOCUS,
+    STEREO,
+    STEREO_EYES,
     SHUTTER,
     BRDF,
     GEOMETRY,

@@ -1,6 +1,7 @@
 //! Canonical shading space: the frame in the middle of the exposure, from the middle of the lens, with a guard band around it
 //! (Clarberg & Munkberg 2014, sections 3 and 6).
 
+use super::stereo;
 use super::tuples::Table;
 use crate::error::{Error, Result};
 use crate::frame::View;
@@ -83,18 +84,24 @@ impl ShadingSpace {
     }
 
     /// What shaders know of it, of the cameras at both ends of the exposure, and of the samples.
+    ///
+    /// It is seen from the middle of the lens, that of both eyes of two.
     pub fn block(&self, open: &View, close: Option<&View>, lens: Option<Lens>, table: &Table) -> DeepBlock {
         let close = close.unwrap_or(open);
         let layer = table.layer(open.extent);
         let [open_clip, close_clip] = [open, close].map(View::clip_from_world);
+        let [open_depth, close_depth] = [open, close].map(depth_row);
         // How much of the picture's half a metre is, where a metre is as far away as it is wide.
         let row_length = |matrix: &Mat4, row: usize| matrix.row(row).truncate().length();
-        let radius = lens.map_or(0.0, |lens| lens.radius);
+        let radius = lens.map_or(0.0, |lens| lens.reach());
+        let from_middle = |clip: Mat4, depth: Vec4| {
+            lens.map_or(clip, |lens| stereo::clip_from(clip, depth, row_length(&open_clip, 0), lens)).to_cols_array_2d()
+        };
         DeepBlock {
-            open_clip_from_world: open_clip.to_cols_array_2d(),
-            close_clip_from_world: close_clip.to_cols_array_2d(),
-            open_depth: depth_row(open).to_array(),
-            close_depth: depth_row(close).to_array(),
+            open_clip_from_world: from_middle(open_clip, open_depth),
+            close_clip_from_world: from_middle(close_clip, close_depth),
+            open_depth: open_depth.to_array(),
+            close_depth: close_depth.to_array(),
             lens: [0, 1].map(|axis| radius * row_length(&open_clip, axis)),
             inverse_focus: lens.map_or(0.0, |lens| 1.0 / lens.focus),
             guard_px: self.guard_px as f32,

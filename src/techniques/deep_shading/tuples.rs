@@ -3,6 +3,9 @@
 //!
 //! Samples of a pixel are its cell's tuples. The table of cells repeats over the frame, so that all samples of one tuple are a
 //! regular grid, which the rasteriser draws as a picture of its own.
+//!
+//! Of two eyes (`--stereo`) the left one's tuples come first and then the right one's: the same places in a pixel, on the lens and
+//! in time, but that the lens is elsewhere.
 
 use crate::gpu::shader::structs::TupleBlock;
 use crate::sampling::sobol;
@@ -13,20 +16,33 @@ use crate::units::Extent;
 pub struct Table {
     /// Pixels that have tuples of their own.
     pub cells: [u32; 2],
-    /// Samples a pixel.
+    /// Samples a pixel, of one eye.
     pub samples: u32,
+    /// 1 or 2.
+    pub eyes: u32,
 }
 
 impl Table {
-    /// `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
+    /// For one eye. `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
     pub fn new(samples: u32, tuples: u32) -> Self {
         let cells = tuples / samples;
         let height = (1..=cells.isqrt()).rev().find(|side| cells.is_multiple_of(*side)).unwrap_or(1);
-        Self { cells: [cells / height, height], samples }
+        Self { cells: [cells / height, height], samples, eyes: 1 }
     }
 
-    pub fn tuple_count(&self) -> u32 {
+    /// Of one eye: as many places in a pixel, on the lens and in time.
+    pub fn tuples_of_eye(&self) -> u32 {
         self.cells[0] * self.cells[1] * self.samples
+    }
+
+    /// Of all eyes: layers.
+    pub fn tuple_count(&self) -> u32 {
+        self.eyes * self.tuples_of_eye()
+    }
+
+    /// Of a tuple among all runs', twin of space.glsl's: both eyes have the same numbers.
+    pub fn number(&self, run: u32, tuple: u32) -> u32 {
+        run.wrapping_mul(self.tuples_of_eye()).wrapping_add(tuple % self.tuples_of_eye())
     }
 
     /// Pixels of a layer: one for each cell that begins in the frame.
@@ -47,12 +63,12 @@ impl Table {
     /// How much of a tuple's layer lies in the frame, from its first pixel on.
     pub fn inside(&self, frame: Extent, tuple: u32) -> Extent {
         let cell = tuple / self.samples;
-        let [x, y] = [cell % self.cells[0], cell / self.cells[0]];
+        let [x, y] = [cell % self.cells[0], cell / self.cells[0] % self.cells[1]];
         let count = |side: u32, first: u32, cells: u32| side.saturating_sub(first).div_ceil(cells);
         Extent::new(count(frame.width, x, self.cells[0]), count(frame.height, y, self.cells[1]))
     }
 
-    /// Where the first sample of a pixel of the frame lies in what has one entry a sample: layer by layer, row by row.
+    /// Where the first sample of a pixel of the frame, of the left eye, lies in what has one entry a sample: layer by layer, row by row.
     pub fn first_sample(&self, frame: Extent, [x, y]: [u32; 2]) -> usize {
         let (layer, [width, height]) = (self.layer(frame), self.cells);
         let tuple = u64::from((y % height * width + x % width) * self.samples);
@@ -60,9 +76,21 @@ impl Table {
         (row * u64::from(layer.width) + u64::from(x / width)) as usize
     }
 
-    /// The tuples of one set, cell by cell in row order. `run`: another one for each set of a picture.
-    pub fn tuples(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
-        let count = self.tuple_count();
+    /// The tuples of one set, eye by eye and cell by cell in row order. `run`: another one for each set of a picture; `eyes`: where
+    /// their lenses are on the unit disk (`Lens::places`).
+    pub fn tuples(&self, frame: Extent, seed: u32, run: u32, eyes: &[f32]) -> Vec<TupleBlock> {
+        assert_eq!(eyes.len(), self.eyes as usize);
+        let of_middle = self.of_eye(frame, seed, run);
+        let beside = |eye: f32, tuple: &TupleBlock| {
+            let [x, y] = tuple.lens.map(|place| (1.0 - eye.abs()) * place);
+            TupleBlock { lens: [eye + x, y], eye, ..*tuple }
+        };
+        eyes.iter().flat_map(|eye| of_middle.iter().map(|tuple| beside(*eye, tuple))).collect()
+    }
+
+    /// Those of one eye whose lens is the unit disk.
+    fn of_eye(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
+        let count = self.tuples_of_eye();
         // Aligned stretches of the sequence are nets: a cell's tuples are as well spread as all of them.
         let of = |index: u32, purpose: u32| {
             sobol::pair(
@@ -94,7 +122,7 @@ impl Table {
                     shift: [x[1], y[1]],
                     lens: [radius * turn.cos(), radius * turn.sin()],
                     time,
-                    _unused: 0,
+                    eye: 0.0,
                 }
             })
             .collect()
@@ -110,7 +138,7 @@ mod tests {
         for (samples, tuples, cells) in
             [(8, 32, [2, 2]), (8, 8, [1, 1]), (4, 64, [4, 4]), (4, 32, [4, 2]), (2, 6, [3, 1]), (1, 12, [4, 3])]
         {
-            assert_eq!(Table::new(samples, tuples), Table { cells, samples });
+            assert_eq!(Table::new(samples, tuples), Table { cells, samples, eyes: 1 });
             assert_eq!(Table::new(samples, tuples).tuple_count(), tuples);
         }
     }
@@ -136,7 +164,7 @@ mod tests {
     fn the_middle_of_a_layer_s_pixel_is_the_tuple_s_place() {
         let (table, frame) = (Table::new(4, 16), Extent::new(30, 17));
         let layer = table.layer(frame);
-        for (index, tuple) in table.tuples(frame, 1, 0).iter().enumerate() {
+        for (index, tuple) in table.tuples(frame, 1, 0, &[0.0]).iter().enumerate() {
             let cell = index as u32 / 4;
             for at in [[0, 0], [3, 2], [14, 8]] {
                 let middle = [0, 1].map(|axis| {
@@ -152,19 +180,35 @@ mod tests {
                 assert!(place.iter().all(|place| (-1e-3..1.001).contains(place)), "{place:?}");
             }
         }
-        let alone = Table::new(1, 1).tuples(frame, 1, 0)[0];
+        let alone = Table::new(1, 1).tuples(frame, 1, 0, &[0.0])[0];
         assert_eq!((alone.scale, alone.shift), ([1.0; 2], [0.0; 2]));
     }
 
     #[test]
     fn lens_and_time_are_evenly_spread_and_runs_differ() {
         let (table, frame) = (Table::new(8, 32), Extent::new(64, 64));
-        let tuples = table.tuples(frame, 7, 0);
+        let tuples = table.tuples(frame, 7, 0, &[0.0]);
         let inside = tuples.iter().filter(|tuple| tuple.lens[0].hypot(tuple.lens[1]) < 0.5f32.sqrt()).count();
         assert_eq!(inside, 16, "half of the disk's area");
         for cell in tuples.chunks(8) {
             assert_eq!(cell.iter().filter(|tuple| tuple.time < 0.5).count(), 4);
         }
-        assert_ne!(tuples, table.tuples(frame, 7, 1));
+        assert_ne!(tuples, table.tuples(frame, 7, 1, &[0.0]));
+    }
+
+    /// Lenses of a quarter of the disk's radius that touch its rim.
+    #[test]
+    fn both_eyes_have_the_same_tuples_with_lenses_of_their_own() {
+        let (frame, one) = (Extent::new(101, 31), Table::new(8, 32));
+        let two = Table { eyes: 2, ..one };
+        let (alone, both) = (one.tuples(frame, 7, 1, &[0.0]), two.tuples(frame, 7, 1, &[-0.75, 0.75]));
+        assert_eq!((both.len(), two.sample_count(frame)), (64, 2 * one.sample_count(frame)));
+        for (index, tuple) in both.iter().enumerate() {
+            let (middle, eye) = (alone[index % 32], if index < 32 { -0.75 } else { 0.75 });
+            let lens = [eye + 0.25 * middle.lens[0], 0.25 * middle.lens[1]];
+            assert_eq!(*tuple, TupleBlock { lens, eye, ..middle });
+            assert_eq!(two.inside(frame, index as u32), one.inside(frame, index as u32 % 32));
+            assert_eq!(two.number(3, index as u32), one.number(3, index as u32 % 32));
+        }
     }
 }

@@ -26,6 +26,7 @@
 //!   grows by its roughness squared a metre, by one from `--brdf lambert` and in a medium (ours); bent surfaces and the lens
 //!   widen it no more. Alpha and emission stay at the finest level, so that nothing thins out and both ways to an emitter agree
 //! - `--aperture`: a thin lens, whose points rays leave evenly
+//! - `--stereo`: that lens to the camera's left, or to its right (`--stereo-eyes right`)
 //! - `--shutter`: corners, normals, tangents, camera and lights on straight lines between their places when it opens and
 //!   when it closes, one moment a path; chances of emitters are those of the opening
 //! - `--medium`: a homogeneous medium in the box around all that is drawn, the eye and the lights. On each stretch of a path
@@ -227,6 +228,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     if let Some(lens) = lens {
         params.lens_radius = lens.radius;
         params.focus = lens.focus;
+        params.lens_aside = lens.aside();
     }
     Ok(Choices {
         bounces: if is_walked { 1 } else { bounces },

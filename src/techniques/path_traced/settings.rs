@@ -1,6 +1,8 @@
 //! The settings of path tracing.
 
-use crate::settings::{APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, Setting, VPL_CLAMP, Values, WORKGROUP};
+use crate::settings::{
+    APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, VPL_CLAMP, Values, WORKGROUP,
+};
 
 /// Paths a pixel, at most: float sums of more lose what a path adds.
 pub const MOST_SAMPLES: u32 = 1 << 16;
@@ -107,6 +109,8 @@ pub const SETTINGS: &[Setting] = &[
     },
     APERTURE,
     FOCUS,
+    STEREO,
+    STEREO_EYES,
     SHUTTER,
     MEDIUM,
     EMISSIVE,

@@ -82,7 +82,7 @@ void main() {
     out_close_depth = vec3(seen[3].depth, seen[4].depth, seen[5].depth);
     out_primitive = params.primitive_offset + triangle;
     vec2 frame_px = vec2(frame.width_px, frame.height_px);
-    TupleBlock whole_frame = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0u);
+    TupleBlock whole_frame = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0.0);
     Bound bound = bound_of(seen, whole_frame, frame_px);
     if (bound.count == 0u) {
         gl_Position = vec4(0.0, 0.0, 0.5, 1.0);

@@ -51,7 +51,7 @@ void main() {
     stand_at(in_primitive, place);
     vec4 base_color = base_color_at(params.material);
 #ifdef ALPHA_TESTED
-    if (!is_seen(base_color.a, uvec2(gl_FragCoord.xy), run.sample_index * deep.tuple_count + params.tuple)) {
+    if (!is_seen(base_color.a, uvec2(gl_FragCoord.xy), tuple_number(deep, run.sample_index, params.tuple))) {
         discard;
     }
 #endif

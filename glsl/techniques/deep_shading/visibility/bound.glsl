@@ -21,7 +21,7 @@ const float BOUND_FARTHEST = 256.0;
 // The sine of the least angle between sides: where two meet at less, their corner would be lost in rounding.
 const float BOUND_LEAST_TURN = 0.01;
 
-// Where all of the lens sees a corner at one end of the exposure, pixels.
+// Where all of the eye's lens sees a corner at one end of the exposure, pixels.
 struct Spot {
     vec2 middle;
     vec2 radii;
@@ -38,7 +38,9 @@ Spot spot_of(Seen seen, TupleBlock tuple, vec2 half_layer) {
     vec2 at = seen.clip.xy / seen.clip.w;
     vec2 radii = vec2(0.0);
     if (HAS_LENS != 0u) {
-        radii = abs(deep.lens * lens_part(seen.depth)) / seen.clip.w;
+        vec2 reach = deep.lens * lens_part(seen.depth) / seen.clip.w;
+        at.x += reach.x * tuple.eye;
+        radii = abs(reach) * (1.0 - abs(tuple.eye));
     }
     return Spot(half_layer * (at * tuple.scale + tuple.shift + 1.0), half_layer * tuple.scale * radii);
 }

@@ -37,7 +37,7 @@ layout(location = 1) out uint out_shading_depth;
 bool is_padding(uvec2 at) {
     uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
     uint cell = in_tuple / deep.sample_count;
-    uvec2 pixel = at * table + uvec2(cell % table.x, cell / table.x);
+    uvec2 pixel = at * table + uvec2(cell % table.x, cell / table.x % table.y);
     return pixel.x >= frame.width_px || pixel.y >= frame.height_px;
 }
 
@@ -56,7 +56,7 @@ void main() {
     in_uv_1_down = dFdy(in_uv_1_here) / pixels.y;
 #endif
     float alpha = base_color_at(params.material).a;
-    if (!is_seen(alpha, uvec2(gl_FragCoord.xy), frame.sample_index * deep.tuple_count + in_tuple)) {
+    if (!is_seen(alpha, uvec2(gl_FragCoord.xy), tuple_number(deep, frame.sample_index, in_tuple))) {
         discard;
     }
 #endif

@@ -66,7 +66,7 @@ void main() {
     uint corner = 3u * (in_primitive - params.primitive_offset);
 #ifdef ALPHA_TESTED
     place_alpha(place, corner);
-    if (!is_seen(base_color_at(params.material).a, uvec2(at), frame.sample_index * deep.tuple_count + params.tuple)) {
+    if (!is_seen(base_color_at(params.material).a, uvec2(at), tuple_number(deep, frame.sample_index, params.tuple))) {
         discard;
     }
 #endif

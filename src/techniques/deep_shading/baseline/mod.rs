@@ -12,11 +12,11 @@ pub mod msaa;
 pub mod ssaa;
 
 use super::choices::Choices;
-use super::full;
-use super::plan::{COLOR, COUNTERS, DEPTH_FORMAT};
+use super::plan::{COUNTERS, DEPTH_FORMAT};
 use super::settings::SETTINGS;
 use super::visibility::sample::Sample;
 use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
+use super::{full, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
@@ -161,12 +161,8 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     drawn.extend(choices.maps.iter().map(|maps| maps.read(super::NAME)));
     drawn.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
     plan.pass(full(choices.shading.pass()), drawn);
-    let resolved = [
-        touch(COLORS, Access::ComputeSample),
-        touch(COUNTERS, Access::ComputeWrite),
-        touch(COLOR, Access::ComputeWrite),
-    ];
-    plan.pass(full("resolve"), resolved);
+    let resolved = [touch(COLORS, Access::ComputeSample), touch(COUNTERS, Access::ComputeWrite)];
+    plan.pass(full("resolve"), resolved.into_iter().chain(stereo::resolved(choices)));
 }
 
 pub struct Baseline {

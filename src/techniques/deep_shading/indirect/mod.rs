@@ -22,10 +22,10 @@ pub mod shade;
 
 use super::choices::Choices;
 use super::counters::Counted;
-use super::plan::{COLOR, COLOR_BYTES, COLORS, COUNTERS, DEPTH, SPIDS};
+use super::plan::{COLOR_BYTES, COLORS, COUNTERS, DEPTH, SPIDS};
 use super::primitives::Primitives;
 use super::visibility::Samples;
-use super::{NAME, full};
+use super::{NAME, full, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu};
 use crate::plan::{Plan, Resources};
@@ -101,9 +101,8 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
         touch(POINTERS, Access::ComputeRead),
         touch(COLORS, Access::ComputeRead),
         touch(COUNTERS, Access::ComputeWrite),
-        touch(COLOR, Access::ComputeWrite),
     ];
-    plan.pass(full("resolve"), resolved);
+    plan.pass(full("resolve"), resolved.into_iter().chain(stereo::resolved(choices)));
 }
 
 /// Bytes that a frame touches of buffers that are as long as the worst case; what is cleared is touched whole and not listed.

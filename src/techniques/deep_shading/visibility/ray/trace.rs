@@ -41,6 +41,7 @@ pub struct Tracer<'a> {
     deep: DeepBlock,
     ends: [End; 2],
     table: Table,
+    eyes: Vec<f32>,
     space: ShadingSpace,
     frame: Extent,
     is_moving: bool,
@@ -63,6 +64,7 @@ impl<'a> Tracer<'a> {
             deep,
             ends,
             table: choices.table,
+            eyes: choices.eyes(),
             space: choices.space,
             frame: inputs.view.extent,
             is_moving: choices.is_moving,
@@ -75,7 +77,7 @@ impl<'a> Tracer<'a> {
     ///
     /// Errors: Ctrl-C (exit code 130).
     pub fn trace(&self, run: u32) -> Result<Hits> {
-        let tuples = self.table.tuples(self.frame, self.seed, run);
+        let tuples = self.table.tuples(self.frame, self.seed, run, &self.eyes);
         let layer = self.table.layer(self.frame);
         let (width, height) = (layer.width as usize, layer.height as usize);
         let mut seen = vec![(Spid { primitive: NONE, pixel: NONE }, NONE); width * height * tuples.len()];
@@ -87,7 +89,7 @@ impl<'a> Tracer<'a> {
                 return Ok(());
             }
             for (x, seen) in (0..inside.width).zip(seen) {
-                let number = run.wrapping_mul(tuples.len() as u32).wrapping_add(tuple);
+                let number = self.table.number(run, tuple);
                 let ray = self.ray(&tuples[tuple as usize], layer, [x, y]);
                 let met = self.tree.first(&ray, self.depths, |met| self.is_seen(met, [x, y], number));
                 if let Some(met) = met {
