@@ -5,7 +5,7 @@ use super::Stages;
 use crate::gpu::shader::techniques::deep_shading::shade::vertex::VERT;
 
 /// HULL_VERTICES of hull.glsl.
-const HULL_VERTICES: u32 = 18;
+pub const HULL_VERTICES: u32 = 18;
 
 pub(super) fn stages() -> Stages {
     Stages { vertex: &VERT, geometry: None, is_conservative: false, vertex_count: HULL_VERTICES }

@@ -3,6 +3,7 @@
 
 use super::super::super::choices::Choices;
 use super::super::super::constants_of;
+use super::super::super::shade::vertex::HULL_VERTICES;
 use super::super::super::visibility::Drawn;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -14,9 +15,6 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
-
-/// HULL_VERTICES of hull.glsl.
-const HULL_VERTICES: u32 = 18;
 
 pub struct Hulls {
     pipeline: GraphicsPipeline,
