@@ -13,13 +13,16 @@ use std::fmt;
 /// a texel, so that neighbours along an edge never both have it.
 const INSIDE: f64 = 1.0 / 64.0;
 
+/// How far outside the unit square coordinates may lie by the rounding of who wrote them.
+const ROUNDING: f32 = 1e-5;
+
 const NOBODY: u32 = u32::MAX;
 
 /// Coordinates of a mesh at which no triangle lies over another.
 #[derive(Debug)]
-pub struct Atlas<'a> {
+pub struct Atlas {
     /// One a vertex, in the unit square.
-    pub coordinates: &'a [Vec2],
+    pub coordinates: Vec<Vec2>,
     /// Of each triangle: which connected part of the atlas it is of, an index into `sides`.
     pub charts: Vec<u32>,
     /// The shorter side of the box around each chart, a part of the texture's.
@@ -48,7 +51,7 @@ impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outside { triangle, at: Vec2 { x, y } } => {
-                write!(f, "triangle {triangle} reaches ({x}, {y}), which is outside 0 to 1")
+                write!(f, "triangle {triangle} reaches ({x}, {y}): all do not fit into 0 to 1")
             }
             Self::Flat { triangle, at: Vec2 { x, y } } => {
                 write!(f, "triangle {triangle} has no area there, at ({x}, {y})")
@@ -60,18 +63,19 @@ impl fmt::Display for Flaw {
     }
 }
 
-impl<'a> Atlas<'a> {
+impl Atlas {
     /// The first of the mesh's sets of coordinates that is one for textures of `side_px` texels: that which was laid out for it, the
-    /// first, the second.
+    /// first, the second. Those of one unit square are brought into the first: textures repeat.
     ///
     /// Errors: what is wrong with each that the mesh has, and its name.
-    pub fn of(mesh: &'a Mesh, side_px: u32) -> Result<Self, Vec<(&'static str, Flaw)>> {
+    pub fn of(mesh: &Mesh, side_px: u32) -> Result<Self, Vec<(&'static str, Flaw)>> {
         let sets = [("atlas", &mesh.atlas), ("first coordinates", &mesh.uvs), ("second coordinates", &mesh.uvs_1)];
         let mut flaws = Vec::new();
         for (name, coordinates) in sets.into_iter().filter(|(_, coordinates)| !coordinates.is_empty()) {
-            match find_flaw(mesh, coordinates, side_px) {
+            let coordinates = in_first_square(coordinates);
+            match find_flaw(mesh, &coordinates, side_px) {
                 None => {
-                    let (charts, sides) = charts(mesh, coordinates);
+                    let (charts, sides) = charts(mesh, &coordinates);
                     return Ok(Self { coordinates, charts, sides });
                 }
                 Some(flaw) => flaws.push((name, flaw)),
@@ -79,6 +83,19 @@ impl<'a> Atlas<'a> {
         }
         Err(flaws)
     }
+}
+
+/// Moved by whole numbers, so that the middle of all is in 0 to 1; what rounding has left outside is on the rim.
+fn in_first_square(coordinates: &[Vec2]) -> Vec<Vec2> {
+    let (least, greatest) = coordinates
+        .iter()
+        .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(least, greatest), at| (least.min(*at), greatest.max(*at)));
+    let square = least.midpoint(greatest).floor();
+    let moved = |at: &Vec2| {
+        let (at, rim) = (*at - square, (*at - square).clamp(Vec2::ZERO, Vec2::ONE));
+        if at.abs_diff_eq(rim, ROUNDING) { rim } else { at }
+    };
+    coordinates.iter().map(moved).collect()
 }
 
 fn corners(mesh: &Mesh, coordinates: &[Vec2], triangle: usize) -> [Vec2; 3] {
@@ -252,6 +269,10 @@ mod tests {
         flat.positions[4] = Vec3::Z;
         assert_eq!(flaw(&flat), Flaw::Flat { triangle: 1, at: Vec2::splat(0.6) });
         assert_eq!(flaw(&flat).to_string(), "triangle 1 has no area there, at (0.6, 0.6)");
+        let moved = [[1.0, -3.0], [1.5, -3.0], [1.0, -2.0]];
+        assert_eq!(Atlas::of(&mesh(&[moved]), SIDE_PX).unwrap().coordinates[2], Vec2::Y, "it is of one square");
+        let rounded = [[-1e-6, 0.0], [1.000001, 0.0], [0.0, 1.0]];
+        assert_eq!(Atlas::of(&mesh(&[rounded]), SIDE_PX).unwrap().coordinates[1], Vec2::X, "it is on the rim");
         let not_a_number = mesh(&[[[f32::NAN, 0.0], [0.5, 0.0], [0.0, 0.5]]]);
         assert!(matches!(flaw(&not_a_number), Flaw::Outside { triangle: 0, .. }));
     }
@@ -264,7 +285,7 @@ mod tests {
         mesh.uvs_1[3..].iter_mut().for_each(|at| *at += 0.5);
         let atlas = Atlas::of(&mesh, SIDE_PX).unwrap();
         assert_eq!((atlas.charts, atlas.sides), (vec![0, 1], vec![0.5; 2]));
-        mesh.uvs_1.fill(Vec2::splat(2.0));
+        mesh.uvs_1[0] = Vec2::splat(2.0);
         let names: Vec<_> = Atlas::of(&mesh, SIDE_PX).unwrap_err().into_iter().map(|(name, _)| name).collect();
         assert_eq!(names, ["first coordinates", "second coordinates"]);
     }

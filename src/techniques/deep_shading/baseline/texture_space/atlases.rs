@@ -58,7 +58,8 @@ fn of_mesh(scene: &Scene, mesh: &Mesh, is_drawn: bool, side_px: u32) -> Result<(
         let chart = atlas.charts[*triangle as usize];
         chart << CHART_LEVEL_BITS | coarsest_level(atlas.sides[chart as usize], side_px)
     });
-    Ok((atlas.coordinates.to_vec(), words.collect()))
+    let words = words.collect();
+    Ok((atlas.coordinates, words))
 }
 
 /// The coarsest level at which a chart is as wide as a texel, so that a middle of one lies in it beside each of its places.
@@ -74,7 +75,7 @@ fn refusal(name: &str, flaws: &[(&str, Flaw)]) -> Error {
     let named: Vec<&str> = procedural::ALL.iter().map(|built_in| built_in.name).collect();
     Error::request(format!("--shading texture-space: mesh {name} has no atlas ({what})"))
         .within(NAME)
-        .note("each triangle needs a place of a texture to itself, between 0 and 1")
+        .note("each triangle needs a place of a texture to itself, all within 0 to 1")
         .note(format!("the built-in scenes have it: {}; --shading deep needs none", named.join(", ")))
 }
 
