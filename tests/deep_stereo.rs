@@ -1,18 +1,16 @@
 //! Two eyes that share one deep shading buffer: each has the bits of shading every sample by itself, what lies in the plane in
 //! focus is in one place of both pictures and the rest as far apart as similar triangles say, and what both see is shaded once.
 
-mod support;
-
+use crate::support::boxes::{camera, panel, point_light, rectangle};
+use crate::support::placing_steps;
+use crate::support::program::Program;
+use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, vec3};
 use quincunx::gpu::commands::Submits;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{self, AnimationChoice, Camera, Material, Projection, Scene};
 use quincunx::session::Renderer;
 use std::collections::BTreeMap;
-use support::boxes::{camera, panel, point_light, rectangle};
-use support::placing_steps;
-use support::program::Program;
-use support::watched::{Changes, Watched, both};
 
 const DEEP: &str = "deep_shading";
 const RIGHT: &str = "stereo.right";

@@ -13,6 +13,8 @@ mod deep_hostile;
 mod deep_reconstruct;
 mod deep_rivals;
 mod deep_shading;
+mod deep_stereo;
+mod deep_texture_space;
 mod deep_visibility;
 mod drivers;
 mod filter;

@@ -200,9 +200,13 @@ fn what_is_read_back_is_what_was_written() {
                 assert!(made.normals[from].abs_diff_eq(read.normals[to], UNIT), "{spec}: {}", made.name);
                 let tangents = (made.tangents.get(from).copied().unwrap_or_default(), read.tangents[to]);
                 assert!(tangents.0.abs_diff_eq(tangents.1, UNIT), "{spec}: {}: {tangents:?}", made.name);
-                if textured[read.material] {
+                let atlas = if textured[read.material] {
                     assert_eq!(made.uvs[from], read.uvs[to], "{spec}: {}", made.name);
-                }
+                    &read.atlas
+                } else {
+                    &read.uvs
+                };
+                assert_eq!(made.atlas[from], atlas[to], "{spec}: {}", made.name);
             }
         }
         assert_eq!(made.draws.len(), read.draws.len());

@@ -43,12 +43,7 @@ impl Geometry {
                     uv: mesh.uvs.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
                 });
             }
-            if scene.materials[mesh.material].alpha == AlphaMode::Blend {
-                let whole: Vec<u32> = (0..mesh.triangle_count() as u32).collect();
-                all.push(mesh, &whole);
-            } else {
-                grouped(mesh).iter().for_each(|group| all.push(mesh, group));
-            }
+            groups_of(scene, mesh).iter().for_each(|group| all.push(mesh, group));
             all.starts.push(Start { vertex, index, clusters: cluster..all.clusters.len() as u32 });
         }
         all
@@ -95,6 +90,15 @@ impl Geometry {
             }
         };
         scene.draws.iter().enumerate().map(call).collect()
+    }
+}
+
+/// The triangles of a mesh in the order in which they are resident, as their places in its list, cluster by cluster.
+pub fn groups_of(scene: &Scene, mesh: &Mesh) -> Vec<Vec<u32>> {
+    if scene.materials[mesh.material].alpha == AlphaMode::Blend {
+        vec![(0..mesh.triangle_count() as u32).collect()]
+    } else {
+        grouped(mesh)
     }
 }
 

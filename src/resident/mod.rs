@@ -18,7 +18,7 @@ pub mod traced;
 mod visible;
 
 pub use clusters::Cluster;
-pub use geometry::Geometry;
+pub use geometry::{Geometry, groups_of};
 pub use raster::{Coverage, Raster};
 pub use relief::advise;
 pub use textures::Textures;

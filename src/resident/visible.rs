@@ -45,6 +45,7 @@ const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 const SNAP_PX: f64 = 1.0 / 16.0;
 
 /// The solid part of a scene as a view needs it: ranges of draws, nearest first, clusters that follow each other as one.
+#[derive(Default)]
 pub struct DrawList {
     pub opaque: Vec<DrawCall>,
     pub mask: Vec<DrawCall>,

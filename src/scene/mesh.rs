@@ -19,6 +19,9 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// The second set; empty where the material has no texture that reads it.
     pub uvs_1: Vec<Vec2>,
+    /// Coordinates at which each triangle has a place of a texture to itself (`scene::atlas` looks whether it has); no material
+    /// reads them. Empty where nobody has laid them out.
+    pub atlas: Vec<Vec2>,
     /// Linear RGB and alpha, 0 to 1, that multiply the material's base colour; empty where all are white.
     pub colors: Vec<Vec4>,
     /// The id of the normal group that each vertex is of (`scene::normal_groups`); empty before they are found.
@@ -36,7 +39,8 @@ impl Mesh {
     /// What its vertices and indices take in memory.
     pub fn size_bytes(&self) -> usize {
         let vectors = size_of_val(self.positions.as_slice()) + size_of_val(self.normals.as_slice());
-        let coordinates = size_of_val(self.uvs.as_slice()) + size_of_val(self.uvs_1.as_slice());
+        let coordinates =
+            size_of_val(self.uvs.as_slice()) + size_of_val(self.uvs_1.as_slice()) + size_of_val(self.atlas.as_slice());
         let others = size_of_val(self.tangents.as_slice()) + size_of_val(self.colors.as_slice());
         vectors + coordinates + others + self.normal_groups.len() + size_of_val(self.indices.as_slice())
     }
@@ -52,6 +56,7 @@ impl Mesh {
         repeat(&mut self.tangents, vertex);
         repeat(&mut self.uvs, vertex);
         repeat(&mut self.uvs_1, vertex);
+        repeat(&mut self.atlas, vertex);
         repeat(&mut self.colors, vertex);
         repeat(&mut self.normal_groups, vertex);
         self.positions.len() as u32 - 1

@@ -4,6 +4,7 @@
 //! (see `shading` for what they mean in a picture).
 
 pub mod animation;
+pub mod atlas;
 pub mod camera;
 pub mod glb;
 pub mod gltf;

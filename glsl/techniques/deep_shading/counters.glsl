@@ -38,6 +38,8 @@ const uint COUNTED_ROW_IDS = 15u;
 const uint COUNTED_DIGEST = 16u;
 // Shading samples that a full cache forgot (--shading indirect-gbuffer).
 const uint COUNTED_FORGOTTEN = 17u;
-const uint COUNTER_COUNT = 18u;
+// Samples all of whose texels a triangle of another chart owns (--shading texture-space).
+const uint COUNTED_OTHER_CHARTS = 18u;
+const uint COUNTER_COUNT = 19u;
 
 #endif

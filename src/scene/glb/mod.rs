@@ -124,8 +124,11 @@ fn mesh_json(scene: &Scene, mesh: &Mesh, binary: &mut Binary) -> Value {
     if material.normal_texture.is_some() {
         put("TANGENT", binary.vectors(bytemuck::cast_slice(&mesh.tangents), "VEC4"));
     }
-    if materials::has_texture(material) {
-        put("TEXCOORD_0", binary.vectors(bytemuck::cast_slice(&mesh.uvs), "VEC2"));
+    // Sets have their numbers in a row: an atlas, which no texture reads, is the last.
+    let texture_uvs = materials::has_texture(material).then_some(&mesh.uvs);
+    let atlas = Some(&mesh.atlas).filter(|atlas| !atlas.is_empty());
+    for (set, uvs) in texture_uvs.into_iter().chain(atlas).enumerate() {
+        put(&format!("TEXCOORD_{set}"), binary.vectors(bytemuck::cast_slice(uvs), "VEC2"));
     }
     let indices = binary.indices(&mesh.indices);
     json!({

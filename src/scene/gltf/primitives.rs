@@ -194,11 +194,13 @@ fn read_primitive(
     let positions = positions.map_err(|error| error.within("POSITION"))?;
     let normals = read.attribute::<3>(&Semantic::Normals)?;
     let uvs = read.attribute::<2>(&Semantic::TexCoords(0))?;
-    let uvs_1 = match material.reads_uvs_1() {
-        true => read
-            .attribute::<2>(&Semantic::TexCoords(1))?
-            .map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
-        false => Vec::new(),
+    let (uvs_1, atlas) = match (material.reads_uvs_1(), read.attribute::<2>(&Semantic::TexCoords(1))) {
+        (true, second) => {
+            let uvs = second?.map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array));
+            (uvs, Vec::new())
+        }
+        // What no texture reads may be an atlas; where it is broken nothing is missing.
+        (false, second) => (Vec::new(), vectors(second.ok().flatten().unwrap_or_default(), Vec2::from_array)),
     };
     let (colors, clamped_colors) = read.colors()?;
     // glTF 2.0, section 3.7.2.1: without normals the file's tangents mean nothing.
@@ -209,6 +211,7 @@ fn read_primitive(
     let mut mesh = Mesh {
         uvs: uvs.map_or_else(|| vec![Vec2::ZERO; positions.len()], |uvs| vectors(uvs, Vec2::from_array)),
         uvs_1,
+        atlas,
         colors,
         positions: vectors(positions, Vec3::from_array),
         normals: vectors(normals.unwrap_or_default(), Vec3::from_array),

@@ -86,6 +86,7 @@ fn gather_vertices(mesh: &mut Mesh, vertices: &[u32]) {
     gather(&mut mesh.tangents, vertices);
     gather(&mut mesh.uvs, vertices);
     gather(&mut mesh.uvs_1, vertices);
+    gather(&mut mesh.atlas, vertices);
     gather(&mut mesh.colors, vertices);
     gather(&mut mesh.normal_groups, vertices);
 }

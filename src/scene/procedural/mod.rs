@@ -2,6 +2,7 @@
 
 mod arena;
 mod assembly;
+mod charts;
 mod chess;
 mod cornell;
 mod curves;

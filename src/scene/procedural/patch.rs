@@ -10,6 +10,7 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DVec2, DVec3, Vec2, Vec3, Vec4};
 
+use super::charts::{self, Chart};
 use crate::scene::Mesh;
 
 /// One point of a patch: metres, and texture coordinates in glTF's convention (v runs down).
@@ -111,6 +112,28 @@ impl Patch {
         }
     }
 
+    /// How wide and how high its vertices, which follow each other in `positions`, lie: the mean length of its rows and of its
+    /// columns, metres.
+    fn size_m(&self, positions: &[Vec3]) -> DVec2 {
+        let (columns, rows) = (self.columns as usize, self.rows as usize);
+        let at = |column: usize, row: usize| positions[row * (columns + 1) + column].as_dvec3();
+        let all = || (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
+        let along: f64 = all().filter(|at| at.0 > 0).map(|(c, r)| at(c, r).distance(at(c - 1, r))).sum();
+        let up: f64 = all().filter(|at| at.1 > 0).map(|(c, r)| at(c, r).distance(at(c, r - 1))).sum();
+        DVec2::new(along / (rows + 1) as f64, up / (columns + 1) as f64)
+    }
+
+    /// Where its vertices lie in the atlas.
+    fn write_atlas(&self, chart: &Chart, atlas: &mut Vec<Vec2>) {
+        for row in 0..=self.rows {
+            for column in 0..=self.columns {
+                // v runs down.
+                let part = [f64::from(column) / f64::from(self.columns), 1.0 - f64::from(row) / f64::from(self.rows)];
+                atlas.push(chart.at(part).as_vec2().min(Vec2::ONE));
+            }
+        }
+    }
+
     /// Unit normal, and unit tangent along increasing u.
     fn frame(&self, s: f64, t: f64) -> (Vec3, Vec3) {
         let (mut along_s, mut along_t) = self.slopes(s, t);
@@ -161,11 +184,18 @@ pub fn triangle_count(patches: &[Patch]) -> u64 {
     patches.iter().map(Patch::triangle_count).sum()
 }
 
-/// The patches as one mesh. Without `with_tangents` all tangents are zero (`Mesh::tangents`).
+/// The patches as one mesh, each with a rectangle of its atlas. Without `with_tangents` all tangents are zero (`Mesh::tangents`).
 pub fn mesh(name: &str, material: usize, patches: &[Patch], with_tangents: bool) -> Mesh {
     let mut mesh = Mesh { name: name.to_owned(), material, ..Mesh::default() };
+    let mut sizes_m = Vec::new();
     for patch in patches {
+        let first = mesh.positions.len();
         patch.write(&mut mesh);
+        sizes_m.push(patch.size_m(&mesh.positions[first..]));
+    }
+    mesh.atlas.reserve_exact(mesh.positions.len());
+    for (patch, chart) in patches.iter().zip(charts::packed(&sizes_m)) {
+        patch.write_atlas(&chart, &mut mesh.atlas);
     }
     if !with_tangents {
         mesh.tangents.fill(Vec4::ZERO);

@@ -218,6 +218,7 @@ impl Choices {
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("CACHE_ENTRIES", self.cache_entries as u32),
             ("PASS_SAMPLES", self.shading.pass_samples()),
+            ("TEXTURE_SIDE_BITS", self.shading.texture_side_bits()),
         ]);
         constants
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 18;
+pub const COUNT: u64 = 19;
 
 /// Numbers that a frame left, as counters.glsl has them.
 pub struct Counted([u32; COUNT as usize]);
@@ -57,7 +57,7 @@ impl Counted {
             nodes,
             _,
             digest,
-            _,
+            ..,
         ] = self.0.map(f64::from);
         [
             ("samples_outside_shading_space", strays - crowded),
@@ -75,12 +75,18 @@ impl Counted {
 
     /// Of a compact geometry buffer.
     pub fn of_entries(&self) -> [(&'static str, f64); 3] {
-        let [_, strays, _, missing, .., forgotten] = self.0.map(f64::from);
+        let [_, strays, _, missing, .., forgotten, _] = self.0.map(f64::from);
         [
             ("samples_outside_shading_space", strays),
             ("samples_without_colour", missing),
             ("shading_samples_forgotten", forgotten),
         ]
+    }
+
+    /// Of textures that draws are shaded in.
+    pub fn of_textures(&self) -> [(&'static str, f64); 2] {
+        let [_, _, _, missing, .., of_other_charts] = self.0.map(f64::from);
+        [("samples_without_colour", missing), ("samples_of_other_charts", of_other_charts)]
     }
 
     /// Entries of a compact geometry buffer.
@@ -91,7 +97,8 @@ impl Counted {
 
     /// How much of the buffers of one entry a sample was used, with lists.
     pub fn entries(&self) -> Entries {
-        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _] = self.0.map(u64::from);
+        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _] =
+            self.0.map(u64::from);
         Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples }
     }
 }

@@ -1,6 +1,7 @@
 //! A frame of deep shading on the device: the passes in the order of figure 3, or those of a baseline.
 
 use super::apart::Apart;
+use super::baseline::texture_space::atlases::Atlases;
 use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
 use super::counters::Counted;
@@ -55,7 +56,7 @@ impl DeepFrame {
         scene: &SceneGpu,
         resources: &mut Resources,
         choices: Choices,
-        (primitives, traced): (Primitives, Option<Traced>),
+        (primitives, traced, atlases): (Primitives, Option<Traced>, Option<Atlases>),
     ) -> Result<Self> {
         let frame = inputs.view.extent;
         let shader = match choices.shading {
@@ -64,9 +65,7 @@ impl DeepFrame {
                 let reach = Reach::new(gpu, resources, choices.is_by_address, apart.buffers())?;
                 Shader::Apart(Box::new(apart), reach)
             }
-            Shading::Ssaa | Shading::Msaa { .. } => {
-                Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices)?))
-            }
+            _ => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
         };
         let reconstruct = match choices.is_reconstructed {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
@@ -184,6 +183,7 @@ impl Frame for DeepFrame {
         match self.choices.shading {
             Shading::Deep => counters.extend(counted.of_lists()),
             Shading::IndirectGbuffer => counters.extend(counted.of_entries()),
+            Shading::TextureSpace(_) => counters.extend(counted.of_textures()),
             Shading::Ssaa | Shading::Msaa { .. } => {}
         }
         if let Some(direct) = self.apart().and_then(Apart::host_lists) {

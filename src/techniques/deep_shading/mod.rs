@@ -15,6 +15,8 @@
 //!   `--pass-samples` of them at a time
 //! - `indirect-gbuffer`: decoupled deferred shading (Liktor and Dachsbacher 2012): the same samples find what is shaded in a cache
 //!   and point to it in a compact geometry buffer (indirect/mod.rs); passes visibility, indirect.gbuffer, indirect.shade
+//! - `texture-space`: adaptive texture-space shading (Andersson et al. 2014): draw by draw a texture is shaded and then drawn with
+//!   (baseline/texture_space/mod.rs)
 //!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
@@ -77,6 +79,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{SHADOW_MAPS, Setting, Values};
 use baseline::Shading;
+use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
 use frame::DeepFrame;
 use primitives::Primitives;
@@ -182,7 +185,17 @@ impl Technique for DeepShading {
         let (choices, primitives) = (Choices::new(inputs)?, Primitives::new(inputs.scene)?);
         let is_traced = choices.visibility == Visibility::Ray;
         let traced = if is_traced { Some(Traced::new(inputs, &choices, &primitives)?) } else { None };
-        Ok(Box::new(PreparedDeep { choices, primitives, traced, light_count: inputs.lights.lights.len() as u32 }))
+        let atlases = match choices.shading {
+            Shading::TextureSpace(size) => Some(Atlases::of(inputs.scene, size.side_px)?),
+            _ => None,
+        };
+        Ok(Box::new(PreparedDeep {
+            choices,
+            primitives,
+            traced,
+            atlases,
+            light_count: inputs.lights.lights.len() as u32,
+        }))
     }
 }
 
@@ -190,6 +203,7 @@ struct PreparedDeep {
     choices: Choices,
     primitives: Primitives,
     traced: Option<Traced>,
+    atlases: Option<Atlases>,
     light_count: u32,
 }
 
@@ -239,6 +253,7 @@ impl Prepared for PreparedDeep {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, (self.primitives, self.traced))?))
+        let host = (self.primitives, self.traced, self.atlases);
+        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, host)?))
     }
 }

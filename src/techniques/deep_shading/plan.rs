@@ -1,7 +1,7 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them (Clarberg & Munkberg 2014, section 6, lists the
 //! groups; the checklist's O1 to O3 are their bytes).
 
-use super::baseline::{self, Shading};
+use super::baseline::{self, Shading, texture_space};
 use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
@@ -66,6 +66,10 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
             reach::plan(&mut plan, false);
         }
         Shading::Ssaa | Shading::Msaa { .. } => baseline::plan(&mut plan, choices, inputs.view.extent),
+        Shading::TextureSpace(size) => {
+            baseline::plan(&mut plan, choices, inputs.view.extent);
+            texture_space::plan(&mut plan, size, inputs);
+        }
     }
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
     plan.read_back(&full(COUNTERS));
@@ -84,7 +88,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     stereo::plan(&mut plan, choices, extent);
     match choices.shading {
         Shading::Deep | Shading::IndirectGbuffer => passes::plan(&mut plan, choices),
-        Shading::Ssaa | Shading::Msaa { .. } => baseline::plan_passes(&mut plan, choices),
+        _ => baseline::plan_passes(&mut plan, choices),
     }
     if choices.run_count > 1 {
         accumulate::plan_pass(&mut plan, NAME, &full(run));
@@ -210,6 +214,7 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     match choices.shading {
         Shading::Deep => reach::require_fitting(choices, inputs),
         Shading::IndirectGbuffer => indirect::require_fitting(choices, inputs),
+        Shading::TextureSpace(size) => size.require_fitting(inputs),
         // They have images alone.
         Shading::Ssaa | Shading::Msaa { .. } => Ok(()),
     }

@@ -122,7 +122,7 @@ impl<'a> Shaded<'a> {
 /// How shaders find a sample's colour: a value of their axis FETCH.
 pub fn fetch(choices: &Choices) -> &'static str {
     match choices {
-        Choices { shading: Shading::Ssaa, .. } => "layers",
+        Choices { shading: Shading::Ssaa | Shading::TextureSpace(_), .. } => "layers",
         Choices { shading: Shading::Msaa { pass_samples: 1 }, .. } => "passes",
         Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
         Choices { shading: Shading::IndirectGbuffer, .. } => "pointer",

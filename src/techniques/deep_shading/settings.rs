@@ -11,13 +11,32 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "shading",
         symbol: "",
-        kind: Kind::Choice(&["deep", "ssaa", "msaa", "indirect-gbuffer"]),
+        kind: Kind::Choice(&["deep", "ssaa", "msaa", "indirect-gbuffer", "texture-space"]),
         default: "deep",
         unit: "",
         paper: "Clarberg 2014, 6",
         help: "what is shaded: what the lists have, or, as baselines, every sample that is drawn (ssaa), or what a pixel's samples see of a \
                triangle once, by stochastic rasterisation whatever --visibility says (msaa), or, by a compute shader, what samples point to \
-               in a compact geometry buffer (indirect-gbuffer; Liktor and Dachsbacher 2012)",
+               in a compact geometry buffer (indirect-gbuffer; Liktor and Dachsbacher 2012), or texels of a texture of each draw, which \
+               is then drawn with it (texture-space; Andersson et al. 2014; meshes need atlases)",
+    },
+    Setting {
+        key: "shading-textures",
+        symbol: "",
+        kind: Kind::Integer { min: 1, max: 16 },
+        default: "8",
+        unit: "",
+        paper: "Clarberg 2014, 6",
+        help: "textures of --shading texture-space: so many draws are shaded and drawn at a time; the same picture",
+    },
+    Setting {
+        key: "shading-texture-size",
+        symbol: "",
+        kind: Kind::Choice(&["256", "512", "1024", "2048", "4096", "8192"]),
+        default: "2048",
+        unit: "px",
+        paper: "Clarberg 2014, 6",
+        help: "texels along a side of the finest level of each: the most that a mesh's atlas is shaded with",
     },
     Setting {
         key: "shading-cache",

@@ -4,9 +4,6 @@
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/shade/hull.glsl"
 
-// Six triangles are an octagon.
-const uint HULL_VERTICES = 18u;
-
 layout(location = 0) flat out uint out_primitive;
 
 void main() {
@@ -15,9 +12,7 @@ void main() {
     out_primitive = params.primitive_offset + triangle;
     Hull hull = hull_of(
         canonical_corner(3u * triangle), canonical_corner(3u * triangle + 1u), canonical_corner(3u * triangle + 2u));
-    // A fan; what it has too many of is of one point.
-    uint place = vertex % 3u == 0u ? 0u : vertex / 3u + vertex % 3u;
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
     gl_Position = hull.count == 0u ? vec4(0.0, 0.0, 0.5, 1.0) : vec4(
-        hull.corners[min(place, hull.count - 1u)] * 2.0 / extent - 1.0, 0.5, 1.0);
+        fan_corner(hull, vertex) * 2.0 / extent - 1.0, 0.5, 1.0);
 }

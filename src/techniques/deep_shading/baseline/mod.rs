@@ -10,11 +10,12 @@
 
 pub mod msaa;
 pub mod ssaa;
+pub mod texture_space;
 
 use super::choices::Choices;
 use super::plan::{COUNTERS, DEPTH_FORMAT};
 use super::settings::SETTINGS;
-use super::visibility::sample::Sample;
+use super::visibility::sample::{Sample, Sets};
 use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
 use super::{full, stereo};
 use crate::error::{Error, Result};
@@ -26,20 +27,23 @@ use crate::gpu::{
 };
 use crate::passes::{mesh, shadow_maps};
 use crate::plan::{Plan, Resources, Shape};
-use crate::resident::SceneGpu;
+use crate::resident::{DrawList, SceneGpu};
 use crate::settings::Values;
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
 use std::sync::Arc;
+use texture_space::TextureSpace;
+use texture_space::atlases::Atlases;
+use texture_space::pool::PoolSize;
 
 const COLORS: &str = "baseline.colors";
 const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Settings that not everything that is shaded reads: who does, and why others do not.
-const OF_SOME: [(&str, &[&str], &str); 13] = [
+const OF_SOME: [(&str, &[&str], &str); 15] = [
     ("guard-band", OF_SPACE, NO_SPACE),
-    ("shading-scale", OF_SPACE, NO_SPACE),
+    ("shading-scale", &["deep", "indirect-gbuffer", "texture-space"], "it shades no pixels of shading space"),
     ("shading-warp", OF_SPACE, NO_SPACE),
     ("warp-falloff", OF_SPACE, NO_SPACE),
     ("lists", &["deep"], NO_LISTS),
@@ -51,6 +55,8 @@ const OF_SOME: [(&str, &[&str], &str); 13] = [
     ("conservative", &["deep"], NO_LISTS),
     ("pass-samples", &["msaa"], "samples are drawn one at a time"),
     ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
+    ("shading-textures", &["texture-space"], "it has no textures of its own"),
+    ("shading-texture-size", &["texture-space"], "it has no textures of its own"),
 ];
 const OF_SPACE: &[&str] = &["deep", "indirect-gbuffer"];
 const NO_SPACE: &str = "it has no shading space";
@@ -75,6 +81,8 @@ pub enum Shading {
         /// Samples a pixel that are drawn at once.
         pass_samples: u32,
     },
+    /// Texels of each draw's texture.
+    TextureSpace(PoolSize),
 }
 
 impl Shading {
@@ -95,6 +103,7 @@ impl Shading {
             "deep" => Self::Deep,
             "indirect-gbuffer" => Self::IndirectGbuffer,
             "ssaa" => Self::Ssaa,
+            "texture-space" => Self::TextureSpace(PoolSize::of(values)),
             "msaa" => Self::Msaa { pass_samples: msaa::pass_samples(values, caps, spp)? },
             other => panic!("--shading {other} was checked"),
         })
@@ -102,17 +111,17 @@ impl Shading {
 
     /// How samples find what they see.
     ///
-    /// Errors: supersampling has no such kind (exit code 2).
+    /// Errors: what is drawn sample by sample has no such kind (exit code 2).
     pub fn visibility(self, values: &Values) -> Result<Visibility> {
         let visibility = Visibility::of(values);
         match self {
             Self::Deep | Self::IndirectGbuffer => Ok(visibility),
             Self::Msaa { .. } => Ok(Visibility::Stochastic),
-            Self::Ssaa if matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic) => Ok(visibility),
-            Self::Ssaa => {
-                let kind = values.text("visibility");
-                let why = "samples are drawn and shaded layer by layer";
-                Err(Error::request(format!("--visibility {kind} with --shading ssaa: {why}"))
+            _ if matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic) => Ok(visibility),
+            Self::Ssaa | Self::TextureSpace(_) => {
+                let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
+                let why = "samples are drawn and coloured layer by layer";
+                Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}"))
                     .within(super::NAME)
                     .note("--visibility repeat-frame and stochastic go with it"))
             }
@@ -124,15 +133,21 @@ impl Shading {
         match self {
             Self::Ssaa => "baseline.ssaa",
             Self::Msaa { .. } => "baseline.msaa",
+            Self::TextureSpace(_) => "baseline.texture_space",
             Self::Deep | Self::IndirectGbuffer => unreachable!("visibility is a pass of its own"),
         }
+    }
+
+    /// The logarithm to 2 of a texture's side; 0: there are none.
+    pub fn texture_side_bits(self) -> u32 {
+        if let Self::TextureSpace(size) = self { size.side_px.ilog2() } else { 0 }
     }
 
     /// Samples a pixel of what is drawn into.
     pub fn pass_samples(self) -> u32 {
         match self {
             Self::Msaa { pass_samples } => pass_samples,
-            Self::Deep | Self::IndirectGbuffer | Self::Ssaa => 1,
+            Self::Deep | Self::IndirectGbuffer | Self::Ssaa | Self::TextureSpace(_) => 1,
         }
     }
 }
@@ -159,6 +174,9 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
     drawn.extend(choices.maps.iter().map(|maps| maps.read(super::NAME)));
+    if let Shading::TextureSpace(size) = choices.shading {
+        drawn.extend(size.touches());
+    }
     drawn.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
     plan.pass(full(choices.shading.pass()), drawn);
     let resolved = [touch(COLORS, Access::ComputeSample), touch(COUNTERS, Access::ComputeWrite)];
@@ -172,13 +190,30 @@ pub struct Baseline {
     /// Texels are fetched: it only has to be there.
     nearest: Sampler,
     shading: Shading,
+    textures: Option<TextureSpace>,
 }
 
 impl Baseline {
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+    /// `atlases`: with `--shading texture-space`.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        scene: &SceneGpu,
+        choices: &Choices,
+        atlases: Option<&Atlases>,
+    ) -> Result<Self> {
         let (stages, fragment): (_, fn(&SceneGpu, &Choices, &str) -> &'static Shader) = match choices.shading {
             Shading::Msaa { .. } => (msaa::stages(), msaa::fragment),
+            Shading::TextureSpace(_) => {
+                (visibility::stages(scene, choices, &repeat_frame::repeats(0)), texture_space::apply::fragment)
+            }
             _ => (visibility::stages(scene, choices, &repeat_frame::repeats(0)), ssaa::fragment),
+        };
+        let textures = match (choices.shading, atlases) {
+            (Shading::TextureSpace(size), Some(atlases)) => {
+                Some(TextureSpace::new(gpu, resources, scene, choices, size, atlases)?)
+            }
+            _ => None,
         };
         let pipeline = |alpha| pipeline(gpu, scene, choices, stages.vertex, fragment(scene, choices, alpha));
         Ok(Self {
@@ -187,6 +222,7 @@ impl Baseline {
             depth: resources.image(&full(DEPTH)),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
             shading: choices.shading,
+            textures,
         })
     }
 
@@ -205,9 +241,12 @@ impl Baseline {
         counters: &Buffer,
     ) -> Result<()> {
         let description = self.colors.description;
+        let [textures_read, textures_written] =
+            self.textures.as_ref().map_or([0; 2], |textures| textures.traffic(drawn));
         let traffic = Traffic {
-            read_bytes: u64::from(description.layers()) * mesh::read_bytes(drawn.scene, drawn.list.calls()),
-            written_bytes: description.bytes() + self.depth.description.bytes(),
+            read_bytes: u64::from(description.layers()) * mesh::read_bytes(drawn.scene, drawn.list.calls())
+                + textures_read,
+            written_bytes: description.bytes() + self.depth.description.bytes() + textures_written,
             invocations: None,
         };
         cmd.pass(&full(self.shading.pass()), traffic, |cmd| {
@@ -216,24 +255,47 @@ impl Baseline {
             begin_counters(cmd, counters);
             let mut bound = bound.to_vec();
             bound.push(("Counters", Bound::Buffer(counters)));
-            let sets = self.sample.sets(cmd, &bound)?;
-            for layer in 0..description.layers() {
-                // Alpha is 1 where something is.
-                let colors = ColorTarget::new(&self.colors, Some(vk::ClearColorValue { float32: [0.0; 4] }));
-                let depth = (&self.depth, Some(0.0), Access::DepthWrite);
-                cmd.begin_layers(description.extent, Layers::One(layer), &[colors], Some(depth));
-                let first_tuple = match self.shading {
-                    Shading::Msaa { pass_samples } => layer * pass_samples,
-                    _ => {
-                        cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, layer));
-                        layer
+            if let Some(textures) = &self.textures {
+                return textures.record(cmd, drawn, &bound, &self.sample, |cmd, lists, is_first| {
+                    if !is_first {
+                        // What was drawn before is tested and kept.
+                        let attached = [
+                            self.colors.from(Access::ColorWrite).to(Access::ColorWrite),
+                            self.depth.from(Access::DepthWrite).to(Access::DepthWrite),
+                        ];
+                        cmd.barriers(attached);
                     }
-                };
-                self.sample.draw(cmd, drawn, &sets, &repeat_frame::repeats(first_tuple));
-                cmd.end_rendering();
+                    self.draw(cmd, drawn, lists, is_first);
+                });
             }
+            let sets = self.sample.sets(cmd, &bound)?;
+            self.draw(cmd, drawn, &[(drawn.list, &sets)], true);
             Ok(())
         })
+    }
+
+    /// Each of `lists` with its sets into every layer, which begins empty where they are the first.
+    fn draw(&self, cmd: &mut Commands, drawn: Drawn<'_>, lists: &[(&DrawList, &Sets)], is_first: bool) {
+        let description = self.colors.description;
+        for layer in 0..description.layers() {
+            // Alpha is 1 where something is.
+            let cleared = is_first.then_some(vk::ClearColorValue { float32: [0.0; 4] });
+            let colors = ColorTarget::new(&self.colors, cleared);
+            let depth = (&self.depth, is_first.then_some(0.0), Access::DepthWrite);
+            cmd.begin_layers(description.extent, Layers::One(layer), &[colors], Some(depth));
+            let first_tuple = match self.shading {
+                Shading::Msaa { pass_samples } => layer * pass_samples,
+                _ => {
+                    cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, layer));
+                    layer
+                }
+            };
+            for (list, sets) in lists {
+                let repeats = repeat_frame::repeats(first_tuple);
+                self.sample.draw(cmd, Drawn { list, ..drawn }, sets, &repeats);
+            }
+            cmd.end_rendering();
+        }
     }
 }
 

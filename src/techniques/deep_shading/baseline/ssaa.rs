@@ -12,7 +12,11 @@ use crate::resident::SceneGpu;
 
 /// `alpha`: the value of the shader's axis.
 pub(super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {
-    let visibility = if choices.visibility == Visibility::Stochastic { "stochastic" } else { "interleaved" };
     let shadows = shadow_maps::axis(choices.maps.is_some());
-    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows, visibility])
+    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows, axis(choices)])
+}
+
+/// The value of the axis VISIBILITY of shaders that draw samples once.
+pub(super) fn axis(choices: &Choices) -> &'static str {
+    if choices.visibility == Visibility::Stochastic { "stochastic" } else { "interleaved" }
 }

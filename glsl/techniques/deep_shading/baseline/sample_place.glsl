@@ -1,0 +1,59 @@
+// Where on its triangle a sample is that a tuple draws, by either kind of visibility. Pass:
+// src/techniques/deep_shading/baseline/mod.rs.
+//
+// After scene_buffers.glsl, place.glsl and counters.glsl; with the axes ALPHA and VISIBILITY. The including shader declares
+// IS_COUNTED.
+#ifndef DEEP_SHADING_SAMPLE_PLACE_GLSL
+#define DEEP_SHADING_SAMPLE_PLACE_GLSL
+
+layout(location = 1) flat in uint in_primitive;
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+#ifdef VISIBILITY_STOCHASTIC
+layout(location = 2) flat in vec4 in_corners[3];
+
+#include "techniques/deep_shading/visibility/covers.glsl"
+#include "techniques/deep_shading/visibility/hit.glsl"
+#else
+layout(location = 2) in vec3 in_weights;
+#ifdef ALPHA_OPAQUE
+// What writes into buffers, as counting does, is else tested after it has run.
+layout(early_fragment_tests) in;
+#endif
+#endif
+#ifdef ALPHA_TESTED
+// surface.glsl calls the middle of the exposure `frame`.
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
+
+#include "techniques/deep_shading/alpha.glsl"
+#endif
+
+// With rates of a pixel of the frame. Ends what misses the triangle; writes the depth that the shader says.
+Place sample_place() {
+    Place place;
+#ifdef VISIBILITY_STOCHASTIC
+    if (!is_hit(in_corners, gl_FragCoord.xy, place)) {
+        discard;
+    }
+    gl_FragDepth = hit_depth(in_corners, place.weights);
+#else
+    place.weights = inside_weights(in_weights);
+    place.right = dFdx(in_weights);
+    place.down = dFdy(in_weights);
+    place.is_front = gl_FrontFacing != ((params.flags & DRAWN_MIRRORED) != 0u);
+#endif
+    // A layer's pixels are a table apart.
+    place.right /= float(deep.table_width_px);
+    place.down /= float(deep.table_height_px);
+    return place;
+}
+
+#ifdef ALPHA_TESTED
+// Ends what the sample does not see of a surface with this alpha.
+void require_seen(float alpha) {
+    if (!is_seen(alpha, uvec2(gl_FragCoord.xy), tuple_number(deep, run.sample_index, params.tuple))) {
+        discard;
+    }
+}
+#endif
+
+#endif

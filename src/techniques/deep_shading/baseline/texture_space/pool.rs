@@ -1,0 +1,152 @@
+//! The pool: textures that draws take turns in (Clarberg & Munkberg 2014, section 6: "a pool of large mipmapped textures"), buffers
+//! each with all levels to a texel, and beside each who shades which of its texels.
+//! texture_space.textures.N   buffer, 8 B a texel: RGBA16F
+//! texture_space.owners.N     buffer, 4 B a texel: atlas.glsl says of what; ours, not the paper's
+
+use super::super::super::{NAME, full};
+use crate::error::{Error, Result};
+use crate::gpu::{Access, Bound, Buffer, Commands};
+use crate::plan::{Plan, Resources};
+use crate::settings::Values;
+use crate::techniques::Inputs;
+use crate::units::Bytes;
+
+const TEXEL_BYTES: u64 = 8;
+const OWNER_BYTES: u64 = 4;
+
+/// How many textures (`--shading-textures`), and how large (`--shading-texture-size`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PoolSize {
+    pub count: u32,
+    /// Texels of a side of the finest level: a power of two.
+    pub side_px: u32,
+}
+
+fn texels(side_px: u32) -> u64 {
+    (0..=side_px.ilog2()).map(|level| u64::from(side_px >> level).pow(2)).sum()
+}
+
+fn texture(index: u32) -> String {
+    full(&format!("texture_space.textures.{index}"))
+}
+
+fn owners(index: u32) -> String {
+    full(&format!("texture_space.owners.{index}"))
+}
+
+impl PoolSize {
+    pub fn of(values: &Values) -> Self {
+        let side_px = values.text("shading-texture-size").parse().expect("it is one of a list");
+        Self { count: values.integer("shading-textures") as u32, side_px }
+    }
+
+    /// Errors: the device binds no buffer as long as a texture (exit code 4, and which fits).
+    pub fn require_fitting(self, inputs: &Inputs<'_>) -> Result<()> {
+        let limits = &inputs.caps.limits;
+        let range = limits.max_storage_buffer_range_bytes;
+        let fits = |side_px: u32| texels(side_px) * TEXEL_BYTES <= range && side_px <= limits.max_image_side_px;
+        if fits(self.side_px) {
+            return Ok(());
+        }
+        let most = std::iter::successors(Some(self.side_px / 2), |side_px| Some(side_px / 2)).find(|side| fits(*side));
+        Err(Error::memory(format!(
+            "--shading-texture-size {}: a texture has {}, and this device binds {} at once",
+            self.side_px,
+            Bytes(texels(self.side_px) * TEXEL_BYTES),
+            Bytes(range)
+        ))
+        .within(NAME)
+        .note(format!("--shading-texture-size {} fits", most.expect("devices bind a texel"))))
+    }
+
+    pub fn plan(self, plan: &mut Plan) {
+        for index in 0..self.count {
+            plan.buffer("texture_pool", texture(index), texels(self.side_px) * TEXEL_BYTES);
+            plan.buffer("texture_owners", owners(index), texels(self.side_px) * OWNER_BYTES);
+        }
+    }
+
+    /// How the pass that draws touches it.
+    pub fn touches(self) -> impl Iterator<Item = (String, Access)> {
+        (0..self.count).flat_map(|index| {
+            let owned = [Access::TransferWrite, Access::FragmentWrite, Access::GraphicsRead];
+            let shaded = [Access::FragmentWrite, Access::GraphicsRead];
+            let owned = owned.map(|access| (owners(index), access));
+            owned.into_iter().chain(shaded.map(|access| (texture(index), access)))
+        })
+    }
+}
+
+/// One texture, and the owners of its texels.
+struct Slot {
+    texels: Buffer,
+    owners: Buffer,
+}
+
+/// What a chunk's textures are next: who touches them in which order is one round.
+pub struct Pool(Vec<Slot>);
+
+impl Pool {
+    pub fn new(resources: &mut Resources, size: PoolSize) -> Self {
+        let slot = |index| Slot { texels: resources.buffer(&texture(index)), owners: resources.buffer(&owners(index)) };
+        Self((0..size.count).map(slot).collect())
+    }
+
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// What shaders bind of each texture.
+    pub fn bound(&self) -> impl Iterator<Item = [(&'static str, Bound<'_>); 2]> {
+        self.0.iter().map(|slot| [("Texels", Bound::Buffer(&slot.texels)), ("Owners", Bound::Buffer(&slot.owners))])
+    }
+
+    /// Of one texture.
+    pub fn owner_bytes(&self) -> u64 {
+        self.0.first().map_or(0, |slot| slot.owners.bytes)
+    }
+
+    fn owners(&self) -> impl Iterator<Item = &Buffer> {
+        self.0.iter().map(|slot| &slot.owners)
+    }
+
+    fn texels(&self) -> impl Iterator<Item = &Buffer> {
+        self.0.iter().map(|slot| &slot.texels)
+    }
+
+    /// Forgets who owns the texels of the first `used`, for claims to follow. `is_first`: nobody has touched them in this frame.
+    pub fn begin(&self, cmd: &mut Commands, used: usize, is_first: bool) {
+        cmd.barriers(self.owners().map(|owners| match is_first {
+            true => owners.discard(Access::TransferWrite),
+            false => owners.from(Access::GraphicsRead).to(Access::TransferWrite),
+        }));
+        self.owners().take(used).for_each(|owners| cmd.clear(owners));
+        cmd.barriers(self.owners().map(|owners| owners.from(Access::TransferWrite).to(Access::FragmentWrite)));
+    }
+
+    /// After claims, for owners to shade.
+    pub fn claimed(&self, cmd: &mut Commands, is_first: bool) {
+        cmd.barriers(self.owners().map(|owners| owners.from(Access::FragmentWrite).to(Access::GraphicsRead)));
+        cmd.barriers(self.texels().map(|texels| match is_first {
+            true => texels.discard(Access::FragmentWrite),
+            false => texels.from(Access::GraphicsRead).to(Access::FragmentWrite),
+        }));
+    }
+
+    /// After shading, for look-ups.
+    pub fn shaded(&self, cmd: &mut Commands) {
+        cmd.barriers(self.texels().map(|texels| texels.from(Access::FragmentWrite).to(Access::GraphicsRead)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The checklist's O5: 42.7 MiB a texture.
+    #[test]
+    fn a_texture_has_all_levels_to_a_texel() {
+        assert_eq!(texels(2048) * TEXEL_BYTES, 44_739_240);
+        assert_eq!(texels(1), 1);
+    }
+}
