@@ -101,8 +101,8 @@ fn the_picture_is_the_same_again_and_with_any_number_of_textures() {
     assert_eq!(hash("3"), eight);
 }
 
-/// What is not supersampled is a texel's blur, which finer texels take away: at a quarter of their area the picture is nearer to
-/// supersampling's, and costs more.
+/// What supersampling has not is a texel's blur, which finer texels take away: at a quarter of their area the picture is nearer, and
+/// costs more. Not four times as much in so small a frame: charts of men a few pixels high stay a texel wide.
 #[test]
 fn finer_texels_come_nearer_to_supersampling() {
     let watched = Watched::open("chess:triangles=12000");
@@ -115,8 +115,8 @@ fn finer_texels_come_nearer_to_supersampling() {
         (rmse(&frame.picture().unwrap(), &reference), frame.measured_counters().unwrap()["shaded_per_pixel"])
     });
     println!("lists {deep}; textures, finer and finer: {found:?}");
-    assert!(found.windows(2).all(|pair| pair[1].0 < 0.9 * pair[0].0 && pair[1].1 > 1.5 * pair[0].1), "{found:?}");
-    assert!(found[1].0 < 2.0 * deep, "{found:?}, {deep}");
+    assert!(found.windows(2).all(|pair| pair[1].0 < 0.9 * pair[0].0 && pair[1].1 > 1.2 * pair[0].1), "{found:?}");
+    assert!(found[1].0 < 1.5 * deep, "{found:?}, {deep}");
 }
 
 /// A wall that faces the camera is shaded; one that turns its back, or is beside the frame, is not, unless the lens's rim sees its
