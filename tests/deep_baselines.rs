@@ -2,13 +2,14 @@
 //! colour; multisampling to nearly the same; and what both shade is counted.
 
 use crate::support::boxes::{camera, rectangle};
+use crate::support::difference::rmse;
+use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has, placing_steps};
 use glam::{Mat4, Vec3};
-use quincunx::metrics;
 use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AnimationChoice, Camera, Material, Projection, Scene};
+use quincunx::scene::{Camera, Material, Projection, Scene};
 use std::collections::BTreeMap;
 
 const DEEP: &str = "deep_shading";
@@ -19,38 +20,18 @@ const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
 
 /// The fence's rotor turns by a quarter of a turn.
 fn rotor() -> Scene {
-    scene::open("fence:lights=6", 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap()
-}
-
-/// Of one colour a triangle, whichever light there is; glass stays glass.
-fn unlit(mut scene: Scene) -> Scene {
-    for material in &mut scene.materials {
-        *material = Material {
-            unlit: true,
-            base_color_texture: None,
-            normal_texture: None,
-            metallic_roughness_texture: None,
-            emissive_texture: None,
-            occlusion_texture: None,
-            ..material.clone()
-        };
-    }
-    scene
+    moving("fence:lights=6", [0.0, 0.1])
 }
 
 fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f64> {
     watched.render(DEEP, changes).measured_counters().unwrap()
 }
 
-fn rmse(picture: &Picture, reference: &Picture) -> f64 {
-    metrics::compare(picture, reference, 0.1).unwrap().metrics.rmse
-}
-
 #[test]
 fn supersampled_colours_of_triangles_are_the_lists_to_the_bit() {
     let sets = [("size", "97x55"), ("spp", "4"), ("accumulate", "2")];
     let lens = both(&sets, &[("aperture", "0.1"), ("focus", "4"), ("camera", "rotor")]);
-    let watched = Watched::with_scene(unlit(rotor()));
+    let watched = Watched::with_scene(unlit(rotor(), false));
     for visibility in ["repeat-frame", "stochastic"] {
         let seen = both(&lens, &[("visibility", visibility)]);
         let supersampled = both(&seen, &[SSAA]);

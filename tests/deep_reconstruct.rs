@@ -2,26 +2,22 @@
 //! one colour stays one colour, and what is sharp takes nothing from what is behind it.
 
 use crate::support::boxes::{camera, panel, rectangle};
+use crate::support::difference::rmse;
+use crate::support::moving::moving;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
 use glam::Vec3;
-use quincunx::metrics;
-use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AnimationChoice, Material, Scene};
+use quincunx::scene::{Material, Scene};
 use std::collections::BTreeMap;
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "96x54");
 const ON: (&str, &str) = ("reconstruct", "on");
 
-fn rmse(picture: &Picture, reference: &Picture) -> f64 {
-    metrics::compare(picture, reference, 0.1).unwrap().metrics.rmse
-}
-
 /// The fence's rotor turns by a quarter of a turn.
 fn rotor() -> Scene {
-    scene::open("fence:lights=6", 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap()
+    moving("fence:lights=6", [0.0, 0.1])
 }
 
 /// A lens, and what moves under one.

@@ -1,10 +1,11 @@
 //! Rivals of deep shading on its own samples: a compact geometry buffer with a cache before it (Liktor & Dachsbacher 2012) comes
 //! to the oracle's picture, shades what the lists shade while nothing is forgotten, and has the memory that it says.
 
+use crate::support::moving::moving;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
-use quincunx::scene::{self, AnimationChoice, Scene};
+use quincunx::scene::Scene;
 use std::collections::BTreeMap;
 
 const DEEP: &str = "deep_shading";
@@ -15,7 +16,7 @@ const ORACLE: (&str, &str) = ("lists", "none");
 /// The fence's rotor turns by a quarter of a turn.
 fn rotor() -> Scene {
     let spec = "fence:lights=6,alpha=mask";
-    scene::open(spec, 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap()
+    moving(spec, [0.0, 0.1])
 }
 
 fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f64> {

@@ -1,13 +1,14 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
 //! shaded is what is listed, each once; blur comes to what path tracing sees.
 
+use crate::support::moving::moving;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
 use quincunx::error::Result;
 use quincunx::metrics;
 use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AnimationChoice, Scene};
+use quincunx::scene::Scene;
 use quincunx::session::Renderer;
 use std::collections::BTreeMap;
 
@@ -52,8 +53,8 @@ fn require_one_picture(watched: &Watched, common: Changes<'_>) {
 }
 
 /// The fence's rotor turns by a quarter of a turn and a half.
-fn moving(spec: &str) -> Scene {
-    scene::open(spec, 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap()
+fn turning(spec: &str) -> Scene {
+    moving(spec, [0.0, 0.1])
 }
 
 #[test]
@@ -78,7 +79,7 @@ fn every_road_is_one_under_a_lens_with_textures_and_glass() {
 #[test]
 fn every_road_is_one_while_things_move_with_holes_and_glass() {
     for spec in ["fence:lights=6", "fence:lights=6,alpha=mask"] {
-        let watched = Watched::with_scene(moving(spec));
+        let watched = Watched::with_scene(turning(spec));
         require_one_picture(&watched, &[SIZE, ("camera", "rotor"), ("spp", "4"), ("accumulate", "2")]);
     }
 }
@@ -87,7 +88,7 @@ fn every_road_is_one_while_things_move_with_holes_and_glass() {
 #[test]
 fn every_road_is_one_under_shadow_maps() {
     let maps = [SIZE, ("direct-shadow", "map"), ("shadow-map-size", "128"), ("spp", "2"), ("tuples", "2")];
-    let exposed = scene::open("chess:triangles=12000", 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.2]).unwrap();
+    let exposed = moving("chess:triangles=12000", [0.0, 0.2]);
     let watched = Watched::with_scene(exposed);
     require_one_picture(&watched, &maps);
     let unshadowed = watched.hash(DEEP, &both(&maps, &[("direct-shadow", "none")]));
@@ -372,7 +373,7 @@ fn tuples_see_the_same_in_every_order_under_a_lens() {
 #[test]
 fn tuples_see_the_same_in_every_order_while_things_move_with_holes_and_glass() {
     for spec in ["fence:lights=6", "fence:lights=6,alpha=mask"] {
-        let watched = Watched::with_scene(moving(spec));
+        let watched = Watched::with_scene(turning(spec));
         require_one_order(&watched, &[SIZE, ("camera", "rotor"), ("spp", "4"), ("accumulate", "2")]);
     }
 }

@@ -2,13 +2,14 @@
 //! focus is in one place of both pictures and the rest as far apart as similar triangles say, and what both see is shaded once.
 
 use crate::support::boxes::{camera, panel, point_light, rectangle};
+use crate::support::moving::moving;
 use crate::support::placing_steps;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, vec3};
 use quincunx::gpu::commands::Submits;
 use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AnimationChoice, Camera, Material, Projection, Scene};
+use quincunx::scene::{Camera, Material, Projection, Scene};
 use quincunx::session::Renderer;
 use std::collections::BTreeMap;
 
@@ -35,7 +36,7 @@ fn hashes(watched: &Watched, changes: Changes<'_>) -> [String; 2] {
 
 /// The fence's rotor turns by a quarter of a turn, behind glass.
 fn rotor() -> Watched {
-    Watched::with_scene(scene::open("fence:lights=6", 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap())
+    Watched::with_scene(moving("fence:lights=6", [0.0, 0.1]))
 }
 
 /// Both eyes' layers drawn into at once, where the driver can.

@@ -3,49 +3,24 @@
 //! texels, however many textures there are.
 
 use crate::support::boxes::{camera, rectangle};
+use crate::support::difference::rmse;
+use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3};
 use quincunx::gpu::commands::Submits;
-use quincunx::metrics;
-use quincunx::report::picture::Picture;
-use quincunx::scene::{self, AnimationChoice, Material, Scene};
+use quincunx::scene::{self, Material, Scene};
 use std::collections::BTreeMap;
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "97x55");
 const TEXTURES: [(&str, &str); 2] = [("shading", "texture-space"), ("shading-texture-size", "512")];
 
-fn moving(spec: &str, shutter_s: [f64; 2]) -> Scene {
-    scene::open(spec, 1, &AnimationChoice::All).unwrap().exposed(shutter_s).unwrap()
-}
-
-/// Of one colour a draw, whichever light there is; glass and holes stay.
-fn unlit(mut scene: Scene) -> Scene {
-    for material in &mut scene.materials {
-        let base_color_texture = material.base_color_texture.filter(|_| material.alpha != scene::AlphaMode::Opaque);
-        *material = Material {
-            unlit: true,
-            base_color_texture,
-            normal_texture: None,
-            metallic_roughness_texture: None,
-            emissive_texture: None,
-            occlusion_texture: None,
-            ..material.clone()
-        };
-    }
-    scene
-}
-
 /// What every frame keeps to: all samples have their texels.
 fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f64> {
     let counted = watched.render(DEEP, &both(changes, &TEXTURES)).measured_counters().unwrap();
     assert_eq!(counted["samples_without_colour"], 0.0, "{changes:?}: {counted:?}");
     counted
-}
-
-fn rmse(picture: &Picture, reference: &Picture) -> f64 {
-    metrics::compare(picture, reference, 0.1).unwrap().metrics.rmse
 }
 
 /// Through a lens and in motion, by both kinds of visibility; panes of glass among the draws, which have one colour too.
@@ -55,7 +30,7 @@ fn draws_of_one_colour_are_supersampling_to_the_bit() {
     for material in &mut scene.materials {
         material.base_color_texture = None;
     }
-    let watched = Watched::with_scene(unlit(scene));
+    let watched = Watched::with_scene(unlit(scene, false));
     let lens = [SIZE, ("spp", "4"), ("accumulate", "2"), ("aperture", "0.1"), ("focus", "4"), ("camera", "rotor")];
     for visibility in ["repeat-frame", "stochastic"] {
         let seen = both(&lens, &[("visibility", visibility)]);
@@ -74,7 +49,7 @@ fn draws_of_one_colour_are_supersampling_to_the_bit() {
 #[test]
 fn holes_and_glass_let_the_same_samples_through() {
     for alpha in ["mask", "blend"] {
-        let scene = unlit(moving(&format!("fence:lights=6,alpha={alpha}"), [0.0, 0.0]));
+        let scene = unlit(moving(&format!("fence:lights=6,alpha={alpha}"), [0.0, 0.0]), true);
         let watched = Watched::with_scene(scene);
         let common = [SIZE, ("spp", "4")];
         let supersampled = counters_of(&watched, &both(&common, &[("shading", "ssaa")]));

@@ -2,10 +2,11 @@
 //! rasteriser places to a 256th of a layer's pixel and their tests to a float. Lists and strays come to the same bits as
 //! without them.
 
+use crate::support::moving::moving;
 use crate::support::placing_steps;
 use crate::support::watched::{Changes, Watched, both};
 use glam::Mat4;
-use quincunx::scene::{self, AlphaMode, AnimationChoice, Projection, Scene};
+use quincunx::scene::{self, AlphaMode, Projection, Scene};
 
 const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");
@@ -16,7 +17,7 @@ const SAMPLES: [(&str, &str); 3] = [SIZE, ("spp", "1"), ("tuples", "16")];
 
 /// The fence's rotor turns by a quarter of a turn.
 fn rotor(spec: &str) -> Watched {
-    Watched::with_scene(scene::open(spec, 1, &AnimationChoice::All).unwrap().exposed([0.0, 0.1]).unwrap())
+    Watched::with_scene(moving(spec, [0.0, 0.1]))
 }
 
 /// The triangles that samples see.

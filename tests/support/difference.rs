@@ -1,5 +1,6 @@
 //! How far two pictures are apart, as tests judge it.
 
+use quincunx::metrics;
 use quincunx::report::picture::Picture;
 
 /// Greatest difference of two pictures, as a part of the brighter pixel's greatest channel and a hundredth of the picture's.
@@ -11,4 +12,9 @@ pub fn greatest_part(a: &Picture, b: &Picture) -> f32 {
         difference / (brightest(a).max(brightest(b)) + 0.01 * all)
     };
     a.pixels.iter().zip(&b.pixels).map(part).fold(0f32, f32::max)
+}
+
+/// Root of the mean squared difference of their numbers.
+pub fn rmse(a: &Picture, b: &Picture) -> f64 {
+    metrics::compare(a, b, metrics::DEFAULT_THRESHOLD).unwrap().metrics.rmse
 }

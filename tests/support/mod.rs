@@ -6,6 +6,7 @@ pub mod difference;
 pub mod failing;
 pub mod gltf_file;
 pub mod measured;
+pub mod moving;
 pub mod program;
 pub mod watched;
 
