@@ -58,11 +58,13 @@ fn draws_of_one_colour_are_supersampling_to_the_bit() {
         material.base_color_texture = None;
     }
     let watched = Watched::with_scene(unlit(scene));
-    let lens = [SIZE, ("spp", "4"), ("accumulate", "2"), ("aperture", "0.1"), ("focus", "4"), ("camera", "rotor")];
+    let lens = [SIZE, ("spp", "2"), ("accumulate", "2"), ("aperture", "0.1"), ("focus", "4"), ("camera", "rotor")];
+    // Long charts of cables have as many texels as their lengths: in small textures they are few.
+    let textures = [TEXTURES[0], ("shading-texture-size", "256")];
     for visibility in ["repeat-frame", "stochastic"] {
         let seen = both(&lens, &[("visibility", visibility)]);
         let supersampled = watched.render(DEEP, &both(&seen, &[("shading", "ssaa")]));
-        let textured = watched.render(DEEP, &both(&seen, &TEXTURES));
+        let textured = watched.render(DEEP, &both(&seen, &textures));
         let [of_samples, of_textures] = [&supersampled, &textured].map(|frame| frame.measured_counters().unwrap());
         println!("{visibility}: {of_textures:?}");
         assert_eq!(textured.picture().unwrap().hash().unwrap(), supersampled.picture().unwrap().hash().unwrap());
@@ -103,8 +105,8 @@ fn the_picture_is_the_same_again_and_with_any_number_of_textures() {
     assert_eq!(hash("3"), eight);
 }
 
-/// What is not supersampled is a texel's blur, which finer texels take away: at a quarter of their area the picture is nearer to
-/// supersampling's, and costs more.
+/// What supersampling has not is a texel's blur, which finer texels take away: at a quarter of their area the picture is nearer, and
+/// costs more. Not four times as much in so small a frame: charts of men a few pixels high stay a texel wide.
 #[test]
 fn finer_texels_come_nearer_to_supersampling() {
     let watched = Watched::open("chess:triangles=12000");
@@ -117,8 +119,8 @@ fn finer_texels_come_nearer_to_supersampling() {
         (rmse(&frame.picture().unwrap(), &reference), frame.measured_counters().unwrap()["shaded_per_pixel"])
     });
     println!("lists {deep}; textures, finer and finer: {found:?}");
-    assert!(found.windows(2).all(|pair| pair[1].0 < 0.9 * pair[0].0 && pair[1].1 > 1.5 * pair[0].1), "{found:?}");
-    assert!(found[1].0 < 2.0 * deep, "{found:?}, {deep}");
+    assert!(found.windows(2).all(|pair| pair[1].0 < 0.9 * pair[0].0 && pair[1].1 > 1.2 * pair[0].1), "{found:?}");
+    assert!(found[1].0 < 1.5 * deep, "{found:?}, {deep}");
 }
 
 /// A wall that faces the camera is shaded; one that turns its back, or is beside the frame, is not, unless the lens's rim sees its

@@ -26,8 +26,8 @@ void widen(inout Place place, Charted charted, vec4 canonical[3]) {
     vec2 pixel = deep.scaled_px / vec2(frame.width_px, frame.height_px);
     vec3 right = seen.right * pixel.x;
     vec3 down = seen.down * pixel.y;
-    mat3x2 texels = mat3x2(charted.corners[0], charted.corners[1], charted.corners[2]);
-    if (max(length(texels * right), length(texels * down)) >= 1.0) {
+    mat3x2 atlas_texels = mat3x2(charted.corners[0], charted.corners[1], charted.corners[2]);
+    if (max(length(atlas_texels * right), length(atlas_texels * down)) >= 1.0) {
         place.right = right;
         place.down = down;
     }
