@@ -153,7 +153,7 @@ fn settings_that_it_does_not_read_or_that_do_not_fit_are_refused() {
         (&[texture_space, ("lists", "none")][..], "--lists none with --shading texture-space: it has no lists"),
         (&[texture_space, ("guard-band", "0")], "--guard-band 0 with --shading texture-space"),
         (&[texture_space, ("shading-warp", "foveated")], "--shading-warp foveated with --shading texture-space"),
-        (&[texture_space, ("visibility", "instancing")], "--visibility instancing with --shading texture-space"),
+        (&[texture_space, ("visibility", "ray")], "--visibility ray with --shading texture-space"),
         (&[texture_space, ("reconstruct", "on")], "--reconstruct on with --shading texture-space"),
         (&[("shading-textures", "2")], "--shading-textures 2 with --shading deep"),
         (&[("shading", "ssaa"), ("shading-texture-size", "512")], "--shading-texture-size 512 with --shading ssaa"),
