@@ -100,7 +100,7 @@ fn a_rectangle_of_light_gives_what_lambert_s_formula_says() {
     rectangle(&mut scene, center, u, v, panel(radiance));
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| center + x * u + y * v);
     let expected = albedo / PI * radiance * polygon_irradiance(&corners);
-    let changes = [("size", "8x8"), ("spp", "512"), ("transport", "direct")];
+    let changes = [("size", "8x8"), ("spp", "1024"), ("transport", "direct")];
     let watched = Watched::with_scene(scene);
     for more in [("brdf", "lambert"), ("light-visibility", "off")] {
         let found = mean(&watched.picture(NAME, &both(&changes, &[("brdf", "lambert"), more])));
@@ -234,7 +234,7 @@ fn direct_light_is_deferred_shading_s() {
         let watched = Watched::with_scene(plain(scene));
         let changes: Changes<'_> = &[("size", "512x288"), ("direct-shadow", "ray"), ("position", "float")];
         let expected = reduced(&watched.picture("deferred", changes), 8);
-        let found = watched.picture(NAME, &[("size", "64x36"), ("spp", "512"), ("transport", "direct")]);
+        let found = watched.picture(NAME, &[("size", "64x36"), ("spp", "1024"), ("transport", "direct")]);
         let error = relative_rmse(&found, &expected);
         println!("{scene}: relative RMSE {error:.4}, means {} {}", mean(&found), mean(&expected));
         require_within(mean(&found), mean(&expected), 0.005, scene);
