@@ -189,7 +189,7 @@ fn two_processes_at_once_leave_one_whole_file() {
     let folder = tempfile::tempdir().unwrap();
     let start = || {
         let mut command = Command::new(std::env::current_exe().unwrap());
-        command.args(["--exact", "two_processes_at_once_leave_one_whole_file"]).env(CHILD, folder.path());
+        command.args(["--exact", "reference::two_processes_at_once_leave_one_whole_file"]).env(CHILD, folder.path());
         command.stdout(std::process::Stdio::null()).spawn().unwrap()
     };
     for mut child in [start(), start()] {
