@@ -48,6 +48,8 @@ pub struct Renderer {
     pub view: View,
     pub lights: LightSet,
     pub host_passes: Vec<(String, u64)>,
+    /// Of the device before the first frame, nanoseconds.
+    pub once_passes: Vec<(String, u64)>,
     pub counters: BTreeMap<&'static str, f64>,
     pub resolved: BTreeMap<&'static str, String>,
     /// Of the frame; the scene's own plan is `SceneStats::plan`.
@@ -146,6 +148,7 @@ impl Session {
         let _stage = Stage::begin("compiling pipelines");
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         counters.extend(frame.drawn());
+        let once_passes = frame.once();
         let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
         cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
@@ -165,6 +168,7 @@ impl Session {
             view,
             lights,
             host_passes,
+            once_passes,
             counters,
             resolved,
             plan,

@@ -3,6 +3,7 @@
 
 use crate::support;
 use crate::support::boxes::{camera, closed_box, rectangle};
+use crate::support::moving::moving;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, Vec4, vec3};
 use quincunx::gpu::commands::Submits;
@@ -262,6 +263,28 @@ fn submits_and_shared_bytes_change_no_pixel() {
 }
 
 /// 17 point lights: 102 maps. They are a group of their own, of as many bytes as their texels.
+/// Glass asks them after solid surfaces; in a set of samples of something that moves, compute shaders do or fragments.
+#[test]
+fn maps_that_are_drawn_once_are_those_of_every_frame() {
+    let once = ("shadow-maps", "once");
+    let require_equal = |watched: &Watched, technique: &str, common: Changes<'_>| {
+        let renderer = watched.render(technique, &both(common, &[once]));
+        let names: Vec<&str> = renderer.once_passes.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, [format!("{technique}.shadow_maps")], "{common:?}");
+        assert!(renderer.passes().iter().all(|pass| !pass.name.ends_with("shadow_maps")), "{common:?}");
+        let hash = renderer.picture().unwrap().hash().unwrap();
+        assert_eq!(hash, watched.hash(technique, common), "{technique} with {common:?}");
+    };
+    let maps = [("size", "97x55"), MAP, ("shadow-map-size", "64")];
+    let watched = Watched::open("hall:triangles=8000");
+    require_equal(&watched, FORWARD, &both(&maps, &[("supersample", "2")]));
+    let watched = Watched::with_scene(moving("chess:triangles=12000", [0.0, 0.2]));
+    let few = both(&maps, &[("spp", "2"), ("tuples", "4"), ("accumulate", "2")]);
+    for shading in ["deep", "indirect-gbuffer", "ssaa"] {
+        require_equal(&watched, "deep_shading", &both(&few, &[("shading", shading)]));
+    }
+}
+
 #[test]
 fn maps_are_counted_and_planned() {
     let watched = Watched::open("hall:triangles=8000");

@@ -144,7 +144,9 @@ impl Blend {
         let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
         cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
             cmd.barriers([depth.to(Access::DepthTest), picture.to(Access::ColorWrite)]);
-            cmd.barriers(lights.shadow_maps.map(|maps| maps.barrier(Access::FragmentSample, Access::FragmentSample)));
+            cmd.barriers(
+                lights.shadow_maps.and_then(|maps| maps.barrier(Access::FragmentSample, Access::FragmentSample)),
+            );
             let extent = picture.resource.description.extent;
             cmd.begin_rendering(
                 extent,

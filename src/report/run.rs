@@ -163,11 +163,12 @@ impl Report {
 
     /// Pass rows where frames were submitted pass by pass, and the frame's time.
     pub fn times(&mut self, renderer: &Renderer, frames: &[FrameTime], profile: bool) {
-        let mut rows: Vec<Value> = renderer
-            .host_passes
-            .iter()
-            .map(|(name, ns)| json!({ "name": name, "where": "host, once", "ms": spread(&[milliseconds(*ns)]) }))
-            .collect();
+        let once = |passes: &[(String, u64)], place: &str| -> Vec<Value> {
+            let row = |(name, ns): &(String, u64)| json!({ "name": name, "where": place, "ms": spread(&[milliseconds(*ns)]) });
+            passes.iter().map(row).collect()
+        };
+        let mut rows = once(&renderer.host_passes, "host, once");
+        rows.extend(once(&renderer.once_passes, "device, once"));
         let mut warnings = Vec::new();
         for (index, pass) in renderer.passes().iter().enumerate() {
             let walls: Vec<f64> =

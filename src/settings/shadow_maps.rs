@@ -22,6 +22,16 @@ pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
 /// How shadow maps are made and read.
 pub const SHADOW_MAPS: &[Setting] = &[
     Setting {
+        key: "shadow-maps",
+        symbol: "",
+        kind: Kind::Choice(&["frame", "once"]),
+        default: "frame",
+        unit: "",
+        paper: "Clarberg 2014, 6.2",
+        help: "when shadow maps are drawn: anew in every frame and set of samples, as the paper does, or once before the first, their \
+               time in a row of its own; the same picture",
+    },
+    Setting {
         key: "shadow-map-size",
         symbol: "",
         kind: Kind::Integer { min: 16, max: 8192 },

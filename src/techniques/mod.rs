@@ -155,6 +155,11 @@ pub trait Frame {
     /// Records one frame. `frame`: the block of glsl/frame.glsl.
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()>;
 
+    /// Passes that `Prepared::build` has run on the device, and whose results are kept: with their time in nanoseconds.
+    fn once(&self) -> Vec<(String, u64)> {
+        Vec::new()
+    }
+
     /// How often what was recorded runs for a picture; the frame's block counts the runs (`sample_index`).
     fn run_count(&self) -> u32 {
         1

@@ -41,6 +41,8 @@ pub struct MapLayout {
     /// Texels whose change of depth surfaces are pushed away by.
     pub(super) slope_bias_px: f32,
     pub(super) casters: GeometryChoice,
+    /// They are drawn before the first frame, and kept.
+    pub(super) is_once: bool,
     size_px: u32,
     bias_m: f32,
 }
@@ -72,6 +74,7 @@ impl MapLayout {
             filter: MapFilter::from_setting(values.text("shadow-filter"), caps),
             slope_bias_px: values.number("shadow-slope-bias") as f32,
             casters: GeometryChoice::from_setting(values.text("shadow-casters")),
+            is_once: values.text("shadow-maps") == "once",
             size_px,
             bias_m: values.length("shadow-bias", scene.lasting_bounds().diagonal().max(1e-6)),
         };
@@ -129,22 +132,24 @@ impl MapLayout {
         self.views.last().map_or(Mat4::IDENTITY, View::clip_from_world).to_cols_array_2d()
     }
 
-    /// Plans the maps as resources of `technique`, and the pass that draws them as its next one.
+    /// Plans the maps as resources of `technique`, and the pass that draws them, where every frame does, as its next one.
     pub fn plan(&self, plan: &mut Plan, technique: &str) {
         let description = description(self.size_px, self.views.len() as u32);
         plan.push(GROUP, depth_name(technique), Shape::Image(description));
         plan.buffer(GROUP, blocks_name(technique), size_of_val(self.blocks.as_slice()) as u64);
-        plan.pass(pass(technique), [(depth_name(technique), Access::DepthWrite)]);
+        if !self.is_once {
+            plan.pass(pass(technique), [(depth_name(technique), Access::DepthWrite)]);
+        }
     }
 
-    /// What a pass touches whose fragments ask the maps.
-    pub fn read(&self, technique: &str) -> (String, Access) {
+    /// What a pass touches whose fragments ask the maps: of maps that are kept nothing.
+    pub fn read(&self, technique: &str) -> Option<(String, Access)> {
         self.read_by(technique, Access::FragmentSample)
     }
 
     /// The same of one that does so by `access`.
-    pub fn read_by(&self, technique: &str, access: Access) -> (String, Access) {
-        (depth_name(technique), access)
+    pub fn read_by(&self, technique: &str, access: Access) -> Option<(String, Access)> {
+        (!self.is_once).then(|| (depth_name(technique), access))
     }
 
     /// SHADOW_BIAS and SHADOW_FILTER.
@@ -326,6 +331,7 @@ mod tests {
             filter: MapFilter::Nearest,
             slope_bias_px: 0.0,
             casters: GeometryChoice::All,
+            is_once: false,
             size_px: 16,
             bias_m: 0.0,
         };

@@ -9,6 +9,9 @@
 //! Solid surfaces cast from both sides, as they stop shadow rays; MASK surfaces have their holes; BLEND surfaces cast
 //! nothing. What is nearer to a light than a thousandth of the far plane casts nothing either.
 //!
+//! Maps are drawn in every frame, or once (`--shadow-maps once`): then `ShadowMaps::draw_once` draws them before the first, and
+//! the calls below do what is left.
+//!
 //! A frame takes three calls: `MapLayout::plan` where the technique plans its passes, `ShadowMaps::record` where it
 //! records them, and `ShadowMaps::bound` for shaders of the axis SHADOWS=mapped, after `ShadowMaps::barrier`; pipelines of
 //! such shaders get the constants of `MapLayout::constants`, lights their indices from `direct::light_blocks`. While a
@@ -25,6 +28,7 @@ pub use layout::MapLayout;
 
 use super::mesh;
 use crate::error::Result;
+use crate::gpu::commands::Submits;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::shadow_maps::{FRAG_VARIANTS, VERT_VARIANTS};
@@ -133,6 +137,8 @@ pub struct ShadowMaps {
     depth: Image,
     blocks: Buffer,
     sampler: Sampler,
+    /// They are not drawn in frames.
+    is_once: bool,
 }
 
 impl ShadowMaps {
@@ -185,11 +191,37 @@ impl ShadowMaps {
             depth: resources.image(&depth_name(technique)),
             blocks,
             sampler: sampler(gpu, layout.filter)?,
+            is_once: layout.is_once,
         })
     }
 
-    /// Draws all maps anew.
+    /// Draws all maps anew, where every frame does.
     pub fn record(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu, places: Places<'_>) -> Result<()> {
+        if self.is_once { Ok(()) } else { self.record_all(cmd, technique, scene, places) }
+    }
+
+    /// Draws all maps before the first frame, and leaves them to fragments and compute shaders, where frames do not; the pass, and
+    /// how long it took, nanoseconds.
+    ///
+    /// Errors: the device is lost or out of memory (exit code 4).
+    pub fn draw_once(
+        &self,
+        gpu: &Arc<Gpu>,
+        technique: &str,
+        scene: &SceneGpu,
+        places: Places<'_>,
+    ) -> Result<Option<(String, u64)>> {
+        if !self.is_once {
+            return Ok(None);
+        }
+        let mut cmd = Commands::begin(gpu, &pass(technique), Submits::One)?;
+        self.record_all(&mut cmd, technique, scene, places)?;
+        cmd.barriers([self.depth.from(Access::DepthWrite).to(Access::FragmentSample)]);
+        cmd.barriers([self.depth.from(Access::FragmentSample).to(Access::ComputeSample)]);
+        Ok(Some((pass(technique), cmd.finish()?.run()?.wall_ns)))
+    }
+
+    fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu, places: Places<'_>) -> Result<()> {
         let traffic = Traffic {
             read_bytes: self.layers.iter().map(|layer| mesh::read_bytes(scene, layer.casters.calls())).sum(),
             written_bytes: self.depth.description.bytes(),
@@ -226,9 +258,9 @@ impl ShadowMaps {
     }
 
     /// What a pass waits for whose fragments, or threads, ask the maps: `to`. `from`: who touched them last,
-    /// `Access::DepthWrite` or another such pass.
-    pub fn barrier(&self, from: Access, to: Access) -> Barrier {
-        self.depth.from(from).to(to)
+    /// `Access::DepthWrite` or another such pass. Of maps that are kept nothing.
+    pub fn barrier(&self, from: Access, to: Access) -> Option<Barrier> {
+        (!self.is_once).then(|| self.depth.from(from).to(to))
     }
 
     /// What shadow_maps.glsl declares.

@@ -39,6 +39,7 @@ pub struct DeepFrame {
     primitives: Primitives,
     list: DrawList,
     scene: DeepScene,
+    maps_once: Option<(String, u64)>,
     shader: Shader,
     resolve: Resolve,
     reconstruct: Option<Reconstruct>,
@@ -71,9 +72,11 @@ impl DeepFrame {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
             false => None,
         };
+        let deep_scene = DeepScene::new(gpu, inputs, resources, &choices, scene)?;
         Ok(Self {
+            maps_once: deep_scene.draw_maps_once(gpu, scene)?,
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
-            scene: DeepScene::new(gpu, inputs, resources, &choices, scene)?,
+            scene: deep_scene,
             shader,
             resolve: Resolve::new(gpu, &choices)?,
             reconstruct,
@@ -160,6 +163,10 @@ impl Frame for DeepFrame {
 
     fn run_count(&self) -> u32 {
         self.choices.run_count
+    }
+
+    fn once(&self) -> Vec<(String, u64)> {
+        self.maps_once.iter().cloned().collect()
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

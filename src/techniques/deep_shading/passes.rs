@@ -41,7 +41,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
     if choices.has_lists {
         let mut shaded = links(choices, Access::GraphicsRead);
         shaded.extend(choices.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
-        shaded.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
+        shaded.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
     }
@@ -106,7 +106,7 @@ fn brute(choices: &Choices) -> Touches {
         true => links(choices, Access::GraphicsRead),
         false => vec![touch(COLORS, Access::TransferWrite)],
     });
-    brute.extend(choices.maps.iter().map(|maps| maps.read(NAME)));
+    brute.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
     brute.extend(choices.is_gated.then(gate::touches).into_iter().flatten());
     brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
     brute

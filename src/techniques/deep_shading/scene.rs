@@ -104,16 +104,26 @@ impl DeepScene {
         })
     }
 
-    /// Draws the shadow maps, where lights have some.
+    /// Draws the shadow maps, where lights have some that every frame draws.
     pub fn record_maps(&self, cmd: &mut Commands, scene: &SceneGpu) -> Result<()> {
-        let Some(maps) = &self.maps else { return Ok(()) };
+        self.maps.as_ref().map_or(Ok(()), |maps| maps.record(cmd, NAME, scene, self.casters_of(scene)))
+    }
+
+    /// Draws those that are drawn once: the pass, and how long it took, nanoseconds.
+    ///
+    /// Errors: the device is lost or out of memory (exit code 4).
+    pub fn draw_maps_once(&self, gpu: &Arc<Gpu>, scene: &SceneGpu) -> Result<Option<(String, u64)>> {
+        self.maps.as_ref().map_or(Ok(None), |maps| maps.draw_once(gpu, NAME, scene, self.casters_of(scene)))
+    }
+
+    fn casters_of<'a>(&'a self, scene: &'a SceneGpu) -> Places<'a> {
         let moved = self.casters.as_ref().map(|[draws, positions]| Places { draws, positions });
-        maps.record(cmd, NAME, scene, moved.unwrap_or_else(|| Places::of(scene)))
+        moved.unwrap_or_else(|| Places::of(scene))
     }
 
     /// What a pass waits for that lights, after the one that touched the shadow maps last.
     pub fn maps_barrier(&self, from: Access, to: Access) -> Option<Barrier> {
-        self.maps.as_ref().map(|maps| maps.barrier(from, to))
+        self.maps.as_ref().and_then(|maps| maps.barrier(from, to))
     }
 
     /// Everything that a shader of the technique may read of it, by name.

@@ -98,7 +98,7 @@ impl Material {
         bound.extend(maps.iter().flat_map(|maps| maps.bound()));
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
-            cmd.barriers(maps.map(|maps| maps.barrier(Access::DepthWrite, Access::FragmentSample)));
+            cmd.barriers(maps.and_then(|maps| maps.barrier(Access::DepthWrite, Access::FragmentSample)));
             let depth = if self.has_prepass {
                 cmd.barriers([depth.from(Access::DepthWrite).to(Access::DepthTest)]);
                 (depth, None, Access::DepthTest)

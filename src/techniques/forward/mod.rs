@@ -222,11 +222,13 @@ impl Prepared for PreparedForward {
         let constants = choices.light_constants();
         let target = BlendTarget { lists: Some(&lists.objects), samples, has_shadow_maps: choices.maps.is_some() };
         let maps = choices.maps.as_ref();
-        let maps = maps.map(|layout| ShadowMaps::new(gpu, resources, NAME, layout, inputs.scene, scene));
+        let maps = maps.map(|layout| ShadowMaps::new(gpu, resources, NAME, layout, inputs.scene, scene)).transpose()?;
+        let maps_once = maps.as_ref().map(|maps| maps.draw_once(gpu, NAME, scene, Places::of(scene))).transpose()?;
         let background = inputs.values.color("background");
         Ok(Box::new(ForwardFrame {
             list: inputs.draw_list(scene, choices.coverage()),
-            maps: maps.transpose()?,
+            maps,
+            maps_once: maps_once.flatten(),
             depth: if has_prepass { Some(Depth::new(gpu, scene, samples)?) } else { None },
             material: Material::new(gpu, scene, &choices, &lists.objects, background)?,
             blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &constants, &target)?,
@@ -256,6 +258,7 @@ pub struct Targets {
 struct ForwardFrame {
     list: DrawList,
     maps: Option<ShadowMaps>,
+    maps_once: Option<(String, u64)>,
     depth: Option<Depth>,
     material: Material,
     blend: Option<Blend>,
@@ -315,6 +318,10 @@ impl Frame for ForwardFrame {
     fn offset_px(&self, run: u32) -> Vec2 {
         let place = |index: u32| (index as f32 + 0.5) / self.runs_per_side as f32 - 0.5;
         Vec2::new(place(run % self.runs_per_side), place(run / self.runs_per_side))
+    }
+
+    fn once(&self) -> Vec<(String, u64)> {
+        self.maps_once.iter().cloned().collect()
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

@@ -63,7 +63,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Resu
     if let Some(maps) = &choices.maps {
         maps.plan(&mut plan, NAME);
     }
-    let asked = || choices.maps.iter().map(|maps| maps.read(NAME));
+    let asked = || choices.maps.iter().filter_map(|maps| maps.read(NAME));
     let mut depth_access = Access::DepthWrite;
     if has_prepass {
         plan.pass(full("depth"), [touch(DEPTH, Access::DepthWrite)]);

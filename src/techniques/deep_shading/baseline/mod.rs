@@ -173,7 +173,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
 pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
-    drawn.extend(choices.maps.iter().map(|maps| maps.read(super::NAME)));
+    drawn.extend(choices.maps.iter().filter_map(|maps| maps.read(super::NAME)));
     if let Shading::TextureSpace(size) = choices.shading {
         drawn.extend(size.touches());
     }

@@ -93,7 +93,7 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     drawn.push(touch(COUNTERS, Access::FragmentWrite));
     plan.pass(full("indirect.gbuffer"), drawn);
     let mut shaded: Vec<_> = ENTRIES.map(|(name, _)| touch(name, Access::ComputeRead)).into();
-    shaded.extend(choices.maps.iter().map(|maps| maps.read_by(NAME, Access::ComputeSample)));
+    shaded.extend(choices.maps.iter().filter_map(|maps| maps.read_by(NAME, Access::ComputeSample)));
     shaded.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
     plan.pass(full("indirect.shade"), shaded);
     let resolved = [
