@@ -110,6 +110,26 @@ fn samples_that_shading_space_has_no_place_for_are_shaded_too() {
     assert!(fewer < 0.5 * outside, "{fewer} with a guard band, {outside} without");
 }
 
+/// What the paper's table 2 takes as the cost of conservative rasterisation is against this.
+#[test]
+fn without_conservative_rasterisation_samples_at_rims_have_no_colour() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [SIZE, ("spp", "4"), ("aperture", "0.1"), ("brdf", "lambert")];
+    let counted = |road| {
+        let counters = watched.render(DEEP, &both(&common, &[("conservative", road)])).measured_counters().unwrap();
+        ["samples_without_colour", "shader_invocations", "shading_pixels_drawn", "listed_primitives", "samples_seen"]
+            .map(|name| counters[name])
+    };
+    let [plainly_missing, plainly_shaded, plainly_drawn, plainly_listed, seen] = counted("none");
+    for road in conservative(&watched) {
+        let [missing, shaded, drawn, listed, _] = counted(road);
+        assert_eq!([missing, listed], [0.0, plainly_listed], "{road}");
+        assert!(shaded <= drawn, "{road}: {shaded} of {drawn}");
+        assert!(drawn > 1.1 * plainly_drawn && plainly_shaded < shaded, "{road}: {drawn} and {plainly_drawn}");
+    }
+    assert!(plainly_missing > 0.0 && plainly_missing < 0.5 * seen, "{plainly_missing} of {seen}");
+}
+
 /// Mean differences in the middle third of both sides and at the rim, between two pictures; light above 1 is cut.
 fn middle_and_rim(one: &Picture, other: &Picture) -> [f64; 2] {
     let [width, height] = [one.extent.width as usize, one.extent.height as usize];

@@ -40,6 +40,8 @@ const uint COUNTED_DIGEST = 16u;
 const uint COUNTED_FORGOTTEN = 17u;
 // Samples all of whose texels a triangle of another chart owns (--shading texture-space).
 const uint COUNTED_OTHER_CHARTS = 18u;
-const uint COUNTER_COUNT = 19u;
+// Pixels of shading space that triangles were drawn at, before any look-up.
+const uint COUNTED_DRAWN = 19u;
+const uint COUNTER_COUNT = 20u;
 
 #endif

@@ -65,6 +65,9 @@ void main() {
     if (at.x >= deep.shading_width_px || at.y >= deep.shading_height_px) {
         return;
     }
+    if (IS_COUNTED != 0u) {
+        atomicAdd(counters[COUNTED_DRAWN], 1u);
+    }
     uint pixel = at.y * deep.shading_width_px + at.x;
     // Nothing was seen here.
     if (begin_of(pixel) == 0u) {

@@ -82,6 +82,7 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
         "hardware" => Road::Hardware,
         "geometry" => Road::Geometry,
         "vertex" => Road::Vertex,
+        "none" => Road::Plain,
         // Triangles that are bent have no corners that the device could draw them by.
         _ if caps.features.conservative_rasterization && values.text("shading-warp") == "even" => Road::Hardware,
         _ if caps.features.geometry_shader => Road::Geometry,
@@ -91,8 +92,10 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
 
 /// Errors: the device draws triangles itself that shading space has bent (exit code 2).
 fn require_straight(values: &Values) -> Result<()> {
-    if values.text("conservative") == "hardware" && values.text("shading-warp") == "foveated" {
-        return Err(Error::request("--conservative hardware: in a foveated shading space triangles are not straight")
+    let road = values.text("conservative");
+    if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
+        let why = "in a foveated shading space triangles are not straight";
+        return Err(Error::request(format!("--conservative {road}: {why}"))
             .within(NAME)
             .note("--conservative geometry and vertex draw what holds them"));
     }

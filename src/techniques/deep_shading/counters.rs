@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 19;
+pub const COUNT: u64 = 20;
 
 /// Numbers that a frame left, as counters.glsl has them.
 pub struct Counted([u32; COUNT as usize]);
@@ -38,7 +38,7 @@ impl Counted {
     }
 
     /// Of lists in shading space.
-    pub fn of_lists(&self) -> [(&'static str, f64); 10] {
+    pub fn of_lists(&self) -> [(&'static str, f64); 11] {
         let [
             _,
             strays,
@@ -57,12 +57,15 @@ impl Counted {
             nodes,
             _,
             digest,
-            ..,
+            _,
+            _,
+            drawn,
         ] = self.0.map(f64::from);
         [
             ("samples_outside_shading_space", strays - crowded),
             ("samples_of_full_lists", crowded),
             ("samples_without_colour", missing),
+            ("shading_pixels_drawn", drawn),
             ("listed_primitives", listed),
             ("listed_again", duplicates),
             ("listed_digest", digest),
@@ -75,7 +78,7 @@ impl Counted {
 
     /// Of a compact geometry buffer.
     pub fn of_entries(&self) -> [(&'static str, f64); 3] {
-        let [_, strays, _, missing, .., forgotten, _] = self.0.map(f64::from);
+        let [_, strays, _, missing, .., forgotten, _, _] = self.0.map(f64::from);
         [
             ("samples_outside_shading_space", strays),
             ("samples_without_colour", missing),
@@ -85,7 +88,7 @@ impl Counted {
 
     /// Of textures that draws are shaded in.
     pub fn of_textures(&self) -> [(&'static str, f64); 2] {
-        let [_, _, _, missing, .., of_other_charts] = self.0.map(f64::from);
+        let [_, _, _, missing, .., of_other_charts, _] = self.0.map(f64::from);
         [("samples_without_colour", missing), ("samples_of_other_charts", of_other_charts)]
     }
 
@@ -97,7 +100,7 @@ impl Counted {
 
     /// How much of the buffers of one entry a sample was used, with lists.
     pub fn entries(&self) -> Entries {
-        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _] =
+        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _, _] =
             self.0.map(u64::from);
         Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples }
     }

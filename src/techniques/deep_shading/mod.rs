@@ -153,7 +153,7 @@ impl Technique for DeepShading {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative hardware", Ability::ConservativeRaster, instead));
             }
-            shade::Road::Vertex => {}
+            shade::Road::Vertex | shade::Road::Plain => {}
         }
         needs.extend(baseline::needs(values));
         needs.extend(shadow_maps::needs(values));

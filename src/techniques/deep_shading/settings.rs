@@ -205,12 +205,13 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "conservative",
         symbol: "",
-        kind: Kind::Choice(&["auto", "geometry", "vertex", "hardware"]),
+        kind: Kind::Choice(&["auto", "geometry", "vertex", "hardware", "none"]),
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.4",
         help: "how every pixel that a triangle touches is drawn: its hull from a geometry shader or from vertex shaders, or the \
-               device's own conservative rasterisation; the same picture; auto: the last of these that the device has, of the first two the first",
+               device's own conservative rasterisation; the same picture; auto: the last of these that the device has, of the first two the \
+               first; none: only pixels whose middle it covers, to measure what the others cost and what is without colour then",
     },
     Setting {
         key: "reconstruct",

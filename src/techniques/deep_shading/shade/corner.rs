@@ -1,8 +1,9 @@
-//! Triangles as they are, which the device draws conservatively (VK_EXT_conservative_rasterization). Shader: corner.vert.
+//! Triangles as they are, which the device draws conservatively (VK_EXT_conservative_rasterization), or as any others: what
+//! conservative rasterisation is for, and costs (Clarberg & Munkberg 2014, table 2). Shader: corner.vert.
 
 use super::Stages;
 use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT;
 
-pub(super) fn stages() -> Stages {
-    Stages { vertex: &VERT, geometry: None, is_conservative: true, vertex_count: 3 }
+pub(super) fn stages(is_conservative: bool) -> Stages {
+    Stages { vertex: &VERT, geometry: None, is_conservative, vertex_count: 3 }
 }

@@ -32,6 +32,8 @@ pub enum Road {
     Geometry,
     /// Its hull from vertex shaders.
     Vertex,
+    /// Only what it covers the middle of: samples at its rim find no colour.
+    Plain,
 }
 
 /// What a road draws with.
@@ -49,14 +51,16 @@ impl Road {
             Self::Hardware => "hardware",
             Self::Geometry => "geometry",
             Self::Vertex => "vertex",
+            Self::Plain => "none",
         }
     }
 
     fn stages(self) -> Stages {
         match self {
-            Self::Hardware => corner::stages(),
+            Self::Hardware => corner::stages(true),
             Self::Geometry => geometry::stages(),
             Self::Vertex => vertex::stages(),
+            Self::Plain => corner::stages(false),
         }
     }
 }
