@@ -1,7 +1,7 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
 //! shaded is what is listed, each once; blur comes to what path tracing sees.
 
-use crate::support::moving::moving;
+use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
@@ -227,19 +227,25 @@ fn rmse(watched: &Watched, changes: Changes<'_>, reference: &Picture) -> f64 {
 /// Four sets of as many samples halve the error of independent ones; these are better spread.
 #[test]
 fn blur_comes_to_what_path_tracing_sees() {
-    let light = [("size", "64x64"), ("brdf", "lambert"), ("aperture", "0.15")];
     let traced = [("transport", "direct"), ("light-visibility", "off"), ("emissive", "off"), ("spp", "1024")];
-    let watched = Watched::open("cornell");
-    if !has(&watched.session.gpu.caps, Feature::ExactPositions) {
-        return;
+    // Light that falls on what moves is another one while it does: colours are not.
+    for (scene, blur) in [
+        (moving("cornell", [0.0, 0.1]), vec![("aperture", "0.15")]),
+        (unlit(moving("fence:lights=6", [0.0, 0.05]), false), vec![("camera", "rotor"), ("aperture", "0.05")]),
+    ] {
+        let watched = Watched::with_scene(scene);
+        if !has(&watched.session.gpu.caps, Feature::ExactPositions) {
+            return;
+        }
+        let light = both(&[("size", "64x64"), ("brdf", "lambert")], &blur);
+        let reference = watched.picture("path_traced", &both(&light, &traced));
+        let errors: Vec<f64> = ["1", "4", "16", "64"]
+            .iter()
+            .map(|sets| rmse(&watched, &both(&light, &[("spp", "4"), ("accumulate", *sets)]), &reference))
+            .collect();
+        println!("{blur:?}, 4, 16, 64, 256 samples: {errors:?}");
+        assert!(errors.windows(2).all(|pair| pair[1] < 0.75 * pair[0]), "{blur:?}: {errors:?}");
     }
-    let reference = watched.picture("path_traced", &both(&light, &traced));
-    let errors: Vec<f64> = ["1", "4", "16", "64"]
-        .iter()
-        .map(|sets| rmse(&watched, &both(&light, &[("spp", "4"), ("accumulate", *sets)]), &reference))
-        .collect();
-    println!("4, 16, 64, 256 samples: {errors:?}");
-    assert!(errors.windows(2).all(|pair| pair[1] < 0.75 * pair[0]), "{errors:?}");
 }
 
 /// The published table (Clarberg & Munkberg 2014, section 6), to the byte of its formulas.
