@@ -17,12 +17,13 @@ const SIZE: (&str, &str) = ("size", "161x91");
 const FOVEATED: (&str, &str) = ("shading-warp", "foveated");
 
 /// Ways to the same picture; the first shades every sample by itself.
-const ROADS: [Changes<'_>; 10] = [
+const ROADS: [Changes<'_>; 11] = [
     &[("lists", "none")],
     &[],
     &[("compaction", "off")],
     &[("zmax", "off")],
     &[("address-buffer", "off")],
+    &[("shaded-triangles", "all")],
     &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
     &[("compaction", "off"), ("duplicates", "tolerated")],
     &[("instrument", "off"), ("duplicates", "tolerated")],
@@ -128,6 +129,22 @@ fn without_conservative_rasterisation_samples_at_rims_have_no_colour() {
         assert!(drawn > 1.1 * plainly_drawn && plainly_shaded < shaded, "{road}: {drawn} and {plainly_drawn}");
     }
     assert!(plainly_missing > 0.0 && plainly_missing < 0.5 * seen, "{plainly_missing} of {seen}");
+}
+
+#[test]
+fn triangles_without_a_list_are_not_drawn() {
+    let watched = Watched::open("hall:triangles=8000");
+    let counted = |triangles, road| {
+        let changes =
+            [SIZE, ("spp", "2"), ("brdf", "lambert"), ("shaded-triangles", triangles), ("conservative", road)];
+        let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
+        ["shading_pixels_drawn", "shader_invocations"].map(|name| counters[name])
+    };
+    for road in conservative(&watched).into_iter().chain(["none"]) {
+        let ([fewer, shaded], [all, as_many]) = (counted("listed", road), counted("all", road));
+        println!("{road}: {fewer} of {all} drawn, {shaded} shaded");
+        assert!(shaded == as_many && fewer < 0.7 * all, "{road}: {fewer} of {all}, {shaded} and {as_many}");
+    }
 }
 
 /// Mean differences in the middle third of both sides and at the rim, between two pictures; light above 1 is cut.

@@ -44,6 +44,8 @@ pub struct Choices {
     pub is_compacted: bool,
     pub has_zmax: bool,
     pub has_addresses: bool,
+    /// Shading space is drawn with what stands in lists.
+    pub has_marks: bool,
     /// Of the cache of `--shading indirect-gbuffer`.
     pub cache_entries: u64,
     pub is_counted: bool,
@@ -154,6 +156,7 @@ impl Choices {
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),
             has_addresses: has_lists && values.is_on("address-buffer"),
+            has_marks: has_lists && !is_direct && values.text("shaded-triangles") == "listed",
             cache_entries: cache_entries.unwrap_or(samples_of_set),
             is_counted: values.is_on("instrument"),
             is_by_address: shading == Shading::Deep

@@ -230,6 +230,9 @@ impl Prepared for PreparedDeep {
         if visibility.has_layer_from() {
             resolved.insert("layer-from", layer_from.name().to_owned());
         }
+        if !self.choices.has_marks {
+            resolved.insert("shaded-triangles", "all".to_owned());
+        }
         if *shading == Shading::Deep {
             resolved.insert("list-access", reach::name(self.choices.is_by_address).to_owned());
         }

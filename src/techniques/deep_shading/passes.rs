@@ -3,7 +3,7 @@
 use super::baseline::Shading;
 use super::choices::Choices;
 use super::plan::{
-    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
+    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, MARKS, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
 };
 use super::visibility::Visibility;
 use super::{NAME, full, gate, indirect, reconstruct, stereo};
@@ -41,6 +41,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
     if choices.has_lists {
         let mut shaded = links(choices, Access::GraphicsRead);
         shaded.extend(choices.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
+        shaded.extend(choices.has_marks.then(|| touch(MARKS, Access::GraphicsRead)));
         shaded.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
@@ -81,6 +82,9 @@ fn insertion(plan: &mut Plan, choices: &Choices) {
     if choices.has_zmax {
         listed.push(touch(SHADING_DEPTHS, Access::ComputeSample));
         listed.extend([touch(ZMAX, Access::TransferWrite), touch(ZMAX, Access::ComputeWrite)]);
+    }
+    if choices.has_marks {
+        listed.extend([touch(MARKS, Access::TransferWrite), touch(MARKS, Access::ComputeWrite)]);
     }
     plan.pass(full("lists"), listed);
     if !choices.is_compacted {

@@ -29,6 +29,7 @@ pub const COLORS: &str = "shade.colors";
 pub const LINEAR: &str = "lists.linear";
 pub const ADDRESSES: &str = "lists.addresses";
 pub const ZMAX: &str = "lists.zmax";
+pub const MARKS: &str = "lists.marks";
 pub const LENGTHS: &str = "count.lengths";
 pub const COUNTERS: &str = "count.counters";
 pub const COLOR: &str = "resolve.color";
@@ -157,6 +158,10 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
         if choices.has_zmax && !choices.is_direct {
             let depths = layers(choices, inputs, SHADING_DEPTH_FORMAT, attached(choices));
             plan.push("auxiliary", full(SHADING_DEPTHS), depths);
+        }
+        if choices.has_marks {
+            let words = inputs.scene.triangle_count().div_ceil(32);
+            plan.buffer("listed_triangles", full(MARKS), words * 4);
         }
         if choices.is_counted {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);

@@ -214,6 +214,16 @@ pub const SETTINGS: &[Setting] = &[
                first; none: only pixels whose middle it covers, to measure what the others cost and what is without colour then",
     },
     Setting {
+        key: "shaded-triangles",
+        symbol: "",
+        kind: Kind::Choice(&["listed", "all"]),
+        default: "listed",
+        unit: "",
+        paper: "Clarberg 2014, 4.4 (all)",
+        help: "what shading space is drawn with: triangles that a list has, which insertion marks with a bit each, or all of the scene, as in \
+               the paper (and with --lists direct); the same picture",
+    },
+    Setting {
         key: "reconstruct",
         symbol: "",
         kind: Kind::Choice(&["on", "off"]),

@@ -1,6 +1,6 @@
 // Each sample's triangle into the list of its shading pixel, where it is not yet (section 4.3; appendix A, pass 2).
 // Pass: src/techniques/deep_shading/lists/insert.rs.
-// variants: ZMAX=off|on ADDRESSES=off|on
+// variants: ZMAX=off|on ADDRESSES=off|on MARKS=off|on
 #version 460
 #include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/space.glsl"
@@ -35,6 +35,10 @@ WRITES_WORDS(set_address, addresses)
 layout(set = 0, binding = 28) uniform usampler2DArray shading_depths;
 layout(std430, set = 0, binding = 25) buffer ZMax { uint zmax[]; };
 RAISES_WORDS(raise_zmax, zmax)
+#endif
+#ifdef MARKS_ON
+layout(std430, set = 0, binding = 44) buffer Marks { uint marks[]; };
+#include "techniques/deep_shading/lists/marks.glsl"
 #endif
 
 READS_WORDS(begin_of, begins)
@@ -102,6 +106,12 @@ void main() {
         if (color == NO_PRIMITIVE) {
             atomicAdd(counters[COUNTED_CROWDED], 1u);
         }
+#ifdef MARKS_ON
+        // Most samples see what others have seen: what a thread reads may be old, and then it sets the bit again.
+        if (!is_marked(spid.x)) {
+            atomicOr(marks[mark_word(spid.x)], mark_bit(spid.x));
+        }
+#endif
 #ifdef ZMAX_ON
         raise_zmax(pixel, texelFetch(shading_depths, ivec3(at), 0).x);
 #endif

@@ -1,15 +1,26 @@
 // Conservative rasterisation without a geometry shader: every corner of a triangle's hull makes the hull for itself.
 // Pass: src/techniques/deep_shading/shade/vertex.rs.
+// variants: MARKS=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/shade/hull.glsl"
 
 layout(location = 0) flat out uint out_primitive;
+#ifdef MARKS_ON
+layout(std430, set = 0, binding = 44) readonly buffer Marks { uint marks[]; };
+#include "techniques/deep_shading/lists/marks.glsl"
+#endif
 
 void main() {
     uint vertex = uint(gl_VertexIndex) % HULL_VERTICES;
     uint triangle = uint(gl_VertexIndex) / HULL_VERTICES;
     out_primitive = params.primitive_offset + triangle;
+#ifdef MARKS_ON
+    if (!is_marked(out_primitive)) {
+        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);
+        return;
+    }
+#endif
     Hull hull = hull_of(
         canonical_corner(3u * triangle), canonical_corner(3u * triangle + 1u), canonical_corner(3u * triangle + 2u));
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);

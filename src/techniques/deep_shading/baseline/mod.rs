@@ -41,7 +41,7 @@ const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Settings that not everything that is shaded reads: who does, and why others do not.
-const OF_SOME: [(&str, &[&str], &str); 15] = [
+const OF_SOME: [(&str, &[&str], &str); 16] = [
     ("guard-band", OF_SPACE, NO_SPACE),
     ("shading-scale", &["deep", "indirect-gbuffer", "texture-space"], "it shades no pixels of shading space"),
     ("shading-warp", OF_SPACE, NO_SPACE),
@@ -53,6 +53,7 @@ const OF_SOME: [(&str, &[&str], &str); 15] = [
     ("zmax", &["deep"], NO_LISTS),
     ("address-buffer", &["deep"], NO_LISTS),
     ("conservative", &["deep"], NO_LISTS),
+    ("shaded-triangles", &["deep"], NO_LISTS),
     ("pass-samples", &["msaa"], "samples are drawn one at a time"),
     ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
     ("shading-textures", &["texture-space"], "it has no textures of its own"),

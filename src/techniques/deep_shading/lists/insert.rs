@@ -1,6 +1,6 @@
 //! Insertion: each sample's triangle at the head of its list, by compare-exchange, unless the list has it. Shader: insert.comp.
 //! reads   visibility.spids, visibility.shading_depths
-//! writes  lists.begins, lists.nodes, lists.zmax, and addresses as they are without compaction; begins alphas of colours at 0
+//! writes  lists.begins, lists.nodes, lists.zmax, lists.marks, and addresses as they are without compaction; begins alphas of colours at 0
 
 use super::super::choices::Choices;
 use super::super::full;
@@ -20,7 +20,8 @@ pub struct Insert {
 impl Insert {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let on = |is_on| if is_on { "on" } else { "off" };
-        let shader = variant(COMP_VARIANTS, &[on(choices.has_zmax), on(choices.has_addresses)]);
+        let axes = [choices.has_zmax, choices.has_addresses, choices.has_marks].map(on);
+        let shader = variant(COMP_VARIANTS, &axes);
         let constants = [
             ("TOLERATES_DUPLICATES", u32::from(choices.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(choices.is_compacted)),
@@ -50,7 +51,8 @@ impl Insert {
             invocations: Some(spids.description.extent.pixel_count() * u64::from(spids.description.layers())),
         };
         cmd.pass(&full("lists"), traffic, |cmd| {
-            let cleared: Vec<&Buffer> = [Some(&lists.begins), lists.zmax.as_ref()].into_iter().flatten().collect();
+            let cleared = [Some(&lists.begins), lists.zmax.as_ref(), lists.marks.as_ref()];
+            let cleared: Vec<&Buffer> = cleared.into_iter().flatten().collect();
             cmd.barriers(cleared.iter().map(|buffer| buffer.discard(Access::TransferWrite)));
             cleared.iter().for_each(|buffer| cmd.clear(buffer));
             cmd.barriers(cleared.iter().map(|buffer| buffer.from(Access::TransferWrite).to(Access::ComputeWrite)));

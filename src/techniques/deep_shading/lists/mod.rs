@@ -10,7 +10,7 @@ pub mod insert;
 
 use super::choices::Choices;
 use super::full;
-use super::plan::{ADDRESSES, BEGINS, COLORS, LINEAR, NODES, ZMAX};
+use super::plan::{ADDRESSES, BEGINS, COLORS, LINEAR, MARKS, NODES, ZMAX};
 use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands};
 use crate::plan::Resources;
 
@@ -26,6 +26,8 @@ pub struct Lists {
     pub addresses: Option<Buffer>,
     /// 4 B a pixel of shading space, with `--zmax on`.
     pub zmax: Option<Buffer>,
+    /// A bit a triangle of the scene, with `--shaded-triangles listed`: it stands in a list.
+    pub marks: Option<Buffer>,
 }
 
 /// 8 B a sample: RGBA16F; alpha is 1 where it is stored.
@@ -42,6 +44,7 @@ impl Lists {
             linear: choices.is_compacted.then(|| take(LINEAR)),
             addresses: choices.has_addresses.then(|| take(ADDRESSES)),
             zmax: choices.has_zmax.then(|| take(ZMAX)),
+            marks: choices.has_marks.then(|| take(MARKS)),
         }
     }
 
@@ -50,7 +53,7 @@ impl Lists {
         [Some(&self.begins), Some(&self.nodes), self.linear.as_ref()].into_iter().flatten()
     }
 
-    /// All of it that is there: begins, nodes, rows, addresses, depths.
+    /// All of it that is there and as long as shading space or samples: begins, nodes, rows, addresses, depths.
     pub fn all(&self) -> impl Iterator<Item = &Buffer> {
         self.links().chain(&self.addresses).chain(&self.zmax)
     }
@@ -58,7 +61,8 @@ impl Lists {
     /// All of it, by name.
     pub fn bound(&self) -> Vec<(&'static str, Bound<'_>)> {
         let mut bound = vec![("Begins", Bound::Buffer(&self.begins)), ("Nodes", Bound::Buffer(&self.nodes))];
-        let optional = [("Linear", &self.linear), ("Addresses", &self.addresses), ("ZMax", &self.zmax)];
+        let optional =
+            [("Linear", &self.linear), ("Addresses", &self.addresses), ("ZMax", &self.zmax), ("Marks", &self.marks)];
         bound.extend(optional.into_iter().filter_map(|(name, buffer)| Some((name, Bound::Buffer(buffer.as_ref()?)))));
         bound
     }

@@ -2,8 +2,10 @@
 //! conservative rasterisation is for, and costs (Clarberg & Munkberg 2014, table 2). Shader: corner.vert.
 
 use super::Stages;
-use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT;
+use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT_VARIANTS;
+use crate::gpu::shader::variant;
 
-pub(super) fn stages(is_conservative: bool) -> Stages {
-    Stages { vertex: &VERT, geometry: None, is_conservative, vertex_count: 3 }
+/// `marks`: the value of the shader's axis.
+pub(super) fn stages(is_conservative: bool, marks: &str) -> Stages {
+    Stages { vertex: variant(VERT_VARIANTS, &[marks]), geometry: None, is_conservative, vertex_count: 3 }
 }

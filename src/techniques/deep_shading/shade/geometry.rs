@@ -1,8 +1,11 @@
 //! Hulls from a geometry shader (Clarberg & Munkberg 2014, section 4.4). Shaders: corner.vert, geometry.geom, hull.glsl.
 
 use super::Stages;
-use crate::gpu::shader::techniques::deep_shading::shade::{corner::VERT, geometry::GEOM};
+use crate::gpu::shader::techniques::deep_shading::shade::{corner::VERT_VARIANTS, geometry::GEOM_VARIANTS};
+use crate::gpu::shader::variant;
 
-pub(super) fn stages() -> Stages {
-    Stages { vertex: &VERT, geometry: Some(&GEOM), is_conservative: false, vertex_count: 3 }
+/// `marks`: the value of the geometry shader's axis; corners are made of all triangles.
+pub(super) fn stages(marks: &str) -> Stages {
+    let geometry = Some(variant(GEOM_VARIANTS, &[marks]));
+    Stages { vertex: variant(VERT_VARIANTS, &["off"]), geometry, is_conservative: false, vertex_count: 3 }
 }

@@ -1,6 +1,6 @@
 //! Shade: all triangles once over shading space, every pixel that they touch; what the lists have is shaded and stored
 //! (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of the roads.
-//! reads   the scene, its lights, the lists, lists.zmax
+//! reads   the scene, its lights, the lists, lists.zmax, lists.marks
 //! writes  shade.colors   buffer, 8 B a sample: RGBA16F
 
 pub mod corner;
@@ -55,12 +55,12 @@ impl Road {
         }
     }
 
-    fn stages(self) -> Stages {
+    fn stages(self, marks: &str) -> Stages {
         match self {
-            Self::Hardware => corner::stages(true),
-            Self::Geometry => geometry::stages(),
-            Self::Vertex => vertex::stages(),
-            Self::Plain => corner::stages(false),
+            Self::Hardware => corner::stages(true, marks),
+            Self::Geometry => geometry::stages(marks),
+            Self::Vertex => vertex::stages(marks),
+            Self::Plain => corner::stages(false, marks),
         }
     }
 }
@@ -75,7 +75,7 @@ impl Shade {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let lists = if choices.is_compacted { "compact" } else { "linked" };
         let zmax = if choices.has_zmax { "on" } else { "off" };
-        let stages = choices.road.stages();
+        let stages = choices.road.stages(if choices.has_marks { "on" } else { "off" });
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
@@ -128,6 +128,8 @@ impl Shade {
             lists.links_to(cmd, left, Access::GraphicsRead);
             let zmax = lists.zmax.iter();
             cmd.barriers(zmax.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::GraphicsRead)));
+            let marks = lists.marks.iter();
+            cmd.barriers(marks.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::GraphicsRead)));
             let written = [colors, counters].into_iter();
             cmd.barriers(written.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::FragmentWrite)));
             let mut bound = bound.to_vec();

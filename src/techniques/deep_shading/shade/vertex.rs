@@ -2,11 +2,18 @@
 //! Shaders: vertex.vert, hull.glsl, ../hull.glsl.
 
 use super::Stages;
-use crate::gpu::shader::techniques::deep_shading::shade::vertex::VERT;
+use crate::gpu::shader::techniques::deep_shading::shade::vertex::VERT_VARIANTS;
+use crate::gpu::shader::variant;
 
 /// HULL_VERTICES of hull.glsl.
 pub const HULL_VERTICES: u32 = 18;
 
-pub(super) fn stages() -> Stages {
-    Stages { vertex: &VERT, geometry: None, is_conservative: false, vertex_count: HULL_VERTICES }
+/// `marks`: the value of the shader's axis.
+pub(super) fn stages(marks: &str) -> Stages {
+    Stages {
+        vertex: variant(VERT_VARIANTS, &[marks]),
+        geometry: None,
+        is_conservative: false,
+        vertex_count: HULL_VERTICES,
+    }
 }
