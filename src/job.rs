@@ -2,7 +2,7 @@
 
 use crate::earlier::{self, Earlier};
 use crate::error::{Error, Result};
-use crate::gpu::commands::Submits;
+use crate::gpu::commands::{Recording, Submits};
 use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
 use crate::gpu::{Caps, DeviceRequest, Gpu};
@@ -48,6 +48,8 @@ pub struct Job {
     pub device: Option<String>,
     /// One submit for each pass: pass times.
     pub profile: bool,
+    /// What the device counts in each pass.
+    pub statistics: bool,
     /// Validation messages are fatal.
     pub validate: bool,
     /// The argv that repeats it.
@@ -94,6 +96,7 @@ impl Job {
             reference: None,
             device: None,
             profile: false,
+            statistics: false,
             validate: false,
             command: Vec::new(),
         }
@@ -161,7 +164,8 @@ impl Job {
         unfinished: Unfinished,
     ) -> Result<Outcome> {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
-        let mut renderer = session.renderer(self.technique, values, &self.aovs, submits)?;
+        let recording = Recording { submits, has_statistics: self.statistics };
+        let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
         let settings = settings(session, &renderer, values);
         if let Some(earlier) = &self.earlier {
             earlier.begin(&mut renderer, &settings)?;

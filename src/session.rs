@@ -3,11 +3,11 @@
 use crate::bvh::LazyBvh;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
-use crate::gpu::commands::{RecordedPass, Submits};
+use crate::gpu::commands::{RecordedPass, Recording};
 use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
-use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, upload};
+use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, statistics, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
 use crate::metrics::noise;
@@ -100,15 +100,15 @@ impl Session {
 
     /// Makes a technique real for these settings, and records its frame. `aovs`: the stages that will be read back.
     ///
-    /// Errors: impossible settings (exit code 2); memory (4).
+    /// Errors: impossible settings (exit code 2); the device lacks what they or `recording` need (3); memory (4).
     pub fn renderer(
         &self,
         technique: &dyn Technique,
         values: &Values,
         aovs: &[String],
-        submits: Submits,
+        recording: impl Into<Recording>,
     ) -> Result<Renderer> {
-        self.make(technique, values, aovs, submits).map_err(|error| {
+        self.make(technique, values, aovs, recording.into()).map_err(|error| {
             if error.kind() != ErrorKind::Memory {
                 return error;
             }
@@ -117,7 +117,16 @@ impl Session {
         })
     }
 
-    fn make(&self, technique: &dyn Technique, values: &Values, aovs: &[String], submits: Submits) -> Result<Renderer> {
+    fn make(
+        &self,
+        technique: &dyn Technique,
+        values: &Values,
+        aovs: &[String],
+        recording: Recording,
+    ) -> Result<Renderer> {
+        if recording.has_statistics {
+            statistics::require(&self.gpu.caps)?;
+        }
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
         let requirements = Requirements::Device(&self.gpu);
@@ -149,7 +158,7 @@ impl Session {
         let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         counters.extend(frame.drawn());
         let once_passes = frame.once();
-        let mut cmd = Commands::begin(&self.gpu, technique.name(), submits)?;
+        let mut cmd = Commands::begin(&self.gpu, technique.name(), recording)?;
         cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
         if cfg!(debug_assertions) {
@@ -234,7 +243,7 @@ impl Renderer {
                 expected = noise::samples_for(most, count.into(), error).min(all.into()) as u32;
             }
             stage.reach(count.into(), expected.into());
-            total.add(&self.run(count)?);
+            total.add(self.run(count)?);
         }
         if all > 1 {
             stage.reach(self.runs.get().into(), expected.into());

@@ -52,6 +52,7 @@ mod shadow_volumes;
 mod shutter;
 mod sobol;
 mod split;
+mod statistics;
 mod study;
 mod support;
 mod traced_twins;

@@ -111,6 +111,7 @@ fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Resul
         (features.shader_float16, "16-bit floats"),
         (features.conservative_rasterization, "conservative rasterisation"),
         (features.ray_query, "ray queries"),
+        (features.pipeline_statistics, "pipeline statistics"),
         (features.memory_budget, "memory budget"),
         (limits.timestamp_period_ns > 0.0, "timestamps"),
     ];

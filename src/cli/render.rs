@@ -55,7 +55,11 @@ pub fn command() -> Command {
                     .long("profile")
                     .action(ArgAction::SetTrue)
                     .help("Time each pass: one submit and fence a pass, three frames after one that warms up"),
-            ),
+            )
+            .arg(Arg::new("statistics").long("statistics").action(ArgAction::SetTrue).help(
+                "Report what the device counts in each pass: vertices, primitives, shader invocations. It may cost time, and \
+                 each driver counts in its own way: lavapipe of Mesa 22.3 whole blocks of 4x4 pixels",
+            )),
     );
     reference_args::with_reference_args(command)
 }
@@ -71,6 +75,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.earlier = earlier.map(|path| Earlier::read(path, job.values.extent("size"))).transpose()?;
     job.reference = reference_args::asked(matches)?;
     job.profile = matches.get_flag("profile");
+    job.statistics = matches.get_flag("statistics");
     if let Some(range) = matches.get_one::<String>("frames") {
         let frames = Frames::parse(range, matches.get_one::<String>("fps").map_or(DEFAULT_FPS, String::as_str))?;
         return run_sequence(&job, &frames, matches);

@@ -8,6 +8,7 @@ use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
 use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
 use super::recorded::Recorded;
+use super::statistics::Statistics;
 use super::timing::Timestamps;
 use super::{Access, Buffer, Gpu};
 use crate::error::{Error, Result};
@@ -23,6 +24,20 @@ pub enum Submits {
     One,
     /// One submit and fence for each pass, for its time.
     PerPass,
+}
+
+/// How a frame is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recording {
+    pub submits: Submits,
+    /// Whether the device counts what each pass does, which may cost time.
+    pub has_statistics: bool,
+}
+
+impl From<Submits> for Recording {
+    fn from(submits: Submits) -> Self {
+        Self { submits, has_statistics: false }
+    }
 }
 
 /// What a pass moves, by arithmetic: the bytes that its invocations read and write in buffers and images.
@@ -60,6 +75,7 @@ pub struct Commands {
     descriptors: Descriptors,
     pub(super) passes: Vec<RecordedPass>,
     pub(super) timestamps: Option<Timestamps>,
+    pub(super) statistics: Option<Statistics>,
     pub(super) truth: HashMap<Target, AccessSet>,
     touched: Vec<Touched>,
     heirs: Heirs,
@@ -68,12 +84,13 @@ pub struct Commands {
 /// For each resource that takes bytes over, those who had them before it in the frame.
 pub type Heirs = HashMap<Target, Vec<Target>>;
 
-/// Passes of one frame that can have timestamps.
+/// Passes of one frame that can have timestamps and statistics.
 const MAX_PASS_COUNT: u32 = 256;
 
 impl Commands {
-    /// Starts recording. `name` labels the command buffers.
-    pub fn begin(gpu: &Arc<Gpu>, name: &str, submits: Submits) -> Result<Self> {
+    /// Starts recording. `name` labels the command buffers. Statistics need a device that has them (`statistics::require`).
+    pub fn begin(gpu: &Arc<Gpu>, name: &str, recording: impl Into<Recording>) -> Result<Self> {
+        let Recording { submits, has_statistics } = recording.into();
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: a live device and its queue family.
         let pool = unsafe { gpu.device.create_command_pool(&info, None) }
@@ -87,6 +104,7 @@ impl Commands {
             descriptors: Descriptors::new(gpu),
             passes: Vec::new(),
             timestamps: None,
+            statistics: None,
             truth: HashMap::new(),
             touched: Vec::new(),
             heirs: Heirs::new(),
@@ -95,9 +113,15 @@ impl Commands {
         if submits == Submits::PerPass {
             commands.timestamps = Timestamps::new(gpu, MAX_PASS_COUNT)?;
         }
+        if has_statistics {
+            commands.statistics = Some(Statistics::new(gpu, MAX_PASS_COUNT)?);
+        }
         commands.next_buffer()?;
         if let Some(timestamps) = &commands.timestamps {
             timestamps.reset(commands.buffer());
+        }
+        if let Some(statistics) = &commands.statistics {
+            statistics.reset(commands.buffer());
         }
         Ok(commands)
     }
@@ -130,7 +154,7 @@ impl Commands {
             .map_err(|result| Error::device(format!("recording commands: {result}")))
     }
 
-    /// Records one pass under its name: debug label, timing, report row.
+    /// Records one pass under its name: debug label, timing, statistics, report row.
     pub fn pass(&mut self, name: &str, traffic: Traffic, record: impl FnOnce(&mut Self) -> Result<()>) -> Result<()> {
         let index = self.passes.len() as u32;
         assert!(index < MAX_PASS_COUNT, "{name}: more than {MAX_PASS_COUNT} passes in a frame");
@@ -143,7 +167,13 @@ impl Commands {
         if let Some(timestamps) = &self.timestamps {
             timestamps.write(self.buffer(), index, false);
         }
+        if let Some(statistics) = &self.statistics {
+            statistics.begin(self.buffer(), index);
+        }
         record(self).map_err(|error| error.within(name))?;
+        if let Some(statistics) = &self.statistics {
+            statistics.end(self.buffer(), index);
+        }
         if let Some(timestamps) = &self.timestamps {
             timestamps.write(self.buffer(), index, true);
         }

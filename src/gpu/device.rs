@@ -264,6 +264,7 @@ impl Gpu {
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
             .depth_clamp(caps.features.depth_clamp)
+            .pipeline_statistics_query(caps.features.pipeline_statistics)
             .geometry_shader(caps.features.geometry_shader);
         let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
             // Every device of Vulkan 1.3 has it.

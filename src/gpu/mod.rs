@@ -18,6 +18,7 @@ pub mod recorded;
 pub mod rendering;
 pub mod sampler;
 pub mod shader;
+pub mod statistics;
 pub mod structure;
 pub mod timing;
 pub mod transfer;

@@ -38,6 +38,8 @@ pub enum Ability {
     ConservativeRaster,
     /// Shaders send rays through structures that the driver builds.
     RayQuery,
+    /// The device counts what the stages of a pass do.
+    PipelineStatistics,
 }
 
 impl Ability {
@@ -59,6 +61,7 @@ impl Ability {
             Self::LayerFromVertex => caps.features.layer_from_vertex_shader,
             Self::ConservativeRaster => caps.features.conservative_rasterization,
             Self::RayQuery => caps.features.ray_query,
+            Self::PipelineStatistics => caps.features.pipeline_statistics,
         }
     }
 
@@ -80,6 +83,7 @@ impl Ability {
             Self::LayerFromVertex => "shaderOutputLayer",
             Self::ConservativeRaster => "VK_EXT_conservative_rasterization",
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",
+            Self::PipelineStatistics => "pipelineStatisticsQuery",
         }
     }
 }

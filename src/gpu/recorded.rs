@@ -6,6 +6,7 @@
 
 use super::commands::{Commands, RecordedPass, Submits};
 use super::failure::failed;
+use super::statistics::PassStatistics;
 use super::timing::PassTime;
 use crate::error::Result;
 use ash::vk;
@@ -17,19 +18,23 @@ pub struct Recorded {
     fence: vk::Fence,
 }
 
-/// What one run of a frame took.
+/// What one run of a frame took, and what the device counted in it.
 pub struct FrameTime {
     /// First submit to last fence.
     pub wall_ns: u64,
     /// Of the passes that ran, in the order of `Recorded::passes`.
     pub passes: Vec<PassTime>,
+    /// Of the same passes; empty where none were asked for.
+    pub statistics: Vec<PassStatistics>,
 }
 
 impl FrameTime {
-    /// Another run of the same frame, which makes the same picture with it.
-    pub fn add(&mut self, run: &Self) {
+    /// Another run of the same frame, which makes the same picture with it. Statistics become its own, as counters are
+    /// those of the last run.
+    pub fn add(&mut self, run: Self) {
         let sum = |total: &mut Option<u64>, more: Option<u64>| *total = total.zip(more).map(|(a, b)| a + b);
         self.wall_ns += run.wall_ns;
+        self.statistics = run.statistics;
         for (total, more) in self.passes.iter_mut().zip(&run.passes) {
             sum(&mut total.wall_ns, more.wall_ns);
             sum(&mut total.timestamp_ns, more.timestamp_ns);
@@ -86,7 +91,11 @@ impl Recorded {
                 timestamp_ns: timestamps.get(pass).copied(),
             })
             .collect();
-        Ok(FrameTime { wall_ns, passes })
+        let statistics = match &commands.statistics {
+            Some(statistics) => statistics.read_first(pass_count)?,
+            None => Vec::new(),
+        };
+        Ok(FrameTime { wall_ns, passes, statistics })
     }
 
     fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {

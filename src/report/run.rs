@@ -66,6 +66,15 @@ pub fn settings(values: &Values, resolved: &BTreeMap<&'static str, String>) -> V
     Value::Object(values.iter().map(|(key, text)| (key.to_owned(), value(key, text))).collect())
 }
 
+/// What a pass's statistics say of its shaders; None where it has none.
+fn invocations(pass: &Value) -> Option<String> {
+    let counts = pass.get("statistics")?;
+    let count = |stage: &str| counts[format!("{stage}_shader_invocations")].as_u64().unwrap_or_default();
+    let stages = ["vertex", "geometry", "fragment", "compute"].into_iter().filter(|stage| count(stage) > 0);
+    let told: Vec<String> = stages.map(|stage| format!("{stage} {}", count(stage))).collect();
+    Some(format!("{} invocations", if told.is_empty() { "no".to_owned() } else { told.join(", ") }))
+}
+
 fn milliseconds(ns: u64) -> f64 {
     ns as f64 / 1e6
 }
@@ -161,7 +170,8 @@ impl Report {
         self.document.insert("time_s".into(), json!(time_s));
     }
 
-    /// Pass rows where frames were submitted pass by pass, and the frame's time.
+    /// A row for each pass, with its times where frames were submitted pass by pass and what the device counted where it was
+    /// asked to; and the frame's time.
     pub fn times(&mut self, renderer: &Renderer, frames: &[FrameTime], profile: bool) {
         let once = |passes: &[(String, u64)], place: &str| -> Vec<Value> {
             let row = |(name, ns): &(String, u64)| json!({ "name": name, "where": place, "ms": spread(&[milliseconds(*ns)]) });
@@ -189,6 +199,10 @@ impl Report {
             if profile {
                 row["ms"] = spread(&walls);
                 row["timestamp_ms"] = spread(&stamps);
+            }
+            // Of the last frame, as counters are.
+            if let Some(counts) = frames.last().and_then(|frame| frame.statistics.get(index)) {
+                row["statistics"] = json!(counts);
             }
             rows.push(row);
         }
@@ -263,9 +277,11 @@ impl Report {
             string(&device["api"])
         ));
         for pass in document["passes"].as_array().into_iter().flatten() {
-            if let Some(ms) = pass["ms"]["median"].as_f64() {
-                let place = if pass["where"].is_string() { "  (host, once)" } else { "" };
-                line(format!("  {:<44} {ms:>10.3} ms{place}", string(&pass["name"])));
+            let place = if pass["where"].is_string() { "  (host, once)" } else { "" };
+            let time = pass["ms"]["median"].as_f64().map(|ms| format!("{ms:>10.3} ms{place}"));
+            let told: Vec<String> = time.into_iter().chain(invocations(pass)).collect();
+            if !told.is_empty() {
+                line(format!("  {:<44} {}", string(&pass["name"]), told.join("  ")));
             }
         }
         let software = if self.is_software { ", software driver" } else { "" };

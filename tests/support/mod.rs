@@ -71,6 +71,8 @@ pub enum Feature {
     /// Rays through structures of the driver's own.
     RayQuery,
     GeometryShader,
+    /// The device counts what stages do.
+    PipelineStatistics,
 }
 
 impl Feature {
@@ -80,13 +82,14 @@ impl Feature {
             Self::ExactPositions => caps.limits.sub_pixel_bits >= 8,
             Self::RayQuery => caps.features.ray_query,
             Self::GeometryShader => caps.features.geometry_shader,
+            Self::PipelineStatistics => caps.features.pipeline_statistics,
         }
     }
 
     /// Whether the driver that CI runs on has it: where not, CI skips the test as others do.
     fn is_of_pinned(self) -> bool {
         match self {
-            Self::Pinned | Self::ExactPositions | Self::GeometryShader => true,
+            Self::Pinned | Self::ExactPositions | Self::GeometryShader | Self::PipelineStatistics => true,
             Self::RayQuery => false,
         }
     }
@@ -100,6 +103,7 @@ impl Feature {
             }
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure".to_owned(),
             Self::GeometryShader => "geometryShader".to_owned(),
+            Self::PipelineStatistics => "pipelineStatisticsQuery".to_owned(),
         }
     }
 }

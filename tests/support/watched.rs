@@ -1,7 +1,7 @@
 //! A session under the validation layer, in which every message is a failure.
 
 use quincunx::error::Result;
-use quincunx::gpu::commands::Submits;
+use quincunx::gpu::commands::{Recording, Submits};
 use quincunx::gpu::{DeviceRequest, Gpu};
 use quincunx::job::settings_of;
 use quincunx::memory::Strategy;
@@ -78,9 +78,15 @@ impl Watched {
         self.render_as(technique, changes, stages, Submits::One)
     }
 
-    pub fn render_as(&self, technique: &str, changes: Changes<'_>, stages: &[&str], submits: Submits) -> Renderer {
+    pub fn render_as(
+        &self,
+        technique: &str,
+        changes: Changes<'_>,
+        stages: &[&str],
+        recording: impl Into<Recording>,
+    ) -> Renderer {
         let what = format!("{technique} with {changes:?}");
-        let made = self.try_renderer(technique, changes, stages, submits);
+        let made = self.try_renderer(technique, changes, stages, recording);
         let renderer = made.unwrap_or_else(|error| panic!("{what}: {error}"));
         renderer.frame().unwrap_or_else(|error| panic!("{what}: {error}"));
         require_silence(&self.session.gpu, &what);
@@ -92,10 +98,10 @@ impl Watched {
         technique: &str,
         changes: Changes<'_>,
         stages: &[&str],
-        submits: Submits,
+        recording: impl Into<Recording>,
     ) -> Result<Renderer> {
         let stages: Vec<String> = stages.iter().map(|stage| (*stage).to_owned()).collect();
-        self.session.renderer(techniques::find(technique)?, &values(technique, changes), &stages, submits)
+        self.session.renderer(techniques::find(technique)?, &values(technique, changes), &stages, recording)
     }
 
     /// The picture of one frame.
