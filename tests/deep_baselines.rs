@@ -237,6 +237,10 @@ fn settings_that_a_baseline_does_not_read_are_refused() {
         (&[MSAA, ("conservative", "vertex")], "--conservative vertex with --shading msaa"),
         (&[SSAA, ("guard-band", "0")], "--guard-band 0 with --shading ssaa"),
         (&[SSAA, ("pass-samples", "4")], "--pass-samples 4 with --shading ssaa"),
+        (&[MSAA, ("visibility", "instancing")], "--visibility instancing with --shading msaa"),
+        (&[SSAA, ("visibility", "ray")], "--visibility ray with --shading ssaa"),
+        (&[SSAA, ("layer-from", "vertex")], "--layer-from vertex with --shading ssaa"),
+        (&[("pass-samples", "8")], "--pass-samples 8 with --shading deep"),
         (&[("pass-samples", "1")], "--pass-samples 1 with --shading deep"),
         (&[MSAA, ("pass-samples", "4"), ("spp", "6")], "--pass-samples 4: --spp 6 is no multiple of it"),
     ] {

@@ -38,7 +38,8 @@ const uint COUNTED_ROW_IDS = 15u;
 const uint COUNTED_DIGEST = 16u;
 // Shading samples that a full cache forgot (--shading indirect-gbuffer).
 const uint COUNTED_FORGOTTEN = 17u;
-// Samples all of whose texels a triangle of another chart owns (--shading texture-space).
+// Samples all of whose texels a triangle of another chart owns (--shading texture-space): those too, as of COUNTED_MISSING there,
+// that something nearer covers later.
 const uint COUNTED_OTHER_CHARTS = 18u;
 // Pixels of shading space that triangles were drawn at, before any look-up.
 const uint COUNTED_DRAWN = 19u;

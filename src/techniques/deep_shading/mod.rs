@@ -135,7 +135,8 @@ impl Technique for DeepShading {
             need("the shading pass", Ability::FragmentAtomics, ""),
         ];
         let visibility = Visibility::of(values);
-        if visibility.is_layered() {
+        let has_layers = matches!(values.text("shading"), "deep" | "indirect-gbuffer");
+        if has_layers && visibility.is_layered() {
             let ability = match LayerFrom::of(values, caps) {
                 LayerFrom::Vertex if visibility.has_layer_from() => Ability::LayerFromVertex,
                 _ => Ability::GeometryShader,

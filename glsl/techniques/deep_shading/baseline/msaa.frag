@@ -18,6 +18,8 @@ layout(location = 2) flat in vec4 in_open[3];
 layout(location = 5) flat in vec4 in_close[3];
 layout(location = 8) flat in vec3 in_open_depth;
 layout(location = 9) flat in vec3 in_close_depth;
+layout(location = 10) flat in vec2 in_along;
+layout(location = 11) flat in vec4 in_range;
 
 // surface.glsl calls the middle of the exposure `frame`.
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
@@ -28,13 +30,20 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
 #include "techniques/deep_shading/visibility/hit.glsl"
+#include "techniques/deep_shading/baseline/box.glsl"
 #ifdef ALPHA_TESTED
 #include "techniques/deep_shading/alpha.glsl"
 #endif
 
 layout(location = 0) out vec4 out_color;
 
+const uint MOST_PASS_SAMPLES = 8u;
+
 void main() {
+    // Half of the triangle around a box is not the box.
+    if (!may_touch(Box(in_along, in_range.xy, in_range.zw), gl_FragCoord.xy)) {
+        discard;
+    }
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
     uvec2 layer_px = pixel / table;
@@ -42,8 +51,7 @@ void main() {
     // `params.tuple`: of the pass, its first in each cell.
     uint first = run.sample_index * deep.tuple_count + (cell.y * table.x + cell.x) * deep.sample_count + params.tuple;
     uint covered = 0u;
-    float count = 0.0;
-    float depth = 0.0;
+    float depths[MOST_PASS_SAMPLES];
     Place shaded;
     for (uint index = 0u; index < PASS_SAMPLES; index++) {
         vec4 corners[3];
@@ -62,8 +70,7 @@ void main() {
             shaded = place;
         }
         covered |= 1u << index;
-        count += 1.0;
-        depth += hit_depth(corners, place.weights);
+        depths[index] = hit_depth(corners, place.weights);
     }
     if (covered == 0u) {
         discard;
@@ -83,7 +90,11 @@ void main() {
         discard;
     }
 #endif
-    gl_FragDepth = depth / count;
+    float depth = 0.0;
+    for (uint index = 0u; index < PASS_SAMPLES; index++) {
+        depth += (covered & (1u << index)) != 0u ? depths[index] : 0.0;
+    }
+    gl_FragDepth = depth / float(bitCount(covered));
     gl_SampleMask[0] = int(covered);
     out_color = attached_color(color_of_base(base_color));
     if (IS_COUNTED != 0u) {

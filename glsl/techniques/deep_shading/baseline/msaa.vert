@@ -8,6 +8,7 @@
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/bound.glsl"
+#include "techniques/deep_shading/baseline/box.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 
@@ -17,36 +18,32 @@ layout(location = 2) flat out vec4 out_open[3];
 layout(location = 5) flat out vec4 out_close[3];
 layout(location = 8) flat out vec3 out_open_depth;
 layout(location = 9) flat out vec3 out_close_depth;
+// What the triangle is drawn around: its direction, and from where to where along it and across it.
+layout(location = 10) flat out vec2 out_along;
+layout(location = 11) flat out vec4 out_range;
 
 // The rasteriser's own samples only say which pixels are run: all of those that a pixel has must be covered where any place
 // in it may be. A quarter is for rounding.
 const float WHOLE_PIXEL = 1.25;
 
-// A box around points, along a direction and across it, pixels.
-struct Box {
-    vec2 along;
-    vec2 least;
-    vec2 greatest;
-};
-
-vec2 turned(vec2 along, vec2 at) {
-    return vec2(dot(along, at), along.x * at.y - along.y * at.x);
-}
-
 Box box_of(Bound bound, vec2 along) {
     Box box = Box(along, vec2(3.0e38), vec2(-3.0e38));
-    // How far a pixel's corners lie along a direction.
-    float reach = WHOLE_PIXEL * (abs(along.x) + abs(along.y));
     for (uint index = 0u; index < bound.count; index++) {
         vec2 at = turned(along, bound.corners[index]);
-        box.least = min(box.least, at - reach);
-        box.greatest = max(box.greatest, at + reach);
+        box.least = min(box.least, at);
+        box.greatest = max(box.greatest, at);
     }
     return box;
 }
 
+// With whole pixels around it: how far a pixel's corners lie along a direction.
+Box widened(Box box) {
+    float reach = WHOLE_PIXEL * (abs(box.along.x) + abs(box.along.y));
+    return Box(box.along, box.least - reach, box.greatest + reach);
+}
+
 float area_of(Box box) {
-    vec2 size = box.greatest - box.least;
+    vec2 size = widened(box).greatest - widened(box).least;
     return size.x * size.y;
 }
 
@@ -60,8 +57,8 @@ Box best_box(Bound bound, vec2 frame_px) {
         }
     }
     Box upright = box_of(bound, vec2(1.0, 0.0));
-    upright.least = max(upright.least, vec2(-WHOLE_PIXEL));
-    upright.greatest = max(min(upright.greatest, frame_px + WHOLE_PIXEL), upright.least);
+    upright.least = max(upright.least, vec2(0.0));
+    upright.greatest = max(min(upright.greatest, frame_px), upright.least);
     Box tilted = box_of(bound, normalize(longest));
     if (area_of(tilted) < area_of(upright)) {
         return tilted;
@@ -88,7 +85,10 @@ void main() {
         gl_Position = vec4(0.0, 0.0, 0.5, 1.0);
         return;
     }
-    Box box = best_box(bound, frame_px);
+    Box tight = best_box(bound, frame_px);
+    out_along = tight.along;
+    out_range = vec4(tight.least, tight.greatest);
+    Box box = widened(tight);
     // Twice as long and as wide as the box, whose far corner lies on its long side; towards the middle of the frame, so that
     // it rarely leaves what drivers draw without cutting it into pieces.
     vec2 size = box.greatest - box.least;

@@ -41,7 +41,7 @@ const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Settings that not everything that is shaded reads: who does, and why others do not.
-const OF_SOME: [(&str, &[&str], &str); 16] = [
+const OF_SOME: [(&str, &[&str], &str); 17] = [
     ("guard-band", OF_SPACE, NO_SPACE),
     ("shading-scale", &["deep", "indirect-gbuffer", "texture-space"], "it shades no pixels of shading space"),
     ("shading-warp", OF_SPACE, NO_SPACE),
@@ -54,6 +54,7 @@ const OF_SOME: [(&str, &[&str], &str); 16] = [
     ("address-buffer", &["deep"], NO_LISTS),
     ("conservative", &["deep"], NO_LISTS),
     ("shaded-triangles", &["deep"], NO_LISTS),
+    ("layer-from", OF_SPACE, "samples are drawn layer by layer"),
     ("pass-samples", &["msaa"], "samples are drawn one at a time"),
     ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
     ("shading-textures", &["texture-space"], "it has no textures of its own"),
@@ -97,7 +98,7 @@ impl Shading {
             let value = values.text(key);
             if value != default && !readers.contains(&text) {
                 return Err(Error::request(format!("--{key} {value} with --shading {text}: {why}"))
-                    .note(format!("--shading {} takes it; --{key} {default} goes with all", readers.join(" and "))));
+                    .note(format!("--shading {} would; --{key} {default} goes with all", readers.join(" and "))));
             }
         }
         Ok(match text {
@@ -115,11 +116,12 @@ impl Shading {
     /// Errors: what is drawn sample by sample has no such kind (exit code 2).
     pub fn visibility(self, values: &Values) -> Result<Visibility> {
         let visibility = Visibility::of(values);
+        let goes_with_all = matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic);
         match self {
             Self::Deep | Self::IndirectGbuffer => Ok(visibility),
-            Self::Msaa { .. } => Ok(Visibility::Stochastic),
-            _ if matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic) => Ok(visibility),
-            Self::Ssaa | Self::TextureSpace(_) => {
+            Self::Msaa { .. } if goes_with_all => Ok(Visibility::Stochastic),
+            _ if goes_with_all => Ok(visibility),
+            Self::Msaa { .. } | Self::Ssaa | Self::TextureSpace(_) => {
                 let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
                 let why = "samples are drawn and coloured layer by layer";
                 Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}"))

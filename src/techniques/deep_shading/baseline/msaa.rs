@@ -49,9 +49,12 @@ pub(super) fn pass_samples(values: &Values, caps: &Caps, spp: u32) -> Result<u32
         .note(format!("--spp {} works, and --pass-samples 1 always", spp.next_multiple_of(samples))))
 }
 
-/// What `--pass-samples` needs of a device, whatever is shaded.
+/// What `--pass-samples` needs of a device; of other kinds of `--shading` nothing, which refuse it.
 pub(super) fn needs(values: &Values) -> Option<Need> {
     let asked = values.text("pass-samples");
+    if values.text("shading") != "msaa" {
+        return None;
+    }
     let (_, ability) = MULTIPLE.into_iter().find(|(samples, _)| asked == samples.to_string())?;
     let instead = "--pass-samples auto takes as many as there are";
     Some(Need { of: format!("--pass-samples {asked}"), ability, instead })
