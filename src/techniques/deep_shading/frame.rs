@@ -59,17 +59,18 @@ impl DeepFrame {
         (primitives, traced, atlases): (Primitives, Option<Traced>, Option<Atlases>),
     ) -> Result<Self> {
         let frame = inputs.view.extent;
-        let shader = match choices.shading {
-            Shading::Deep | Shading::IndirectGbuffer => {
-                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
-                let reach = Reach::new(gpu, resources, choices.is_by_address, apart.buffers())?;
-                Shader::Apart(Box::new(apart), reach)
-            }
-            _ => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
-        };
         let reconstruct = match choices.is_reconstructed {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
             false => None,
+        };
+        let shader = match choices.shading {
+            Shading::Deep | Shading::IndirectGbuffer => {
+                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
+                let buffers = apart.buffers().chain(reconstruct.iter().flat_map(Reconstruct::buffers));
+                let reach = Reach::new(gpu, resources, choices.is_by_address, buffers)?;
+                Shader::Apart(Box::new(apart), reach)
+            }
+            _ => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
         };
         Ok(Self {
             list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),

@@ -230,7 +230,7 @@ impl Prepared for PreparedDeep {
         if visibility.has_layer_from() {
             resolved.insert("layer-from", layer_from.name().to_owned());
         }
-        if *shading == Shading::Deep {
+        if matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
             resolved.insert("list-access", reach::name(self.choices.is_by_address).to_owned());
         }
         if let Some(lens) = lens {

@@ -47,7 +47,7 @@ const OF_SOME: [(&str, &[&str], &str); 15] = [
     ("shading-warp", OF_SPACE, NO_SPACE),
     ("warp-falloff", OF_SPACE, NO_SPACE),
     ("lists", &["deep"], NO_LISTS),
-    ("list-access", &["deep"], NO_LISTS),
+    ("list-access", OF_SPACE, "samples' colours are in images"),
     ("duplicates", &["deep"], NO_LISTS),
     ("compaction", &["deep"], NO_LISTS),
     ("zmax", &["deep"], NO_LISTS),
