@@ -85,7 +85,8 @@ fn what_the_cache_keeps_is_shaded_once_and_what_it_forgets_again() {
     assert!(none.0 > some.0 && none.0 <= deep["samples_seen"], "{none:?}");
 }
 
-/// With two sets of samples. A cache of 256 MiB is reached to its end: what looked there for nothing would be shaded again.
+/// With two sets of samples, and room for what they see. A cache of 256 MiB is reached to its end: what looked there for nothing
+/// would be shaded again.
 #[test]
 fn buffers_longer_than_the_device_binds_are_reached_by_their_addresses() {
     let watched = Watched::open("lamps:objects=20,lights=4");
@@ -93,13 +94,15 @@ fn buffers_longer_than_the_device_binds_are_reached_by_their_addresses() {
     let deep = watched.render(DEEP, &common);
     let (hash, shaded) =
         (deep.picture().unwrap().hash().unwrap(), deep.measured_counters().unwrap()["shader_invocations"]);
-    let long = [INDIRECT, ("shading-cache", "67108864")];
+    let [short, long] = ["262144", "67108864"].map(|entries| [INDIRECT, ("shading-cache", entries)]);
     let is_long = watched.session.gpu.caps.limits.max_storage_buffer_range_bytes < 4 << 26;
     let reached = if is_long { "addresses" } else { "descriptors" };
-    for (changes, access) in
-        [(&[INDIRECT][..], "descriptors"), (&[INDIRECT, ("list-access", "addresses")], "addresses"), (&long, reached)]
-    {
-        let frame = watched.render(DEEP, &both(&common, changes));
+    for (changes, access) in [
+        (short.to_vec(), "descriptors"),
+        (both(&short, &[("list-access", "addresses")]), "addresses"),
+        (long.to_vec(), reached),
+    ] {
+        let frame = watched.render(DEEP, &both(&common, &changes));
         assert_eq!(frame.resolved["list-access"], access, "{changes:?}");
         assert_eq!(frame.picture().unwrap().hash().unwrap(), hash, "{changes:?}");
         assert_eq!(frame.measured_counters().unwrap()["shader_invocations"], shaded, "{changes:?}");
