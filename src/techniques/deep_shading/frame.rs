@@ -194,12 +194,16 @@ impl Frame for DeepFrame {
     }
 
     fn touched_bytes(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
-        if self.choices.is_counted && self.choices.shading == Shading::IndirectGbuffer {
-            return Ok(indirect::touched_bytes(&self.counted(gpu)?));
+        match &self.shader {
+            _ if !self.choices.is_counted => Ok(BTreeMap::new()),
+            Shader::AsDrawn(baseline) => baseline.touched_bytes(gpu, &self.list),
+            Shader::Apart(..) if self.choices.shading == Shading::IndirectGbuffer => {
+                Ok(indirect::touched_bytes(&self.counted(gpu)?))
+            }
+            // Without lists colours are cleared whole, and what the host inserts is copied whole.
+            Shader::Apart(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
+            Shader::Apart(..) => Ok(self.counted(gpu)?.entries().bytes()),
         }
-        // Without lists colours are cleared whole, and what the host inserts is copied whole.
-        let has_entries = self.choices.is_counted && self.choices.has_lists && !self.choices.is_direct;
-        Ok(if has_entries { self.counted(gpu)?.entries().bytes() } else { BTreeMap::new() })
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

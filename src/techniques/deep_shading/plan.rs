@@ -66,7 +66,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         Shading::Ssaa | Shading::Msaa { .. } => baseline::plan(&mut plan, choices, inputs.view.extent),
         Shading::TextureSpace(size) => {
             baseline::plan(&mut plan, choices, inputs.view.extent);
-            texture_space::plan(&mut plan, size, inputs);
+            texture_space::plan(&mut plan, size, choices.is_counted, inputs);
         }
     }
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);

@@ -31,6 +31,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::settings::Values;
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use texture_space::TextureSpace;
 use texture_space::atlases::Atlases;
@@ -229,6 +230,13 @@ impl Baseline {
     /// The colours as the resolve reads them.
     pub fn sampled(&self) -> Bound<'_> {
         Bound::Sampled(&self.colors, self.nearest.handle, Access::ComputeSample)
+    }
+
+    /// Bytes that a frame of `list` has touched of buffers of which it does not touch all, by full name, with `--instrument on`.
+    ///
+    /// Errors: memory for reading counts back (exit code 4).
+    pub fn touched_bytes(&self, gpu: &Arc<Gpu>, list: &DrawList) -> Result<BTreeMap<String, u64>> {
+        self.textures.as_ref().map_or_else(|| Ok(BTreeMap::new()), |textures| textures.touched_bytes(gpu, list))
     }
 
     /// Draws and shades every layer: what of it is in the frame. `maps`: the barrier of the shadow maps.
