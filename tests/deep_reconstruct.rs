@@ -69,6 +69,45 @@ fn eight_samples_have_less_error_than_the_mean_of_many_more() {
     }
 }
 
+/// The integral itself, by another way to it: paths through the same lens while the same shutter is open. Colours that no light
+/// changes are the same for both. Many samples come nearer still: it is their limit, too.
+#[test]
+fn eight_samples_come_nearer_to_what_paths_see() {
+    let watched = Watched::with_scene(passing());
+    let paths = [("transport", "direct"), ("light-visibility", "off"), ("emissive", "off"), ("spp", "512")];
+    let reference = watched.picture("path_traced", &both(FLAT, &paths));
+    let error = |changes: Changes<'_>| rmse(&watched.picture(DEEP, &both(FLAT, changes)), &reference);
+    let [mean, filtered, many] = [&[][..], &[ON], &[("accumulate", "12")]].map(error);
+    println!("8 samples {mean}, reconstructed {filtered}; 96 samples {many}");
+    assert!(filtered < 0.8 * mean, "{filtered}, {mean}");
+    assert!(many < 0.8 * filtered, "{many}, {filtered}");
+}
+
+/// Interleaved kinds see the same samples, to the bit. Others differ in few, on edges (tests/deep_visibility.rs): filtered pictures
+/// are apart as means are by them, and by half of that again at most, as samples' depths also say where layers begin.
+#[test]
+fn every_kind_of_visibility_comes_to_one_picture_as_far_as_its_samples_agree() {
+    for (watched, common) in [(Watched::open("hall:triangles=8000"), LENS), (Watched::with_scene(passing()), FLAT)] {
+        let common = both(common, &[("size", "65x37"), ("spp", "2")]);
+        let picture = |kind, reconstruct| {
+            watched.picture(DEEP, &both(&common, &[("visibility", kind), ("reconstruct", reconstruct)]))
+        };
+        let [mean, filtered] = ["off", "on"].map(|is| picture("repeat-frame", is));
+        let changed = rmse(&mean, &filtered);
+        for kind in ["stochastic", "ray"] {
+            let (means, filters) = (rmse(&picture(kind, "off"), &mean), rmse(&picture(kind, "on"), &filtered));
+            println!("{kind}: means differ by {means}, filtered pictures by {filters}; the filter changes {changed}");
+            assert!(filters <= 1.5 * means && filters < 0.5 * changed, "{kind}: {filters}, {means}, {changed}");
+        }
+        if watched.session.scene.closing.is_some() && has(&watched.session.gpu.caps, Feature::GeometryShader) {
+            let hash = filtered.hash().unwrap();
+            for kind in ["repeat-draw", "instancing", "replicate"] {
+                assert_eq!(picture(kind, "on").hash().unwrap(), hash, "{kind}");
+            }
+        }
+    }
+}
+
 /// Whatever is blurred before whatever, and before nothing.
 #[test]
 fn one_colour_stays_one_colour() {
@@ -171,7 +210,7 @@ fn a_sharp_picture_is_the_mean_and_costs_nothing_more() {
 }
 
 /// Two buffers of eight bytes a sample, whatever the table of tuples pads; 96 bytes a tile of 16x16 pixels; 16 a draw; and the
-/// mean, from which the picture is made.
+/// mean, from which the picture is made. The last ones are longer than the device binds.
 #[test]
 fn memory_is_planned_to_the_byte() {
     let program = Program::new();
@@ -183,7 +222,9 @@ fn memory_is_planned_to_the_byte() {
         let groups: BTreeMap<String, u64> = serde_json::from_value(memory["groups"].clone()).unwrap();
         (groups, memory["planned_bytes"].as_u64().unwrap())
     };
-    for (size, pixels, tiles) in [("1280x720", 1280 * 720, 80 * 45), ("161x91", 161 * 91, 11 * 6)] {
+    for (size, pixels, tiles) in
+        [("1280x720", 1280 * 720, 80 * 45), ("161x91", 161 * 91, 11 * 6), ("2048x1152", 2048 * 1152, 128 * 72)]
+    {
         let ((off, all_off), (on, all_on)) = (planned(size, "off"), planned(size, "on"));
         let own = 2 * 8 * 8 * pixels + 96 * tiles;
         assert_eq!(on["reconstruction"], own, "{size}");

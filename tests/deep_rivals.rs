@@ -85,31 +85,68 @@ fn what_the_cache_keeps_is_shaded_once_and_what_it_forgets_again() {
     assert!(none.0 > some.0 && none.0 <= deep["samples_seen"], "{none:?}");
 }
 
+/// With two sets of samples, and room for what they see. A cache of 256 MiB is reached to its end: what looked there for nothing
+/// would be shaded again.
+#[test]
+fn buffers_longer_than_the_device_binds_are_reached_by_their_addresses() {
+    let watched = Watched::open("lamps:objects=20,lights=4");
+    let common = [("size", "33x19"), ("spp", "4"), ("accumulate", "2"), ("aperture", "0.1")];
+    let deep = watched.render(DEEP, &common);
+    let (hash, shaded) =
+        (deep.picture().unwrap().hash().unwrap(), deep.measured_counters().unwrap()["shader_invocations"]);
+    let [short, long] = ["262144", "67108864"].map(|entries| [INDIRECT, ("shading-cache", entries)]);
+    let is_long = watched.session.gpu.caps.limits.max_storage_buffer_range_bytes < 4 << 26;
+    let reached = if is_long { "addresses" } else { "descriptors" };
+    for (changes, access) in [
+        (short.to_vec(), "descriptors"),
+        (both(&short, &[("list-access", "addresses")]), "addresses"),
+        (long.to_vec(), reached),
+    ] {
+        let frame = watched.render(DEEP, &both(&common, &changes));
+        assert_eq!(frame.resolved["list-access"], access, "{changes:?}");
+        assert_eq!(frame.picture().unwrap().hash().unwrap(), hash, "{changes:?}");
+        assert_eq!(frame.measured_counters().unwrap()["shader_invocations"], shaded, "{changes:?}");
+    }
+    let forgetful = [INDIRECT, ("list-access", "addresses"), ("shading-cache", "9")];
+    let frame = watched.render(DEEP, &both(&common, &forgetful));
+    assert_eq!(frame.picture().unwrap().hash().unwrap(), hash);
+    assert!(frame.measured_counters().unwrap()["shading_samples_forgotten"] > 0.0);
+    if is_long {
+        let bound = both(&long, &[("list-access", "descriptors")]);
+        let error = watched.try_renderer(DEEP, &both(&common, &bound), &[], Submits::One).map(|_| ()).unwrap_err();
+        assert_eq!(error.exit_code(), 4);
+        for said in ["--list-access descriptors: the longest buffer has 268435456 bytes", "--list-access addresses"] {
+            assert!(error.to_string().contains(said), "{said}: {error}");
+        }
+    }
+}
+
 /// Frame buffer as of the lists; a pointer a sample; a cache of as many words; four buffers of 16 bytes an entry and 8 of its
-/// colour, an entry a sample at worst. A frame touches the entries that it makes.
+/// colour, an entry a sample at worst. The second frame's are longer than the device binds. A frame touches the entries that it makes.
 #[test]
 fn memory_is_an_entry_a_sample_at_worst() {
-    let plan = |more: &[&str]| -> BTreeMap<String, u64> {
-        let mut arguments = vec!["memory", "--technique", DEEP, "--plan", "--size", "1280x720", "--spp", "8", "--json"];
+    let plan = |size: &str, more: &[&str]| -> BTreeMap<String, u64> {
+        let mut arguments = vec!["memory", "--technique", DEEP, "--plan", "--size", size, "--spp", "8", "--json"];
         arguments.extend(["--shading", "indirect-gbuffer"]);
         arguments.extend(more);
         let json = Program::new().run(&arguments).fine().json();
         serde_json::from_value(json["techniques"][0]["memory"]["groups"].clone()).unwrap()
     };
-    let samples = 1280 * 720 * 8;
-    let groups = plan(&[]);
-    for (group, bytes) in [
-        ("frame_buffer", 88_473_600),
-        ("indirect_frame_buffer", 4 * samples),
-        ("shading_cache", 4 * samples),
-        ("compact_geometry_buffer", (4 * 16 + 8) * samples),
-    ] {
-        assert_eq!(groups[group], bytes, "{group}");
+    for (size, samples) in [("1280x720", 1280 * 720 * 8), ("1920x1080", 1920 * 1080 * 8)] {
+        let groups = plan(size, &[]);
+        for (group, bytes) in [
+            ("frame_buffer", 12 * samples),
+            ("indirect_frame_buffer", 4 * samples),
+            ("shading_cache", 4 * samples),
+            ("compact_geometry_buffer", (4 * 16 + 8) * samples),
+        ] {
+            assert_eq!(groups[group], bytes, "{size}: {group}");
+        }
+        for group in ["deep_shading_buffer", "auxiliary"] {
+            assert!(!groups.contains_key(group), "{groups:?}");
+        }
     }
-    for group in ["deep_shading_buffer", "auxiliary"] {
-        assert!(!groups.contains_key(group), "{groups:?}");
-    }
-    assert_eq!(plan(&["--shading-cache", "65536"])["shading_cache"], 4 * 65536);
+    assert_eq!(plan("1280x720", &["--shading-cache", "65536"])["shading_cache"], 4 * 65536);
     let watched = Watched::open("cornell");
     let frame = watched.render(DEEP, &[SIZE, ("spp", "2"), INDIRECT]);
     let entries = frame.measured_counters().unwrap()["shader_invocations"];
@@ -125,7 +162,13 @@ fn settings_that_it_does_not_read_are_refused() {
         (&[INDIRECT, ("conservative", "vertex")], "--conservative vertex with --shading indirect-gbuffer"),
         (&[("shading-cache", "9")], "--shading-cache 9 with --shading deep: it has no cache"),
         (&[("shading", "ssaa"), ("shading-cache", "9")], "--shading-cache 9 with --shading ssaa"),
-        (&[INDIRECT, ("size", "4096x4096"), ("spp", "64")], "samples of 16 bytes a buffer"),
+        (&[("shading", "ssaa"), ("list-access", "addresses")], "--list-access addresses with --shading ssaa"),
+        (&[INDIRECT, ("size", "4096x4096"), ("spp", "64")], "1073741824 samples in a set of 16 bytes a buffer"),
+        (
+            &[INDIRECT, ("size", "8192x8192"), ("spp", "64")],
+            "4294967296 samples in a set, and indices reach 2147483647",
+        ),
+        (&[("size", "8192x8192"), ("spp", "64")], " is within reach at this size; --accumulate"),
     ] {
         let error = watched.try_renderer(DEEP, changes, &[], Submits::One).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains(said), "{changes:?}: {error}");

@@ -126,6 +126,39 @@ fn what_no_sample_can_see_is_not_shaded() {
     assert!(shaded(&wall(outside, Vec3::X, Some(-outside)), &[]) > 0.0);
 }
 
+/// The box's draws have a texture each, or take turns in few: a texel that several draws shade is touched once. Owners are cleared
+/// in all textures that are used.
+#[test]
+fn touched_bytes_are_of_texels_that_were_shaded() {
+    let program = Program::new();
+    let run = |textures: &str, instrument: &str| {
+        let common = ["render", "cornell", "--technique", DEEP, "--size", "97x55", "--spp", "1", "--json"];
+        let own = ["--shading", "texture-space", "--shading-texture-size", "512", "--shading-textures", textures];
+        program.run(&[&common[..], &own, &["--instrument", instrument]].concat()).fine().json()
+    };
+    let found = |textures: &str| {
+        let json = run(textures, "on");
+        let touched = |group: &str| json["memory"]["touched_groups"][group].as_u64().unwrap();
+        let shaded = json["counters"]["shader_invocations"].as_f64().unwrap() as u64;
+        (shaded, touched("texture_pool"), touched("texture_owners"))
+    };
+    // Of all levels.
+    let texels = 349_525;
+    let draw_count = scene::load("cornell", 1).unwrap().draws.len() as u64;
+    let (shaded, apart, owners) = found("16");
+    println!("{draw_count} draws shade {shaded} texels, {apart} bytes");
+    assert!(shaded > 0 && draw_count < 16);
+    assert_eq!((apart, owners), (8 * shaded, 4 * texels * draw_count));
+    for textures in [1, 2] {
+        let (again, together, owners) = found(&textures.to_string());
+        println!("{textures}: {together} bytes");
+        assert_eq!((again, owners), (shaded, 4 * texels * textures));
+        assert!(together < apart && draw_count * together >= apart, "{together}, {apart}");
+    }
+    let memory = &run("1", "off")["memory"];
+    assert_eq!(memory["touched_groups"]["texture_pool"], 8 * texels, "nobody counts: all of it may be touched");
+}
+
 /// Each object needs an atlas: repeated textures are none. The message names the mesh and what is wrong with it.
 #[test]
 fn a_scene_without_an_atlas_is_refused() {

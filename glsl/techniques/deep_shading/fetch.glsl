@@ -26,6 +26,7 @@ READS_WORDS(address_of, addresses)
 #endif
 #ifdef FETCH_POINTER
 layout(std430, set = 0, binding = 34) readonly buffer Pointers { uint pointers[]; };
+READS_WORDS(pointer_of, pointers)
 #include "techniques/deep_shading/indirect/pointers.glsl"
 #endif
 #if defined(FETCH_LINKED) || defined(FETCH_COMPACT)
@@ -73,9 +74,9 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
 #elif defined(FETCH_DIRECT)
     uint where = address_of(own) & ~ADDRESS_STRAY;
 #elif defined(FETCH_POINTER)
-    uint pointer = pointers[own];
+    uint pointer = pointer_of(own);
     if (pointer != 0u && (pointer & POINTER_OWNS) == 0u) {
-        pointer = pointers[pointer - 1u];
+        pointer = pointer_of(pointer - 1u);
     }
     // A sample without an entry has no colour.
     uint where = pointer == 0u ? NO_PRIMITIVE : pointer & ~POINTER_OWNS;

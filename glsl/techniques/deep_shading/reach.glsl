@@ -1,5 +1,6 @@
-// How shaders come to the buffers of lists and colours: through descriptors, or by the buffers' addresses where one is longer than
-// the device binds (--list-access). Written by src/techniques/deep_shading/reach.rs.
+// How shaders come to buffers that have an entry a sample, or more: lists and colours, what a reconstruction keeps, a compact
+// geometry buffer. Through descriptors, or by the buffers' addresses where one is longer than the device binds (--list-access).
+// Written by src/techniques/deep_shading/reach.rs.
 //
 // Included first, as extensions want it; each shader says below what it binds which of these it calls.
 #ifndef DEEP_SHADING_REACH_GLSL
@@ -19,13 +20,22 @@ struct ReachBlock {
     uvec2 addresses;
     uvec2 zmax;
     uvec2 lengths;
+    uvec2 pointers;
+    uvec2 cache;
+    uvec2 entry_places;
+    uvec2 entry_normals;
+    uvec2 entry_base_colors;
+    uvec2 entry_radiances;
+    uvec2 sample_colors;
+    uvec2 sample_vectors;
 };
 
 // Threads of one dispatch read what others wrote.
 layout(buffer_reference, std430, buffer_reference_align = 4) coherent buffer Words { uint words[]; };
 layout(buffer_reference, std430, buffer_reference_align = 8) coherent buffer Pairs { uvec2 pairs[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer Quads { vec4 quads[]; };
 
-// Functions over a buffer of words or of pairs that is bound as `name`.
+// Functions over a buffer of words, pairs or quads that is bound as `name`.
 #define READS_WORDS(function, name)                  \
     uint function(uint index) {                      \
         if (BY_ADDRESS != 0u) {                      \
@@ -57,6 +67,14 @@ layout(buffer_reference, std430, buffer_reference_align = 8) coherent buffer Pai
         }                                                                             \
         return atomicCompSwap(name[index], expected, word);                           \
     }
+#define REPLACES_WORDS(function, name)                             \
+    void function(uint index, uint word) {                         \
+        if (BY_ADDRESS != 0u) {                                    \
+            atomicExchange(Words(reach.name).words[index], word);  \
+        } else {                                                   \
+            atomicExchange(name[index], word);                     \
+        }                                                          \
+    }
 #define READS_PAIRS(function, name)                  \
     uvec2 function(uint index) {                     \
         if (BY_ADDRESS != 0u) {                      \
@@ -79,6 +97,21 @@ layout(buffer_reference, std430, buffer_reference_align = 8) coherent buffer Pai
             Pairs(reach.name).pairs[index].y = word; \
         } else {                                     \
             name[index].y = word;                    \
+        }                                            \
+    }
+#define READS_QUADS(function, name)                  \
+    vec4 function(uint index) {                      \
+        if (BY_ADDRESS != 0u) {                      \
+            return Quads(reach.name).quads[index];   \
+        }                                            \
+        return name[index];                          \
+    }
+#define WRITES_QUADS(function, name)                 \
+    void function(uint index, vec4 quad) {           \
+        if (BY_ADDRESS != 0u) {                      \
+            Quads(reach.name).quads[index] = quad;   \
+        } else {                                     \
+            name[index] = quad;                      \
         }                                            \
     }
 

@@ -143,11 +143,15 @@ impl Apart {
         self.listed.as_ref()?.count.as_ref()
     }
 
-    /// The buffers of lists and colours.
+    /// The buffers of lists, of a compact geometry buffer, and of colours.
     pub fn buffers(&self) -> impl Iterator<Item = &Buffer> {
         let listed = self.listed.iter();
         let lists = listed.flat_map(|listed| listed.lists.all().chain(listed.count.iter().map(|count| &count.lengths)));
-        lists.chain([&self.colors])
+        let indirect = match &self.rest {
+            Rest::Indirect(indirect) => Some(indirect.buffers()),
+            Rest::Alone(_) => None,
+        };
+        lists.chain(indirect.into_iter().flatten()).chain([&self.colors])
     }
 
     /// Puts what the host has made of a run where the frame takes it from.

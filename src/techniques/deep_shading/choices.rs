@@ -49,7 +49,7 @@ pub struct Choices {
     /// Of the cache of `--shading indirect-gbuffer`.
     pub cache_entries: u64,
     pub is_counted: bool,
-    /// Shaders come to lists and colours by the buffers' addresses.
+    /// Shaders come to buffers of an entry a sample, or more, by their addresses.
     pub is_by_address: bool,
     /// Of what the rasteriser snaps corners to.
     sub_pixel_bits: u32,
@@ -138,7 +138,7 @@ impl Choices {
         let space = ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
         let cache_entries = values.integer_or_auto("shading-cache");
-        Ok(Self {
+        let mut choices = Self {
             shading,
             maps: maps.map_err(|error| error.within(NAME))?,
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
@@ -159,8 +159,7 @@ impl Choices {
             has_marks: has_lists && !is_direct && values.text("shaded-triangles") == "listed",
             cache_entries: cache_entries.unwrap_or(samples_of_set),
             is_counted: values.is_on("instrument"),
-            is_by_address: shading == Shading::Deep
-                && reach::is_by_address(values, inputs.caps, samples_of_set, &space, is_compacted),
+            is_by_address: false,
             sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
             is_reconstructed: values.is_on("reconstruct")
                 && (lens.is_some_and(|lens| lens.radius > 0.0) || middle.is_some()),
@@ -168,7 +167,9 @@ impl Choices {
             middle,
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
-        })
+        };
+        choices.is_by_address = reach::is_by_address(&choices, inputs);
+        Ok(choices)
     }
 
     /// What shaders know of shading space, cameras, lens and samples.

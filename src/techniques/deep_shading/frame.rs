@@ -60,17 +60,18 @@ impl DeepFrame {
         (primitives, traced, atlases): (Primitives, Option<Traced>, Option<Atlases>),
     ) -> Result<Self> {
         let frame = inputs.view.extent;
-        let shader = match choices.shading {
-            Shading::Deep | Shading::IndirectGbuffer => {
-                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
-                let reach = Reach::new(gpu, resources, choices.is_by_address, apart.buffers())?;
-                Shader::Apart(Box::new(apart), reach)
-            }
-            _ => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
-        };
         let reconstruct = match choices.is_reconstructed {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
             false => None,
+        };
+        let shader = match choices.shading {
+            Shading::Deep | Shading::IndirectGbuffer => {
+                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
+                let buffers = apart.buffers().chain(reconstruct.iter().flat_map(Reconstruct::buffers));
+                let reach = Reach::new(gpu, resources, choices.is_by_address, buffers)?;
+                Shader::Apart(Box::new(apart), reach)
+            }
+            _ => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
         };
         let deep_scene = DeepScene::new(gpu, inputs, resources, &choices, scene)?;
         Ok(Self {
@@ -200,12 +201,16 @@ impl Frame for DeepFrame {
     }
 
     fn touched_bytes(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
-        if self.choices.is_counted && self.choices.shading == Shading::IndirectGbuffer {
-            return Ok(indirect::touched_bytes(&self.counted(gpu)?));
+        match &self.shader {
+            _ if !self.choices.is_counted => Ok(BTreeMap::new()),
+            Shader::AsDrawn(baseline) => baseline.touched_bytes(gpu, &self.list),
+            Shader::Apart(..) if self.choices.shading == Shading::IndirectGbuffer => {
+                Ok(indirect::touched_bytes(&self.counted(gpu)?))
+            }
+            // Without lists colours are cleared whole, and what the host inserts is copied whole.
+            Shader::Apart(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
+            Shader::Apart(..) => Ok(self.counted(gpu)?.entries().bytes()),
         }
-        // Without lists colours are cleared whole, and what the host inserts is copied whole.
-        let has_entries = self.choices.is_counted && self.choices.has_lists && !self.choices.is_direct;
-        Ok(if has_entries { self.counted(gpu)?.entries().bytes() } else { BTreeMap::new() })
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

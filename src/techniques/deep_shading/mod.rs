@@ -234,7 +234,7 @@ impl Prepared for PreparedDeep {
         if !self.choices.has_marks {
             resolved.insert("shaded-triangles", "all".to_owned());
         }
-        if *shading == Shading::Deep {
+        if matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
             resolved.insert("list-access", reach::name(self.choices.is_by_address).to_owned());
         }
         if let Some(lens) = lens {

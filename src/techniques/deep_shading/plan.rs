@@ -59,17 +59,15 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         Shading::Deep => {
             plan_samples(&mut plan, choices, inputs)?;
             plan_deep(&mut plan, choices, inputs);
-            reach::plan(&mut plan, choices.is_by_address);
         }
         Shading::IndirectGbuffer => {
             plan_samples(&mut plan, choices, inputs)?;
             indirect::plan(&mut plan, choices, choices.samples_of(inputs.view.extent));
-            reach::plan(&mut plan, false);
         }
         Shading::Ssaa | Shading::Msaa { .. } => baseline::plan(&mut plan, choices, inputs.view.extent),
         Shading::TextureSpace(size) => {
             baseline::plan(&mut plan, choices, inputs.view.extent);
-            texture_space::plan(&mut plan, size, inputs);
+            texture_space::plan(&mut plan, size, choices.is_counted, inputs);
         }
     }
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
@@ -79,6 +77,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     if choices.is_reconstructed {
         stored(&mut plan, COLOR, extent);
         reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
+    }
+    if matches!(choices.shading, Shading::Deep | Shading::IndirectGbuffer) {
+        reach::plan(&mut plan, choices.is_by_address);
     }
     if choices.run_count > 1 {
         stored(&mut plan, run, extent);
@@ -217,8 +218,7 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         .note("--visibility repeat-frame draws into one"));
     }
     match choices.shading {
-        Shading::Deep => reach::require_fitting(choices, inputs),
-        Shading::IndirectGbuffer => indirect::require_fitting(choices, inputs),
+        Shading::Deep | Shading::IndirectGbuffer => reach::require_fitting(choices, inputs),
         Shading::TextureSpace(size) => size.require_fitting(inputs),
         // They have images alone.
         Shading::Ssaa | Shading::Msaa { .. } => Ok(()),

@@ -1,63 +1,129 @@
-//! How shaders come to the buffers of lists and colours (`--list-access`): through descriptors, which a device lets reach so far
-//! (maxStorageBufferRange) and the validation layers follow, or by the buffers' addresses, however long they are. Shaders'
-//! half: reach.glsl.
+//! How shaders come to buffers that have an entry a sample, or more (`--list-access`): lists and colours, what a reconstruction
+//! keeps, a compact geometry buffer. Through descriptors, which a device lets reach so far (maxStorageBufferRange) and the
+//! validation layers follow, or by the buffers' addresses, however long they are. Shaders' half: reach.glsl.
 
+use super::baseline::Shading;
 use super::choices::Choices;
 use super::plan::{
     ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LENGTHS, LINEAR, LINEAR_COUNT, NODE_BYTES, NODES,
     ROW_ID_BYTES, ZMAX,
 };
-use super::space::ShadingSpace;
-use super::{NAME, full};
+use super::{NAME, full, indirect, reconstruct};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::ReachBlock;
-use crate::gpu::{Access, Bound, Buffer, Caps, Gpu, upload};
+use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Resources};
-use crate::settings::Values;
 use crate::techniques::Inputs;
+use crate::units::{Bytes, Extent};
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
-/// An address of a sample has a bit beside it.
-const MOST_SAMPLES: u64 = 1 << 31;
+/// Entries of a buffer. An address of a sample, and a pointer to one more than its index, have a bit beside them; and SPIR-V
+/// reads what a buffer is indexed by as a signed number.
+const MOST_ENTRIES: u64 = (1 << 31) - 1;
 
-const MOST_ENTRIES: u64 = 1 << 32;
-
-/// The lists' longest buffer.
-fn longest_bytes(samples: u64, space: &ShadingSpace, is_compacted: bool) -> u64 {
-    let a_pixel = if is_compacted { LINEAR_COUNT * ROW_ID_BYTES } else { BEGIN_BYTES };
-    (samples * NODE_BYTES.max(COLOR_BYTES)).max(space.extent.pixel_count() * a_pixel)
+/// Entries of the longest buffer that has as many a pixel of shading space.
+fn space_entries(choices: &Choices) -> u64 {
+    let a_pixel = match (choices.has_lists, choices.is_compacted) {
+        (false, _) => 0,
+        (true, false) => 1,
+        (true, true) => LINEAR_COUNT,
+    };
+    choices.space.extent.pixel_count() * a_pixel
 }
 
-/// `--list-access`, `auto` resolved: whether addresses are taken for lists of `samples` in a set.
-pub fn is_by_address(values: &Values, caps: &Caps, samples: u64, space: &ShadingSpace, is_compacted: bool) -> bool {
-    match values.text("list-access") {
-        "descriptors" => false,
-        "addresses" => true,
-        _ => longest_bytes(samples, space, is_compacted) > caps.limits.max_storage_buffer_range_bytes,
+/// Of a sample in the longest buffer that has an entry a sample; 0 where what is shaded has none.
+fn sample_bytes(choices: &Choices) -> u64 {
+    match choices.shading {
+        Shading::Deep => NODE_BYTES.max(COLOR_BYTES).max(reconstruct::SAMPLE_BYTES),
+        Shading::IndirectGbuffer => indirect::ENTRY_BYTES,
+        Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
     }
 }
 
-/// Errors: descriptors do not reach (exit code 4), or indices of 32 bits do not (exit code 2).
+/// The longest buffer.
+fn longest_bytes(choices: &Choices, frame: Extent) -> u64 {
+    let others = match choices.shading {
+        Shading::Deep => space_entries(choices) * BEGIN_BYTES.max(ROW_ID_BYTES),
+        Shading::IndirectGbuffer => choices.cache_entries * indirect::CACHE_BYTES,
+        Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
+    };
+    others.max(choices.samples_of(frame) * sample_bytes(choices))
+}
+
+/// `--list-access`, `auto` resolved: whether addresses are taken.
+pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
+    match inputs.values.text("list-access") {
+        "descriptors" => false,
+        "addresses" => true,
+        _ => longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes,
+    }
+}
+
+/// Errors: descriptors do not reach, or the device has no memory block as long as a buffer (exit code 4); indices of 32 bits do
+/// not reach (exit code 2); each with what does.
 pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
-    let (samples, space) = (choices.samples_of(inputs.view.extent), &choices.space);
-    let range = inputs.caps.limits.max_storage_buffer_range_bytes;
-    let longest = longest_bytes(samples, space, choices.is_compacted);
+    let (size, set) = (inputs.view.extent, choices.table.samples);
+    let (samples, most_bytes) = (choices.samples_of(size), inputs.caps.limits.max_allocation_bytes);
+    let most_samples = MOST_ENTRIES.min(most_bytes / sample_bytes(choices).max(1));
+    if samples > most_samples {
+        let what = format!("--spp {set} at {size}: {samples} samples in a set");
+        let advice = match most_samples / (samples / u64::from(set)) {
+            0 => "a smaller --size is within reach".to_owned(),
+            most => format!("--spp {most} is within reach at this size; --accumulate sums sets of them up"),
+        };
+        let error = match samples > MOST_ENTRIES {
+            true => Error::request(format!("{what}, and indices reach {MOST_ENTRIES}")),
+            false => Error::memory(format!(
+                "{what} of {} bytes a buffer, and this device makes memory blocks of at most {}",
+                sample_bytes(choices),
+                Bytes(most_bytes)
+            )),
+        };
+        return Err(error.within(NAME).note(advice));
+    }
+    let entries = space_entries(choices);
+    if entries > MOST_ENTRIES {
+        let space = choices.space.extent;
+        let why =
+            format!("shading space of {space}: its lists have {entries} entries, and indices reach {MOST_ENTRIES}");
+        let advice = match choices.is_compacted {
+            true => "--compaction off has one entry a pixel; a smaller --shading-scale or --guard-band, fewer pixels",
+            false => "a smaller --shading-scale or --guard-band has fewer pixels",
+        };
+        return Err(Error::request(why).within(NAME).note(advice));
+    }
+    let (longest, range) = (longest_bytes(choices, size), inputs.caps.limits.max_storage_buffer_range_bytes);
     if !choices.is_by_address && longest > range {
         return Err(Error::memory(format!(
-            "--list-access descriptors: the lists' longest buffer has {longest} bytes, and this device binds {range} at once"
+            "--list-access descriptors: the longest buffer has {longest} bytes, and this device binds {range} at once"
         ))
         .within(NAME)
         .note("--list-access addresses reaches all of it"));
     }
-    let entries = space.extent.pixel_count() * if choices.is_compacted { LINEAR_COUNT } else { 1 };
-    if samples > MOST_SAMPLES || entries > MOST_ENTRIES {
-        return Err(Error::request(format!(
-            "{samples} samples in a set and {entries} entries of shading space: indices reach {MOST_SAMPLES} and {MOST_ENTRIES}"
-        ))
-        .within(NAME)
-        .note("a smaller --size, --spp (--accumulate sums sets up) or --shading-scale, or --compaction off, would fit"));
-    }
     Ok(())
+}
+
+/// The buffers, by their names in the plan, and where in `block` shaders find the address of each.
+fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]); 15] {
+    let [places, normals, base_colors, radiances] = indirect::ENTRIES.map(|(name, _)| name);
+    [
+        (BEGINS, &mut block.begins),
+        (NODES, &mut block.nodes),
+        (COLORS, &mut block.colors),
+        (LINEAR, &mut block.linear),
+        (ADDRESSES, &mut block.addresses),
+        (ZMAX, &mut block.zmax),
+        (LENGTHS, &mut block.lengths),
+        (indirect::POINTERS, &mut block.pointers),
+        (indirect::CACHE, &mut block.cache),
+        (places, &mut block.entry_places),
+        (normals, &mut block.entry_normals),
+        (base_colors, &mut block.entry_base_colors),
+        (radiances, &mut block.entry_radiances),
+        (reconstruct::SAMPLE_COLORS, &mut block.sample_colors),
+        (reconstruct::SAMPLE_VECTORS, &mut block.sample_vectors),
+    ]
 }
 
 /// What it is called in the report.
@@ -69,7 +135,7 @@ pub fn name(is_by_address: bool) -> &'static str {
 pub fn plan(plan: &mut Plan, is_by_address: bool) {
     plan.buffer("frame", full("reach"), size_of::<ReachBlock>() as u64);
     if is_by_address {
-        for name in [BEGINS, NODES, COLORS, LINEAR, ADDRESSES, ZMAX, LENGTHS] {
+        for (name, _) in addresses(&mut ReachBlock::zeroed()) {
             plan.addressed(&full(name));
         }
     }
@@ -81,7 +147,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// `buffers`: those of the lists and their colours, by their names in the plan.
+    /// `buffers`: all that the frame has of them.
     ///
     /// Errors: memory for the upload (exit code 4).
     pub fn new<'a>(
@@ -90,24 +156,15 @@ impl Reach {
         is_by_address: bool,
         buffers: impl Iterator<Item = &'a Buffer>,
     ) -> Result<Self> {
-        let mut addresses: ReachBlock = bytemuck::Zeroable::zeroed();
+        let mut found = ReachBlock::zeroed();
         for buffer in buffers.filter(|_| is_by_address) {
-            let of = [
-                (BEGINS, &mut addresses.begins),
-                (NODES, &mut addresses.nodes),
-                (COLORS, &mut addresses.colors),
-                (LINEAR, &mut addresses.linear),
-                (ADDRESSES, &mut addresses.addresses),
-                (ZMAX, &mut addresses.zmax),
-                (LENGTHS, &mut addresses.lengths),
-            ];
-            let found = of.into_iter().find(|(name, _)| full(name) == buffer.name);
-            let (_, words) = found.unwrap_or_else(|| panic!("{} is no buffer of lists", buffer.name));
+            let own = addresses(&mut found).into_iter().find(|(name, _)| full(name) == buffer.name);
+            let (_, words) = own.unwrap_or_else(|| panic!("{} has no place in the block", buffer.name));
             let address = buffer.address();
             *words = [address as u32, (address >> 32) as u32];
         }
         let block = resources.buffer(&full("reach"));
-        upload::buffer(gpu, &block, bytemuck::bytes_of(&addresses), Access::ComputeRead | Access::GraphicsRead)?;
+        upload::buffer(gpu, &block, bytemuck::bytes_of(&found), Access::ComputeRead | Access::GraphicsRead)?;
         Ok(Self { block })
     }
 

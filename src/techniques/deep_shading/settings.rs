@@ -163,8 +163,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "how shaders come to lists and colours: through descriptors, which reach as far as the device binds, or by the buffers' \
-               addresses, however long they are; the same picture; auto: addresses where a buffer is longer than the device binds",
+        help: "how shaders come to what is kept of each sample and shading pixel (lists and colours, what --reconstruct filters, the \
+               buffers of --shading indirect-gbuffer): through descriptors, which reach as far as the device binds, or by the \
+               buffers' addresses, however long they are; the same picture; auto: addresses where a buffer is longer than that",
     },
     Setting {
         key: "duplicates",

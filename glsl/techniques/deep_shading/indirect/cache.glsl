@@ -4,7 +4,8 @@
 // there at once and nobody waits for another. What finds no room where it may stand takes the place of something else,
 // which is then shaded once more where it is needed again.
 //
-// The including shader declares `deep`, `spids`, `counters[]` and IS_COUNTED, after space.glsl and counters.glsl.
+// The including shader declares `deep`, `spids`, `counters[]`, `reach` and IS_COUNTED, after reach.glsl, space.glsl and
+// counters.glsl.
 #ifndef DEEP_SHADING_CACHE_GLSL
 #define DEEP_SHADING_CACHE_GLSL
 
@@ -13,6 +14,9 @@
 layout(constant_id = 99) const uint CACHE_ENTRIES = 1;
 
 layout(std430, set = 0, binding = 33) coherent buffer Cache { uint cache[]; };
+READS_WORDS(cached, cache)
+SWAPS_WORDS(swap_cached, cache)
+REPLACES_WORDS(replace_cached, cache)
 
 // Places that a shading sample may stand at, in a row.
 const uint CACHE_WAYS = 8u;
@@ -29,9 +33,9 @@ uint memoised(uvec2 spid, uint own) {
     uint first = mixed(spid.y * 0x9e3779b1u ^ mixed(spid.x)) % CACHE_ENTRIES;
     for (uint way = 0u; way < CACHE_WAYS; way++) {
         uint at = (first + way) % CACHE_ENTRIES;
-        uint found = cache[at];
+        uint found = cached(at);
         if (found == 0u) {
-            found = atomicCompSwap(cache[at], 0u, own + 1u);
+            found = swap_cached(at, 0u, own + 1u);
         }
         if (found == 0u) {
             return own;
@@ -40,7 +44,7 @@ uint memoised(uvec2 spid, uint own) {
             return found - 1u;
         }
     }
-    atomicExchange(cache[(first + mixed(own) % CACHE_WAYS) % CACHE_ENTRIES], own + 1u);
+    replace_cached((first + mixed(own) % CACHE_WAYS) % CACHE_ENTRIES, own + 1u);
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_FORGOTTEN], 1u);
     }

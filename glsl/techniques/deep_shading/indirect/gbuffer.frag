@@ -2,14 +2,12 @@
 // buffer. Pass: src/techniques/deep_shading/indirect/gbuffer.rs.
 // variants: VERTEX=plain|extended VISIBILITY=interleaved|stochastic
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
 #include "techniques/deep_shading/again.glsl"
 #include "techniques/deep_shading/counters.glsl"
 #include "techniques/deep_shading/indirect/pointers.glsl"
-
-#define ENTRY_ACCESS writeonly
-#include "techniques/deep_shading/indirect/entries.glsl"
 
 // As in shade.frag.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
@@ -17,7 +15,12 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 34) writeonly buffer Pointers { uint pointers[]; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+WRITES_WORDS(set_pointer, pointers)
 
+#define ENTRY_ACCESS writeonly
+#define ENTRY_FUNCTION WRITES_QUADS
+#include "techniques/deep_shading/indirect/entries.glsl"
 #include "techniques/deep_shading/indirect/cache.glsl"
 
 void main() {
@@ -39,16 +42,16 @@ void main() {
         atomicAdd(counters[COUNTED_STRAYS], 1u);
     }
     if (owner != own) {
-        pointers[own] = owner + 1u;
+        set_pointer(own, owner + 1u);
         return;
     }
     uint entry = atomicAdd(counters[COUNTED_COLORS], 1u);
-    pointers[own] = POINTER_OWNS | entry;
+    set_pointer(own, POINTER_OWNS | entry);
     stand_in(in_primitive, uvec2(spid.y & 0xffffu, spid.y >> 16), is_outside, seen_weights());
     vec3 base_color = base_color_at(params.material).rgb;
     Lit dark = dark_at(params.material, base_color);
-    entry_places[entry] = vec4(in_position_ws, dark.surface.dielectric_f0);
-    entry_normals[entry] = vec4(dark.normal_ws, dark.surface.roughness);
-    entry_base_colors[entry] = vec4(base_color, dark.surface.metallic);
-    entry_radiances[entry] = is_unlit() ? vec4(base_color, 1.0) : vec4(dark.radiance, 0.0);
+    entry_place(entry, vec4(in_position_ws, dark.surface.dielectric_f0));
+    entry_normal(entry, vec4(dark.normal_ws, dark.surface.roughness));
+    entry_base_color(entry, vec4(base_color, dark.surface.metallic));
+    entry_radiance(entry, is_unlit() ? vec4(base_color, 1.0) : vec4(dark.radiance, 0.0));
 }

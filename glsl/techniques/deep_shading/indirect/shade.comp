@@ -1,6 +1,7 @@
 // All entries of the compact geometry buffer, each once. Pass: src/techniques/deep_shading/indirect/shade.rs.
 // variants: SHADOWS=traced|mapped
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "frame.glsl"
 #include "bvh.glsl"
 #include "loops.glsl"
@@ -24,8 +25,11 @@ layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleB
 layout(std430, set = 0, binding = 17) readonly buffer Middle { FrameBlock frame; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+WRITES_PAIRS(set_color, colors)
 
 #define ENTRY_ACCESS readonly
+#define ENTRY_FUNCTION READS_QUADS
 #include "techniques/deep_shading/indirect/entries.glsl"
 #include "bvh_walk.glsl"
 #include "shading/sum_lights.glsl"
@@ -40,16 +44,16 @@ void main() {
     if (entry >= counters[COUNTED_COLORS]) {
         return;
     }
-    vec4 place = entry_places[entry];
-    vec4 normal = entry_normals[entry];
-    vec4 base_color = entry_base_colors[entry];
-    vec4 dark = entry_radiances[entry];
+    vec4 place = entry_place(entry);
+    vec4 normal = entry_normal(entry);
+    vec4 base_color = entry_base_color(entry);
+    vec4 dark = entry_radiance(entry);
     vec3 radiance = dark.rgb;
     if (dark.w == 0.0) {
         Surface surface = Surface(base_color.rgb, base_color.w, normal.w, place.w);
         radiance = nan_if_cut(sum_lights(radiance, surface, place.xyz, normal.xyz, 0u, frame.light_count));
     }
-    colors[entry] = stored_color(radiance);
+    set_color(entry, stored_color(radiance));
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
     }

@@ -2,6 +2,7 @@
 // behind it hides; layers are put over each other from front to back. What has no blur keeps the mean of its pixel's samples.
 // Pass: src/techniques/deep_shading/reconstruct/filter.rs.
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/reconstruct/blur.glsl"
@@ -18,13 +19,17 @@ layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 34) readonly buffer SampleColors { uvec2 sample_colors[]; };
 layout(std430, set = 0, binding = 35) readonly buffer SampleVectors { uvec2 sample_vectors[]; };
 layout(std430, set = 0, binding = 36) readonly buffer Tiles { TileBlock tiles[]; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 layout(set = 0, binding = 29, rgba32f) readonly uniform image2D resolved;
 layout(set = 0, binding = 30, rgba32f) writeonly uniform image2D color;
+
+READS_PAIRS(colors_of, sample_colors)
+READS_PAIRS(vectors_of, sample_vectors)
 
 const uvec4 LAYERS = uvec4(0u, 1u, 2u, 3u);
 
 Blur blur_at(uint entry) {
-    return blur_of(sample_colors[entry], sample_vectors[entry]);
+    return blur_of(colors_of(entry), vectors_of(entry));
 }
 
 // Supports of the pixel's layers: the mean of its own samples, or, where it has none, of the tile's. A layer of which the
@@ -76,9 +81,9 @@ void main() {
     vec4 seen = vec4(0.0);
     vec4 unhidden = vec4(0.0);
     mat4 colors = mat4(0.0);
-    ivec2 reach = ivec2(tile.reach_x_px, tile.reach_y_px);
-    ivec2 least = max(ivec2(pixel) - reach, ivec2(0));
-    ivec2 most = min(ivec2(pixel) + reach, ivec2(frame_px) - 1);
+    ivec2 reach_px = ivec2(tile.reach_x_px, tile.reach_y_px);
+    ivec2 least = max(ivec2(pixel) - reach_px, ivec2(0));
+    ivec2 most = min(ivec2(pixel) + reach_px, ivec2(frame_px) - 1);
     for (int y = least.y; y <= most.y; y++) {
         for (int x = least.x; x <= most.x; x++) {
             vec2 d = vec2(x, y) - vec2(pixel);
@@ -100,7 +105,7 @@ void main() {
                 vec3 support = support_of(blur);
                 float area = min(sqrt(determinant_of(support)), dot(is_in, areas));
                 float spread = min(weight_at(support, d), weight) / area + ELSEWHERE * weight;
-                vec3 radiance = blur.depth < NO_DEPTH ? radiance_of(sample_colors[entry]) : frame.background.rgb;
+                vec3 radiance = blur.depth < NO_DEPTH ? radiance_of(colors_of(entry)) : frame.background.rgb;
                 vec4 added = spread * vec4(radiance, 1.0);
                 colors += mat4(is_in.x * added, is_in.y * added, is_in.z * added, is_in.w * added);
             }

@@ -1,6 +1,7 @@
 // The depths at which the surfaces in and around a tile are parted into layers, each filtered by itself: between layers blur
 // differs, within a layer as little as four allow. Pass: src/techniques/deep_shading/reconstruct/layers.rs.
 #version 460
+#include "techniques/deep_shading/reach.glsl"
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/reconstruct/blur.glsl"
@@ -24,11 +25,15 @@ layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 34) readonly buffer SampleColors { uvec2 sample_colors[]; };
 layout(std430, set = 0, binding = 35) readonly buffer SampleVectors { uvec2 sample_vectors[]; };
 layout(std430, set = 0, binding = 36) writeonly buffer Tiles { TileBlock tiles[]; };
+layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+
+READS_PAIRS(colors_of, sample_colors)
+READS_PAIRS(vectors_of, sample_vectors)
 
 // Bits of depths, which compare as these do.
 shared uint nearest;
 shared uint farthest;
-shared uint reach[2];
+shared uint reach_px[2];
 shared int counts[BIN_COUNT];
 shared int circles[BIN_COUNT];
 shared int motions[BIN_COUNT][2];
@@ -97,7 +102,7 @@ TileBlock parted() {
         sums[layer] = sums[layer].w > 0.0 ? sums[layer] / sums[layer].w : vec4(1.0, 0.0, 1.0, 0.0);
     }
     return TileBlock(
-        vec4(begins[0], begins[1], begins[2], 0.0), sums[0], sums[1], sums[2], sums[3], reach[0], reach[1], uint[](0u, 0u));
+        vec4(begins[0], begins[1], begins[2], 0.0), sums[0], sums[1], sums[2], sums[3], reach_px[0], reach_px[1], uint[](0u, 0u));
 }
 
 void main() {
@@ -111,8 +116,8 @@ void main() {
     if (own == 0u) {
         nearest = floatBitsToUint(NO_DEPTH);
         farthest = 0u;
-        reach[0] = 0u;
-        reach[1] = 0u;
+        reach_px[0] = 0u;
+        reach_px[1] = 0u;
     }
     if (own < BIN_COUNT) {
         counts[own] = 0;
@@ -124,7 +129,7 @@ void main() {
     for (uint at = own; at < pixel_count; at += gl_WorkGroupSize.x) {
         uvec2 pixel = begin + uvec2(at % size.x, at / size.x);
         for (uint index = 0u; index < deep.sample_count; index++) {
-            uint bits = sample_vectors[entry_of(frame_px, pixel, index)].y;
+            uint bits = vectors_of(entry_of(frame_px, pixel, index)).y;
             atomicMin(nearest, bits);
             if (uintBitsToFloat(bits) < NO_DEPTH) {
                 atomicMax(farthest, bits);
@@ -137,7 +142,7 @@ void main() {
         uvec2 pixel = begin + uvec2(at % size.x, at / size.x);
         for (uint index = 0u; index < deep.sample_count; index++) {
             uint entry = entry_of(frame_px, pixel, index);
-            Blur blur = blur_of(sample_colors[entry], sample_vectors[entry]);
+            Blur blur = blur_of(colors_of(entry), vectors_of(entry));
             uint bin = bin_of(blur.depth, scale);
             vec3 support = support_of(blur);
             atomicAdd(counts[bin], 1);
@@ -148,8 +153,8 @@ void main() {
                 atomicAdd(supports[bin][part], summed(support[part]));
             }
             // Pixels whose middles are inside.
-            atomicMax(reach[0], uint(ceil(sqrt(support.x))) - 1u);
-            atomicMax(reach[1], uint(ceil(sqrt(support.z))) - 1u);
+            atomicMax(reach_px[0], uint(ceil(sqrt(support.x))) - 1u);
+            atomicMax(reach_px[1], uint(ceil(sqrt(support.z))) - 1u);
         }
     }
     barrier();

@@ -32,6 +32,9 @@ layout(std430, set = 0, binding = 35) writeonly buffer SampleVectors { uvec2 sam
 
 #include "techniques/deep_shading/fetch.glsl"
 
+WRITES_PAIRS(set_colors, sample_colors)
+WRITES_PAIRS(set_vectors, sample_vectors)
+
 // Sets `params` to the triangle's draw: the last one that begins at its id or before.
 void find_draw(uint primitive) {
     uint first = 0u;
@@ -104,7 +107,7 @@ void main() {
             blur = blur_of_sample(primitive, at.xy, tuples[frame.sample_index * deep.tuple_count + at.z]);
         }
         uint entry = entry_of(frame_px, pixel, index);
-        sample_colors[entry] = packed_colors(fetched.rgb, blur);
-        sample_vectors[entry] = packed_vectors(blur);
+        set_colors(entry, packed_colors(fetched.rgb, blur));
+        set_vectors(entry, packed_vectors(blur));
     }
 }

@@ -31,6 +31,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::settings::Values;
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use texture_space::TextureSpace;
 use texture_space::atlases::Atlases;
@@ -47,7 +48,7 @@ const OF_SOME: [(&str, &[&str], &str); 17] = [
     ("shading-warp", OF_SPACE, NO_SPACE),
     ("warp-falloff", OF_SPACE, NO_SPACE),
     ("lists", &["deep"], NO_LISTS),
-    ("list-access", &["deep"], NO_LISTS),
+    ("list-access", OF_SPACE, "samples' colours are in images"),
     ("duplicates", &["deep"], NO_LISTS),
     ("compaction", &["deep"], NO_LISTS),
     ("zmax", &["deep"], NO_LISTS),
@@ -232,6 +233,13 @@ impl Baseline {
     /// The colours as the resolve reads them.
     pub fn sampled(&self) -> Bound<'_> {
         Bound::Sampled(&self.colors, self.nearest.handle, Access::ComputeSample)
+    }
+
+    /// Bytes that a frame of `list` has touched of buffers of which it does not touch all, by full name, with `--instrument on`.
+    ///
+    /// Errors: memory for reading counts back (exit code 4).
+    pub fn touched_bytes(&self, gpu: &Arc<Gpu>, list: &DrawList) -> Result<BTreeMap<String, u64>> {
+        self.textures.as_ref().map_or_else(|| Ok(BTreeMap::new()), |textures| textures.touched_bytes(gpu, list))
     }
 
     /// Draws and shades every layer: what of it is in the frame. `maps`: the barrier of the shadow maps.

@@ -26,21 +26,20 @@ use super::plan::{COLOR_BYTES, COLORS, COUNTERS, DEPTH, SPIDS};
 use super::primitives::Primitives;
 use super::visibility::Samples;
 use super::{NAME, full, stereo};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
-use crate::techniques::Inputs;
 use crate::units::Extent;
 use gbuffer::Gbuffer;
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const POINTERS: &str = "indirect.pointers";
-const CACHE: &str = "indirect.cache";
+pub const POINTERS: &str = "indirect.pointers";
+pub const CACHE: &str = "indirect.cache";
 /// Buffers of the entries, as entries.glsl names them in order.
-const ENTRIES: [(&str, &str); 4] = [
+pub const ENTRIES: [(&str, &str); 4] = [
     ("indirect.places", "EntryPlaces"),
     ("indirect.normals", "EntryNormals"),
     ("indirect.base_colors", "EntryBaseColors"),
@@ -50,26 +49,7 @@ const ENTRIES: [(&str, &str); 4] = [
 /// Of an entry in one of its buffers, a pointer, a word of the cache.
 pub const ENTRY_BYTES: u64 = 16;
 const POINTER_BYTES: u64 = 4;
-const CACHE_BYTES: u64 = 4;
-
-/// Errors: a buffer of one entry a sample is longer than the device binds (exit code 4, and how many would fit).
-pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
-    let range = inputs.caps.limits.max_storage_buffer_range_bytes;
-    let (size, samples, set) = (inputs.view.extent, choices.samples_of(inputs.view.extent), choices.table.samples);
-    if samples * ENTRY_BYTES <= range {
-        return Ok(());
-    }
-    let most = range / (samples / u64::from(set) * ENTRY_BYTES);
-    let advice = match most {
-        0 => "a smaller --size would fit".to_owned(),
-        most => format!("--spp {most} fits at this size; --accumulate sums sets of them up"),
-    };
-    Err(Error::memory(format!(
-        "--spp {set} at {size}: {samples} samples of {ENTRY_BYTES} bytes a buffer, and this device binds {range} bytes at once"
-    ))
-    .within(NAME)
-    .note(advice))
-}
+pub const CACHE_BYTES: u64 = 4;
 
 /// Pointers, cache, entries, and their colours, for `samples`.
 pub fn plan(plan: &mut Plan, choices: &Choices, samples: u64) {
@@ -138,6 +118,11 @@ impl Indirect {
             cache: resources.buffer(&full(CACHE)),
             entries: ENTRIES.map(|(name, _)| resources.buffer(&full(name))),
         })
+    }
+
+    /// All but the colours.
+    pub fn buffers(&self) -> impl Iterator<Item = &Buffer> {
+        self.entries.iter().chain([&self.pointers, &self.cache])
     }
 
     fn bound(&self) -> impl Iterator<Item = (&'static str, Bound<'_>)> {

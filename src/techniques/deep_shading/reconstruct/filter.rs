@@ -2,8 +2,8 @@
 //! reads   reconstruct.samples.colors, reconstruct.samples.vectors, reconstruct.layers.tiles, resolve.color
 //! writes  reconstruct.filter.color   image, RGBA32F, frame extent
 
-use super::super::full;
-use super::Reconstructed;
+use super::super::{constants_of, full};
+use super::{Choices, Reconstructed};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::filter::COMP;
@@ -17,8 +17,8 @@ pub struct Filter {
 }
 
 impl Filter {
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants_of(choices, &[Some(&COMP)]))? })
     }
 
     /// After the layers.

@@ -2,8 +2,8 @@
 //! reads   reconstruct.samples.colors, reconstruct.samples.vectors
 //! writes  reconstruct.layers.tiles   buffer, 96 B a tile of 16x16 pixels
 
-use super::super::full;
-use super::Reconstructed;
+use super::super::{constants_of, full};
+use super::{Choices, Reconstructed};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::layers::COMP;
@@ -17,8 +17,8 @@ pub struct Layers {
 }
 
 impl Layers {
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants_of(choices, &[Some(&COMP)]))? })
     }
 
     /// After the samples. `tiles` across and down: a workgroup each.

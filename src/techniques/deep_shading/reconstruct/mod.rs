@@ -35,13 +35,13 @@ use samples::Gather;
 use std::sync::Arc;
 
 pub const COLOR: &str = "reconstruct.filter.color";
-const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
-const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
+pub const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
+pub const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
 const RANGES: &str = "reconstruct.samples.draws";
 const TILES: &str = "reconstruct.layers.tiles";
 
 /// Of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; two of motion, and a depth.
-const SAMPLE_BYTES: u64 = 8;
+pub const SAMPLE_BYTES: u64 = 8;
 
 /// TILE_PX of blur.glsl.
 const TILE_PX: u32 = 16;
@@ -132,8 +132,8 @@ impl Reconstruct {
     ) -> Result<Self> {
         Ok(Self {
             gather: Gather::new(gpu, resources, scene, primitives, choices, fetch(choices))?,
-            layers: Layers::new(gpu)?,
-            filter: Filter::new(gpu)?,
+            layers: Layers::new(gpu, choices)?,
+            filter: Filter::new(gpu, choices)?,
             reconstructed: Reconstructed {
                 colors: resources.buffer(&full(SAMPLE_COLORS)),
                 vectors: resources.buffer(&full(SAMPLE_VECTORS)),
@@ -141,6 +141,11 @@ impl Reconstruct {
             },
             color: resources.image(&full(COLOR)),
         })
+    }
+
+    /// Those of an entry a sample.
+    pub fn buffers(&self) -> [&Buffer; 2] {
+        [&self.reconstructed.colors, &self.reconstructed.vectors]
     }
 
     /// After the resolve, which has left `resolved`.

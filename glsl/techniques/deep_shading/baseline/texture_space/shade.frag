@@ -13,6 +13,11 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 42) readonly buffer Owners { uint owners[]; };
 layout(std430, set = 0, binding = 43) writeonly buffer Texels { uvec2 texels[]; };
+// Which texels of the texture the frame's draws have shaded so far, whichever of them, and how many these are.
+layout(std430, set = 0, binding = 44) buffer Touched {
+    uint touched_count;
+    uint touched_bits[];
+};
 
 // Textures of the material are read as coarsely as where the frame's pixels are shaded, unless texels lie farther apart: what is
 // finer would be lost between them. `place` has rates of a texel. `canonical`: the triangle's corners.
@@ -54,5 +59,9 @@ void main() {
     texels[index] = color_of_base(base_color_at(params.material));
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_SHADED], 1u);
+        uint bit = 1u << (index % 32u);
+        if ((atomicOr(touched_bits[index / 32u], bit) & bit) == 0u) {
+            atomicAdd(touched_count, 1u);
+        }
     }
 }

@@ -3,9 +3,9 @@
 //! sparse hierarchy of shading values is drawn into a texture by conservative rasterisation, which then is the draw's colour
 //! where tuples see it; the next draw call begins with an empty one. Draws take turns in a pool of such textures.
 //! reads   the scene, its lights, the tuples
-//! writes  texture_space.textures.N, texture_space.owners.N   buffers of the pool (pool.rs)
-//!         texture_space.atlas, texture_space.charts          buffers, 8 B a vertex and 4 B a triangle, made once
-//!         baseline.colors, baseline.depth                    as supersampling has them
+//! writes  texture_space.textures.N, .owners.N, .touched.N   buffers of the pool (pool.rs)
+//!         texture_space.atlas, texture_space.charts         buffers, 8 B a vertex and 4 B a triangle, made once
+//!         baseline.colors, baseline.depth                   as supersampling has them
 //!
 //! Our reading, where what we know of the paper leaves a choice
 //! - a triangle is shaded at one level, at which texels are as large as pixels of canonical shading space (`--shading-scale`), and
@@ -39,15 +39,15 @@ use ash::vk;
 use atlases::Atlases;
 use hull::Hulls;
 use pool::{Pool, PoolSize};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 const ATLAS: &str = "texture_space.atlas";
 const CHARTS: &str = "texture_space.charts";
 
-/// Buffers beside those of the frame's samples.
-pub fn plan(plan: &mut Plan, size: PoolSize, inputs: &Inputs<'_>) {
-    size.plan(plan);
+/// Buffers beside those of the frame's samples. `is_counted`: `PoolSize::plan`.
+pub fn plan(plan: &mut Plan, size: PoolSize, is_counted: bool, inputs: &Inputs<'_>) {
+    size.plan(plan, is_counted);
     plan.buffer("scene.geometry", full(ATLAS), inputs.stats.vertex_count * 8);
     plan.buffer("scene.geometry", full(CHARTS), inputs.stats.index_count / 3 * 4);
 }
@@ -148,6 +148,13 @@ impl TextureSpace {
             draw(cmd, &lists, is_first);
         }
         Ok(())
+    }
+
+    /// Of the pool, in a frame of `list`: `Pool::touched_bytes`.
+    ///
+    /// Errors: memory for reading the counts back (exit code 4).
+    pub fn touched_bytes(&self, gpu: &Arc<Gpu>, list: &DrawList) -> Result<BTreeMap<String, u64>> {
+        self.pool.touched_bytes(gpu, draws_of(list).len())
     }
 
     /// Bytes of vertices and texels that claims and shading read and write, but for shading itself, which is counted after the frame.

@@ -2,14 +2,17 @@
 //! each with all levels to a texel, and beside each who shades which of its texels.
 //! texture_space.textures.N   buffer, 8 B a texel: RGBA16F
 //! texture_space.owners.N     buffer, 4 B a texel: atlas.glsl says of what; ours, not the paper's
+//! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument on`
 
 use super::super::super::{NAME, full};
 use crate::error::{Error, Result};
-use crate::gpu::{Access, Bound, Buffer, Commands};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, readback};
 use crate::plan::{Plan, Resources};
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::units::Bytes;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 const TEXEL_BYTES: u64 = 8;
 const OWNER_BYTES: u64 = 4;
@@ -32,6 +35,10 @@ fn texture(index: u32) -> String {
 
 fn owners(index: u32) -> String {
     full(&format!("texture_space.owners.{index}"))
+}
+
+fn touched(index: u32) -> String {
+    full(&format!("texture_space.touched.{index}"))
 }
 
 impl PoolSize {
@@ -59,10 +66,14 @@ impl PoolSize {
         .note(format!("--shading-texture-size {} fits", most.expect("devices bind a texel"))))
     }
 
-    pub fn plan(self, plan: &mut Plan) {
+    /// `is_counted`: with what counts the texels that a frame touches.
+    pub fn plan(self, plan: &mut Plan, is_counted: bool) {
+        let count = texels(self.side_px);
         for index in 0..self.count {
-            plan.buffer("texture_pool", texture(index), texels(self.side_px) * TEXEL_BYTES);
-            plan.buffer("texture_owners", owners(index), texels(self.side_px) * OWNER_BYTES);
+            plan.buffer("texture_pool", texture(index), count * TEXEL_BYTES);
+            plan.buffer("texture_owners", owners(index), count * OWNER_BYTES);
+            plan.buffer("counters", touched(index), if is_counted { 4 * (1 + count.div_ceil(32)) } else { 0 });
+            plan.read_back(&touched(index));
         }
     }
 
@@ -71,16 +82,18 @@ impl PoolSize {
         (0..self.count).flat_map(|index| {
             let owned = [Access::TransferWrite, Access::FragmentWrite, Access::GraphicsRead];
             let shaded = [Access::FragmentWrite, Access::GraphicsRead];
+            let counted = [Access::TransferWrite, Access::FragmentWrite].map(|access| (touched(index), access));
             let owned = owned.map(|access| (owners(index), access));
-            owned.into_iter().chain(shaded.map(|access| (texture(index), access)))
+            owned.into_iter().chain(shaded.map(|access| (texture(index), access))).chain(counted)
         })
     }
 }
 
-/// One texture, and the owners of its texels.
+/// One texture, the owners of its texels, and which of them were shaded.
 struct Slot {
     texels: Buffer,
     owners: Buffer,
+    touched: Buffer,
 }
 
 /// What a chunk's textures are next: who touches them in which order is one round.
@@ -88,7 +101,11 @@ pub struct Pool(Vec<Slot>);
 
 impl Pool {
     pub fn new(resources: &mut Resources, size: PoolSize) -> Self {
-        let slot = |index| Slot { texels: resources.buffer(&texture(index)), owners: resources.buffer(&owners(index)) };
+        let slot = |index| Slot {
+            texels: resources.buffer(&texture(index)),
+            owners: resources.buffer(&owners(index)),
+            touched: resources.buffer(&touched(index)),
+        };
         Self((0..size.count).map(slot).collect())
     }
 
@@ -97,8 +114,11 @@ impl Pool {
     }
 
     /// What shaders bind of each texture.
-    pub fn bound(&self) -> impl Iterator<Item = [(&'static str, Bound<'_>); 2]> {
-        self.0.iter().map(|slot| [("Texels", Bound::Buffer(&slot.texels)), ("Owners", Bound::Buffer(&slot.owners))])
+    pub fn bound(&self) -> impl Iterator<Item = [(&'static str, Bound<'_>); 3]> {
+        self.0.iter().map(|Slot { texels, owners, touched }| {
+            [("Texels", texels), ("Owners", owners), ("Touched", touched)]
+                .map(|(name, buffer)| (name, Bound::Buffer(buffer)))
+        })
     }
 
     /// Of one texture.
@@ -114,6 +134,25 @@ impl Pool {
         self.0.iter().map(|slot| &slot.texels)
     }
 
+    fn touched(&self) -> impl Iterator<Item = &Buffer> {
+        self.0.iter().map(|slot| &slot.touched)
+    }
+
+    /// Bytes that a frame of `draw_count` draws has touched, by full name: texels that were shaded, each once however many draws
+    /// shaded it, and all owners of the textures that were used, which are cleared whole.
+    ///
+    /// Errors: memory for reading the counts back (exit code 4).
+    pub fn touched_bytes(&self, gpu: &Arc<Gpu>, draw_count: usize) -> Result<BTreeMap<String, u64>> {
+        let mut bytes = BTreeMap::new();
+        for (index, slot) in self.0.iter().enumerate() {
+            let count: Vec<u32> =
+                bytemuck::pod_collect_to_vec(&readback::buffer(gpu, &slot.touched, 4, Access::FragmentWrite)?);
+            bytes.insert(slot.texels.name.clone(), u64::from(count[0]) * TEXEL_BYTES);
+            bytes.insert(slot.owners.name.clone(), if index < draw_count { slot.owners.bytes } else { 0 });
+        }
+        Ok(bytes)
+    }
+
     /// Forgets who owns the texels of the first `used`, for claims to follow. `is_first`: nobody has touched them in this frame.
     pub fn begin(&self, cmd: &mut Commands, used: usize, is_first: bool) {
         cmd.barriers(self.owners().map(|owners| match is_first {
@@ -122,6 +161,12 @@ impl Pool {
         }));
         self.owners().take(used).for_each(|owners| cmd.clear(owners));
         cmd.barriers(self.owners().map(|owners| owners.from(Access::TransferWrite).to(Access::FragmentWrite)));
+        if is_first {
+            cmd.barriers(self.touched().map(|touched| touched.discard(Access::TransferWrite)));
+            self.touched().for_each(|touched| cmd.clear(touched));
+        }
+        let left = if is_first { Access::TransferWrite } else { Access::FragmentWrite };
+        cmd.barriers(self.touched().map(|touched| touched.from(left).to(Access::FragmentWrite)));
     }
 
     /// After claims, for owners to shade.
