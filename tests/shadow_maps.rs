@@ -262,7 +262,6 @@ fn submits_and_shared_bytes_change_no_pixel() {
     }
 }
 
-/// 17 point lights: 102 maps. They are a group of their own, of as many bytes as their texels.
 /// Glass asks them after solid surfaces; in a set of samples of something that moves, compute shaders do or fragments.
 #[test]
 fn maps_that_are_drawn_once_are_those_of_every_frame() {
@@ -285,6 +284,7 @@ fn maps_that_are_drawn_once_are_those_of_every_frame() {
     }
 }
 
+/// 17 point lights: 102 maps. They are a group of their own, of as many bytes as their texels.
 #[test]
 fn maps_are_counted_and_planned() {
     let watched = Watched::open("hall:triangles=8000");

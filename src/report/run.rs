@@ -277,7 +277,7 @@ impl Report {
             string(&device["api"])
         ));
         for pass in document["passes"].as_array().into_iter().flatten() {
-            let place = if pass["where"].is_string() { "  (host, once)" } else { "" };
+            let place = pass["where"].as_str().map_or_else(String::new, |place| format!("  ({place})"));
             let time = pass["ms"]["median"].as_f64().map(|ms| format!("{ms:>10.3} ms{place}"));
             let told: Vec<String> = time.into_iter().chain(invocations(pass)).collect();
             if !told.is_empty() {

@@ -10,7 +10,7 @@
 //!
 //! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
 //! accumulate, or those of `indirect-gbuffer`
-//! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, by whichever kind of visibility
+//! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, drawn frame by frame or stochastically
 //! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that see it,
 //!   `--pass-samples` of them at a time
 //! - `indirect-gbuffer`: decoupled deferred shading (Liktor and Dachsbacher 2012): the same samples find what is shaded in a cache
@@ -30,6 +30,7 @@
 //!   triangle's plane: colours depend on triangle and pixel alone
 //! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted; so are
 //!   samples that see more in a pixel than the 1024 triangles that a list holds, so that work grows with samples alone
+//! - shading space is drawn with triangles that lists have, which insertion marks (`--shaded-triangles all` is the paper's way)
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
 //! - `--visibility stochastic` tests the tuples of the interleaved kinds, a layer a tuple, so that both see the same samples, and
 //!   the depth test finds the nearest without 64-bit atomics
@@ -39,7 +40,7 @@
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
 //! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
-//! every order of `--visibility`. Without blur it is `forward --supersample` with samples in other places.
+//! every order of `--visibility`; `--conservative none` alone leaves samples without a colour. Without blur it is `forward --supersample` with samples in other places.
 
 mod again;
 mod apart;

@@ -93,6 +93,17 @@ pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         };
         return Err(Error::request(why).within(NAME).note(advice));
     }
+    let rows_bytes = entries * ROW_ID_BYTES.max(BEGIN_BYTES);
+    if rows_bytes > most_bytes {
+        let space = choices.space.extent;
+        return Err(Error::memory(format!(
+            "shading space of {space}: its lists have a buffer of {}, and this device makes memory blocks of at most {}",
+            Bytes(rows_bytes),
+            Bytes(most_bytes)
+        ))
+        .within(NAME)
+        .note("a smaller --shading-scale or --guard-band has fewer pixels, --compaction off a sixteenth of the entries"));
+    }
     let (longest, range) = (longest_bytes(choices, size), inputs.caps.limits.max_storage_buffer_range_bytes);
     if !choices.is_by_address && longest > range {
         return Err(Error::memory(format!(

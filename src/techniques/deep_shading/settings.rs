@@ -16,7 +16,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Clarberg 2014, 6",
         help: "what is shaded: what the lists have, or, as baselines, every sample that is drawn (ssaa), or what a pixel's samples see of a \
-               triangle once, by stochastic rasterisation whatever --visibility says (msaa), or, by a compute shader, what samples point to \
+               triangle once, by stochastic rasterisation, which --visibility repeat-frame stands for too (msaa), or, by a compute shader, what samples point to \
                in a compact geometry buffer (indirect-gbuffer; Liktor and Dachsbacher 2012), or texels of a texture of each draw, which \
                is then drawn with it (texture-space; Andersson et al. 2014; meshes need atlases)",
     },

@@ -47,8 +47,13 @@ float area_of(Box box) {
     return size.x * size.y;
 }
 
+// Nothing of it is in the frame.
+bool is_outside(Box upright, vec2 frame_px) {
+    return any(lessThan(upright.greatest, vec2(0.0))) || any(greaterThan(upright.least, frame_px));
+}
+
 // The lesser of the box along the polygon's longest side and what the frame has of the upright one.
-Box best_box(Bound bound, vec2 frame_px) {
+Box best_box(Bound bound, Box upright, vec2 frame_px) {
     vec2 longest = vec2(1.0, 0.0);
     for (uint index = 0u; index < bound.count; index++) {
         vec2 side = bound.corners[(index + 1u) % bound.count] - bound.corners[index];
@@ -56,9 +61,8 @@ Box best_box(Bound bound, vec2 frame_px) {
             longest = side;
         }
     }
-    Box upright = box_of(bound, vec2(1.0, 0.0));
     upright.least = max(upright.least, vec2(0.0));
-    upright.greatest = max(min(upright.greatest, frame_px), upright.least);
+    upright.greatest = min(upright.greatest, frame_px);
     Box tilted = box_of(bound, normalize(longest));
     if (area_of(tilted) < area_of(upright)) {
         return tilted;
@@ -81,11 +85,12 @@ void main() {
     vec2 frame_px = vec2(frame.width_px, frame.height_px);
     TupleBlock whole_frame = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0.0);
     Bound bound = bound_of(seen, whole_frame, frame_px);
-    if (bound.count == 0u) {
+    Box upright = box_of(bound, vec2(1.0, 0.0));
+    if (bound.count == 0u || is_outside(upright, frame_px)) {
         gl_Position = vec4(0.0, 0.0, 0.5, 1.0);
         return;
     }
-    Box tight = best_box(bound, frame_px);
+    Box tight = best_box(bound, upright, frame_px);
     out_along = tight.along;
     out_range = vec4(tight.least, tight.greatest);
     Box box = widened(tight);

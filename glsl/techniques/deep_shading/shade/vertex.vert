@@ -17,7 +17,8 @@ void main() {
     out_primitive = params.primitive_offset + triangle;
 #ifdef MARKS_ON
     if (!is_marked(out_primitive)) {
-        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);
+        // Outside the view: some devices draw what has no area.
+        gl_Position = vec4(-2.0, -2.0, 0.5, 1.0);
         return;
     }
 #endif

@@ -124,10 +124,16 @@ impl Shading {
             _ if goes_with_all => Ok(visibility),
             Self::Msaa { .. } | Self::Ssaa | Self::TextureSpace(_) => {
                 let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
-                let why = "samples are drawn and coloured layer by layer";
+                let (why, advice) = match self {
+                    Self::Msaa { .. } => ("a shader tests its samples", "--visibility stochastic does"),
+                    _ => (
+                        "samples are drawn and coloured layer by layer",
+                        "--visibility repeat-frame and stochastic do so",
+                    ),
+                };
                 Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}"))
                     .within(super::NAME)
-                    .note("--visibility repeat-frame and stochastic go with it"))
+                    .note(advice))
             }
         }
     }

@@ -47,7 +47,11 @@ impl Insert {
             // What walks read beside is counted after the frame.
             read_bytes: spids.description.bytes()
                 + samples.shading_depths().map_or(0, |image| image.description.bytes()),
-            written_bytes: lists.begins.bytes + lists.addresses.as_ref().map_or(0, |buffer| buffer.bytes),
+            written_bytes: [Some(&lists.begins), lists.addresses.as_ref(), lists.zmax.as_ref(), lists.marks.as_ref()]
+                .into_iter()
+                .flatten()
+                .map(|buffer| buffer.bytes)
+                .sum(),
             invocations: Some(spids.description.extent.pixel_count() * u64::from(spids.description.layers())),
         };
         cmd.pass(&full("lists"), traffic, |cmd| {

@@ -118,7 +118,10 @@ impl Shade {
         counters: &Buffer,
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(scene, list.calls()) + lists.link_bytes(),
+            // Of vertices at most: those of triangles without a list may stay unread.
+            read_bytes: mesh::read_bytes(scene, list.calls())
+                + lists.link_bytes()
+                + lists.marks.as_ref().map_or(0, |marks| marks.bytes),
             // Counted after the frame.
             written_bytes: 0,
             invocations: None,

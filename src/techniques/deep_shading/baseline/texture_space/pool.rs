@@ -2,7 +2,7 @@
 //! each with all levels to a texel, and beside each who shades which of its texels.
 //! texture_space.textures.N   buffer, 8 B a texel: RGBA16F
 //! texture_space.owners.N     buffer, 4 B a texel: atlas.glsl says of what; ours, not the paper's
-//! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument on`
+//! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument off` 16 B that nobody reads
 
 use super::super::super::{NAME, full};
 use crate::error::{Error, Result};
@@ -73,7 +73,9 @@ impl PoolSize {
             plan.buffer("texture_pool", texture(index), count * TEXEL_BYTES);
             plan.buffer("texture_owners", owners(index), count * OWNER_BYTES);
             plan.buffer("counters", touched(index), if is_counted { 4 * (1 + count.div_ceil(32)) } else { 0 });
-            plan.read_back(&touched(index));
+            if is_counted {
+                plan.read_back(&touched(index));
+            }
         }
     }
 
