@@ -3,7 +3,7 @@
 //! without them.
 
 use crate::support::moving::moving;
-use crate::support::placing_steps;
+use crate::support::{Feature, has, placing_steps};
 use crate::support::watched::{Changes, Watched, both};
 use glam::Mat4;
 use quincunx::scene::{self, AlphaMode, Projection, Scene};
@@ -36,6 +36,13 @@ fn require_agreement(watched: &Watched, changes: Changes<'_>) {
         let other = interleaved.iter().zip(&others).filter(|(a, b)| a != b).count() as f64 / interleaved.len() as f64;
         let hit = others.iter().filter(|id| **id != u32::MAX).count() as f64 / others.len() as f64;
         println!("{kind:?}, {changes:?}: {other} see another triangle, {hit} see one");
+        if kind == STOCHASTIC && has(&watched.session.gpu.caps, Feature::GeometryShader) {
+            let made = |stage| seen(watched, &both(changes, &[kind, ("polygon-from", stage)]));
+            assert_eq!(made("geometry"), others, "{changes:?}: it is what auto comes to");
+            let apart = made("vertex").iter().zip(&others).filter(|(a, b)| a != b).count();
+            // Drivers may round otherwise after a geometry shader.
+            assert!(apart as f64 <= 1e-4 * others.len() as f64, "{changes:?}: {apart} of {}", others.len());
+        }
         assert!(hit > 0.3, "{kind:?}, {changes:?}: {hit}");
         let most = if has_holes && kind == RAY { MOST_OTHERS_BESIDE_HOLES } else { MOST_OTHERS };
         // Seen with 4 bits: 0.057 in the hall, 0.042 beside the rotor.

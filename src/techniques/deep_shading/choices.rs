@@ -7,6 +7,7 @@ use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::visibility::Visibility;
 use super::visibility::layer::LayerFrom;
+use super::visibility::polygon::PolygonFrom;
 use super::{NAME, reach, shade::Road, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
@@ -25,6 +26,7 @@ pub struct Choices {
     pub direct: DirectSettings,
     pub visibility: Visibility,
     pub layer_from: LayerFrom,
+    pub polygon_from: PolygonFrom,
     /// Layers that are drawn together reach beyond the frame.
     pub has_padding: bool,
     pub table: Table,
@@ -144,6 +146,7 @@ impl Choices {
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
             visibility,
             layer_from: LayerFrom::of(values, inputs.caps),
+            polygon_from: PolygonFrom::of(values, inputs.caps),
             has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
             table,
             run_count: values.integer("accumulate") as u32,

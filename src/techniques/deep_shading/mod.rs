@@ -88,6 +88,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use visibility::Visibility;
 use visibility::layer::LayerFrom;
+use visibility::polygon::PolygonFrom;
 use visibility::ray::Traced;
 
 const NAME: &str = "deep_shading";
@@ -144,6 +145,11 @@ impl Technique for DeepShading {
             };
             let of = format!("--visibility {}", values.text("visibility"));
             needs.push(need(&of, ability, "--visibility repeat-frame works without it"));
+        }
+        let has_polygons = visibility.has_polygons() && values.text("shading") != "msaa";
+        if has_polygons && PolygonFrom::of(values, caps) == PolygonFrom::Geometry {
+            let instead = "--polygon-from vertex works without it";
+            needs.push(need("--polygon-from geometry", Ability::GeometryShader, instead));
         }
         match choices::road(values, caps) {
             _ if values.text("shading") != "deep" => {}
@@ -231,6 +237,9 @@ impl Prepared for PreparedDeep {
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
             resolved.insert("layer-from", layer_from.name().to_owned());
+        }
+        if visibility.has_polygons() && !matches!(shading, Shading::Msaa { .. }) {
+            resolved.insert("polygon-from", self.choices.polygon_from.name().to_owned());
         }
         if !self.choices.has_marks {
             resolved.insert("shaded-triangles", "all".to_owned());

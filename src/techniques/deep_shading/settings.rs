@@ -80,6 +80,16 @@ pub const SETTINGS: &[Setting] = &[
                shader that passes triangles through; the same samples; auto: vertex where the device can",
     },
     Setting {
+        key: "polygon-from",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "geometry", "vertex"]),
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 4.2",
+        help: "which stage makes the polygon around a triangle's blur with --visibility stochastic (and around strays with ray): a \
+               geometry shader, once, or vertex shaders, each corner for itself; the same samples; auto: geometry where the device can",
+    },
+    Setting {
         key: "spp",
         symbol: "n",
         kind: Kind::Integer { min: 1, max: 64 },

@@ -15,7 +15,7 @@ pub mod texture_space;
 use super::choices::Choices;
 use super::plan::{COUNTERS, DEPTH_FORMAT};
 use super::settings::SETTINGS;
-use super::visibility::sample::{Sample, Sets};
+use super::visibility::sample::{Sample, Sets, Stages};
 use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
 use super::{full, stereo};
 use crate::error::{Error, Result};
@@ -42,7 +42,7 @@ const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Settings that not everything that is shaded reads: who does, and why others do not.
-const OF_SOME: [(&str, &[&str], &str); 17] = [
+const OF_SOME: [(&str, &[&str], &str); 18] = [
     ("guard-band", OF_SPACE, NO_SPACE),
     ("shading-scale", &["deep", "indirect-gbuffer", "texture-space"], "it shades no pixels of shading space"),
     ("shading-warp", OF_SPACE, NO_SPACE),
@@ -56,6 +56,7 @@ const OF_SOME: [(&str, &[&str], &str); 17] = [
     ("conservative", &["deep"], NO_LISTS),
     ("shaded-triangles", &["deep"], NO_LISTS),
     ("layer-from", OF_SPACE, "samples are drawn layer by layer"),
+    ("polygon-from", &["deep", "indirect-gbuffer", "ssaa", "texture-space"], "its triangles come from vertex shaders"),
     ("pass-samples", &["msaa"], "samples are drawn one at a time"),
     ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
     ("shading-textures", &["texture-space"], "it has no textures of its own"),
@@ -225,7 +226,7 @@ impl Baseline {
             }
             _ => None,
         };
-        let pipeline = |alpha| pipeline(gpu, scene, choices, stages.vertex, fragment(scene, choices, alpha));
+        let pipeline = |alpha| pipeline(gpu, scene, choices, &stages, fragment(scene, choices, alpha));
         Ok(Self {
             sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
             colors: resources.image(&full(COLORS)),
@@ -320,15 +321,15 @@ fn pipeline(
     gpu: &Arc<Gpu>,
     scene: &SceneGpu,
     choices: &Choices,
-    vertex: &'static Shader,
+    stages: &Stages,
     fragment: &'static Shader,
 ) -> Result<GraphicsPipeline> {
-    let constants = super::constants_of(choices, &[Some(vertex), Some(fragment)]);
+    let constants = super::constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
     GraphicsPipeline::new(
         gpu,
         &GraphicsDescription {
-            vertex,
-            geometry: None,
+            vertex: stages.vertex,
+            geometry: stages.geometry,
             fragment: Some(fragment),
             constants: &constants,
             vertex_buffers: &[],

@@ -8,6 +8,7 @@
 
 pub mod instancing;
 pub mod layer;
+pub mod polygon;
 pub mod ray;
 pub mod repeat_draw;
 pub mod repeat_frame;

@@ -1,11 +1,15 @@
 //! Stochastic rasterisation: polygons around triangles' blur, every sample in them tested by the fragment shader (Clarberg &
-//! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl, stochastic.frag, covers.glsl.
+//! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl,
+//! stochastic.frag, covers.glsl.
+//!
+//! Polygons come from a geometry shader, as in the paper (polygon.rs), or from vertex shaders, each of which makes the polygon for
+//! itself.
 //!
 //! Differs from the paper: samples of a layer share their time and their place on the lens, so that both kinds of visibility see
-//! the very same samples; polygons come from vertex shaders, and their sides touch the hull of the blur instead of walking
-//! around it.
+//! the very same samples; polygons' sides touch the hull of the blur instead of walking around it.
 
 use super::super::choices::Choices;
+use super::polygon::{self, PolygonFrom};
 use super::sample::Stages;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT};
@@ -18,13 +22,16 @@ const STILL_SIDES: u32 = 7;
 pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
 
 pub(super) fn stages(choices: &Choices) -> Stages {
-    let sides = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
+    if choices.polygon_from == PolygonFrom::Geometry {
+        return polygon::stages();
+    }
+    let side_count = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
     Stages {
         vertex: &VERT,
         geometry: None,
         // The shader tells sides apart: polygons have none.
         sides: Sides::Both,
         // A fan of triangles.
-        vertex_count: 3 * (sides - 2),
+        vertex_count: 3 * (side_count - 2),
     }
 }
