@@ -7,6 +7,8 @@
 
 layout(location = 1) flat in uint in_primitive;
 #ifdef VISIBILITY_STOCHASTIC
+#include "techniques/deep_shading/visibility/covers.glsl"
+
 // Of stochastic.vert.
 layout(location = 2) flat in vec4 in_corners[3];
 #else
@@ -17,8 +19,11 @@ layout(location = 6) flat in uint in_tuple;
 // Of a sample that sees `in_primitive`.
 vec3 seen_weights() {
 #ifdef VISIBILITY_STOCHASTIC
-    // What the sample sees has passed the test: its weights are inside.
-    return place_at(in_corners[0], in_corners[1], in_corners[2], gl_FragCoord.xy).weights;
+    // What the sample sees has passed the test.
+    vec3 weights;
+    bool is_front;
+    covers(in_corners[0], in_corners[1], in_corners[2], gl_FragCoord.xy, weights, is_front);
+    return weights;
 #else
     return inside_weights(in_weights);
 #endif

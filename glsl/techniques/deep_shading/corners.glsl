@@ -41,10 +41,15 @@ vec4 canonical_corner(uint corner) {
     return vec4(shading_from_clip(deep, clip), clip.zw);
 }
 
-// The same of a place on the triangle whose first corner it is, by the corners' weights.
+// The same of a place between such corners, by their weights.
+vec4 canonical_between(vec4 corners[3], vec3 weights) {
+    return weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2];
+}
+
+// The same of a place on the triangle whose first corner it is.
 vec4 canonical_at(uint corner, vec3 weights) {
-    return weights.x * canonical_corner(corner) + weights.y * canonical_corner(corner + 1u) +
-           weights.z * canonical_corner(corner + 2u);
+    vec4 corners[3] = vec4[3](canonical_corner(corner), canonical_corner(corner + 1u), canonical_corner(corner + 2u));
+    return canonical_between(corners, weights);
 }
 
 // Weights of a triangle's corners, of sum 1, without those below 0: the rasteriser moves corners a little, and where a

@@ -57,6 +57,29 @@ vec3 areas_of(vec2 a, vec2 b, vec2 c) {
     return areas;
 }
 
+// A place of these weights with its rates. `from_a`, `from_b`, `from_c`: the corners' homogeneous pixels from a pixel's middle on;
+// `w`: theirs; `moved`: how far from that middle the place lies, pixels.
+Place place_of(vec2 from_a, vec2 from_b, vec2 from_c, vec3 w, vec3 weights, vec2 moved) {
+    vec3 areas = areas_of(from_a, from_b, from_c);
+    precise float area = areas.x + areas.y + areas.z;
+    // Areas change evenly over the screen.
+    precise vec3 right =
+        vec3(w.z * from_b.y - w.y * from_c.y, w.x * from_c.y - w.z * from_a.y, w.y * from_a.y - w.x * from_b.y);
+    precise vec3 down =
+        vec3(w.y * from_c.x - w.z * from_b.x, w.z * from_a.x - w.x * from_c.x, w.x * from_b.x - w.y * from_a.x);
+    precise float right_sum = right.x + right.y + right.z;
+    precise float down_sum = down.x + down.y + down.z;
+    precise float there = area + right_sum * moved.x + down_sum * moved.y;
+    // Edge-on there is no rate: the finest level.
+    bool has_rate = abs(there) > 1e-30;
+    Place place;
+    place.is_front = area < 0.0;
+    place.weights = weights;
+    place.right = has_rate ? (right - weights * right_sum) / there : vec3(0.0);
+    place.down = has_rate ? (down - weights * down_sum) / there : vec3(0.0);
+    return place;
+}
+
 // `a`, `b`, `c`: xy homogeneous pixels of shading space, z depth, w; `middle`: of the pixel.
 Place place_at(vec4 a, vec4 b, vec4 c, vec2 middle) {
     precise vec2 from_a = a.xy - a.w * middle;
@@ -64,8 +87,6 @@ Place place_at(vec4 a, vec4 b, vec4 c, vec2 middle) {
     precise vec2 from_c = c.xy - c.w * middle;
     vec3 areas = areas_of(from_a, from_b, from_c);
     precise float area = areas.x + areas.y + areas.z;
-    Place place;
-    place.is_front = area < 0.0;
     precise vec3 weights = areas / area;
     bool is_inside = area != 0.0 && all(greaterThanEqual(weights, vec3(0.0)));
     precise vec2 moved = vec2(0.0);
@@ -86,20 +107,7 @@ Place place_at(vec4 a, vec4 b, vec4 c, vec2 middle) {
         precise vec4 at = weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2];
         moved = at.w > 0.0 ? at.xy / at.w : vec2(0.0);
     }
-    // Areas change evenly over the screen.
-    precise vec3 right = vec3(
-        c.w * from_b.y - b.w * from_c.y, a.w * from_c.y - c.w * from_a.y, b.w * from_a.y - a.w * from_b.y);
-    precise vec3 down = vec3(
-        b.w * from_c.x - c.w * from_b.x, c.w * from_a.x - a.w * from_c.x, a.w * from_b.x - b.w * from_a.x);
-    precise float right_sum = right.x + right.y + right.z;
-    precise float down_sum = down.x + down.y + down.z;
-    precise float there = area + right_sum * moved.x + down_sum * moved.y;
-    // Edge-on there is no rate: the finest level.
-    bool has_rate = abs(there) > 1e-30;
-    place.right = has_rate ? (right - weights * right_sum) / there : vec3(0.0);
-    place.down = has_rate ? (down - weights * down_sum) / there : vec3(0.0);
-    place.weights = weights;
-    return place;
+    return place_of(from_a, from_b, from_c, vec3(a.w, b.w, c.w), weights, moved);
 }
 
 #endif

@@ -60,17 +60,18 @@ void main() {
             Seen close = Seen(in_close[corner], in_close_depth[corner]);
             corners[corner] = layer_corner(open, close, tuples[first + index]);
         }
-        Place place;
+        vec2 at = vec2(layer_px) + 0.5;
+        vec3 weights;
         // A driver may have cut what it draws into pieces, each of which runs the pixel with samples of its own.
         bool is_own = (gl_SampleMaskIn[0] & (1 << index)) != 0;
-        if (!is_own || !is_hit(corners, vec2(layer_px) + 0.5, place)) {
+        if (!is_own || !is_hit(corners, at, weights)) {
             continue;
         }
         if (covered == 0u) {
-            shaded = place;
+            shaded = hit_place(corners, at, weights);
         }
         covered |= 1u << index;
-        depths[index] = hit_depth(corners, place.weights);
+        depths[index] = hit_depth(corners, weights);
     }
     if (covered == 0u) {
         discard;

@@ -27,14 +27,15 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
 #include "techniques/deep_shading/alpha.glsl"
 #endif
 
-// With rates of a pixel of the frame. Ends what misses the triangle; writes the depth that the shader says.
-Place sample_place() {
-    Place place;
+// Whether the sample has hit the triangle. `place`: with rates of a pixel of the frame. Writes the depth that the shader says.
+bool is_placed(out Place place) {
 #ifdef VISIBILITY_STOCHASTIC
-    if (!is_hit(in_corners, gl_FragCoord.xy, place)) {
-        discard;
+    vec3 weights;
+    if (!is_hit(in_corners, gl_FragCoord.xy, weights)) {
+        return false;
     }
-    gl_FragDepth = hit_depth(in_corners, place.weights);
+    place = hit_place(in_corners, gl_FragCoord.xy, weights);
+    gl_FragDepth = hit_depth(in_corners, weights);
 #else
     place.weights = inside_weights(in_weights);
     place.right = dFdx(in_weights);
@@ -44,7 +45,7 @@ Place sample_place() {
     // A layer's pixels are a table apart.
     place.right /= float(deep.table_width_px);
     place.down /= float(deep.table_height_px);
-    return place;
+    return true;
 }
 
 #ifdef ALPHA_TESTED

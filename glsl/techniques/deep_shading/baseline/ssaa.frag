@@ -14,7 +14,13 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 layout(location = 0) out vec4 out_color;
 
 void main() {
-    stand_at(in_primitive, sample_place());
+    Place place;
+    if (!is_placed(place)) {
+        // Nothing more is run of it where the driver only turns it into a helper.
+        discard;
+        return;
+    }
+    stand_at(in_primitive, place);
     vec4 base_color = base_color_at(params.material);
 #ifdef ALPHA_TESTED
     require_seen(base_color.a);

@@ -1,5 +1,7 @@
 // A sample's test against a triangle as its tuple sees it: whether it lies in it and sees a side that is drawn (section 4.2).
 //
+// Nearly all tests miss: what only a hit needs stands apart from them.
+//
 // After scene_buffers.glsl, counters.glsl and covers.glsl; the including shader declares `counters[]` and IS_COUNTED.
 #ifndef DEEP_SHADING_HIT_GLSL
 #define DEEP_SHADING_HIT_GLSL
@@ -11,20 +13,27 @@ void count_test() {
     }
 }
 
-// `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `place` is of the layer's pixels, where it is true.
-bool is_hit(vec4 corners[3], vec2 at, out Place place) {
+// `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the corners' where it is true.
+bool is_hit(vec4 corners[3], vec2 at, out vec3 weights) {
     if (IS_COUNTED != 0u) {
         count_test();
     }
-    if (!covers(corners[0], corners[1], corners[2], at)) {
+    bool is_front;
+    if (!covers(corners[0], corners[1], corners[2], at, weights, is_front)) {
         return false;
     }
     if (IS_COUNTED != 0u) {
         atomicAdd(counters[COUNTED_TESTS_HIT], 1u);
     }
-    place = place_at(corners[0], corners[1], corners[2], at);
-    bool is_front = place.is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
-    return is_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;
+    bool is_seen_front = is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
+    return is_seen_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;
+}
+
+// Where the sample has hit such a triangle, with rates of the layer's pixels.
+Place hit_place(vec4 corners[3], vec2 at, vec3 weights) {
+    vec3 w = vec3(corners[0].w, corners[1].w, corners[2].w);
+    return place_of(
+        from_sample(corners[0], at), from_sample(corners[1], at), from_sample(corners[2], at), w, weights, vec2(0.0));
 }
 
 // What a sample's depth is at a place of such a triangle.

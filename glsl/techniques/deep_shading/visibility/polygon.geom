@@ -22,6 +22,7 @@ layout(location = 0) flat in uint in_triangle[];
 layout(location = 1) flat out uint out_primitive;
 layout(location = 2) flat out vec4 out_corners[3];
 layout(location = 6) flat out uint out_tuple;
+layout(location = 7) flat out vec4 out_canonical_corners[3];
 invariant gl_Position;
 
 void main() {
@@ -32,13 +33,16 @@ void main() {
     see_triangle(triangle, seen);
     Bound bound = bound_of(seen, tuple, layer);
     vec4 corners[3];
+    vec4 canonical_corners[3];
     for (uint corner = 0u; corner < 3u; corner++) {
         corners[corner] = layer_corner(seen[corner], seen[corner + 3u], tuple);
+        canonical_corners[corner] = canonical_of(seen[corner], seen[corner + 3u]);
     }
     for (uint place = 0u; place < bound.count; place++) {
         out_primitive = params.primitive_offset + triangle;
         out_corners = corners;
         out_tuple = params.tuple;
+        out_canonical_corners = canonical_corners;
         gl_Position = vec4(bound.corners[strip_corner(place, bound.count)] * 2.0 / layer - 1.0, 0.5, 1.0);
         EmitVertex();
     }

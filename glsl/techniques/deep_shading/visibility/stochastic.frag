@@ -13,6 +13,7 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 layout(location = 1) flat in uint in_primitive;
 layout(location = 2) flat in vec4 in_corners[3];
+layout(location = 7) flat in vec4 in_canonical_corners[3];
 
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
@@ -59,19 +60,18 @@ layout(location = 1) out uint out_shading_depth;
 void main() {
     // A layer has one sample a pixel, in its middle: the tuple's shift has put it there.
     vec2 at = gl_FragCoord.xy;
-    Place place;
-    if (!is_hit(in_corners, at, place)) {
+    vec3 weights;
+    if (!is_hit(in_corners, at, weights)) {
         discard;
     }
-    uint corner = 3u * (in_primitive - params.primitive_offset);
 #ifdef ALPHA_TESTED
-    place_alpha(place, corner);
+    place_alpha(hit_place(in_corners, at, weights), 3u * (in_primitive - params.primitive_offset));
     if (!is_seen(base_color_at(params.material).a, uvec2(at), tuple_number(deep, frame.sample_index, params.tuple))) {
         discard;
     }
 #endif
-    gl_FragDepth = hit_depth(in_corners, place.weights);
-    vec4 canonical = canonical_at(corner, place.weights);
+    gl_FragDepth = hit_depth(in_corners, weights);
+    vec4 canonical = canonical_between(in_canonical_corners, weights);
     out_spid = uvec2(in_primitive, shading_pixel(deep, canonical));
 #ifdef DEPTH_SHADING
     out_shading_depth = shading_depth(canonical);

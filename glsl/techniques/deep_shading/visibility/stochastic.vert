@@ -14,6 +14,8 @@ layout(location = 1) flat out uint out_primitive;
 // xy: homogeneous pixels of the layer; zw: depth and w.
 layout(location = 2) flat out vec4 out_corners[3];
 layout(location = 6) flat out uint out_tuple;
+// In canonical shading space.
+layout(location = 7) flat out vec4 out_canonical_corners[3];
 
 // Samples that one pass over the polygons has seen must be found by the next.
 invariant gl_Position;
@@ -31,6 +33,7 @@ void main() {
     see_triangle(triangle, seen);
     for (uint corner = 0u; corner < 3u; corner++) {
         out_corners[corner] = layer_corner(seen[corner], seen[corner + 3u], tuple);
+        out_canonical_corners[corner] = canonical_of(seen[corner], seen[corner + 3u]);
     }
     out_primitive = params.primitive_offset + triangle;
     out_tuple = params.tuple;

@@ -1,6 +1,5 @@
 //! Stochastic rasterisation: polygons around triangles' blur, every sample in them tested by the fragment shader (Clarberg &
-//! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl,
-//! stochastic.frag, covers.glsl.
+//! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl, stochastic.frag, covers.glsl.
 //!
 //! Polygons come from a geometry shader, as in the paper (polygon.rs), or from vertex shaders, each of which makes the polygon for
 //! itself.

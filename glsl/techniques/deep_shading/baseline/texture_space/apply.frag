@@ -15,7 +15,12 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 layout(location = 0) out vec4 out_color;
 
 void main() {
-    Place place = sample_place();
+    Place place;
+    if (!is_placed(place)) {
+        // Nothing more is run of it where the driver only turns it into a helper.
+        discard;
+        return;
+    }
 #ifdef ALPHA_TESTED
     stand_at(in_primitive, place);
     require_seen(base_color_at(params.material).a);
