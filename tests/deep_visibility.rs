@@ -3,8 +3,8 @@
 //! without them.
 
 use crate::support::moving::moving;
-use crate::support::{Feature, has, placing_steps};
 use crate::support::watched::{Changes, Watched, both};
+use crate::support::{Feature, has, placing_steps};
 use glam::Mat4;
 use quincunx::scene::{self, AlphaMode, Projection, Scene};
 
