@@ -240,6 +240,7 @@ fn settings_that_a_baseline_does_not_read_are_refused() {
         (&[MSAA, ("visibility", "instancing")], "--visibility instancing with --shading msaa"),
         (&[SSAA, ("visibility", "ray")], "--visibility ray with --shading ssaa"),
         (&[SSAA, ("layer-from", "vertex")], "--layer-from vertex with --shading ssaa"),
+        (&[MSAA, ("polygon-from", "vertex")], "--polygon-from vertex with --shading msaa"),
         (&[("pass-samples", "8")], "--pass-samples 8 with --shading deep"),
         (&[("pass-samples", "1")], "--pass-samples 1 with --shading deep"),
         (&[MSAA, ("pass-samples", "4"), ("spp", "6")], "--pass-samples 4: --spp 6 is no multiple of it"),

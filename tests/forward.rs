@@ -91,25 +91,6 @@ fn lists_of_lights_change_no_pixel() {
     }
 }
 
-#[test]
-fn a_depth_pre_pass_changes_no_pixel() {
-    let prepasses: [Changes<'_>; 4] = [
-        &[("depth-prepass", "off")],
-        &[("depth-prepass", "on")],
-        &[("depth-prepass", "off"), ("geometry", "all"), ("alias", "off")],
-        &[("depth-prepass", "on"), ("geometry", "all"), ("alias", "off")],
-    ];
-    for scene in ["cornell", "lamps:objects=40,lights=60", "hall:triangles=8000"] {
-        require_one_picture(&Watched::open(scene), &[SIZE], &prepasses);
-    }
-    // With several samples a driver may look for the place that is shaded among those that pass the depth test.
-    let watched = Watched::open("lamps:objects=40,lights=60");
-    for prepass in ["on", "off"] {
-        let variants: [Changes<'_>; 2] = [&[("geometry", "all")], &[("geometry", "culled")]];
-        require_one_picture(&watched, &[SIZE, ("msaa", "4"), ("depth-prepass", prepass)], &variants);
-    }
-}
-
 /// Holes, vertex colours, textures of many sizes, sixty lamps.
 #[test]
 fn real_maps_have_one_picture_too() {

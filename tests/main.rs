@@ -16,6 +16,7 @@ mod deep_shading;
 mod deep_stereo;
 mod deep_texture_space;
 mod deep_visibility;
+mod depth_prepass;
 mod drivers;
 mod filter;
 mod forward;

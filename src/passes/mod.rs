@@ -3,6 +3,7 @@
 pub mod accumulate;
 pub mod blend;
 pub mod decode;
+pub mod depth_prepass;
 pub mod direct;
 pub mod filter;
 pub mod fullscreen;

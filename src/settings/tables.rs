@@ -274,6 +274,18 @@ pub const MULTISAMPLE: &[Setting] = &[Setting {
     help: "places of a pixel that are tested for coverage and depth and averaged; a surface is shaded once a pixel",
 }];
 
+/// Of techniques that draw the scene with its materials.
+pub const DEPTH_PREPASS: Setting = Setting {
+    key: "depth-prepass",
+    symbol: "",
+    kind: Kind::Choice(&["on", "off"]),
+    default: "on",
+    unit: "",
+    paper: "",
+    help: "depth is drawn first, so that no surface is shaded that another one hides; the same picture (with --msaa 1 to \
+           the bit)",
+};
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
     BRDF,

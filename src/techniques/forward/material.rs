@@ -3,10 +3,8 @@
 //! reads   the scene, the lights, their lists, the tree or the shadow maps, forward.depth.reversed
 //! writes  the picture, RGBA32F, all samples; without a pre-pass forward.depth.reversed
 //!
-//! With a pre-pass the draws come in the opposite order: of surfaces at the same depth the last one drawn then wins, which
-//! is the first one of those that are tested by "nearer". So both ways make the same picture, where pixels have
-//! one sample. Only inside one range of a
-//! mesh's triangles the order is one: there the later of two triangles at the same depth wins with a pre-pass.
+//! Draws come backwards, so that the same picture is made with and without a pre-pass (depth_prepass.rs), where pixels have
+//! one sample.
 
 use super::{Choices, NAME, Targets};
 use crate::error::Result;
@@ -16,8 +14,8 @@ use crate::gpu::shader::techniques::forward::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Traffic};
 use crate::lights::object_lists::ObjectLights;
-use crate::passes::mesh;
 use crate::passes::shadow_maps::{self, ShadowMaps};
+use crate::passes::{depth_prepass, mesh};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, DrawList, SceneGpu};
 use ash::vk;
@@ -58,10 +56,9 @@ impl Material {
                     color_formats: &[PICTURE_FORMAT],
                     samples,
                     blending: Blending::Replace,
-                    depth_format: Some(super::depth::FORMAT),
+                    depth_format: Some(depth_prepass::FORMAT),
                     depth_write: !has_prepass,
-                    // Of surfaces in one place the last one is seen either way.
-                    depth_compare: if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER_OR_EQUAL },
+                    depth_compare: depth_prepass::compare(has_prepass),
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
                     conservative: false,
@@ -99,23 +96,12 @@ impl Material {
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
             cmd.barriers(maps.and_then(|maps| maps.barrier(Access::DepthWrite, Access::FragmentSample)));
-            let depth = if self.has_prepass {
-                cmd.barriers([depth.from(Access::DepthWrite).to(Access::DepthTest)]);
-                (depth, None, Access::DepthTest)
-            } else {
-                cmd.barriers([depth.discard(Access::DepthWrite)]);
-                (depth, Some(0.0), Access::DepthWrite)
-            };
+            let depth = depth_prepass::attach(cmd, depth, self.has_prepass);
             let clear = vk::ClearColorValue { float32: self.background.extend(0.0).to_array() };
             cmd.begin_rendering(color.description.extent, &[ColorTarget::new(color, Some(clear))], Some(depth));
             mesh::bind_streams(cmd, scene);
-            if self.has_prepass {
-                self.draw(cmd, &self.mask, scene, &bound, list.mask.iter().rev())?;
-                self.draw(cmd, &self.opaque, scene, &bound, list.opaque.iter().rev())?;
-            } else {
-                self.draw(cmd, &self.opaque, scene, &bound, list.opaque.iter())?;
-                self.draw(cmd, &self.mask, scene, &bound, list.mask.iter())?;
-            }
+            self.draw(cmd, &self.mask, scene, &bound, list.mask.iter().rev())?;
+            self.draw(cmd, &self.opaque, scene, &bound, list.opaque.iter().rev())?;
             cmd.end_rendering();
             Ok(())
         })

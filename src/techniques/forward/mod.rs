@@ -19,7 +19,6 @@
 //! Why this way: a list is found by the draw's push constants. An index of the object in the fragment shader would be one
 //! more thing to interpolate for every technique that shares the vertex stage.
 
-pub mod depth;
 pub mod material;
 mod plan;
 mod settings;
@@ -32,6 +31,7 @@ use crate::lights::LightSet;
 use crate::lights::object_lists::{ListChoice, ObjectLists};
 use crate::passes::accumulate::Accumulate;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
+use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::direct::{self, DirectGpu, DirectSettings};
 use crate::passes::resolve;
 use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
@@ -40,7 +40,6 @@ use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{Coverage, DrawList, SceneGpu};
 use crate::settings::{MULTISAMPLE, SHADOW_MAPS, Setting, Values};
 use crate::units::Bytes;
-use depth::Depth;
 use glam::Vec2;
 use material::Material;
 use std::collections::BTreeMap;
@@ -229,7 +228,7 @@ impl Prepared for PreparedForward {
             list: inputs.draw_list(scene, choices.coverage()),
             maps,
             maps_once: maps_once.flatten(),
-            depth: if has_prepass { Some(Depth::new(gpu, scene, samples)?) } else { None },
+            depth: if has_prepass { Some(DepthPrepass::new(gpu, scene, samples)?) } else { None },
             material: Material::new(gpu, scene, &choices, &lists.objects, background)?,
             blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &constants, &target)?,
             accumulate: if runs_per_side > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
@@ -259,7 +258,7 @@ struct ForwardFrame {
     list: DrawList,
     maps: Option<ShadowMaps>,
     maps_once: Option<(String, u64)>,
-    depth: Option<Depth>,
+    depth: Option<DepthPrepass>,
     material: Material,
     blend: Option<Blend>,
     accumulate: Option<Accumulate>,
@@ -279,7 +278,7 @@ impl Frame for ForwardFrame {
             maps.record(cmd, NAME, scene, Places::of(scene))?;
         }
         if let Some(prepass) = &self.depth {
-            prepass.record(cmd, frame, scene, &self.list, depth)?;
+            prepass.record(cmd, NAME, frame, scene, &self.list, depth)?;
         }
         let mut lit = self.direct.bound();
         if let Some(uniform) = &self.uniform_lights {
@@ -298,7 +297,7 @@ impl Frame for ForwardFrame {
                 lists: Some(&self.lists),
                 shadow_maps: self.maps.as_ref(),
             };
-            let tested = if self.depth.is_some() { Access::DepthTest } else { Access::DepthWrite };
+            let tested = depth_prepass::access(self.depth.is_some());
             blend.record(cmd, NAME, frame, scene, &lights, depth.from(tested), drawn.from(Access::ColorWrite))?;
         }
         if let Some(plain) = resolved {
@@ -357,7 +356,7 @@ impl Frame for ForwardFrame {
         if depth.description.samples > 1 {
             return Err(left_out(NAME, name, "with --msaa a pixel has several depths"));
         }
-        let last = if self.depth.is_some() || self.blend.is_some() { Access::DepthTest } else { Access::DepthWrite };
+        let last = depth_prepass::access(self.depth.is_some() || self.blend.is_some());
         let depths = bytemuck::pod_collect_to_vec(&readback::image(gpu, depth, last)?);
         Ok(Aov { name: name.to_owned(), channels: AovChannels::Y(depths) })
     }

@@ -1,12 +1,12 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
-use super::{Choices, NAME, depth};
+use super::{Choices, NAME};
 use crate::error::Result;
 use crate::gpu::Access;
 use crate::gpu::shader::structs::LightBlock;
 use crate::lights::object_lists::ObjectLists;
 use crate::memory::kinds::Use;
-use crate::passes::{accumulate, blend, direct, resolve};
+use crate::passes::{accumulate, blend, depth_prepass, direct, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Shape};
 use crate::techniques::Inputs;
 use ash::vk::{BufferUsageFlags, ImageUsageFlags as Usage};
@@ -43,7 +43,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Resu
     // Images of several samples are only attached.
     let read = |usage: Usage| if is_resolved { Usage::empty() } else { usage };
     let usage = Usage::DEPTH_STENCIL_ATTACHMENT | read(Usage::TRANSFER_SRC);
-    plan.multisampled("depth", DEPTH, extent, depth::FORMAT, samples, usage);
+    plan.multisampled("depth", DEPTH, extent, depth_prepass::FORMAT, samples, usage);
     let plain = Usage::COLOR_ATTACHMENT | Usage::STORAGE;
     match (is_resolved, is_mean) {
         (false, false) => plan.picture(DRAWN, extent),
@@ -64,12 +64,10 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Resu
         maps.plan(&mut plan, NAME);
     }
     let asked = || choices.maps.iter().filter_map(|maps| maps.read(NAME));
-    let mut depth_access = Access::DepthWrite;
     if has_prepass {
-        plan.pass(full("depth"), [touch(DEPTH, Access::DepthWrite)]);
-        depth_access = Access::DepthTest;
+        plan.pass(depth_prepass::pass(NAME), [touch(DEPTH, Access::DepthWrite)]);
     }
-    let drawn = [touch(DEPTH, depth_access), touch(DRAWN, Access::ColorWrite)];
+    let drawn = [touch(DEPTH, depth_prepass::access(has_prepass)), touch(DRAWN, Access::ColorWrite)];
     plan.pass(full("material"), drawn.into_iter().chain(asked()));
     if inputs.stats.has_blend {
         plan.pass(full("blend"), blend::touches(DEPTH, DRAWN).into_iter().chain(asked()));

@@ -1,6 +1,6 @@
 //! The settings that only this technique reads.
 
-use crate::settings::{BRDF, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, Setting};
+use crate::settings::{BRDF, DEPTH_PREPASS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, Setting};
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
@@ -23,16 +23,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "where solid surfaces read the lights from: a uniform buffer, which holds 1024, or a storage buffer; the same \
                picture; auto: uniform where they fit",
     },
-    Setting {
-        key: "depth-prepass",
-        symbol: "",
-        kind: Kind::Choice(&["on", "off"]),
-        default: "on",
-        unit: "",
-        paper: "",
-        help: "depth is drawn first, so that no surface is shaded that another one hides; the same picture (with --msaa 1 to \
-               the bit)",
-    },
+    DEPTH_PREPASS,
     Setting {
         key: "supersample",
         symbol: "N",

@@ -77,6 +77,8 @@ pub struct Choices {
     pub stipple_side: u32,
     /// Samples a pixel of the material pass.
     pub samples: u32,
+    /// The material pass shades what a pre-pass of its size sees.
+    pub has_prepass: bool,
     pub assignment: Assignment,
     /// Of `Assignment::Static`: the layers that the user gives to draws.
     pub named_layers: BTreeMap<u32, u32>,
@@ -138,6 +140,7 @@ impl Choices {
             tests_alpha: values.text("alpha") == "test",
             stipple_side,
             samples: resolve::samples(values),
+            has_prepass: values.is_on("depth-prepass"),
             assignment,
             named_layers,
             cone_radius,

@@ -140,6 +140,7 @@ impl InferredFrame {
             light_extent,
             stipple_side: choices.stipple_side,
             samples: choices.samples,
+            has_prepass: choices.has_prepass,
         };
         let material_constants = choices.material_constants();
         Ok(Self {

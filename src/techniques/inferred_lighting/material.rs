@@ -2,11 +2,11 @@
 //! Kircher 2009, sections 2.3, 3, 4. Shaders: mesh.vert, material.frag; the filter: light_filter.glsl.
 //! reads   the scene, light.l_buffer, geometry.dsf, and geometry.normal where the filter compares normals
 //! writes  material.color       image, RGBA32F, frame extent; with --msaa material.samples, which `resolve` averages
-//!         material.depth       image, 4 B a sample, reversed
+//!         material.depth       image, 4 B a sample, reversed; with --depth-prepass the pass before this one writes it
 //!         material.rejections  buffer: fragments, solid and BLEND, that none of the four samples belonged to
 
 use super::NAME;
-use super::choices::LightFilter;
+use super::choices::{Choices, LightFilter};
 use super::geometry::LowGeometry;
 use super::light;
 use super::stipple::Stippled;
@@ -16,6 +16,7 @@ use crate::gpu::shader::structs::InferredMaterialParams;
 use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback};
+use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::{mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
@@ -26,7 +27,6 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 /// Bytes of the two counters.
 const REJECTIONS_BYTES: u64 = 8;
 
@@ -41,27 +41,38 @@ pub fn plan(plan: &mut Plan, extent: Extent, samples: u32) {
     if samples > 1 {
         plan.multisampled("picture", full("samples"), extent, PICTURE_FORMAT, samples, Usage::COLOR_ATTACHMENT);
     }
-    plan.multisampled("picture", full("depth"), extent, DEPTH_FORMAT, samples, Usage::DEPTH_STENCIL_ATTACHMENT);
+    plan.multisampled(
+        "picture",
+        full("depth"),
+        extent,
+        depth_prepass::FORMAT,
+        samples,
+        Usage::DEPTH_STENCIL_ATTACHMENT,
+    );
     plan.buffer("counters", full("rejections"), REJECTIONS_BYTES);
     plan.read_back(&full("rejections"));
 }
 
-/// Plans its pass, and the one that resolves it.
-pub fn plan_passes(plan: &mut Plan, samples: u32, filter: LightFilter) {
-    let drawn = full(if samples > 1 { "samples" } else { "color" });
-    plan.pass(format!("{NAME}.material"), touches(&drawn, filter));
-    if samples > 1 {
+/// Plans its pass, the one before it and the one that resolves it.
+pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
+    let is_resolved = choices.samples > 1;
+    let drawn = full(if is_resolved { "samples" } else { "color" });
+    if choices.has_prepass {
+        plan.pass(depth_prepass::pass(NAME), [(full("depth"), Access::DepthWrite)]);
+    }
+    plan.pass(format!("{NAME}.material"), touches(&drawn, choices));
+    if is_resolved {
         plan.pass(format!("{NAME}.resolve"), resolve::touches(&drawn, &full("color")));
     }
 }
 
 /// What the pass touches. `drawn`: the picture that it draws into.
-fn touches(drawn: &str, filter: LightFilter) -> Vec<(String, Access)> {
-    let mut touches = super::geometry::filtered(filter.reads_normals());
+fn touches(drawn: &str, choices: &Choices) -> Vec<(String, Access)> {
+    let mut touches = super::geometry::filtered(choices.filter.reads_normals());
     touches.extend([
         (light::l_buffer(), Access::FragmentSample),
         (drawn.to_owned(), Access::ColorWrite),
-        (full("depth"), Access::DepthWrite),
+        (full("depth"), depth_prepass::access(choices.has_prepass)),
         (full("rejections"), Access::TransferWrite),
         (full("rejections"), Access::FragmentWrite),
     ]);
@@ -80,9 +91,11 @@ pub struct FilterSettings {
     pub stipple_side: u32,
     /// Samples a pixel of the material pass.
     pub samples: u32,
+    pub has_prepass: bool,
 }
 
 pub struct Material {
+    prepass: Option<DepthPrepass>,
     opaque: GraphicsPipeline,
     mask: GraphicsPipeline,
     blend: GraphicsPipeline,
@@ -124,14 +137,10 @@ impl Material {
                     color_formats: &[PICTURE_FORMAT],
                     samples: filter.samples,
                     blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
-                    depth_format: Some(DEPTH_FORMAT),
-                    depth_write: alpha != "blend",
-                    // Of solid surfaces in one place the first one is seen, as in the geometry pass.
-                    depth_compare: if alpha == "blend" {
-                        vk::CompareOp::GREATER_OR_EQUAL
-                    } else {
-                        vk::CompareOp::GREATER
-                    },
+                    depth_format: Some(depth_prepass::FORMAT),
+                    depth_write: alpha != "blend" && !filter.has_prepass,
+                    // What is blended may lie in one place with what is solid.
+                    depth_compare: depth_prepass::compare(filter.has_prepass && alpha != "blend"),
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
                     conservative: false,
@@ -141,6 +150,7 @@ impl Material {
             )
         };
         Ok(Self {
+            prepass: filter.has_prepass.then(|| DepthPrepass::new(gpu, scene, filter.samples)).transpose()?,
             opaque: pipeline("opaque")?,
             mask: pipeline("mask")?,
             blend: pipeline("blend")?,
@@ -185,9 +195,14 @@ impl Material {
         let traffic = Traffic {
             // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
             read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
-            written_bytes: extent.pixel_count() * 20 * u64::from(self.filter.samples),
+            written_bytes: extent.pixel_count()
+                * u64::from(self.filter.samples)
+                * if self.prepass.is_some() { 16 } else { 20 },
             invocations: None,
         };
+        if let Some(prepass) = &self.prepass {
+            prepass.record(cmd, NAME, frame, scene, &self.list, &self.depth)?;
+        }
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([self.rejections.discard(Access::TransferWrite)]);
             cmd.clear(&self.rejections);
@@ -196,14 +211,14 @@ impl Material {
                 l_buffer.to(Access::FragmentSample),
                 geometry.dsf.from(Access::ColorWrite).to(Access::FragmentSample),
                 drawn.discard(Access::ColorWrite),
-                self.depth.discard(Access::DepthWrite),
             ]);
+            let depth = depth_prepass::attach(cmd, &self.depth, self.prepass.is_some());
             if self.filter.kind.reads_normals() {
                 cmd.barriers([geometry.normal.from(normal_from).to(Access::FragmentSample)]);
             }
             let [r, g, b] = self.background.to_array();
             let colors = [ColorTarget::new(drawn, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))];
-            cmd.begin_rendering(extent, &colors, Some((&self.depth, Some(0.0), Access::DepthWrite)));
+            cmd.begin_rendering(extent, &colors, Some(depth));
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
             bound.extend([
@@ -214,12 +229,12 @@ impl Material {
             if self.filter.kind.reads_normals() {
                 bound.push(("geometry_normal", geometry.sampled(&geometry.normal, Access::FragmentSample)));
             }
-            for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
-                let Some(first) = calls.first() else { continue };
+            for (pipeline, calls) in [(&self.mask, &self.list.mask), (&self.opaque, &self.list.opaque)] {
+                let Some(first) = calls.last() else { continue };
                 let first = self.params(scene, first.material);
                 cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &bound)?;
                 let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
-                mesh::draw_with(cmd, pipeline, scene, calls, push);
+                mesh::draw_with(cmd, pipeline, scene, calls.iter().rev(), push);
             }
             if let Some(first) = self.stippled.first() {
                 let params = |stippled: &Stippled| InferredMaterialParams {

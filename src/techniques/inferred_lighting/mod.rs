@@ -1,8 +1,8 @@
 //! Inferred lighting: Kircher and Lawrance 2009, "Inferred Lighting: Fast dynamic lighting and shadows for opaque and
 //! translucent objects". Light small, shade large.
 //!
-//! Passes: geometry (at the light buffer's size), cull (with `--volumes tiled`), light, pack (with draws and float sums),
-//! material (at the frame's size), resolve (with `--msaa`).
+//! Passes: geometry (at the light buffer's size), cull (with `--volumes tiled`), light, pack (with draws and float sums), depth
+//! and material (at the frame's size), resolve (with `--msaa`).
 //!
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
 //! default road is one dispatch with light lists for tiles (`--volumes quad`, `scissor`, `stencil`, `both` and `auto` are
@@ -173,7 +173,7 @@ impl Technique for InferredLighting {
                 plan.pass(format!("{NAME}.pack"), touches);
             }
         }
-        material::plan_passes(&mut plan, choices.samples, choices.filter);
+        material::plan_passes(&mut plan, &choices);
         Ok(plan)
     }
 

@@ -3,7 +3,8 @@
 use super::encoding::FIXED_LIMIT;
 use super::layer_names;
 use crate::settings::{
-    BRDF, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD, Setting, TEXELS, WORKGROUP,
+    BRDF, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD, Setting,
+    TEXELS, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -11,6 +12,7 @@ pub const SETTINGS: &[Setting] = &[
     BRDF,
     GEOMETRY,
     DIRECT_SHADOW,
+    DEPTH_PREPASS,
     TEXELS,
     WORKGROUP,
     NORMAL_THRESHOLD,

@@ -1,27 +1,53 @@
-//! Depth pre-pass: the depth of solid surfaces, so that the material pass shades only what is seen. Shaders: mesh.vert and,
-//! for MASK surfaces, depth.frag.
-//! reads  the scene      writes  forward.depth.reversed  image, 4 B a sample
+//! Depth pre-pass: the depth of solid surfaces, so that the pass with their materials shades only what is seen. Shaders:
+//! mesh.vert and, for MASK surfaces, depth_prepass.frag.
+//! reads  the scene      writes  a depth buffer, reversed, 4 B a sample
+//!
+//! The pass that shades draws its lists backwards, by "equal" with this one and by "nearer or as near" without it. So it
+//! shades the same surface of several at the same depth: the first draw's, and of its triangles the last one.
 
-use super::NAME;
+use super::mesh;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
-use crate::gpu::shader::structs::DepthParams;
-use crate::gpu::shader::techniques::forward::depth::FRAG_VARIANTS;
+use crate::gpu::shader::passes::depth_prepass::FRAG_VARIANTS;
+use crate::gpu::shader::structs::DepthPrepassParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, Traffic};
-use crate::passes::mesh;
 use crate::resident::{DrawList, SceneGpu};
 use ash::vk;
 use std::sync::Arc;
 
+/// Full name of a technique's pass.
+pub fn pass(technique: &str) -> String {
+    format!("{technique}.depth")
+}
+
+/// How a pass over the same surfaces compares depths.
+pub fn compare(has_prepass: bool) -> vk::CompareOp {
+    if has_prepass { vk::CompareOp::EQUAL } else { vk::CompareOp::GREATER_OR_EQUAL }
+}
+
+/// How it holds the depth buffer.
+pub fn access(has_prepass: bool) -> Access {
+    if has_prepass { Access::DepthTest } else { Access::DepthWrite }
+}
+
+/// The depth buffer as that pass attaches it, behind its barrier.
+pub fn attach<'a>(cmd: &mut Commands, depth: &'a Image, has_prepass: bool) -> (&'a Image, Option<f32>, Access) {
+    cmd.barriers([match has_prepass {
+        true => depth.from(Access::DepthWrite).to(Access::DepthTest),
+        false => depth.discard(Access::DepthWrite),
+    }]);
+    (depth, (!has_prepass).then_some(0.0), access(has_prepass))
+}
+
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-pub struct Depth {
+pub struct DepthPrepass {
     opaque: GraphicsPipeline,
     mask: GraphicsPipeline,
 }
 
-impl Depth {
+impl DepthPrepass {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, samples: u32) -> Result<Self> {
         let pipeline = |fragment| {
             GraphicsPipeline::new(
@@ -53,6 +79,7 @@ impl Depth {
     pub fn record(
         &self,
         cmd: &mut Commands,
+        technique: &str,
         frame: &Buffer,
         scene: &SceneGpu,
         list: &DrawList,
@@ -63,7 +90,7 @@ impl Depth {
             written_bytes: depth.description.bytes(),
             invocations: None,
         };
-        cmd.pass(&format!("{NAME}.depth"), traffic, |cmd| {
+        cmd.pass(&pass(technique), traffic, |cmd| {
             cmd.barriers([depth.discard(Access::DepthWrite)]);
             cmd.begin_rendering(depth.description.extent, &[], Some((depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
@@ -72,7 +99,7 @@ impl Depth {
                 mesh::draw_with(cmd, &self.opaque, scene, &list.opaque, |_| ());
             }
             if !list.mask.is_empty() {
-                let params = |material: u32| DepthParams { material: scene.material_blocks[material as usize] };
+                let params = |material: u32| DepthPrepassParams { material: scene.material_blocks[material as usize] };
                 let first = params(list.mask[0].material);
                 cmd.bind_graphics(&self.mask, bytemuck::bytes_of(&first), &mesh::bound(frame, scene))?;
                 let push = |material| cmd.push(&self.mask.interface, bytemuck::bytes_of(&params(material)));

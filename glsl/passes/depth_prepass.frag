@@ -1,14 +1,14 @@
-// MASK surfaces in the depth pre-pass: what alpha cuts out has no depth. Pass: src/techniques/forward/depth.rs.
+// MASK surfaces in the depth pre-pass: what alpha cuts out has no depth. Pass: src/passes/depth_prepass.rs.
 // variants: VERTEX=plain|extended
 #version 460
 #include "resident.glsl"
 
-struct DepthParams {
+struct DepthPrepassParams {
     // The draw's.
     MaterialBlock material;
 };
 
-layout(push_constant) uniform Push { DepthParams params; };
+layout(push_constant) uniform Push { DepthPrepassParams params; };
 #ifdef VERTEX_EXTENDED
 layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
 #endif
