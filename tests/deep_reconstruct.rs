@@ -230,7 +230,7 @@ fn memory_is_planned_to_the_byte() {
         assert_eq!(on["reconstruction"], own, "{size}");
         // Groups have images as the driver pads them.
         assert_eq!(on["color"], off["picture"], "{size}");
-        assert_eq!(all_on - all_off, own + 16 * pixels + 16 * 8, "{size}");
+        assert_eq!(all_on - all_off, own + 16 * pixels + 20 * 8, "{size}");
         for group in ["frame_buffer", "deep_shading_buffer", "auxiliary"] {
             assert_eq!(on[group], off[group], "{size}: {group}");
         }

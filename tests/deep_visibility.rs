@@ -133,39 +133,43 @@ fn rays_see_a_turning_camera_as_the_rasteriser_does_without_perspective_too() {
 #[test]
 fn tests_grow_with_the_aperture() {
     let watched = Watched::open("cornell");
-    let common = both(&[SIZE, ("spp", "4")], &[STOCHASTIC]);
-    let counted: Vec<[f64; 2]> = ["0", "0.1", "0.2", "0.4"]
-        .iter()
-        .map(|aperture| {
-            let counters =
-                watched.render(DEEP, &both(&common, &[("aperture", *aperture)])).measured_counters().unwrap();
-            ["sample_tests", "sample_tests_hit"].map(|key| counters[key])
-        })
-        .collect();
-    println!("tests and hits: {counted:?}");
     // A sharp triangle's polygon is the triangle, but for how far it reaches because corners are snapped; a rectangle, where that
-    // is small.
-    let most = 1.06 + 0.03 * placing_steps(&watched.session.gpu.caps);
-    let [tests, hits] = counted[0];
-    assert!(hits > 0.0 && tests < most * hits, "{counted:?}");
-    assert!(counted.windows(2).all(|pair| pair[1][0] > 1.02 * pair[0][0]), "{counted:?}");
-    assert!(counted.iter().all(|[_, now]| (now / hits - 1.0).abs() < 0.2), "{counted:?}");
+    // is small. Where all of a pixel's samples are tested, it reaches to the middles of pixels.
+    let ways = [("layers", 1.06 + 0.03 * placing_steps(&watched.session.gpu.caps)), ("auto", 1.3)];
+    for (way, most) in ways {
+        let common = both(&[SIZE, ("spp", "4"), ("sample-tests", way)], &[STOCHASTIC]);
+        let counted: Vec<[f64; 2]> = ["0", "0.1", "0.2", "0.4"]
+            .iter()
+            .map(|aperture| {
+                let changes = both(&common, &[("aperture", *aperture)]);
+                let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
+                ["sample_tests", "sample_tests_hit"].map(|key| counters[key])
+            })
+            .collect();
+        println!("{way}: tests and hits: {counted:?}");
+        let [tests, hits] = counted[0];
+        assert!(hits > 0.0 && tests < most * hits, "{way}: {counted:?}");
+        assert!(counted.windows(2).all(|pair| pair[1][0] > 1.02 * pair[0][0]), "{way}: {counted:?}");
+        assert!(counted.iter().all(|[_, now]| (now / hits - 1.0).abs() < 0.2), "{way}: {counted:?}");
+    }
     let interleaved = watched.render(DEEP, &[SIZE, ("spp", "4"), ("aperture", "0.4")]).measured_counters().unwrap();
     assert!(!interleaved.contains_key("sample_tests"), "{interleaved:?}");
 }
 
 /// Walls and floors beside and behind the eye cross the near plane's level: what lies before it is cut off, and what is left of
-/// them is beside the picture.
+/// them is beside the picture. Triangles of the arena are smaller than these pixels, all samples of which a loop tests.
 #[test]
 fn what_passes_the_eye_is_not_tested_everywhere() {
     for (spec, camera) in [("hall:triangles=8000", "nave"), ("arena:triangles=60000", "flight")] {
         let watched = Watched::open(spec);
-        let changes =
-            both(&[SIZE, ("camera", camera), ("spp", "2"), ("aperture", "0.1"), ("brdf", "lambert")], &[STOCHASTIC]);
-        let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
-        let [tests, hits] = ["sample_tests", "sample_tests_hit"].map(|key| counters[key]);
-        println!("{spec}: {tests} tests, {hits} hits");
-        assert!(hits > 0.0 && tests < 8.0 * hits, "{spec}: {tests} tests, {hits} hits");
+        for (way, most) in [("layers", 8.0), ("auto", 16.0)] {
+            let changes = [SIZE, ("camera", camera), ("spp", "2"), ("aperture", "0.1"), ("brdf", "lambert")];
+            let changes = both(&changes, &[STOCHASTIC, ("sample-tests", way)]);
+            let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
+            let [tests, hits] = ["sample_tests", "sample_tests_hit"].map(|key| counters[key]);
+            println!("{spec}, {way}: {tests} tests, {hits} hits");
+            assert!(hits > 0.0 && tests < most * hits, "{spec}, {way}: {tests} tests, {hits} hits");
+        }
     }
 }
 

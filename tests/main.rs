@@ -10,6 +10,7 @@ mod compare;
 mod contract;
 mod deep_baselines;
 mod deep_hostile;
+mod deep_looped;
 mod deep_reconstruct;
 mod deep_rivals;
 mod deep_shading;

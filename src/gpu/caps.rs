@@ -194,6 +194,7 @@ pub struct Features {
     pub sampler_anisotropy: bool,
     pub storage_image_extended_formats: bool,
     pub shader_float16: bool,
+    /// Of storage buffers, with integers of 64 bits.
     pub shader_int64_atomics: bool,
     pub pipeline_statistics: bool,
     pub conservative_rasterization: bool,

@@ -265,11 +265,13 @@ impl Gpu {
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
             .depth_clamp(caps.features.depth_clamp)
             .pipeline_statistics_query(caps.features.pipeline_statistics)
-            .geometry_shader(caps.features.geometry_shader);
+            .geometry_shader(caps.features.geometry_shader)
+            .shader_int64(caps.features.shader_int64_atomics);
         let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
             // Every device of Vulkan 1.3 has it.
             .buffer_device_address(true)
             .shader_output_layer(caps.features.layer_from_vertex_shader)
+            .shader_buffer_int64_atomics(caps.features.shader_int64_atomics)
             .draw_indirect_count(caps.features.draw_indirect_count);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);

@@ -34,6 +34,8 @@ pub enum Ability {
     GeometryShader,
     /// Vertex shaders choose the layer that is drawn into.
     LayerFromVertex,
+    /// Shaders keep the greatest of 64 bits in storage buffers.
+    WideAtomics,
     /// All pixels that a triangle touches are drawn.
     ConservativeRaster,
     /// Shaders send rays through structures that the driver builds.
@@ -58,6 +60,7 @@ impl Ability {
             Self::FourSamples => has_samples(&caps.formats, 4),
             Self::EightSamples => has_samples(&caps.formats, 8),
             Self::GeometryShader => caps.features.geometry_shader,
+            Self::WideAtomics => caps.features.shader_int64_atomics,
             Self::LayerFromVertex => caps.features.layer_from_vertex_shader,
             Self::ConservativeRaster => caps.features.conservative_rasterization,
             Self::RayQuery => caps.features.ray_query,
@@ -80,6 +83,7 @@ impl Ability {
             Self::FourSamples => "4 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::EightSamples => "8 samples a pixel in float colour and D32_SFLOAT attachments",
             Self::GeometryShader => "geometryShader",
+            Self::WideAtomics => "shaderBufferInt64Atomics with shaderInt64",
             Self::LayerFromVertex => "shaderOutputLayer",
             Self::ConservativeRaster => "VK_EXT_conservative_rasterization",
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",

@@ -153,7 +153,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             sampler_anisotropy: features.sampler_anisotropy != 0,
             storage_image_extended_formats: features.shader_storage_image_extended_formats != 0,
             shader_float16: features12.shader_float16 != 0,
-            shader_int64_atomics: features12.shader_buffer_int64_atomics != 0,
+            shader_int64_atomics: features.shader_int64 != 0 && features12.shader_buffer_int64_atomics != 0,
             pipeline_statistics: features.pipeline_statistics_query != 0,
             conservative_rasterization: has("VK_EXT_conservative_rasterization"),
             ray_query: RAY_QUERY_EXTENSIONS.iter().all(|name| has(&name.to_string_lossy()))

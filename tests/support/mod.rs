@@ -71,6 +71,8 @@ pub enum Feature {
     /// Rays through structures of the driver's own.
     RayQuery,
     GeometryShader,
+    /// Shaders keep the greatest of 64 bits.
+    WideAtomics,
     /// The device counts what stages do.
     PipelineStatistics,
 }
@@ -82,6 +84,7 @@ impl Feature {
             Self::ExactPositions => caps.limits.sub_pixel_bits >= 8,
             Self::RayQuery => caps.features.ray_query,
             Self::GeometryShader => caps.features.geometry_shader,
+            Self::WideAtomics => caps.features.shader_int64_atomics,
             Self::PipelineStatistics => caps.features.pipeline_statistics,
         }
     }
@@ -89,7 +92,11 @@ impl Feature {
     /// Whether the driver that CI runs on has it: where not, CI skips the test as others do.
     fn is_of_pinned(self) -> bool {
         match self {
-            Self::Pinned | Self::ExactPositions | Self::GeometryShader | Self::PipelineStatistics => true,
+            Self::Pinned
+            | Self::ExactPositions
+            | Self::GeometryShader
+            | Self::WideAtomics
+            | Self::PipelineStatistics => true,
             Self::RayQuery => false,
         }
     }
@@ -103,6 +110,7 @@ impl Feature {
             }
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure".to_owned(),
             Self::GeometryShader => "geometryShader".to_owned(),
+            Self::WideAtomics => "shaderBufferInt64Atomics with shaderInt64".to_owned(),
             Self::PipelineStatistics => "pipelineStatisticsQuery".to_owned(),
         }
     }

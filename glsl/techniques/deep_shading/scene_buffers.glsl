@@ -22,6 +22,8 @@ struct DrawnParams {
     uint tuple;
     // DRAWN_ bits.
     uint flags;
+    // The number of a triangle in the order of draws is its place among all indices, a third of it, plus this (modulo 2^32).
+    uint order_offset;
 };
 
 #ifdef DRAW_OF_TRIANGLE

@@ -11,12 +11,12 @@ use super::lists::compact::Compact;
 use super::lists::direct::Direct;
 use super::lists::insert::Insert;
 use super::lists::{self, Lists};
+use super::primitives::Primitives;
 use super::resolve::Shaded;
 use super::scene::DeepScene;
 use super::shade::Shade;
 use super::visibility::ray::{Rays, Sets, Traced};
-use super::visibility::sample::Sample;
-use super::visibility::{self, Drawn, Samples, Visibility};
+use super::visibility::{self, Drawer, Drawn, Samples, Visibility};
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
 use crate::plan::Resources;
@@ -47,7 +47,7 @@ struct Inserted {
 
 /// Who finds what samples see.
 enum Seen {
-    Drawn(Samples, Sample),
+    Drawn(Samples, Drawer),
     Traced(Samples, Rays),
     /// With `--lists direct` the lists alone know.
     Listed,
@@ -70,7 +70,7 @@ pub struct Apart {
 }
 
 impl Apart {
-    /// `frame`: its extent; `traced`: with `--visibility ray`.
+    /// `frame`: its extent; `traced`: with `--visibility ray`; `primitives`: numbered in the order of what is drawn.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
@@ -78,6 +78,7 @@ impl Apart {
         choices: &Choices,
         frame: Extent,
         traced: Option<Traced>,
+        primitives: &Primitives,
     ) -> Result<Self> {
         let samples = |resources: &mut Resources| Samples::new(gpu, resources, choices);
         let mut host_lists = None;
@@ -87,7 +88,7 @@ impl Apart {
                 Seen::Listed
             }
             Some(Sets::Samples(sets)) => Seen::Traced(samples(resources)?, Rays::new(resources, choices, sets)),
-            None => Seen::Drawn(samples(resources)?, Sample::new(gpu, scene, choices)?),
+            None => Seen::Drawn(samples(resources)?, Drawer::new(gpu, scene, resources, choices, primitives)?),
         };
         let listed = if choices.has_lists {
             let address = choices.is_compacted && choices.has_addresses;
@@ -177,8 +178,8 @@ impl Apart {
         match &self.seen {
             Seen::Listed => {}
             Seen::Traced(samples, rays) => rays.record(cmd, samples, counters)?,
-            Seen::Drawn(samples, sample) => {
-                visibility::record(cmd, sample, drawn, bound, samples, counters, self.visibility)?;
+            Seen::Drawn(samples, drawer) => {
+                visibility::record(cmd, drawer, drawn, bound, samples, counters, self.visibility)?;
             }
         }
         if let Some(listed) = &self.listed {

@@ -5,9 +5,9 @@ use super::middle::Middle;
 use super::reconstruct;
 use super::space::ShadingSpace;
 use super::tuples::Table;
-use super::visibility::Visibility;
 use super::visibility::layer::LayerFrom;
 use super::visibility::polygon::PolygonFrom;
+use super::visibility::{Visibility, looped};
 use super::{NAME, reach, shade::Road, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::Caps;
@@ -27,6 +27,8 @@ pub struct Choices {
     pub visibility: Visibility,
     pub layer_from: LayerFrom,
     pub polygon_from: PolygonFrom,
+    /// Stochastic rasterisation tests all samples of a pixel at once.
+    pub is_looped: bool,
     /// Layers that are drawn together reach beyond the frame.
     pub has_padding: bool,
     pub table: Table,
@@ -147,6 +149,8 @@ impl Choices {
             visibility,
             layer_from: LayerFrom::of(values, inputs.caps),
             polygon_from: PolygonFrom::of(values, inputs.caps),
+            is_looped: matches!(shading, Shading::Deep | Shading::IndirectGbuffer)
+                && looped::is_looped(values, inputs.caps, visibility, samples_of_set * looped::NEAREST_BYTES),
             has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
             table,
             run_count: values.integer("accumulate") as u32,
@@ -194,6 +198,11 @@ impl Choices {
     /// Both eyes are seen by at once.
     pub fn has_right_eye(&self) -> bool {
         self.table.eyes > 1
+    }
+
+    /// Samples have a depth image: what is nearest is found by depth tests.
+    pub fn has_depth(&self) -> bool {
+        self.visibility != Visibility::Ray && !self.is_looped
     }
 
     /// Something is seen from elsewhere than the camera shows it from.

@@ -57,16 +57,18 @@ impl DeepFrame {
         scene: &SceneGpu,
         resources: &mut Resources,
         choices: Choices,
-        (primitives, traced, atlases): (Primitives, Option<Traced>, Option<Atlases>),
+        (mut primitives, traced, atlases): (Primitives, Option<Traced>, Option<Atlases>),
     ) -> Result<Self> {
         let frame = inputs.view.extent;
+        let list = primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred());
+        primitives.set_order(scene, &list);
         let reconstruct = match choices.is_reconstructed {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
             false => None,
         };
         let shader = match choices.shading {
             Shading::Deep | Shading::IndirectGbuffer => {
-                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced)?;
+                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced, &primitives)?;
                 let buffers = apart.buffers().chain(reconstruct.iter().flat_map(Reconstruct::buffers));
                 let reach = Reach::new(gpu, resources, choices.is_by_address, buffers)?;
                 Shader::Apart(Box::new(apart), reach)
@@ -76,7 +78,7 @@ impl DeepFrame {
         let deep_scene = DeepScene::new(gpu, inputs, resources, &choices, scene)?;
         Ok(Self {
             maps_once: deep_scene.draw_maps_once(gpu, scene)?,
-            list: primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred()),
+            list,
             scene: deep_scene,
             shader,
             resolve: Resolve::new(gpu, &choices)?,

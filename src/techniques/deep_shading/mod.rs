@@ -32,8 +32,9 @@
 //!   samples that see more in a pixel than the 1024 triangles that a list holds, so that work grows with samples alone
 //! - shading space is drawn with triangles that lists have, which insertion marks (`--shaded-triangles all` is the paper's way)
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
-//! - `--visibility stochastic` tests the tuples of the interleaved kinds, a layer a tuple, so that both see the same samples, and
-//!   the depth test finds the nearest without 64-bit atomics
+//! - `--visibility stochastic` tests the tuples of the interleaved kinds, so that both see the same samples: all of a pixel's in a
+//!   loop, the nearest kept by 64-bit atomics (the paper has images of 8 samples a pixel and their depth test), or a layer a
+//!   tuple where the device has none (`--sample-tests`)
 //! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no SPID is kept
 //! - the reconstruction is a filter of our choice; motion vectors come from SPIDs after visibility (reconstruct/mod.rs)
 //! - two eyes (`--stereo`) share one buffer, which the paper has as future work (section 7; stereo.rs)
@@ -57,6 +58,7 @@ mod middle;
 mod passes;
 mod plan;
 mod primitives;
+mod ranges;
 mod reach;
 mod reconstruct;
 mod resolve;
@@ -88,6 +90,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use visibility::Visibility;
 use visibility::layer::LayerFrom;
+use visibility::looped;
 use visibility::polygon::PolygonFrom;
 use visibility::ray::Traced;
 
@@ -150,6 +153,10 @@ impl Technique for DeepShading {
         if has_polygons && PolygonFrom::of(values, caps) == PolygonFrom::Geometry {
             let instead = "--polygon-from vertex works without it";
             needs.push(need("--polygon-from geometry", Ability::GeometryShader, instead));
+        }
+        if has_layers && visibility == Visibility::Stochastic && values.text("sample-tests") == "loop" {
+            let instead = "--sample-tests layers works without it";
+            needs.push(need("--sample-tests loop", Ability::WideAtomics, instead));
         }
         match choices::road(values, caps) {
             _ if values.text("shading") != "deep" => {}
@@ -240,6 +247,9 @@ impl Prepared for PreparedDeep {
         }
         if visibility.has_polygons() && !matches!(shading, Shading::Msaa { .. }) {
             resolved.insert("polygon-from", self.choices.polygon_from.name().to_owned());
+        }
+        if *visibility == Visibility::Stochastic && matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
+            resolved.insert("sample-tests", looped::name(self.choices.is_looped).to_owned());
         }
         if !self.choices.has_marks {
             resolved.insert("shaded-triangles", "all".to_owned());

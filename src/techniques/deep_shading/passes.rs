@@ -5,7 +5,7 @@ use super::choices::Choices;
 use super::plan::{
     ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, MARKS, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
 };
-use super::visibility::Visibility;
+use super::visibility::looped;
 use super::{NAME, full, gate, indirect, reconstruct, stereo};
 use crate::gpu::Access;
 use crate::plan::Plan;
@@ -62,7 +62,8 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
 fn visibility(choices: &Choices) -> Touches {
     let written = choices.visibility.writes();
     let mut seen = vec![touch(SPIDS, written)];
-    seen.extend((choices.visibility != Visibility::Ray).then(|| touch(DEPTH, Access::DepthWrite)));
+    seen.extend(choices.has_depth().then(|| touch(DEPTH, Access::DepthWrite)));
+    seen.extend(choices.is_looped.then(looped::touches).into_iter().flatten());
     seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
     seen.extend(choices.has_zmax.then(|| touch(SHADING_DEPTHS, written)));
     seen

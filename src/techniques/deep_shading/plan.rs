@@ -6,7 +6,7 @@ use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::tuples::Table;
-use super::visibility::{Visibility, ray};
+use super::visibility::{Visibility, looped, ray};
 use super::{NAME, full, gate, indirect, passes, reach, reconstruct, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
@@ -125,12 +125,15 @@ fn plan_samples(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Resu
         plan.push("frame_buffer", full(SPIDS), layers(choices, inputs, SPID_FORMAT, attached(choices)));
     }
     if choices.visibility == Visibility::Ray {
-        ray::plan(plan, choices, inputs)
+        return ray::plan(plan, choices, inputs);
+    }
+    if choices.is_looped {
+        looped::plan(plan, choices.samples_of(inputs.view.extent), inputs.stats.draw_count);
     } else {
         let depth = layers(choices, inputs, DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
         plan.push("frame_buffer", full(DEPTH), depth);
-        Ok(())
     }
+    Ok(())
 }
 
 /// Lists, and colours.
@@ -216,6 +219,9 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         ))
         .within(NAME)
         .note("--visibility repeat-frame draws into one"));
+    }
+    if choices.is_looped {
+        looped::require_fitting(choices.samples_of(inputs.view.extent), &inputs.caps.limits)?;
     }
     match choices.shading {
         Shading::Deep | Shading::IndirectGbuffer => reach::require_fitting(choices, inputs),

@@ -18,6 +18,9 @@ pub struct Primitives {
     /// By draw: what an index's place, a third of it, is short of the id (modulo 2^32).
     offsets: Vec<u32>,
     pub count: u64,
+    /// The same by draw for numbers in the order of draws.
+    orders: Vec<u32>,
+    ordered: Vec<DrawCall>,
 }
 
 impl Primitives {
@@ -40,12 +43,36 @@ impl Primitives {
         if count >= u64::from(u32::MAX) {
             return Err(Error::request(format!("{}: {count} triangles, and ids are 32 bits", scene.name)));
         }
-        Ok(Self { offsets, count })
+        Ok(Self { orders: vec![0; scene.draws.len()], ordered: Vec::new(), offsets, count })
     }
 
     /// The id of a draw's triangle, by the place of its first index among all that are resident.
     pub fn id(&self, draw: u32, first_index: u32) -> u32 {
         (first_index / 3).wrapping_add(self.offsets[draw as usize])
+    }
+
+    /// Numbers triangles in the order in which `list` draws them, from 0 on; a draw of which it draws parts has numbers for all.
+    pub fn set_order(&mut self, scene: &SceneGpu, list: &DrawList) {
+        let mut whole = vec![None; self.orders.len()];
+        scene.calls.iter().for_each(|call| whole[call.draw as usize] = Some(*call));
+        // Each once, where its first part comes.
+        self.ordered = list.calls().filter_map(|part| whole[part.draw as usize].take()).collect();
+        let mut count = 0u32;
+        for call in &self.ordered {
+            self.orders[call.draw as usize] = count.wrapping_sub(call.first_index / 3);
+            // No more than there are ids.
+            count += call.index_count / 3;
+        }
+    }
+
+    /// Whole draws, in that order.
+    pub fn ordered(&self) -> &[DrawCall] {
+        &self.ordered
+    }
+
+    /// That number of a draw's triangle, by the place of its first index among all that are resident.
+    pub fn order(&self, draw: u32, first_index: u32) -> u32 {
+        (first_index / 3).wrapping_add(self.orders[draw as usize])
     }
 
     /// What shaders are told of a draw, but for the tuple.
@@ -62,6 +89,7 @@ impl Primitives {
             draw: call.draw,
             vertex_offset: call.vertex_offset as u32,
             primitive_offset: self.offsets[call.draw as usize],
+            order_offset: self.orders[call.draw as usize],
             flags,
             ..DrawnParams::zeroed()
         }

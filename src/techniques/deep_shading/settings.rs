@@ -90,6 +90,15 @@ pub const SETTINGS: &[Setting] = &[
                geometry shader, once, or vertex shaders, each corner for itself; the same samples; auto: geometry where the device can",
     },
     Setting {
+        key: "sample-tests",
+        symbol: "",
+        kind: Kind::Choice(&["auto", "loop", "layers"]),
+        default: "auto",
+        unit: "",
+        paper: "Clarberg 2014, 4.2",
+        help: "how --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once over the frame and its                fragments test all samples of their pixel, of which 64-bit atomics keep the nearest; or it is drawn into a layer of each                tuple, where a pixel is a sample; the same bits; auto: a loop where the device can",
+    },
+    Setting {
         key: "spp",
         symbol: "n",
         kind: Kind::Integer { min: 1, max: 64 },

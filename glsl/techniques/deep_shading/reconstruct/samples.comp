@@ -8,25 +8,15 @@
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/ranges.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/reconstruct/blur.glsl"
-
-// Where a draw's triangles are, in the order of draws.
-struct DrawnRangeBlock {
-    // The id of its first one.
-    uint first_primitive;
-    // As of DrawnParams.
-    uint vertex_offset;
-    uint primitive_offset;
-    uint _unused;
-};
 
 layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
-layout(std430, set = 0, binding = 33) readonly buffer DrawnRanges { DrawnRangeBlock ranges[]; };
 layout(std430, set = 0, binding = 34) writeonly buffer SampleColors { uvec2 sample_colors[]; };
 layout(std430, set = 0, binding = 35) writeonly buffer SampleVectors { uvec2 sample_vectors[]; };
 
@@ -34,21 +24,6 @@ layout(std430, set = 0, binding = 35) writeonly buffer SampleVectors { uvec2 sam
 
 WRITES_PAIRS(set_colors, sample_colors)
 WRITES_PAIRS(set_vectors, sample_vectors)
-
-// Sets `params` to the triangle's draw: the last one that begins at its id or before.
-void find_draw(uint primitive) {
-    uint first = 0u;
-    uint count = uint(ranges.length());
-    while (count > 1u) {
-        uint before = count / 2u;
-        bool is_after = ranges[first + before].first_primitive <= primitive;
-        first += is_after ? before : 0u;
-        count = is_after ? count - before : before;
-    }
-    params.draw = first;
-    params.vertex_offset = ranges[first].vertex_offset;
-    params.primitive_offset = ranges[first].primitive_offset;
-}
 
 // Pixels of the frame that a place `depth` metres before the eye is spread over, with this w of clip space.
 float circle_at(float depth, float w) {
@@ -65,9 +40,8 @@ Blur blur_of_nothing() {
 
 // `layer_px`: in the tuple's layer.
 Blur blur_of_sample(uint primitive, uvec2 layer_px, TupleBlock tuple) {
-    find_draw(primitive);
     Seen seen[6];
-    see_triangle(primitive - params.primitive_offset, seen);
+    see_triangle(find_draw(primitive), seen);
     vec4 corners[3];
     for (uint corner = 0u; corner < 3u; corner++) {
         corners[corner] = layer_corner(seen[corner], seen[corner + 3u], tuple);

@@ -6,6 +6,9 @@
 // polygon's sides touch that hull. They lie along the triangle's edges at both ends, along its way, and along the screen: of a
 // sharp triangle the polygon is that triangle. No side needs to know the others, which a walk around the hull would. Around
 // what is small, and around what of a triangle lies before the near plane, the polygon is an upright rectangle.
+//
+// Where a pixel has its samples anywhere, `around_px` is how far they lie from its middle on each axis: the polygon has the middles
+// of all pixels in it that may have a sample in the triangle.
 #ifndef DEEP_SHADING_BOUND_GLSL
 #define DEEP_SHADING_BOUND_GLSL
 
@@ -88,7 +91,7 @@ Extent widened_by(Extent extent, Spot spot, vec2 reach) {
 // Of what lies before the near plane: of the hull of both ends of the exposure that part lies between the corners that are seen
 // and the places where ways from those to the others meet the plane. Only where `is_wanted`, by which the loop ends, because
 // some drivers run both sides of every branch.
-Extent cut_extent(Seen seen[6], TupleBlock tuple, vec2 layer, bool is_wanted) {
+Extent cut_extent(Seen seen[6], TupleBlock tuple, vec2 layer, float around_px, bool is_wanted) {
     Extent extent = Extent(vec2(3.0e38), vec2(-3.0e38));
     for (uint pair = 0u; pair < 36u && is_wanted; pair++) {
         Seen from = seen[pair / 6u];
@@ -105,7 +108,8 @@ Extent cut_extent(Seen seen[6], TupleBlock tuple, vec2 layer, bool is_wanted) {
             if (!is_corner) {
                 rounding *= 1.0 + max(max(largest.x, largest.y), largest.w) / mix(from.clip.w, to.clip.w, part);
             }
-            extent = widened_by(extent, spot, snap_px() + rounding * (abs(spot.middle) + spot.radii + layer));
+            vec2 reach = snap_px() + around_px + rounding * (abs(spot.middle) + spot.radii + layer);
+            extent = widened_by(extent, spot, reach);
         }
     }
     return extent;
@@ -125,7 +129,7 @@ Bound upright(Extent extent, vec2 layer) {
 }
 
 // `seen`: three corners when the shutter opens, and the same when it closes.
-Bound bound_of(Seen seen[6], TupleBlock tuple, vec2 layer) {
+Bound bound_of(Seen seen[6], TupleBlock tuple, vec2 layer, float around_px) {
     Spot spots[6];
     vec2 middle = vec2(0.0);
     float farthest = 0.0;
@@ -139,9 +143,9 @@ Bound bound_of(Seen seen[6], TupleBlock tuple, vec2 layer) {
     }
     is_placed = is_placed && farthest < BOUND_FARTHEST * max(layer.x, layer.y);
     float reach = snap_px() + BOUND_REACH_PART * farthest;
-    Extent extent = cut_extent(seen, tuple, layer, !is_placed);
+    Extent extent = cut_extent(seen, tuple, layer, around_px, !is_placed);
     for (uint index = 0u; index < 6u && is_placed; index++) {
-        extent = widened_by(extent, spots[index], vec2(reach));
+        extent = widened_by(extent, spots[index], vec2(reach + around_px));
     }
     Bound rectangle = upright(extent, layer);
     vec2 size = extent.greatest - extent.least;
@@ -194,6 +198,7 @@ Bound bound_of(Seen seen[6], TupleBlock tuple, vec2 layer) {
             float far = dot(sides[index], spots[corner].middle - middle) + length(sides[index] * spots[corner].radii);
             distances[index] = max(distances[index], far + reach);
         }
+        distances[index] += around_px * (abs(sides[index].x) + abs(sides[index].y));
     }
     Bound bound;
     bound.count = apart;

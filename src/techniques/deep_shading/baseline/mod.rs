@@ -42,7 +42,7 @@ const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Settings that not everything that is shaded reads: who does, and why others do not.
-const OF_SOME: [(&str, &[&str], &str); 18] = [
+const OF_SOME: [(&str, &[&str], &str); 19] = [
     ("guard-band", OF_SPACE, NO_SPACE),
     ("shading-scale", &["deep", "indirect-gbuffer", "texture-space"], "it shades no pixels of shading space"),
     ("shading-warp", OF_SPACE, NO_SPACE),
@@ -57,6 +57,7 @@ const OF_SOME: [(&str, &[&str], &str); 18] = [
     ("shaded-triangles", &["deep"], NO_LISTS),
     ("layer-from", OF_SPACE, "samples are drawn layer by layer"),
     ("polygon-from", &["deep", "indirect-gbuffer", "ssaa", "texture-space"], "its triangles come from vertex shaders"),
+    ("sample-tests", OF_SPACE, "samples are drawn and coloured layer by layer, or as many at a time as an image has"),
     ("pass-samples", &["msaa"], "samples are drawn one at a time"),
     ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
     ("shading-textures", &["texture-space"], "it has no textures of its own"),

@@ -19,9 +19,9 @@ mod layers;
 mod samples;
 
 use super::choices::Choices;
-use super::full;
 use super::primitives::Primitives;
 use super::resolve::{Shaded, fetch};
+use super::{full, ranges};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::TileBlock;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
@@ -73,7 +73,7 @@ fn tiles(frame: Extent) -> [u32; 2] {
 /// Everything but the picture. `draws` of the scene.
 pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent, draws: u64) {
     let bytes = frame.pixel_count() * u64::from(choices.table.samples) * SAMPLE_BYTES;
-    plan.buffer("scene.geometry", full(RANGES), draws * samples::RANGE_BYTES);
+    ranges::plan(plan, full(RANGES), draws);
     plan.buffer("reconstruction", full(SAMPLE_COLORS), bytes);
     plan.buffer("reconstruction", full(SAMPLE_VECTORS), bytes);
     let [across, down] = tiles(frame).map(u64::from);

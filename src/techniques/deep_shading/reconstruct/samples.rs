@@ -5,25 +5,21 @@
 //!
 //! Differs from the paper: visibility leaves no motion vectors; a SPID and a tuple say what they are, whoever found the SPID.
 
-use super::super::full;
 use super::super::primitives::Primitives;
 use super::super::resolve::Shaded;
+use super::super::{full, ranges};
 use super::{Choices, RANGES, Reconstructed};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::DrawnRangeBlock;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::samples::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic, upload};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::units::Extent;
-use bytemuck::Zeroable;
 use std::sync::Arc;
 
 pub const PASS: &str = "reconstruct.samples";
-
-pub const RANGE_BYTES: u64 = size_of::<DrawnRangeBlock>() as u64;
 
 pub struct Gather {
     pipeline: ComputePipeline,
@@ -44,19 +40,13 @@ impl Gather {
     ) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[fetch]);
         let constants = super::super::constants_of(choices, &[Some(shader)]);
-        let mut blocks = vec![DrawnRangeBlock::zeroed(); scene.calls.len()];
-        for call in &scene.calls {
-            let params = primitives.params(scene, call);
-            blocks[call.draw as usize] = DrawnRangeBlock {
-                first_primitive: primitives.id(call.draw, call.first_index),
-                vertex_offset: params.vertex_offset,
-                primitive_offset: params.primitive_offset,
-                _unused: 0,
-            };
-        }
-        let ranges = resources.buffer(&full(RANGES));
-        upload::buffer(gpu, &ranges, bytemuck::cast_slice(&blocks), Access::ComputeRead)?;
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, ranges })
+        let mut calls = scene.calls.clone();
+        // As ids count them.
+        calls.sort_by_key(|call| call.draw);
+        let buffer = resources.buffer(&full(RANGES));
+        let id = |draw, first_index| primitives.id(draw, first_index);
+        ranges::write(gpu, &buffer, scene, primitives, calls.iter(), id, Access::ComputeRead)?;
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, ranges: buffer })
     }
 
     /// After the resolve, for whom `shaded` came to compute shaders.

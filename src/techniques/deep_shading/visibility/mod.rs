@@ -4,16 +4,19 @@
 //!         of a table's part of the frame: 8, 4 and 4 B a sample
 //!
 //! The paper's four interleaved orders: within a layer draws come in one order in all of them, so that they see the same samples.
-//! `ray` asks the host. `stochastic` draws as `repeat-frame` does, but a polygon around each triangle's blur, whose samples a shader tests.
+//! `ray` asks the host. `stochastic` draws a polygon around each triangle's blur, whose samples a shader tests: as `repeat-frame` does
+//! layer by layer, or once for all samples (looped.rs), with neither images of depth nor of several samples.
 
 pub mod instancing;
 pub mod layer;
+pub mod looped;
 pub mod polygon;
 pub mod ray;
 pub mod repeat_draw;
 pub mod repeat_frame;
 pub mod replicate;
 pub mod sample;
+mod spids;
 pub mod stochastic;
 
 use super::choices::Choices;
@@ -31,6 +34,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::settings::Values;
 use crate::units::Extent;
 use ash::vk;
+use looped::Looped;
 use sample::{Repeats, Sample, Stages};
 use std::sync::Arc;
 
@@ -109,7 +113,7 @@ pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages 
         Visibility::RepeatFrame => Stages::sharp(sample::vertex_shader(scene, repeats, "none"), None),
         Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
         Visibility::Replicate => replicate::stages(scene, repeats),
-        Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices),
+        Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices, "layer"),
     }
 }
 
@@ -130,7 +134,7 @@ impl Samples {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         Ok(Self {
             spids: resources.image(&full(SPIDS)),
-            depth: (choices.visibility != Visibility::Ray).then(|| resources.image(&full(DEPTH))),
+            depth: choices.has_depth().then(|| resources.image(&full(DEPTH))),
             written: choices.visibility.writes(),
             shading_depths: choices.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
@@ -181,30 +185,68 @@ pub fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
     cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
 }
 
-/// Draws every tuple into its layer: what of it is in the frame.
+/// Who draws triangles.
+pub enum Drawer {
+    /// Each tuple into its layer.
+    Layers(Sample),
+    /// All samples at once.
+    Loop(Box<Looped>),
+}
+
+impl Drawer {
+    /// `primitives`: numbered in the order of what is drawn.
+    ///
+    /// Errors: memory for uploads (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+        primitives: &Primitives,
+    ) -> Result<Self> {
+        Ok(match choices.is_looped {
+            true => Self::Loop(Box::new(Looped::new(gpu, scene, resources, choices, primitives)?)),
+            false => Self::Layers(Sample::new(gpu, scene, choices)?),
+        })
+    }
+
+    fn traffic(&self, cmd: &Commands, drawn: Drawn<'_>, samples: &Samples, visibility: Visibility) -> Traffic {
+        let layers = samples.spids.description.layers();
+        let [read, written] = match self {
+            Self::Loop(looped) => looped.traffic_bytes(drawn),
+            Self::Layers(_) => {
+                let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);
+                let rounds = visibility.round_count(&repeats, layers);
+                [u64::from(rounds) * mesh::read_bytes(drawn.scene, drawn.list.calls()), 0]
+            }
+        };
+        Traffic { read_bytes: read, written_bytes: samples.bytes() + written, invocations: None }
+    }
+}
+
+/// Finds what every sample sees: what of each layer is in the frame.
 pub fn record(
     cmd: &mut Commands,
-    sample: &Sample,
+    drawer: &Drawer,
     drawn: Drawn<'_>,
     bound: &[(&'static str, Bound<'_>)],
     samples: &Samples,
     counters: &Buffer,
     visibility: Visibility,
 ) -> Result<()> {
-    let layers = samples.spids.description.layers();
-    let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);
-    let rounds = visibility.round_count(&repeats, layers);
-    let traffic = Traffic {
-        read_bytes: u64::from(rounds) * mesh::read_bytes(drawn.scene, drawn.list.calls()),
-        written_bytes: samples.bytes(),
-        invocations: None,
-    };
+    let traffic = drawer.traffic(cmd, drawn, samples, visibility);
     cmd.pass(&format!("{NAME}.visibility"), traffic, |cmd| {
         cmd.barriers(samples.colors().map(|image| image.discard(Access::ColorWrite)));
         cmd.barriers(samples.depth.iter().map(|depth| depth.discard(Access::DepthWrite)));
         begin_counters(cmd, counters);
         let mut bound = bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
+        let sample = match drawer {
+            Drawer::Loop(looped) => return looped.record(cmd, drawn, bound, samples),
+            Drawer::Layers(sample) => sample,
+        };
+        let layers = samples.spids.description.layers();
+        let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);
         let sets = sample.sets(cmd, &bound)?;
         visibility.for_layers(&repeats, layers, |at, repeats| {
             samples.begin(cmd, at);

@@ -3,7 +3,8 @@
 
 use super::sample::Stages;
 use crate::gpu::Caps;
-use crate::gpu::shader::techniques::deep_shading::visibility::polygon::{GEOM, VERT};
+use crate::gpu::shader::techniques::deep_shading::visibility::polygon::{GEOM_VARIANTS, VERT};
+use crate::gpu::shader::variant;
 use crate::passes::mesh::Sides;
 use crate::settings::Values;
 
@@ -35,7 +36,8 @@ impl PolygonFrom {
     }
 }
 
-pub(super) fn stages() -> Stages {
+/// `tests`: the value of the shader's axis.
+pub(super) fn stages(tests: &str) -> Stages {
     // As in stochastic.rs.
-    Stages { vertex: &VERT, geometry: Some(&GEOM), sides: Sides::Both, vertex_count: 3 }
+    Stages { vertex: &VERT, geometry: Some(variant(GEOM_VARIANTS, &[tests])), sides: Sides::Both, vertex_count: 3 }
 }

@@ -1,6 +1,7 @@
 //! Stochastic rasterisation: polygons around triangles' blur, every sample in them tested by the fragment shader (Clarberg &
 //! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl, stochastic.frag, covers.glsl.
 //!
+//! A polygon is drawn into each tuple's layer, where a pixel is a sample, or once for all of an eye (looped.rs).
 //! Polygons come from a geometry shader, as in the paper (polygon.rs), or from vertex shaders, each of which makes the polygon for
 //! itself.
 //!
@@ -10,8 +11,8 @@
 use super::super::choices::Choices;
 use super::polygon::{self, PolygonFrom};
 use super::sample::Stages;
-use crate::gpu::shader::Shader;
-use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT};
+use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT_VARIANTS};
+use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::Sides;
 
 /// BOUND_MOST_SIDES and BOUND_STILL_SIDES of bound.glsl.
@@ -20,13 +21,14 @@ const STILL_SIDES: u32 = 7;
 
 pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
 
-pub(super) fn stages(choices: &Choices) -> Stages {
+/// `tests`: the value of the shaders' axis.
+pub(super) fn stages(choices: &Choices, tests: &str) -> Stages {
     if choices.polygon_from == PolygonFrom::Geometry {
-        return polygon::stages();
+        return polygon::stages(tests);
     }
     let side_count = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
     Stages {
-        vertex: &VERT,
+        vertex: variant(VERT_VARIANTS, &[tests]),
         geometry: None,
         // The shader tells sides apart: polygons have none.
         sides: Sides::Both,

@@ -1,0 +1,70 @@
+// A polygon around all that a triangle covers while the shutter is open, drawn once over the frame: each of a pixel's samples is
+// tested in turn, and keeps what is nearest by an atomic maximum of depth and triangle (section 4.2).
+// Pass: src/techniques/deep_shading/visibility/looped.rs.
+// variants: ALPHA=opaque|tested VERTEX=plain|extended
+#version 460
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#include "frame.glsl"
+#include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/visibility/covers.glsl"
+#include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/visibility/nearest.glsl"
+
+// As in shade.frag.
+layout(constant_id = 94) const uint IS_COUNTED = 0;
+
+// Of polygon_out.glsl.
+layout(location = 1) flat in uint in_primitive;
+layout(location = 2) flat in vec4 in_open[3];
+layout(location = 5) flat in vec4 in_close[3];
+layout(location = 8) flat in vec3 in_open_depth;
+layout(location = 9) flat in vec3 in_close_depth;
+
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
+layout(std430, set = 0, binding = 20) buffer Nearest { uint64_t nearest[]; };
+layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
+
+#include "techniques/deep_shading/visibility/hit.glsl"
+#include "techniques/deep_shading/visibility/place_alpha.glsl"
+
+void main() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uvec2 table = uvec2(deep.table_width_px, deep.table_height_px);
+    uvec2 layer_px = pixel / table;
+    uvec2 cell = pixel % table;
+    uint triangle = in_primitive - params.primitive_offset;
+    // A sample is the middle of its layer's pixel: the tuple's shift has put it there.
+    vec2 at = vec2(layer_px) + 0.5;
+    // `params.tuple`: the first of the eye.
+    uint first = params.tuple + (cell.y * table.x + cell.x) * deep.sample_count;
+    for (uint index = 0u; index < deep.sample_count; index++) {
+        uint own = first + index;
+        TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + own];
+        vec4 corners[3];
+        for (uint corner = 0u; corner < 3u; corner++) {
+            Seen open = Seen(in_open[corner], in_open_depth[corner]);
+            Seen close = Seen(in_close[corner], in_close_depth[corner]);
+            corners[corner] = layer_corner(open, close, tuple);
+        }
+        vec3 weights;
+        if (!is_hit(corners, at, weights)) {
+            continue;
+        }
+#ifdef ALPHA_TESTED
+        place_alpha(hit_place(corners, at, weights), 3u * triangle);
+        if (!is_seen(base_color_at(params.material).a, layer_px, tuple_number(deep, frame.sample_index, own))) {
+            continue;
+        }
+#endif
+        float depth = hit_depth(corners, weights);
+        if (depth > 0.0) {
+            uvec2 words = nearest_words(depth, triangle + params.order_offset);
+            atomicMax(nearest[sample_index(deep, uvec3(layer_px, own))], packUint2x32(words));
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Where each draw's triangles are among all, for shaders that know a triangle by its number and no draw of it. Shaders' half:
+//! ranges.glsl.
+
+use super::primitives::Primitives;
+use crate::error::Result;
+use crate::gpu::shader::structs::DrawnRangeBlock;
+use crate::gpu::{AccessSet, Buffer, Gpu, upload};
+use crate::plan::Plan;
+use crate::resident::{DrawCall, SceneGpu};
+use bytemuck::Zeroable;
+use std::sync::Arc;
+
+/// Plans a block for each of `draws`. `name`: the buffer's full one.
+pub fn plan(plan: &mut Plan, name: String, draws: u64) {
+    plan.buffer("scene.geometry", name, draws * size_of::<DrawnRangeBlock>() as u64);
+}
+
+/// Writes the draws of `calls`, in the order of their triangles' numbers, to `target`. `number`: of a draw's triangle, by the place
+/// of its first index.
+///
+/// Errors: memory for the upload (exit code 4).
+pub fn write<'a>(
+    gpu: &Arc<Gpu>,
+    target: &Buffer,
+    scene: &SceneGpu,
+    primitives: &Primitives,
+    calls: impl Iterator<Item = &'a DrawCall>,
+    number: impl Fn(u32, u32) -> u32,
+    read_by: impl Into<AccessSet>,
+) -> Result<()> {
+    let block = |call: &DrawCall| {
+        let params = primitives.params(scene, call);
+        DrawnRangeBlock {
+            first: number(call.draw, call.first_index),
+            number_offset: number(call.draw, 0),
+            draw: call.draw,
+            vertex_offset: params.vertex_offset,
+            primitive_offset: params.primitive_offset,
+        }
+    };
+    let mut blocks: Vec<_> = calls.map(block).collect();
+    // Shaders search the whole buffer: after what the frame draws come numbers that no triangle has.
+    let none = DrawnRangeBlock { first: u32::MAX, ..DrawnRangeBlock::zeroed() };
+    blocks.resize((target.bytes / size_of::<DrawnRangeBlock>() as u64) as usize, none);
+    upload::buffer(gpu, target, bytemuck::cast_slice(&blocks), read_by)
+}
