@@ -48,7 +48,7 @@ struct Inserted {
 /// Who finds what samples see.
 enum Seen {
     Drawn(Samples, Drawer),
-    Traced(Samples, Rays),
+    Traced(Samples, Box<Rays>),
     /// With `--lists direct` the lists alone know.
     Listed,
 }
@@ -87,7 +87,9 @@ impl Apart {
                 host_lists = Some(Direct::new(resources, choices, sets));
                 Seen::Listed
             }
-            Some(Sets::Samples(sets)) => Seen::Traced(samples(resources)?, Rays::new(resources, choices, sets)),
+            Some(Sets::Samples(sets)) => {
+                Seen::Traced(samples(resources)?, Box::new(Rays::new(resources, choices, sets)))
+            }
             None => Seen::Drawn(samples(resources)?, Drawer::new(gpu, scene, resources, choices, primitives)?),
         };
         let listed = if choices.has_lists {

@@ -188,7 +188,7 @@ pub fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
 /// Who draws triangles.
 pub enum Drawer {
     /// Each tuple into its layer.
-    Layers(Sample),
+    Layers(Box<Sample>),
     /// All samples at once.
     Loop(Box<Looped>),
 }
@@ -206,7 +206,7 @@ impl Drawer {
     ) -> Result<Self> {
         Ok(match choices.is_looped {
             true => Self::Loop(Box::new(Looped::new(gpu, scene, resources, choices, primitives)?)),
-            false => Self::Layers(Sample::new(gpu, scene, choices)?),
+            false => Self::Layers(Box::new(Sample::new(gpu, scene, choices)?)),
         })
     }
 
