@@ -157,12 +157,14 @@ fn tests_grow_with_the_aperture() {
 }
 
 /// Walls and floors beside and behind the eye cross the near plane's level: what lies before it is cut off, and what is left of
-/// them is beside the picture. Triangles of the arena are smaller than these pixels, all samples of which a loop tests.
+/// them is beside the picture. Triangles of the arena are smaller than these pixels, all samples of which a loop tests, and polygons
+/// reach as far as a driver may snap them: with 4 bits the arena has 11.8 tests a hit.
 #[test]
 fn what_passes_the_eye_is_not_tested_everywhere() {
     for (spec, camera) in [("hall:triangles=8000", "nave"), ("arena:triangles=60000", "flight")] {
         let watched = Watched::open(spec);
-        for (way, most) in [("layers", 8.0), ("auto", 16.0)] {
+        let layered = 7.0 + placing_steps(&watched.session.gpu.caps);
+        for (way, most) in [("layers", layered), ("auto", 16.0)] {
             let changes = [SIZE, ("camera", camera), ("spp", "2"), ("aperture", "0.1"), ("brdf", "lambert")];
             let changes = both(&changes, &[STOCHASTIC, ("sample-tests", way)]);
             let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
