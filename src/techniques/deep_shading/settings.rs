@@ -96,7 +96,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "how --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once over the frame and its                fragments test all samples of their pixel, of which 64-bit atomics keep the nearest; or it is drawn into a layer of each                tuple, where a pixel is a sample; the same bits; auto: a loop where the device can",
+        help: "how --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once over the frame and its \
+               fragments test all samples of their pixel, of which 64-bit atomics keep the nearest; or it is drawn into a layer of each \
+               tuple, where a pixel is a sample; the same bits; auto: a loop where the device can",
     },
     Setting {
         key: "spp",

@@ -18,15 +18,14 @@ use super::spids::Spids;
 use super::{Drawn, Samples, Visibility, stochastic};
 use crate::error::{Error, Result};
 use crate::gpu::caps::Limits;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::looped::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Ability, Access, Bound, Buffer, Caps, Commands, Gpu};
-use crate::passes::mesh;
+use crate::passes::{fullscreen, mesh};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::Values;
-use ash::vk;
 use std::sync::Arc;
 
 const NEAREST: &str = "visibility.nearest";
@@ -95,27 +94,15 @@ impl Looped {
         let pipeline = |alpha| {
             let fragment = variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene)]);
             let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
-            GraphicsPipeline::new(
-                gpu,
-                &GraphicsDescription {
-                    vertex: stages.vertex,
-                    geometry: stages.geometry,
-                    fragment: Some(fragment),
-                    constants: &constants,
-                    vertex_buffers: &[],
-                    color_formats: &[],
-                    samples: 1,
-                    blending: Blending::Replace,
-                    depth_format: None,
-                    depth_write: false,
-                    depth_compare: vk::CompareOp::ALWAYS,
-                    depth_clamp: false,
-                    depth_slope_bias: 0.0,
-                    conservative: false,
-                    stencil: None,
-                    foreign_sets: &[scene.material_layout],
-                },
-            )
+            let description = GraphicsDescription {
+                vertex: stages.vertex,
+                geometry: stages.geometry,
+                constants: &constants,
+                foreign_sets: &[scene.material_layout],
+                // Nothing is attached, and nothing tested but by the shader.
+                ..fullscreen::description(fragment, &[])
+            };
+            GraphicsPipeline::new(gpu, &description)
         };
         Ok(Self {
             sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
