@@ -139,6 +139,31 @@ fn every_file_says_why_it_exists() {
     }
 }
 
+/// A quad's helper lanes have what is interpolated, and need not have what is read from a buffer: `dFdx` and `dFdy` take inputs
+/// of the stage, and a texture that chooses its level itself is read at one.
+#[test]
+fn levels_of_textures_are_chosen_by_inputs_alone() {
+    let mut found = Vec::new();
+    for file in files("glsl") {
+        let text = std::fs::read_to_string(root().join("glsl").join(&file)).unwrap();
+        for (number, line) in (1..).zip(text.lines()) {
+            let code = line.split("//").next().unwrap();
+            let arguments = |name: &str| -> Vec<&str> {
+                let calls = code
+                    .match_indices(name)
+                    .filter(|(at, _)| !code[..*at].ends_with(|before: char| before.is_alphanumeric() || before == '_'));
+                calls.map(|(at, name)| &code[at + name.len()..]).collect()
+            };
+            let derived = ["dFdx(", "dFdy(", "fwidth("].into_iter().flat_map(arguments);
+            let sampled = arguments("texture(").into_iter().map(|call| call.split_once(", ").map_or("", |(_, at)| at));
+            if !derived.chain(sampled).all(|argument| argument.starts_with("in_")) {
+                found.push(format!("glsl/{}:{number}: {}", file.display(), line.trim()));
+            }
+        }
+    }
+    assert_eq!(found, [] as [&str; 0]);
+}
+
 #[test]
 fn the_floor_knows_no_technique_and_no_scene() {
     for room in ["gpu", "memory"] {

@@ -62,7 +62,14 @@ layout(location = 6) INTERPOLATION in vec2 in_uv_1;
 
 #define in_material in_ids.x
 #define in_front_facing gl_FrontFacing
-#define TEXEL(name, which) texture(name, uv_of(which))
+#ifdef VERTEX_EXTENDED
+// Changes are those of what is interpolated, which a quad's helper lanes have too. What they read of a buffer, as the placement
+// is, may be 0 (lavapipe), and changes of what is made of it nonsense along each triangle's edge.
+#define TEXEL(name, which) \
+    textureGrad(name, uv_of(which), uv_change(which, dFdx(in_uv), dFdx(in_uv_1)), uv_change(which, dFdy(in_uv), dFdy(in_uv_1)))
+#else
+#define TEXEL(name, which) texture(name, in_uv)
+#endif
 
 #endif
 
@@ -77,7 +84,7 @@ vec2 uv_of(uint which) {
 #endif
 }
 
-#ifdef MATERIAL_PLACE
+// By how much it changes where the two sets of coordinates change so.
 vec2 uv_change(uint which, vec2 change, vec2 change_1) {
 #ifdef VERTEX_EXTENDED
     PlacementBlock placement = placements[in_material * TEXTURE_COUNT + which];
@@ -87,7 +94,6 @@ vec2 uv_change(uint which, vec2 change, vec2 change_1) {
     return change;
 #endif
 }
-#endif
 
 vec4 base_color_at(MaterialBlock material) {
     vec4 color = material.base_color;
