@@ -3,6 +3,7 @@
 mod animation;
 mod animation_broken;
 mod bench;
+mod blended;
 mod budget;
 mod cli;
 mod collapse;

@@ -5,9 +5,7 @@ use crate::support::gltf_file::{GltfFile, U8, U16};
 use crate::support::square::{matt, picture, square};
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Affine2, Mat4, Vec2, Vec3, Vec4};
-use quincunx::scene::{
-    AlphaMode, ColorSpace, Draw, Image, Light, LightKind, Material, Mesh, Placement, Scene, TextureSlot,
-};
+use quincunx::scene::{AlphaMode, ColorSpace, Image, Light, LightKind, Material, Placement, Scene, TextureSlot};
 use quincunx::shading::material::{self, MeshPoint};
 use serde_json::{Value, json};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
-// BLEND surfaces over the finished picture, back to front, lit forward by every punctual light, or those of the draw's list,
-// and by the virtual ones of their pixel. Pass: src/passes/blend.rs.
-// variants: VERTEX=plain|extended LISTS=none|object SHADOWS=traced|mapped
+// BLEND surfaces over the finished picture, back to front, lit forward by the punctual lights of their piece's list, and by the
+// virtual ones of their pixel. Pass: src/passes/blend.rs.
+// variants: VERTEX=plain|extended SHADOWS=traced|mapped
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -23,7 +23,7 @@ struct BlendParams {
     // n x m; 0 x 0: every virtual point light on every pixel.
     uint pattern_x;
     uint pattern_y;
-    // The draw's, with LISTS=object.
+    // The piece's.
     ObjectLightsBlock object;
 };
 
@@ -40,12 +40,11 @@ layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleB
 layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
 #endif
 
-#ifdef LISTS_OBJECT
 layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lists[]; };
-// With lists there may be several samples a pixel.
-#define INTERPOLATION centroid
-#endif
 
+#define LISTS_OBJECT
+// There may be several samples a pixel.
+#define INTERPOLATION centroid
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/lit.glsl"
@@ -59,12 +58,8 @@ void main() {
         out_color = vec4(base_color.rgb * base_color.a, base_color.a);
         return;
     }
-#ifdef LISTS_OBJECT
     vec3 position_ws = inside_box(params.object, in_position_ws);
     Lit lit = lit_at(material, base_color.rgb, position_ws, params.object.first, params.object.count);
-#else
-    Lit lit = lit_at(material, base_color.rgb, in_position_ws, 0u, frame.light_count);
-#endif
     vec3 received = vec3(0.0);
     uint first = 0u;
     uint end = frame.vpl_count;
@@ -75,7 +70,7 @@ void main() {
     }
     uint vpl = first;
     for (; vpl < end; vpl++) {
-        received += vpl_irradiance(vpls[vpl], in_position_ws, lit.normal_ws, params.least_squared);
+        received += vpl_irradiance(vpls[vpl], position_ws, lit.normal_ws, params.least_squared);
     }
     expect_done(vpl == end);
     vec3 radiance = lit.radiance + albedo_of(lit.surface) * received * (params.weight / PI);

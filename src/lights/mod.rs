@@ -3,6 +3,7 @@
 pub mod cull;
 pub mod emitters;
 pub mod object_lists;
+pub mod pieces;
 pub mod shadow_casters;
 pub mod shadow_volume;
 pub mod vpl;

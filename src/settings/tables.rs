@@ -263,6 +263,19 @@ pub const TEXELS: Setting = Setting {
            22, 16 on other software drivers, else 1",
 };
 
+/// Which punctual lights surfaces have that are shaded where they are drawn (`lights::object_lists`).
+pub const LIGHT_LISTS: &[Setting] = &[Setting {
+    key: "light-lists",
+    symbol: "",
+    kind: Kind::Choice(&["object", "none"]),
+    default: "object",
+    unit: "",
+    paper: "Kircher 2009, 5",
+    help: "punctual lights of a surface that is shaded where it is drawn (every surface of forward, and what blends): those \
+           whose range reaches the box around its object, or around a piece of what blends, or every light (the plain way \
+           to the same bits)",
+}];
+
 /// Settings of what is drawn with several samples a pixel (`passes::resolve`).
 pub const MULTISAMPLE: &[Setting] = &[Setting {
     key: "msaa",

@@ -11,13 +11,14 @@ use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
 use crate::lights::LightSet;
 use crate::lights::cull::{self, Cull};
+use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::{Coverage, SceneGpu};
-use crate::settings::{SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -42,7 +43,7 @@ impl Technique for Deferred {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[SHADING]
+        &[SHADING, LIGHT_LISTS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -88,6 +89,7 @@ impl Technique for Deferred {
         shaded.push((COLOR.to_owned(), Access::ComputeWrite));
         plan.pass(format!("{NAME}.shade"), shaded);
         if inputs.stats.has_blend {
+            blend::plan_lists(&mut plan, NAME, &blended(inputs)?);
             plan.pass(format!("{NAME}.blend"), blend::touches(&gbuffer::depth(NAME), COLOR));
         }
         Ok(plan)
@@ -95,8 +97,14 @@ impl Technique for Deferred {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let lights = direct::light_blocks(inputs.lights, inputs.values);
-        Ok(Box::new(PreparedDeferred { settings: settings(inputs), lights }))
+        Ok(Box::new(PreparedDeferred { settings: settings(inputs), lights, blended: blended(inputs)? }))
     }
+}
+
+/// The lists of what blends.
+fn blended(inputs: &Inputs<'_>) -> Result<ObjectLists> {
+    let lights = direct::light_blocks(inputs.lights, inputs.values);
+    blend::lists(inputs.scene, &lights, inputs.values, inputs.caps)
 }
 
 fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
@@ -106,6 +114,7 @@ fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
 struct PreparedDeferred {
     settings: ShadingSettings,
     lights: Vec<LightBlock>,
+    blended: ObjectLists,
 }
 
 impl Prepared for PreparedDeferred {
@@ -114,7 +123,7 @@ impl Prepared for PreparedDeferred {
     }
 
     fn counters(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([("lights", self.lights.len() as f64)])
+        [("lights", self.lights.len() as f64)].into_iter().chain(blend::counters(&self.blended)).collect()
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -154,8 +163,11 @@ impl Prepared for PreparedDeferred {
                 inputs.view,
                 blend::all_lights(0.0),
                 &settings.direct.light_constants(),
-                &BlendTarget::PLAIN,
+                &BlendTarget::plain(&self.blended),
             )?,
+            blend_lists: (inputs.stats.has_blend)
+                .then(|| blend::upload_lists(gpu, resources, NAME, &self.blended))
+                .transpose()?,
             gbuffer: GBuffer::new(gpu, resources, NAME, settings.position, has_emissive)?,
             direct,
             vpls: resources.buffer("deferred.vpls"),
@@ -169,6 +181,7 @@ struct DeferredFrame {
     cull: Option<Cull>,
     shade: Shade,
     blend: Option<Blend>,
+    blend_lists: Option<Buffer>,
     gbuffer: GBuffer,
     direct: DirectGpu,
     vpls: Buffer,
@@ -186,14 +199,14 @@ impl Frame for DeferredFrame {
             written = Access::ComputeSample;
         }
         self.shade.record(cmd, frame, &self.direct, gbuffer.from(written), &self.color)?;
-        if let Some(blend) = &self.blend {
+        if let (Some(blend), Some(lists)) = (&self.blend, &self.blend_lists) {
             let lights = BlendLights {
                 lights: &self.direct.lights,
                 vpls: &self.vpls,
                 subsets: &self.vpls,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
-                lists: None,
+                lists,
                 shadow_maps: None,
             };
             let picture = self.color.from(Access::ComputeWrite);

@@ -38,7 +38,7 @@ use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{Coverage, DrawList, SceneGpu};
-use crate::settings::{MULTISAMPLE, SHADOW_MAPS, Setting, Values};
+use crate::settings::{LIGHT_LISTS, MULTISAMPLE, SHADOW_MAPS, Setting, Values};
 use crate::units::Bytes;
 use glam::Vec2;
 use material::Material;
@@ -125,7 +125,7 @@ impl Technique for Forward {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, SHADOW_MAPS, MULTISAMPLE]
+        &[settings::SETTINGS, LIGHT_LISTS, SHADOW_MAPS, MULTISAMPLE]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -180,12 +180,14 @@ impl Prepared for PreparedForward {
 
     fn counters(&self) -> BTreeMap<&'static str, f64> {
         let [mean, most] = self.lists.lights_per_object();
-        BTreeMap::from([
+        let mut counters = BTreeMap::from([
             ("lights", self.lights.len() as f64),
             ("lights_per_object", mean),
             ("lights_per_object_most", most),
             ("objects", self.lists.objects.len() as f64),
-        ])
+        ]);
+        counters.extend(blend::counters(&self.lists));
+        counters
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -219,7 +221,7 @@ impl Prepared for PreparedForward {
             }
         };
         let constants = choices.light_constants();
-        let target = BlendTarget { lists: Some(&lists.objects), samples, has_shadow_maps: choices.maps.is_some() };
+        let target = BlendTarget { pieces: &lists.pieces, samples, has_shadow_maps: choices.maps.is_some() };
         let maps = choices.maps.as_ref();
         let maps = maps.map(|layout| ShadowMaps::new(gpu, resources, NAME, layout, inputs.scene, scene)).transpose()?;
         let maps_once = maps.as_ref().map(|maps| maps.draw_once(gpu, NAME, scene, Places::of(scene))).transpose()?;
@@ -294,7 +296,7 @@ impl Frame for ForwardFrame {
                 subsets: &self.vpls,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
-                lists: Some(&self.lists),
+                lists: &self.lists,
                 shadow_maps: self.maps.as_ref(),
             };
             let tested = depth_prepass::access(self.depth.is_some());

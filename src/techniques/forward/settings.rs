@@ -4,16 +4,6 @@ use crate::settings::{BRDF, DEPTH_PREPASS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW,
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
-        key: "light-lists",
-        symbol: "",
-        kind: Kind::Choice(&["object", "none"]),
-        default: "object",
-        unit: "",
-        paper: "Kircher 2009, 5",
-        help: "which lights a surface is shaded with: those whose range reaches the box around its object, or every light (the \
-               plain way to the same bits)",
-    },
-    Setting {
         key: "light-buffer",
         symbol: "",
         kind: Kind::Choice(&["auto", "uniform", "storage"]),

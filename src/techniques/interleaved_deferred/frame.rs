@@ -8,15 +8,25 @@ use super::roads::Roads;
 use super::shade::{ShadeGpu, SubsetLights};
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
-use crate::gpu::{Gpu, Image};
+use crate::gpu::{Buffer, Gpu, Image};
 use crate::lights::cull::Cull;
-use crate::passes::blend::{Blend, BlendTarget};
+use crate::lights::object_lists::ObjectLists;
+use crate::passes::blend::{self, Blend, BlendTarget};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, GBufferPass};
 use crate::plan::Resources;
 use crate::resident::{Coverage, SceneGpu};
 use crate::techniques::Inputs;
 use std::sync::Arc;
+
+/// What lights a frame.
+pub struct FrameLights<'a> {
+    pub subsets: &'a SubsetLights,
+    /// The scene's own.
+    pub direct: &'a [LightBlock],
+    /// Lists of those for what blends.
+    pub blended: &'a ObjectLists,
+}
 
 pub struct InterleavedFrame {
     pub gbuffer_pass: GBufferPass,
@@ -31,6 +41,7 @@ pub struct InterleavedFrame {
     pub composite: Composite,
     pub color: Image,
     pub blend: Option<Blend>,
+    pub blend_lists: Option<Buffer>,
 }
 
 impl InterleavedFrame {
@@ -40,10 +51,10 @@ impl InterleavedFrame {
         scene: &SceneGpu,
         resources: &mut Resources,
         choices: &Choices,
-        lights: &SubsetLights,
-        direct_lights: &[LightBlock],
+        lights: &FrameLights<'_>,
     ) -> Result<Self> {
         let Choices { shading, mapping, .. } = choices;
+        let FrameLights { subsets, direct: direct_lights, blended } = *lights;
         let has_emissive = inputs.stats.has_emissive;
         let tree = shading.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading.culls(direct_lights.len()), tree)?;
@@ -55,7 +66,7 @@ impl InterleavedFrame {
             weight: choices.direct_subset_count() as f32,
             subset_first: 0,
         };
-        let shade = ShadeGpu::new(gpu, resources, lights, params)?;
+        let shade = ShadeGpu::new(gpu, resources, subsets, params)?;
         let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
         Ok(Self {
             gbuffer_pass: GBufferPass::new(
@@ -76,8 +87,11 @@ impl InterleavedFrame {
                 inputs.view,
                 choices.blend_params(least * least),
                 &shading.direct.light_constants(),
-                &BlendTarget::PLAIN,
+                &BlendTarget::plain(blended),
             )?,
+            blend_lists: (inputs.stats.has_blend)
+                .then(|| blend::upload_lists(gpu, resources, NAME, blended))
+                .transpose()?,
             gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
             direct,
             is_lit_fully: choices.direct_full,

@@ -49,16 +49,17 @@ use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, AccessSet, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
 use crate::passes::blend::{self, BlendLights};
 use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::settings::{SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
 use choices::Choices;
 use filter::Filtered;
-use frame::InterleavedFrame;
+use frame::{FrameLights, InterleavedFrame};
 use road::Road;
 use shade::SubsetLights;
 use std::collections::BTreeMap;
@@ -94,7 +95,7 @@ impl Technique for InterleavedDeferred {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, SHADING]
+        &[settings::SETTINGS, SHADING, LIGHT_LISTS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -135,7 +136,9 @@ impl Technique for InterleavedDeferred {
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        plan::plan(&Choices::new(inputs)?, inputs)
+        let choices = Choices::new(inputs)?;
+        let blended = blended(inputs, &direct_lights(&choices, inputs))?;
+        plan::plan(&choices, inputs, &blended)
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
@@ -155,8 +158,7 @@ impl Technique for InterleavedDeferred {
         let started = Instant::now();
         let found = vpl::walk(inputs.scene, bvh, &inputs.lights.lights, &walk);
         let walk_ns = started.elapsed().as_nanos() as u64;
-        let mut direct_lights = direct::light_blocks(inputs.lights, values);
-        direct_lights.truncate(choices.direct_count as usize);
+        let direct_lights = direct_lights(&choices, inputs);
         let joined: &[LightBlock] = if choices.direct_interleaved { &direct_lights } else { &[] };
         // The order depends on the pattern: dealt for the whole, then cut.
         let bounds = inputs.scene.bounds();
@@ -170,6 +172,7 @@ impl Technique for InterleavedDeferred {
         resolved.insert("emissive", if emissive { "on" } else { "off" }.to_owned());
         resolved.insert("vpl-clamp", format!("{clamp}"));
         Ok(Box::new(PreparedInterleaved {
+            blended: blended(inputs, &direct_lights)?,
             choices,
             lights,
             direct_lights,
@@ -181,10 +184,23 @@ impl Technique for InterleavedDeferred {
     }
 }
 
+/// The scene's own lights that a frame has.
+fn direct_lights(choices: &Choices, inputs: &Inputs<'_>) -> Vec<LightBlock> {
+    let mut lights = direct::light_blocks(inputs.lights, inputs.values);
+    lights.truncate(choices.direct_count as usize);
+    lights
+}
+
+/// The lists of what blends.
+fn blended(inputs: &Inputs<'_>, direct_lights: &[LightBlock]) -> Result<ObjectLists> {
+    blend::lists(inputs.scene, direct_lights, inputs.values, inputs.caps)
+}
+
 struct PreparedInterleaved {
     choices: Choices,
     lights: SubsetLights,
     direct_lights: Vec<LightBlock>,
+    blended: ObjectLists,
     walk_ns: u64,
     walk_count: u32,
     found_count: u32,
@@ -200,14 +216,16 @@ impl Prepared for PreparedInterleaved {
         let mean = |count: usize, subset_count: u32| count as f64 / f64::from(subset_count);
         let vpls = mean(self.lights.vpls.len(), self.choices.subset_count());
         let joined = mean(self.lights.lights.len(), self.choices.direct_subset_count());
-        BTreeMap::from([
+        let mut counters = BTreeMap::from([
             ("lights", self.direct_lights.len() as f64),
             ("vpls", self.lights.vpls.len() as f64),
             ("vpls_found", f64::from(self.found_count)),
             ("light_walks", f64::from(self.walk_count)),
             ("shaded_pixels", self.choices.shaded_pixel_count() as f64),
             ("subset_lights_per_pixel", vpls + joined),
-        ])
+        ]);
+        counters.extend(blend::counters(&self.blended));
+        counters
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -225,8 +243,9 @@ impl Prepared for PreparedInterleaved {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        let Self { choices, lights, direct_lights, .. } = *self;
-        Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights, &direct_lights)?))
+        let Self { choices, lights, direct_lights, blended, .. } = *self;
+        let lights = FrameLights { subsets: &lights, direct: &direct_lights, blended: &blended };
+        Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights)?))
     }
 }
 
@@ -259,14 +278,14 @@ impl Frame for InterleavedFrame {
         };
         self.composite.record(cmd, frame, &self.direct, gbuffer.from(surface), filtered, &self.color)?;
         surface = surface.after(Access::ComputeSample);
-        if let Some(blend) = &self.blend {
+        if let (Some(blend), Some(lists)) = (&self.blend, &self.blend_lists) {
             let lights = BlendLights {
                 lights: &self.direct.lights,
                 vpls: &self.shade.vpls,
                 subsets: &self.shade.subsets,
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
-                lists: None,
+                lists,
                 shadow_maps: None,
             };
             let picture = self.color.from(Access::ComputeWrite);

@@ -8,6 +8,7 @@ use super::shade;
 use crate::error::Result;
 use crate::gpu::Access;
 use crate::lights::cull;
+use crate::lights::object_lists::ObjectLists;
 use crate::passes::direct;
 use crate::passes::{blend, gbuffer};
 use crate::plan::Plan;
@@ -19,7 +20,7 @@ fn full(what: &str) -> String {
 }
 
 /// Resources and passes of a frame.
-pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
+pub fn plan(choices: &Choices, inputs: &Inputs<'_>, blended: &ObjectLists) -> Result<Plan> {
     let shading = &choices.shading;
     let (extent, has_emissive) = (inputs.view.extent, inputs.stats.has_emissive);
     let mut plan = Plan::default();
@@ -43,6 +44,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     composed.push((full("composite.color"), Access::ComputeWrite));
     plan.pass(full("composite"), composed);
     if inputs.stats.has_blend {
+        blend::plan_lists(&mut plan, NAME, blended);
         plan.pass(full("blend"), blend::touches(&gbuffer::depth(NAME), &full("composite.color")));
     }
     Ok(plan)
