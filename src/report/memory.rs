@@ -98,7 +98,7 @@ impl MemoryTable {
         }
         Ok(Self {
             rows,
-            peak: frame.peak(&bound, kept_bytes),
+            peak: frame.peak(&bound, kept_bytes, &sharing),
             sharing,
             made: snapshot.map(|snapshot| (snapshot.memory_block_bytes, snapshot.blocks.clone())),
         })
