@@ -59,4 +59,5 @@ mod study;
 mod support;
 mod traced_twins;
 mod traced_walks;
+mod unread;
 mod validation;

@@ -55,7 +55,7 @@ use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::settings::{SHADING, Setting, Values};
+use crate::settings::{Condition, SHADING, Setting, Values};
 use choices::Choices;
 use filter::Filtered;
 use frame::InterleavedFrame;
@@ -95,6 +95,10 @@ impl Technique for InterleavedDeferred {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, SHADING]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[settings::CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
