@@ -3,6 +3,7 @@
 mod animation;
 mod animation_broken;
 mod bench;
+mod bench_rows;
 mod budget;
 mod cli;
 mod collapse;
