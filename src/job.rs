@@ -8,13 +8,10 @@ use crate::gpu::validation::Log;
 use crate::gpu::{Caps, DeviceRequest, Gpu};
 use crate::interrupt;
 use crate::memory::Strategy;
-use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
-use crate::plan::Requirements;
 use crate::reference::Asked;
 use crate::report;
 use crate::report::image_file::{Aov, ExrPrecision, WriteOptions, write};
-use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::report::run::Report;
 use crate::report::tonemap::ToneMap;
@@ -23,7 +20,7 @@ use crate::report::whole_file::write_whole;
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
-use crate::settings::{COMMON, Setting, Values, earlier_s, exposure_s};
+use crate::settings::{COMMON, Setting, Values, earlier_s, exposure_s, readers};
 use crate::techniques::Technique;
 use serde_json::Value;
 use std::io::Write;
@@ -202,8 +199,16 @@ impl Job {
         self.output.clone().unwrap_or_else(|| default_path(scene, self.technique))
     }
 
+    /// Errors: a setting is changed that the others leave unread (exit code 2).
+    pub(crate) fn require_read(&self) -> Result<()> {
+        let conditions = self.technique.conditions().iter().copied().flatten();
+        readers::require_read(conditions, &settings_of(self.technique), &self.values)
+            .map_err(|error| error.within(self.technique.name()))
+    }
+
     /// What can be refused before anything is loaded.
     pub(crate) fn check(&self) -> Result<()> {
+        self.require_read()?;
         if let Some(path) = &self.output {
             let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
             if !["png", "exr"].contains(&extension.to_lowercase().as_str()) {
@@ -304,11 +309,7 @@ impl Job {
         report.image(picture, path)?;
         report.aovs(aovs, picture.extent);
         report.times(renderer, times, self.profile);
-        let requirements = Requirements::Device(&session.gpu);
-        let kinds = Kinds::new(&session.gpu.caps);
-        let plans = (&session.stats.plan(), &renderer.plan);
-        let sharing = renderer.sharing.clone();
-        let table = MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(memory))?;
+        let table = session.memory_table(renderer, Some(memory))?;
         report.memory(&table.touched_as(&renderer.touched_bytes()?));
         report.counters(&renderer.measured_counters()?);
         Ok(report)
@@ -361,8 +362,8 @@ pub(crate) fn scene_of(model: &Model, values: &Values) -> Result<Scene> {
     }
 }
 
-/// As the report has them: with what `auto` and percentages came to.
-fn settings(session: &Session, renderer: &Renderer, values: &Values) -> Value {
+/// As reports and rows have them: with what `auto` and percentages came to.
+pub(crate) fn settings(session: &Session, renderer: &Renderer, values: &Values) -> Value {
     let mut resolved = renderer.resolved.clone();
     resolved.insert("texture-limit", session.scene.texture_limit_px.to_string());
     report::run::settings(values, &resolved)

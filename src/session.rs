@@ -10,10 +10,13 @@ use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, statistics, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
+use crate::memory::kinds::Kinds;
+use crate::memory::ledger::Snapshot;
 use crate::metrics::noise;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::progress::Stage;
 use crate::report::image_file::Aov;
+use crate::report::memory::MemoryTable;
 use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
@@ -115,6 +118,15 @@ impl Session {
             let plan = format!("`memory --technique {}` prints the plan", technique.name());
             resident::advise(error, &self.gpu, &self.scene).note(format!("a smaller --size would need less; {plan}"))
         })
+    }
+
+    /// The memory of the scene and of `renderer`. `snapshot`: where their resources lie, while no other renderer has any.
+    ///
+    /// Errors: no memory type fits a resource (exit code 4).
+    pub fn memory_table(&self, renderer: &Renderer, snapshot: Option<&Snapshot>) -> Result<MemoryTable> {
+        let (requirements, kinds) = (Requirements::Device(&self.gpu), Kinds::new(&self.gpu.caps));
+        let sharing = renderer.sharing.clone();
+        MemoryTable::new(&self.stats.plan(), &renderer.plan, sharing, requirements, &kinds, snapshot)
     }
 
     fn make(
@@ -372,7 +384,7 @@ impl Renderer {
         Ok(counters)
     }
 
-    /// Bytes that the last frame touched of resources of which it does not touch all, by full name.
+    /// Bytes that the last frame touched, by full name, of the resources of which it counts them.
     ///
     /// Errors: memory for reading counts back (exit code 4).
     pub fn touched_bytes(&self) -> Result<BTreeMap<String, u64>> {

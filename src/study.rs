@@ -27,6 +27,7 @@ pub struct Study {
 ///
 /// Errors: impossible settings or a broken scene (exit code 2); caps that do not say how the driver rounds sizes (2).
 pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
+    job.require_read()?;
     let scene = job.with_texture_limit(job.load_scene()?, caps);
     let view = View::new(&scene, job.values.text("camera"), job.values.extent("size"))?;
     let lights = LightSet::new(&scene, &view, &job.values)?;
@@ -54,16 +55,13 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
 ///
 /// Errors: impossible settings or a broken scene (exit code 2), no device (3), memory (4).
 pub fn made(job: &Job) -> Result<Study> {
+    job.require_read()?;
     let session = job.open_session(&job.device_request(), job.load_scene()?)?;
     let renderer = session.renderer(job.technique, &job.values, &job.aovs, Submits::One)?;
     let snapshot = session.gpu.memory.snapshot();
-    let caps = &session.gpu.caps;
-    let requirements = Requirements::Device(&session.gpu);
-    let kinds = Kinds::new(caps);
-    let plans = (&session.stats.plan(), &renderer.plan);
-    let sharing = renderer.sharing.clone();
-    let table = MemoryTable::new(plans.0, plans.1, sharing, requirements, &kinds, Some(&snapshot))?;
-    let study = Study { device: caps.identity.name.clone(), scene: session.scene.name.clone(), table };
+    let table = session.memory_table(&renderer, Some(&snapshot))?;
+    let device = session.gpu.caps.identity.name.clone();
+    let study = Study { device, scene: session.scene.name.clone(), table };
     let log = session.gpu.validation_log();
     drop((renderer, session));
     judge(log.as_deref())?;

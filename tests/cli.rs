@@ -93,15 +93,16 @@ fn a_report_says_what_storage_and_block_came_to() {
 fn a_report_says_what_the_direct_pattern_came_to() {
     let program = Program::new();
     let report = |more: &[&str]| {
-        let lamps = ["render", "lamps:objects=10,lights=24", "--size", "32x18", "--vpls", "96", "--pattern", "8x6"];
-        program.run(&[&lamps[..], &["--json", "-o", "a.png"], more].concat()).fine().json()
+        let lamps = ["render", "lamps:objects=10,lights=24", "--size", "32x18", "--vpls", "96"];
+        let joined = ["--direct", "interleaved", "--json", "-o", "a.png"];
+        program.run(&[&lamps[..], &joined, more].concat()).fine().json()
     };
     for (more, direct_pattern, vpls, lights) in [
-        (&["--direct", "interleaved"][..], "8x6", 2.0, 48.0),
-        (&["--direct", "interleaved", "--direct-pattern", "4x3"], "4x3", 2.0, 12.0),
-        (&["--direct", "interleaved", "--direct-pattern", "1x1"], "1x1", 2.0, 1.0),
-        (&["--direct", "interleaved", "--direct-pattern", "4x3", "--split", "none"], "1x1", 96.0, 1.0),
-        (&["--direct", "interleaved", "--direct-pattern", "4x3", "--split", "subsample"], "1x1", 96.0, 1.0),
+        (&["--pattern", "8x6"][..], "8x6", 2.0, 48.0),
+        (&["--pattern", "8x6", "--direct-pattern", "4x3"], "4x3", 2.0, 12.0),
+        (&["--pattern", "8x6", "--direct-pattern", "1x1"], "1x1", 2.0, 1.0),
+        (&["--split", "none"], "1x1", 96.0, 1.0),
+        (&["--pattern", "8x6", "--split", "subsample"], "1x1", 96.0, 1.0),
     ] {
         let report = report(more);
         assert_eq!(report["settings"]["direct-pattern"], direct_pattern, "{more:?}");

@@ -120,11 +120,9 @@ const MEMORY: &[Row] = &[
     ("planned_bytes", "count"),
     ("allocated_bytes", "count"),
     ("aliased_bytes", "count"),
-    ("touched_bytes", "count"),
     ("peak_bytes", "count"),
     ("peak_pass", "text"),
     ("groups.*", "count"),
-    ("touched_groups.*", "count"),
     ("resources[].name", "text"),
     ("resources[].group", "text"),
     ("resources[].format", "text?"),
@@ -138,6 +136,9 @@ const MEMORY: &[Row] = &[
 /// Of memory that was made.
 const MADE: &[Row] =
     &[("memory_block_bytes", "count"), ("resources[].memory_block", "count"), ("resources[].offset", "count")];
+
+/// Of memory whose bytes a frame has counted as it touched them.
+const TOUCHED: &[Row] = &[("touched_bytes", "count"), ("touched_of_bytes", "count"), ("touched_groups.*", "count")];
 
 const DEVICE: &[Row] =
     &[("name", "text"), ("type", "text"), ("driver", "text"), ("driver_info", "text"), ("api", "text")];
@@ -239,6 +240,46 @@ fn the_report_has_the_keys_and_types_of_the_design() {
     assert!(plain["passes"].as_array().unwrap().iter().all(|pass| !pass["where"].is_null() || pass["ms"].is_null()));
 }
 
+/// A key that any object in `value` has, and that begins with `word`.
+fn has_key(value: &Value, word: &str) -> bool {
+    match value {
+        Value::Object(entries) => entries.iter().any(|(key, inner)| key.starts_with(word) || has_key(inner, word)),
+        Value::Array(entries) => entries.iter().any(|inner| has_key(inner, word)),
+        _ => false,
+    }
+}
+
+#[test]
+fn touched_bytes_are_said_only_where_a_frame_has_counted_them() {
+    let program = Program::new();
+    for arguments in [small(&["render"], &["-o", "a.png"]), small(&["memory"], &[]), small(&["memory", "--plan"], &[])]
+    {
+        let text = program.run(&arguments).fine().out;
+        let json = program.run(&[&arguments[..], &["--json"]].concat()).fine().json();
+        assert!(!text.contains("touched") && !has_key(&json, "touched"), "{arguments:?}: {text}");
+    }
+    let deep = ["render", "cornell", "--size", "32x18", "--technique", "deep_shading", "-o", "a.png"];
+    let text = program.run(&deep).fine().out;
+    let memory = program.run(&[&deep[..], &["--json"]].concat()).fine().json()["memory"].clone();
+    require_rows(&memory, TOUCHED);
+    let counted: Vec<&Value> =
+        memory["resources"].as_array().unwrap().iter().filter(|row| row["touched_bytes"].is_u64()).collect();
+    let sum = |key: &str| counted.iter().map(|row| row[key].as_u64().unwrap()).sum::<u64>();
+    assert!(!counted.is_empty() && counted.len() < memory["resources"].as_array().unwrap().len(), "{memory:#}");
+    assert_eq!(
+        (sum("touched_bytes"), sum("bytes")),
+        (count(&memory, "touched_bytes"), count(&memory, "touched_of_bytes"))
+    );
+    assert!(text.contains("  touched: ") && text.contains("of those resources that the frame counts"), "{text}");
+    // Nobody counts: nothing is known.
+    let json = program.run(&[&deep[..], &["--instrument", "off", "--json"]].concat()).fine().json();
+    assert!(!has_key(&json, "touched"), "{json:#}");
+}
+
+fn count(value: &Value, key: &str) -> u64 {
+    value[key].as_u64().unwrap_or_else(|| panic!("{key}: {value:#}"))
+}
+
 #[test]
 fn other_documents_have_their_keys_and_types() {
     let program = Program::new();
@@ -289,7 +330,15 @@ fn other_documents_have_their_keys_and_types() {
             ("scene.name", "text"),
             ("scene.hash", "hash"),
             ("technique", "text"),
+            ("asked.*", "text"),
             ("settings.*", "text or number"),
+            ("group", "text"),
+            ("memory.planned_bytes", "count"),
+            ("memory.allocated_bytes", "count"),
+            ("memory.aliased_bytes", "count"),
+            ("memory.peak_bytes", "count"),
+            ("memory.peak_pass", "text"),
+            ("memory.groups.*", "count"),
             ("repeat", "count"),
             ("command[]", "text"),
             ("image_hash", "hash"),

@@ -3,6 +3,7 @@
 mod animation;
 mod animation_broken;
 mod bench;
+mod bench_rows;
 mod blended;
 mod budget;
 mod cli;
@@ -61,4 +62,5 @@ mod study;
 mod support;
 mod traced_twins;
 mod traced_walks;
+mod unread;
 mod validation;

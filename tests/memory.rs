@@ -128,6 +128,25 @@ fn resources_that_share_bytes_never_live_in_the_same_pass() {
     }
 }
 
+/// The peak is of bytes that are held: without sharing of all of them in every pass, with it of no more than the arenas have.
+#[test]
+fn the_peak_is_what_stays_bound() {
+    for alias in ["off", "greedy", "optimal"] {
+        counted(Strategy::Linear, "cornell", |watched| {
+            let changes = [("size", "321x181"), ("vpls", "64"), ("alias", alias)];
+            let renderer = watched.render("interleaved_deferred", &changes);
+            let snapshot = watched.session.gpu.memory.snapshot();
+            let memory = watched.session.memory_table(&renderer, Some(&snapshot)).unwrap().json();
+            let bytes = |key: &str| memory[key].as_u64().unwrap();
+            assert_eq!(bytes("allocated_bytes"), snapshot.bound_bytes(), "{alias}");
+            assert_eq!(bytes("aliased_bytes"), snapshot.aliased_bytes(), "{alias}");
+            let held = bytes("allocated_bytes") - bytes("aliased_bytes");
+            assert!(bytes("peak_bytes") <= held, "{alias}: {memory:#}");
+            assert_eq!(bytes("peak_bytes") == bytes("allocated_bytes"), alias == "off", "{alias}");
+        });
+    }
+}
+
 /// Renderers that overlap in time leave holes: TLSF takes them again, so that the same frames need fewer bytes.
 #[test]
 fn what_returns_to_a_tlsf_block_is_taken_again() {

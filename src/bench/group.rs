@@ -13,8 +13,9 @@ use crate::settings::Values;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Renderers on the device at once: pairs need company, and a long sweep must not need the memory of all its variants.
-const MAX_RENDERERS: usize = 8;
+/// Renderers on the device at once: pairs need company, and a long sweep must not need the memory of all its variants. Five
+/// blocks with an identity each stand in one group with their baseline, so that their own ratios are known.
+const MAX_RENDERERS: usize = 11;
 
 /// Place of the baseline among the probes.
 pub const BASELINE: usize = 0;
@@ -50,12 +51,25 @@ pub struct Ground<'a> {
     pub job: &'a Job,
     pub session: &'a Session,
     pub what: What,
+    /// All variants shade as many texels a thread as `--texels` says.
+    pub is_fair: bool,
 }
 
 impl<'a> Ground<'a> {
     /// The same for a candidate.
     pub fn of(&self, candidate: &'a Candidate) -> Ground<'a> {
-        Ground { job: &candidate.job, session: self.session, what: self.what }
+        Ground { job: &candidate.job, ..*self }
+    }
+
+    /// Makes a variant.
+    ///
+    /// Errors: as `Variant::new` has them; it cannot be fair (exit code 2).
+    pub fn variant(&self, values: &Values) -> Result<Variant> {
+        let variant = Variant::new(self.session, self.job.technique, self.what, values)?;
+        if self.is_fair {
+            variant.require_texels(values)?;
+        }
+        Ok(variant)
     }
 }
 
@@ -80,10 +94,10 @@ impl Group {
 
     /// Makes a variant and adds it.
     ///
-    /// Errors: as `Variant::new` has them; and where others are in the group, memory for what stands beside it (exit
+    /// Errors: as `Ground::variant` has them; and where others are in the group, memory for what stands beside it (exit
     /// code 4): with fewer of them there may be enough.
     pub fn add(&mut self, ground: &Ground<'_>, candidate: usize, values: &Values) -> Result<()> {
-        let variant = Rc::new(Variant::new(ground.session, ground.job.technique, ground.what, values)?);
+        let variant = Rc::new(ground.variant(values)?);
         let [identity, copy] = self.companions(ground, &variant, values);
         if !self.members.is_empty() {
             let refused = [&identity, &copy].into_iter().flatten().filter_map(|companion| companion.as_ref().err());
@@ -117,8 +131,8 @@ impl Group {
         if let Some(known) = self.identities.get(&key) {
             return known.clone();
         }
-        let made = Variant::new(ground.session, ground.job.technique, ground.what, &identity);
-        let made = made.map(|variant| {
+        // It shades nothing that is timed: it need not be fair.
+        let made = Variant::new(ground.session, ground.job.technique, ground.what, &identity).map(|variant| {
             self.renderer_count += 1;
             self.push(Rc::new(variant))
         });

@@ -7,7 +7,9 @@
 pub mod blocks;
 pub mod candidate;
 pub mod copy;
+pub mod faster;
 pub mod group;
+pub mod machine;
 pub mod pareto;
 pub mod rays;
 pub mod reference;

@@ -1,7 +1,7 @@
 //! The picture of `--split none`, plain deferred shading of the same lights: what errors and overheads are measured
 //! against. One for each size, camera, scene of lights: what is left of a variant's settings.
 
-use super::candidate::changed;
+use super::candidate::{changed, without_unread};
 use super::what::What;
 use crate::error::{ErrorKind, Result};
 use crate::gpu::commands::Submits;
@@ -15,25 +15,9 @@ use std::rc::Rc;
 /// Frames of a renderer's passes, after one that warms up.
 const PASS_FRAMES: usize = 3;
 
-/// Settings that change nothing of a picture without subsets: they are put at their defaults, so that a sweep of them
-/// has one reference.
-const UNREAD: &[&str] = &[
-    "pattern",
-    "direct-pattern",
-    "block",
-    "filter",
-    "kernel",
-    "sigma",
-    "discontinuity",
-    "normal-threshold",
-    "position-threshold",
-    "workgroup",
-    "storage",
-    "copy",
-    "fragment-passes",
-    "fuse",
-    "alias",
-];
+/// Settings that change how a picture without subsets is made, and nothing of it: they are put at their defaults, as what
+/// nothing reads is, so that a sweep of them has one reference.
+const SAME_PICTURE: &[&str] = &["workgroup", "alias"];
 
 /// Plain deferred shading at one size, from one camera, of one set of lights.
 pub struct Reference {
@@ -92,8 +76,8 @@ impl References {
 fn plain(job: &Job, values: &Values) -> Result<Values> {
     let plain = changed(job, values, [("split", "none")])?;
     let defaults = Job::new(&job.scene, job.technique).values;
-    let unread = defaults.iter().filter(|(key, _)| UNREAD.contains(key));
-    changed(job, &plain, unread)
+    let same = defaults.iter().filter(|(key, _)| SAME_PICTURE.contains(key));
+    changed(job, &without_unread(job.technique, &plain), same)
 }
 
 impl Reference {

@@ -2,16 +2,19 @@
 
 use super::candidate::Candidate;
 use super::group::{BASELINE, Companion, Ground, Member};
+use super::machine::Load;
 use super::reference::{Found, Reference, pass_ms};
 use super::rounds::Samples;
 use super::stats::{median, paired_ratio};
 use super::what::What;
 use crate::error::{Error, Result};
-use crate::job::Job;
+use crate::job::{Job, settings};
 use crate::metrics;
 use crate::reference::Asked;
 use crate::report::picture::Picture;
-use crate::report::run::spread;
+use crate::report::run::{setting, spread};
+use crate::settings::Values;
+use crate::techniques::Technique;
 use serde_json::{Map, Value, json};
 
 /// What every row of a run shares.
@@ -20,14 +23,25 @@ pub struct Head<'a> {
     pub repeat: usize,
     /// The baseline's label.
     pub baseline: String,
-    /// What the scene holds in device memory.
-    pub scene_bytes: u64,
+}
+
+/// The rounds in which a row was measured.
+pub struct Rounds {
+    /// Shared by the rows of a group, and by no others.
+    pub group: String,
+    /// Of every probe of the group.
+    pub samples: Vec<Samples>,
+    /// What else the machine did meanwhile; None where nobody tells.
+    pub load: Option<Load>,
 }
 
 impl Head<'_> {
-    /// The keys that say what a row is of; `key` reads these.
+    /// The keys that say what a row is of; `key` reads these. Settings are as they were typed: what they come to is known
+    /// when they are made.
     pub fn row(&self, candidate: &Candidate) -> Value {
-        let Ground { job, session, what } = &self.ground;
+        let Ground { job, session, what, is_fair } = &self.ground;
+        let settings: Map<String, Value> =
+            candidate.settings.iter().map(|(key, text)| (key.clone(), setting(text))).collect();
         let mut row = json!({
             "schema": 1,
             "bench": what.name(),
@@ -36,10 +50,14 @@ impl Head<'_> {
             "commit": env!("QUINCUNX_COMMIT"),
             "scene": { "name": session.scene.name, "hash": session.scene.hash },
             "technique": candidate.job.technique.name(),
-            "settings": candidate.settings,
+            "asked": candidate.asked,
+            "settings": settings,
             "repeat": self.repeat,
             "baseline": self.baseline,
         });
+        if *is_fair {
+            row["fair"] = json!(true);
+        }
         if let Some(asked) = &job.reference {
             row["reference"] = asked.identity();
         }
@@ -53,7 +71,7 @@ impl Head<'_> {
         row
     }
 
-    /// The row of a variant that was measured. `samples`: of every probe of its group.
+    /// The row of a variant that was measured, in `rounds`.
     ///
     /// Errors: the picture holds NaN or infinity (exit code 1); the device fails (4).
     pub fn measured(
@@ -61,16 +79,24 @@ impl Head<'_> {
         candidate: &Candidate,
         member: &Member,
         picture: &Picture,
-        samples: &[Samples],
+        rounds: &Rounds,
         reference: &Found,
     ) -> Result<Value> {
-        let Ground { job, session, what } = &self.ground;
+        let Ground { job, session, what, .. } = &self.ground;
         let renderer = &member.variant.renderer;
+        let samples = &rounds.samples;
+        let values = candidate.values.as_ref().map_err(Error::clone)?;
         let times = samples[member.probe].totals_ms();
         let baseline = samples[BASELINE].totals_ms();
         let [read, written] = member.variant.traffic_bytes();
         let mut row = self.row(candidate);
-        row["command"] = json!(repeating_command(job, *what, candidate));
+        row["settings"] = settings(session, renderer, values);
+        if !candidate.unread_axes.is_empty() {
+            row["unread_axes"] = json!(candidate.unread_axes);
+        }
+        row["command"] = json!(repeating_command(job, *what, candidate.job.technique, values));
+        row["group"] = json!(rounds.group);
+        row["machine"] = json!(rounds.load.map(Load::json));
         row["image_hash"] = json!(picture.hash()?);
         row[what.time_key()] = spread(&times);
         row["pass_ms"] = self.pass_ms(candidate, member, samples)?;
@@ -80,15 +106,12 @@ impl Head<'_> {
         row["bytes_read"] = json!(read);
         row["bytes_written"] = json!(written);
         row["planned_bytes"] = json!(renderer.plan.bytes());
-        row["memory"] = json!({
-            "planned_bytes": session.stats.plan().bytes() + renderer.plan.bytes(),
-            "peak_bytes": self.scene_bytes + member.variant.bound_bytes,
-        });
+        row["memory"] = session.memory_table(renderer, None)?.touched_as(&renderer.touched_bytes()?).sums();
         row["counters"] = json!(renderer.measured_counters()?);
         match what {
             What::Split | What::Gather => copies(&mut row, member, samples),
             What::Shade => evaluations(&mut row, member, &times),
-            What::Filter => taps(&mut row, candidate, member, &times),
+            What::Filter => taps(&mut row, member, &times),
             What::Frame => {}
         }
         match reference {
@@ -121,20 +144,24 @@ impl Head<'_> {
 
 /// What says that two rows are of the same measurement.
 pub fn key(row: &Value) -> String {
-    let parts = ["bench", "technique", "device", "commit", "settings", "repeat", "baseline", "variant", "reference"];
+    let parts = ["bench", "technique", "device", "commit", "repeat", "baseline", "variant", "reference", "fair"];
     let mut key: Vec<&Value> = parts.iter().map(|part| &row[*part]).collect();
-    key.push(&row["scene"]["hash"]);
+    key.extend([&row["scene"]["hash"], asked(row)]);
     json!(key).to_string()
 }
 
+/// Settings as they were typed: what a row's are by name. Rows of earlier versions have these as their settings.
+pub fn asked(row: &Value) -> &Value {
+    if row["asked"].is_object() { &row["asked"] } else { &row["settings"] }
+}
+
 /// The `render` command of a variant: every setting that is not at its default; pass times where a stage is timed.
-fn repeating_command(job: &Job, what: What, candidate: &Candidate) -> Vec<String> {
-    let technique = candidate.job.technique;
+fn repeating_command(job: &Job, what: What, technique: &'static dyn Technique, values: &Values) -> Vec<String> {
     let defaults = Job::new(&job.scene, technique).values;
     let mut command = ["quincunx", "render", &job.scene, "--technique", technique.name()].map(str::to_owned).to_vec();
     for (key, default) in defaults.iter() {
-        if candidate.settings[key] != default {
-            command.extend([format!("--{key}"), candidate.settings[key].clone()]);
+        if values.text(key) != default {
+            command.extend([format!("--{key}"), values.text(key).to_owned()]);
         }
     }
     command.extend(job.reference.iter().flat_map(Asked::arguments));
@@ -178,10 +205,10 @@ fn evaluations(row: &mut Value, member: &Member, times: &[f64]) {
 }
 
 /// Nanoseconds a pixel, discontinuities included, and of those for each tap of both directions.
-fn taps(row: &mut Value, candidate: &Candidate, member: &Member, times: &[f64]) {
+fn taps(row: &mut Value, member: &Member, times: &[f64]) {
     let pixel_ns = 1e6 * median(times) / member.variant.extent().pixel_count() as f64;
     row["ns_per_pixel"] = json!(pixel_ns);
-    if let Some(kernel) = candidate.settings.get("kernel").and_then(|kernel| kernel.parse::<f64>().ok()) {
+    if let Some(kernel) = row["settings"]["kernel"].as_f64() {
         row["ns_per_tap"] = json!(pixel_ns / (2.0 * kernel));
     }
 }

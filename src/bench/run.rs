@@ -1,9 +1,10 @@
 //! A sweep from grid to rows: which points are possible, in which groups they are measured, what is already known.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, require_readers};
 use super::group::{Ground, Group, is_of_memory};
+use super::machine::{Load, Ticks};
 use super::reference::References;
-use super::row::Head;
+use super::row::{Head, Rounds};
 use super::rows_file::RowsFile;
 use super::sweep::{self, Axis};
 use super::variant::Variant;
@@ -15,6 +16,7 @@ use crate::session::Session;
 use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::rc::Rc;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// What is asked for.
 pub struct Request<'a> {
@@ -26,6 +28,8 @@ pub struct Request<'a> {
     pub baseline: Option<&'a str>,
     /// Rounds, at least one.
     pub repeat: usize,
+    /// All rows shade as many texels a thread: those of `--texels`, or one. What cannot is skipped.
+    pub is_fair: bool,
 }
 
 /// What came out.
@@ -55,14 +59,21 @@ pub trait Observer {
 
 /// Measures the grid of `request`; rows that `file` holds already are taken from it, new ones are appended to it.
 ///
-/// Errors: no point is possible, or the baseline is not (exit code 2); no device (3); the device fails (4); a picture
-/// holds NaN or infinity, or the validation layer has spoken (1).
+/// Errors: no point is possible, or the baseline is not, or nothing reads what is swept (exit code 2); no device (3); the
+/// device fails (4); a picture holds NaN or infinity, or the validation layer has spoken (1).
 pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dyn Observer) -> Result<Rows> {
     let job = request.job;
+    if request.is_fair && request.axes.iter().any(|axis| axis.key == "texels") {
+        let why = "--fair: all rows shade as many texels a thread, and --sweep texels= asks for several numbers";
+        return Err(Error::request(why).note("--fair --texels 4 gives them all four"));
+    }
     let grid = sweep::grid(request.axes);
     let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
     let session = job.open_session(&job.device_request(), job.load_scene()?)?;
-    let candidates: Vec<Candidate> = grid.iter().map(|point| Candidate::new(job, point, &session.scene.hash)).collect();
+    let (axes, hash) = (request.axes, &session.scene.hash);
+    let candidates: Vec<Candidate> =
+        grid.iter().map(|point| Candidate::new(job, axes, point, request.is_fair, hash)).collect();
+    require_readers(job, axes, &candidates)?;
     if let Some(asked) = &job.reference {
         for candidate in &candidates {
             let Ok(values) = &candidate.values else { continue };
@@ -115,9 +126,8 @@ impl<'a> Sweep<'a> {
         file: Option<&'a mut RowsFile>,
         observer: &'a mut dyn Observer,
     ) -> Result<Self> {
-        let scene_bytes = session.gpu.memory.snapshot().bound_bytes();
-        let Request { job, what, repeat, .. } = *request;
-        let ground = Ground { job, session, what };
+        let Request { job, what, repeat, is_fair, .. } = *request;
+        let ground = Ground { job, session, what, is_fair };
         let mut refused = Vec::new();
         let tried = named.map_or(0..candidates.len(), |index| index..index + 1);
         let found = tried.into_iter().find_map(|index| match possible(&ground, &candidates[index]) {
@@ -138,7 +148,7 @@ impl<'a> Sweep<'a> {
             });
         };
         let (baseline, baseline_variant) = found?;
-        let head = Head { ground, repeat, baseline: candidates[baseline].label.clone(), scene_bytes };
+        let head = Head { ground, repeat, baseline: candidates[baseline].label.clone() };
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
         let rows = candidates.iter().map(kept).collect();
         let references = References::default();
@@ -201,17 +211,22 @@ impl<'a> Sweep<'a> {
         let repeat = self.head.repeat;
         let (known, all, members) = (self.known(), self.rows.len(), group.members.len());
         let observer = &mut *self.observer;
+        let (started, before) = (SystemTime::now(), Ticks::now());
         let samples = group.measure(repeat, &mut |done, of| {
             // A step is a round of one variant; what stands beside variants has no steps of its own.
             observer.step(known * repeat + members * repeat * done / of, all * repeat);
         })?;
+        let load = before.zip(Ticks::now()).and_then(|(before, after)| Load::between(before, after));
+        // Nanoseconds: rows of another run, which --resume keeps, are of another group.
+        let since = started.duration_since(UNIX_EPOCH).unwrap_or_default();
+        let rounds = Rounds { group: since.as_nanos().to_string(), samples, load };
         for (member, picture) in group.members.iter().zip(&pictures) {
             interrupt::check()?;
             let candidate = &self.candidates[member.candidate];
-            let Ground { job, session, what } = self.head.ground.of(candidate);
+            let Ground { job, session, what, .. } = self.head.ground.of(candidate);
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             let reference = self.references.of(job, session, what, values)?;
-            let mut row = self.head.measured(candidate, member, picture, &samples, &reference)?;
+            let mut row = self.head.measured(candidate, member, picture, &rounds, &reference)?;
             if let Some(asked) = &self.head.ground.job.reference {
                 match asked.judge(picture, job.technique, values, session) {
                     Ok(judged) => {
@@ -249,5 +264,5 @@ impl<'a> Sweep<'a> {
 
 fn possible(ground: &Ground<'_>, candidate: &Candidate) -> Result<Variant> {
     let values = candidate.values.as_ref().map_err(Error::clone)?;
-    Variant::new(ground.session, candidate.job.technique, ground.what, values)
+    ground.of(candidate).variant(values)
 }

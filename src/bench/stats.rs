@@ -2,12 +2,16 @@
 
 use serde_json::{Value, json};
 
+/// Rounds that an interval takes: Student's factor is 12.7 for two, whose intervals go from nothing to 10^17 and tell nothing,
+/// and 4.3 for three.
+pub const LEAST_PAIRS: usize = 3;
+
 /// How many times as long one thing takes as another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
     /// Geometric mean of the paired ratios.
     pub mean: f64,
-    /// 95 % interval of that mean; None with fewer than two pairs.
+    /// 95 % interval of that mean; None with fewer than `LEAST_PAIRS`.
     pub interval: Option<[f64; 2]>,
     pub pairs: usize,
 }
@@ -27,7 +31,7 @@ pub fn paired_ratio(long: &[f64], short: &[f64]) -> Ratio {
     let logs: Vec<f64> = long.iter().zip(short).map(|(l, s)| (l / s).ln()).collect();
     let count = logs.len() as f64;
     let mean = logs.iter().sum::<f64>() / count;
-    let interval = (logs.len() > 1).then(|| {
+    let interval = (logs.len() >= LEAST_PAIRS).then(|| {
         let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0);
         let reach = t_quantile(logs.len() - 1) * (variance / count).sqrt();
         [(mean - reach).exp(), (mean + reach).exp()]
@@ -70,6 +74,12 @@ mod tests {
         let noisy = paired_ratio(&[10.0, 20.0, 10.0, 20.0], &[1.0; 4]);
         let [low, high] = noisy.interval.unwrap();
         assert!(low < noisy.mean && noisy.mean < high && high / low > 2.0);
+    }
+
+    #[test]
+    fn an_interval_takes_three_rounds() {
         assert_eq!(paired_ratio(&[2.0], &[1.0]).interval, None);
+        assert_eq!(paired_ratio(&[2.0, 4.0], &[1.0, 1.0]).interval, None);
+        assert!(paired_ratio(&[2.0, 4.0, 2.0], &[1.0; 3]).interval.is_some());
     }
 }

@@ -1,5 +1,7 @@
 //! What a sweep comes to: all its rows with the Pareto set marked, the best blocks, what was skipped and why.
 
+use super::machine::{BUSY_SHARE, is_busy};
+use super::stats::LEAST_PAIRS;
 use super::sweep::Axis;
 use super::table::{MARK, Table};
 use super::what::What;
@@ -21,12 +23,7 @@ pub struct Summary {
 impl Summary {
     /// `rows`: at least one, in the order of the grid; `command`: the argv that repeats it.
     pub fn new(what: What, axes: &[Axis], mut rows: Vec<Value>, command: &[String]) -> Self {
-        let places: Vec<_> = rows.iter().map(pareto::place).collect();
-        for (row, in_set) in rows.iter_mut().zip(pareto::set(&places)) {
-            if in_set {
-                row["pareto"] = json!(true);
-            }
-        }
+        pareto::mark(&mut rows);
         // Where a stage is no copy, its blocks are another's choice.
         let best_blocks = if what.copies() { blocks::best(axes, &rows) } else { Vec::new() };
         Self { what, rows, best_blocks, command: command.to_vec() }
@@ -97,12 +94,15 @@ impl Summary {
 
     fn legend(&self) -> String {
         let baseline = self.rows[0]["baseline"].as_str().unwrap_or_default();
-        format!(
-            "time ratios to {baseline}, of {} rounds; errors against {}; {MARK}: nothing beats it in time or rmse \
-             without losing in the other",
-            self.rows[0]["repeat"],
-            self.rows[0]["reference"]["name"].as_str().unwrap_or("--split none")
-        )
+        let errors = self.rows[0]["reference"]["name"].as_str().unwrap_or("--split none");
+        let rounds = &self.rows[0]["repeat"];
+        let told = match rounds.as_u64() {
+            Some(few) if few < LEAST_PAIRS as u64 => {
+                format!("no interval is printed, and no row is told from another, below {LEAST_PAIRS} rounds")
+            }
+            _ => format!("{MARK}: no row with at most its rmse is faster by the interval of their ratio"),
+        };
+        format!("time ratios to {baseline}, of {rounds} rounds; errors against {errors}; {told}")
     }
 
     fn notes(&self) -> Vec<String> {
@@ -110,7 +110,32 @@ impl Summary {
             let reason = row["skipped"].as_str()?;
             Some(format!("skipped {}: {reason}", row["variant"].as_str().unwrap_or_default()))
         });
-        self.best_blocks.iter().map(blocks::sentence).chain(skipped).collect()
+        self.best_blocks.iter().map(blocks::sentence).chain(self.untold()).chain(self.busy()).chain(skipped).collect()
+    }
+
+    /// Rows that are in the Pareto set for want of rounds.
+    fn untold(&self) -> Option<String> {
+        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let pair = |row: &Value| {
+            let rivals: Vec<String> = row["pareto_not_told_from"].as_array()?.iter().map(word).collect();
+            Some(format!("{} ({})", word(&row["variant"]), rivals.join(", ")))
+        };
+        let pairs: Vec<String> = self.rows.iter().filter_map(pair).collect();
+        let which = pairs.join("; ");
+        (!pairs.is_empty()).then(|| format!("marked because rounds do not tell a quicker rival to be faster: {which}"))
+    }
+
+    /// Rows whose times others have had a part in.
+    fn busy(&self) -> Option<String> {
+        let count = self.rows.iter().filter(|row| is_busy(row)).count();
+        let all = self.rows.iter().filter(|row| row["skipped"].is_null()).count();
+        let percent = 100.0 * BUSY_SHARE;
+        (count > 0).then(|| {
+            format!(
+                "{count} of {all} rows were measured while the machine was busy: over {percent} % of its processors' time \
+                 went to others; measure them again when it is not"
+            )
+        })
     }
 }
 
@@ -122,10 +147,10 @@ mod tests {
         json!({
             "variant": variant,
             "baseline": "a",
-            "repeat": 2,
+            "repeat": 5,
             "scene": { "name": "box" },
             "device": { "name": "d", "type": "cpu", "driver_info": "i" },
-            "ratio": { "mean": ratio, "interval_95": null },
+            "ratio": { "mean": ratio, "interval_95": [0.9 * ratio, 1.1 * ratio] },
             "error_against_none": { "rmse": rmse },
         })
     }
@@ -156,10 +181,39 @@ mod tests {
         assert_eq!(marks, [&json!(true), &Value::Null, &Value::Null]);
         let text = summary.text();
         assert!(text.starts_with("box on d (i, software driver)\n"), "{text}");
-        assert!(text.contains("skipped c: it cannot be"), "{text}");
+        assert!(text.contains("skipped c: it cannot be") && !text.contains("busy"), "{text}");
         let lines: Vec<&str> = text.lines().filter(|line| line.ends_with(MARK)).collect();
         assert!(lines.len() == 1 && lines[0].starts_with("a "), "{text}");
         assert!(summary.markdown().contains("| variant | median ms |"), "{}", summary.markdown());
         assert_eq!(summary.json()["rows"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn two_rounds_tell_nothing_and_say_so() {
+        let few = |mut row: Value| {
+            row["repeat"] = json!(2);
+            row["ratio"]["interval_95"] = Value::Null;
+            row
+        };
+        let summary = Summary::new(What::Frame, &[], vec![few(row("a", 1.0, 0.0)), few(row("b", 2.0, 0.0))], &[]);
+        let text = summary.text();
+        assert!(text.contains("no interval is printed, and no row is told from another, below 3 rounds"), "{text}");
+        assert!(text.lines().all(|line| !line.ends_with(MARK)), "{text}");
+    }
+
+    #[test]
+    fn rows_of_a_busy_machine_are_marked_and_counted() {
+        let mut busy = row("a", 1.0, 0.0);
+        busy["machine"] = json!({ "other_cpu_share": 0.2, "steal_share": 0.0, "busy": true });
+        let text = Summary::new(What::Shade, &[], vec![busy, row("b", 2.0, 0.0)], &[]).text();
+        assert!(text.contains("1 of 2 rows were measured while the machine was busy: over 5 %"), "{text}");
+        let lines: Vec<&str> = text.lines().filter(|line| line.ends_with("  busy")).collect();
+        assert!(lines.len() == 1 && lines[0].starts_with("a "), "{text}");
+    }
+
+    #[test]
+    fn rows_that_rounds_do_not_tell_apart_are_named() {
+        let text = Summary::new(What::Frame, &[], vec![row("a", 1.0, 0.0), row("b", 1.05, 0.1)], &[]).text();
+        assert!(text.contains("marked because rounds do not tell a quicker rival to be faster: b (a)"), "{text}");
     }
 }

@@ -1,5 +1,6 @@
 //! Rows as a table: which columns a benchmark has, in plain text or Markdown.
 
+use super::machine::is_busy;
 use super::pareto::errors;
 use super::what::What;
 use crate::units::Bytes;
@@ -15,6 +16,18 @@ const MOST_NAME_CHARS: usize = 1000;
 struct Column {
     title: &'static str,
     cell: fn(&Value) -> Option<String>,
+    /// Left out where it says nothing of any row.
+    is_optional: bool,
+}
+
+impl Column {
+    fn new(title: &'static str, cell: fn(&Value) -> Option<String>) -> Self {
+        Self { title, cell, is_optional: false }
+    }
+
+    fn optional(title: &'static str, cell: fn(&Value) -> Option<String>) -> Self {
+        Self { is_optional: true, ..Self::new(title, cell) }
+    }
 }
 
 /// Title and cells, all rows of one length; the first column is the variant's name.
@@ -52,33 +65,33 @@ fn columns(what: What) -> Vec<Column> {
         What::Frame => |row| fixed(&row["frame_ms"]["median"], 3),
         _ => |row| fixed(&row["stage_ms"]["median"], 3),
     };
-    let mut columns = vec![
-        Column { title: "median ms", cell: median },
-        Column { title: "time ratio (95 %)", cell: |row| ratio(&row["ratio"]) },
-    ];
+    let mut columns =
+        vec![Column::new("median ms", median), Column::new("time ratio (95 %)", |row| ratio(&row["ratio"]))];
+    let texels =
+        || Column::optional("texels a thread", |row| row["settings"]["texels"].as_u64().map(|one| one.to_string()));
     columns.extend(match what {
         What::Split | What::Gather => vec![
-            Column { title: "to identity (95 %)", cell: |row| ratio(&row["identity"]) },
-            Column { title: "to copy buffer (95 %)", cell: |row| ratio(&row["copy"]) },
-            Column { title: "GB/s", cell: |row| fixed(&row["copied_gb_per_s"], 2) },
-            Column { title: "copied", cell: |row| bytes(&row["copied_bytes"]) },
+            Column::new("to identity (95 %)", |row| ratio(&row["identity"])),
+            Column::new("to copy buffer (95 %)", |row| ratio(&row["copy"])),
+            Column::new("GB/s", |row| fixed(&row["copied_gb_per_s"], 2)),
+            Column::new("copied", |row| bytes(&row["copied_bytes"])),
         ],
-        What::Shade => vec![Column { title: "ns/evaluation", cell: |row| fixed(&row["ns_per_evaluation"], 3) }],
+        What::Shade => vec![texels(), Column::new("ns/evaluation", |row| fixed(&row["ns_per_evaluation"], 3))],
         What::Filter => vec![
-            Column { title: "ns/pixel", cell: |row| fixed(&row["ns_per_pixel"], 2) },
-            Column { title: "ns/tap", cell: |row| fixed(&row["ns_per_tap"], 3) },
+            Column::new("ns/pixel", |row| fixed(&row["ns_per_pixel"], 2)),
+            Column::new("ns/tap", |row| fixed(&row["ns_per_tap"], 3)),
         ],
-        What::Frame => vec![Column {
-            title: "overhead, evals/pixel",
-            cell: |row| fixed(&row["overhead_evaluations_per_pixel"], 2),
-        }],
+        What::Frame => {
+            vec![texels(), Column::new("overhead, evals/pixel", |row| fixed(&row["overhead_evaluations_per_pixel"], 2))]
+        }
     });
     columns.extend([
-        Column { title: "moved", cell: moved },
-        Column { title: "memory peak", cell: |row| bytes(&row["memory"]["peak_bytes"]) },
-        Column { title: "rmse", cell: |row| fixed(&errors(row)["rmse"], 5) },
-        Column { title: "flip", cell: |row| fixed(&errors(row)["flip"], 4) },
-        Column { title: "Pareto", cell: |row| (row["pareto"] == true).then(|| MARK.to_owned()) },
+        Column::new("moved", moved),
+        Column::new("memory peak", |row| bytes(&row["memory"]["peak_bytes"])),
+        Column::new("rmse", |row| fixed(&errors(row)["rmse"], 5)),
+        Column::new("flip", |row| fixed(&errors(row)["flip"], 4)),
+        Column::new("Pareto", |row| (row["pareto"] == true).then(|| MARK.to_owned())),
+        Column::optional("machine", |row| is_busy(row).then(|| "busy".to_owned())),
     ]);
     columns
 }
@@ -86,10 +99,12 @@ fn columns(what: What) -> Vec<Column> {
 impl Table {
     /// Of the rows that were measured.
     pub fn new(what: What, rows: &[Value]) -> Self {
-        let columns = columns(what);
+        let measured = || rows.iter().filter(|row| row["skipped"].is_null());
+        let mut columns = columns(what);
+        columns.retain(|column| !column.is_optional || measured().any(|row| (column.cell)(row).is_some()));
         let titles = std::iter::once("variant").chain(columns.iter().map(|column| column.title));
         let mut lines = vec![titles.map(str::to_owned).collect::<Vec<_>>()];
-        for row in rows.iter().filter(|row| row["skipped"].is_null()) {
+        for row in measured() {
             let name = row["variant"].as_str().unwrap_or_default().chars().take(MOST_NAME_CHARS).collect();
             let cells = columns.iter().map(|column| (column.cell)(row).unwrap_or_else(|| "-".to_owned()));
             lines.push(std::iter::once(name).chain(cells).collect());

@@ -13,8 +13,6 @@ pub struct Variant {
     pub renderer: Renderer,
     /// Indices of the passes that are timed, in order, at least one.
     pub stage: Vec<usize>,
-    /// What it holds in device memory, with the padding that the driver asks for.
-    pub bound_bytes: u64,
     what: What,
 }
 
@@ -23,14 +21,12 @@ impl Variant {
     ///
     /// Errors: impossible settings, or settings that leave the stage out (exit code 2); memory (4).
     pub fn new(session: &Session, technique: &dyn Technique, what: What, values: &Values) -> Result<Self> {
-        let before = session.gpu.memory.snapshot().bound_bytes();
         let renderer = session.renderer(technique, values, &[], what.submits())?;
-        let bound_bytes = session.gpu.memory.snapshot().bound_bytes() - before;
         let stage = what.passes(technique.name(), renderer.passes());
         if stage.is_empty() || what.is_fused(values) {
             return Err(Error::request(what.absence(technique.name(), values)));
         }
-        Ok(Self { renderer, stage, bound_bytes, what })
+        Ok(Self { renderer, stage, what })
     }
 
     pub fn extent(&self) -> Extent {
@@ -43,9 +39,29 @@ impl Variant {
         passes.fold([0, 0], |[read, written], pass| [read + pass.read_bytes, written + pass.written_bytes])
     }
 
-    /// Bytes that its last pass leaves: of a copy in several passes, the copy alone.
+    /// Bytes that the stage leaves for what comes behind it, whatever it wrote on the way: of a copy, what is copied.
     pub fn result_bytes(&self) -> u64 {
-        self.renderer.passes()[*self.stage.last().expect("at least one pass")].traffic.written_bytes
+        let (plan, last) = (&self.renderer.plan, *self.stage.last().expect("at least one pass"));
+        let touches = |pass: usize, resource: usize| {
+            plan.passes[pass].touches.iter().filter(move |touch| touch.resource == resource)
+        };
+        let is_left = |resource: &usize| {
+            let is_written = self.stage.iter().any(|pass| touches(*pass, *resource).any(|touch| touch.access.writes()));
+            let mut behind = last + 1..plan.passes.len();
+            let is_used = behind.any(|pass| touches(pass, *resource).next().is_some());
+            is_written && (is_used || plan.resources[*resource].read_back)
+        };
+        (0..plan.resources.len()).filter(is_left).map(|resource| plan.resources[resource].bytes()).sum()
+    }
+
+    /// Errors: its threads shade another number of texels than `--texels` of `values` says (exit code 2).
+    pub fn require_texels(&self, values: &Values) -> Result<()> {
+        let (asked, used) = (values.text("texels"), self.renderer.resolved.get("texels").map(String::as_str));
+        if used == Some(asked) {
+            return Ok(());
+        }
+        let used = used.unwrap_or("an unknown number");
+        Err(Error::request(format!("--fair --texels {asked}: of its texels a thread shades {used}")))
     }
 }
 

@@ -1,13 +1,17 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
 use super::{job_args, progress, rays, reference_args};
+use crate::bench::candidate::TECHNIQUE;
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
 use crate::bench::summary::Summary;
 use crate::bench::sweep;
 use crate::bench::what::What;
 use crate::error::{Error, Result};
+use crate::job::settings_of;
 use crate::progress::{Pace, Stage, say};
+use crate::techniques;
+use clap::error::{ContextKind, ContextValue};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -52,8 +56,12 @@ fn sub_command(what: What) -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u32).range(1..=10_000))
                 .default_value("5")
-                .help("Rounds: each measures every combination of a group once"),
+                .help("Rounds: each measures every combination of a group once; intervals take three"),
         )
+        .arg(Arg::new("fair").long("fair").action(ArgAction::SetTrue).help(
+            "All rows shade as many texels a thread: one, or those of --texels; rows that cannot are skipped. Without it each \
+             road shades as many as it does best with, up to 32 where threads share a list of lights and 1 where they do not",
+        ))
         .arg(
             Arg::new("output")
                 .short('o')
@@ -77,6 +85,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.reference = reference_args::asked(matches)?;
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
     let axes = sweep::axes(&sweeps)?;
+    axes.iter().try_for_each(|axis| require_known(&axis.key))?;
     let folder = matches.get_one::<PathBuf>("output");
     let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
     let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
@@ -87,6 +96,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         axes: &axes,
         baseline: matches.get_one::<String>("baseline").map(String::as_str),
         repeat: *matches.get_one::<u32>("repeat").expect("it has a default") as usize,
+        is_fair: matches.get_flag("fair"),
     };
     let found = run::run(&request, file.as_mut(), &mut Rounds { json, stage: None, pace: Pace::default() })?;
     if !found.rows.is_empty() {
@@ -103,6 +113,22 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         return Err(Error::interrupted("interrupted; finished rows are valid").note(way_out));
     }
     found.gates
+}
+
+/// Errors: no technique reads a setting of this name (exit code 2), with what `--KEY` is told to resemble.
+fn require_known(key: &str) -> Result<()> {
+    if key == TECHNIQUE || techniques::ALL.iter().any(|one| settings_of(*one).iter().any(|setting| setting.key == key))
+    {
+        return Ok(());
+    }
+    let error = Error::request(format!("--sweep {key}=: there is no setting --{key}"));
+    // The parser itself says what a flag resembles.
+    let refused = command().try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")]).err();
+    let similar = refused.as_ref().and_then(|refused| refused.get(ContextKind::SuggestedArg));
+    Err(match similar {
+        Some(ContextValue::String(similar)) => error.note(format!("a similar one exists: {similar}")),
+        _ => error.note("`quincunx bench frame --help` lists them"),
+    })
 }
 
 fn rows_file(folder: &PathBuf, matches: &ArgMatches) -> Result<RowsFile> {

@@ -1,6 +1,6 @@
 //! Lifetimes: from which pass to which a resource is needed, and how many bytes live in each pass.
 
-use super::Plan;
+use super::{Plan, Sharing};
 use crate::gpu::AccessSet;
 
 /// First and last pass of a transient resource, inclusive. A resource that is read back after the frame lives in the
@@ -49,11 +49,13 @@ impl Plan {
         touches.fold(AccessSet::UNTOUCHED, |known, touch| known.after(touch.access))
     }
 
-    /// Greatest sum of `bound_bytes` (one a resource, in order) over the passes, `kept_bytes` more in each.
-    pub fn peak(&self, bound_bytes: &[u64], kept_bytes: u64) -> Peak {
+    /// Greatest sum of `bound_bytes` (one a resource, in order) over the passes, `kept_bytes` more in each. What shares its
+    /// bytes counts while it lives; what has bytes of its own holds them in every pass.
+    pub fn peak(&self, bound_bytes: &[u64], kept_bytes: u64, sharing: &Sharing) -> Peak {
         let live = |pass: usize| {
             let lives = |resource: &usize| {
-                self.lifetime(*resource).is_none_or(|lifetime| lifetime.first <= pass && pass <= lifetime.last)
+                sharing.part(*resource).is_none()
+                    || self.lifetime(*resource).is_none_or(|lifetime| lifetime.first <= pass && pass <= lifetime.last)
             };
             kept_bytes + (0..self.resources.len()).filter(lives).map(|resource| bound_bytes[resource]).sum::<u64>()
         };
@@ -70,7 +72,9 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::Access;
+    use crate::gpu::{Access, known};
+    use crate::memory::alias::Mode;
+    use crate::plan::Requirements;
 
     fn plan() -> Plan {
         let mut plan = Plan::default();
@@ -99,8 +103,14 @@ mod tests {
     fn the_peak_falls_where_most_bytes_live() {
         let plan = plan();
         let bytes: Vec<u64> = plan.resources.iter().map(|planned| planned.bytes()).collect();
-        let peak = plan.peak(&bytes, 10);
-        assert_eq!((peak.bytes, peak.pass.as_str()), (10 + 100 + 2000 + 4000, "third"));
+        let caps = known::caps(known::DEFAULT).unwrap();
+        let rules = Requirements::Rules(caps.layout.as_ref().unwrap());
+        let peak = |mode| plan.peak(&bytes, 10, &Sharing::new(&plan, rules, 1, mode));
+        for mode in [Mode::Greedy, Mode::Optimal] {
+            assert_eq!(peak(mode), Peak { bytes: 10 + 100 + 2000 + 4000, pass: "third".to_owned() });
+        }
+        // Nobody gives bytes back: every pass has all of them.
+        assert_eq!(peak(Mode::Off), Peak { bytes: 10 + 100 + 1000 + 2000 + 4000, pass: "first".to_owned() });
     }
 
     #[test]

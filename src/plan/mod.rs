@@ -47,8 +47,6 @@ pub struct Planned {
     /// Row of the memory table.
     pub group: &'static str,
     pub shape: Shape,
-    /// Bytes of it that a frame may touch: all, or none of a list without entries.
-    pub touched_bytes: u64,
     /// Needed after the frame: the picture, and stages that the user asked for.
     pub read_back: bool,
 }
@@ -94,7 +92,6 @@ impl Plan {
             | vk::BufferUsageFlags::TRANSFER_DST
             | vk::BufferUsageFlags::TRANSFER_SRC;
         self.push(group, name, Shape::Buffer { bytes: bytes.max(16), flags, usage: Use::Device });
-        self.resources.last_mut().expect("just pushed").touched_bytes = bytes;
     }
 
     /// Shaders come to this buffer by its address. Nothing where the plan has none of the name.
@@ -114,9 +111,7 @@ impl Plan {
     pub fn push(&mut self, group: &'static str, name: impl Into<String>, shape: Shape) {
         let name = name.into();
         assert!(self.resources.iter().all(|planned| planned.name != name), "{name} is planned twice");
-        let mut planned = Planned { name, group, shape, touched_bytes: 0, read_back: false };
-        planned.touched_bytes = planned.bytes();
-        self.resources.push(planned);
+        self.resources.push(Planned { name, group, shape, read_back: false });
     }
 
     /// The next pass, with every transient resource that it touches, by full name; a resource that it touches in two

@@ -32,8 +32,8 @@ struct Row {
     shared: Option<(usize, u64)>,
     /// Who lies in some of the same bytes in other passes.
     shares_with: Vec<String>,
-    /// Bytes that passes touch: counted where a frame did, else all that they may touch.
-    touched_bytes: u64,
+    /// Bytes that a frame has touched; None where nobody counted.
+    touched_bytes: Option<u64>,
 }
 
 impl Row {
@@ -92,22 +92,22 @@ impl MemoryTable {
                     place,
                     shared: None,
                     shares_with: Vec::new(),
-                    touched_bytes: 0,
+                    touched_bytes: None,
                 }),
             }
         }
         Ok(Self {
             rows,
-            peak: frame.peak(&bound, kept_bytes),
+            peak: frame.peak(&bound, kept_bytes, &sharing),
             sharing,
             made: snapshot.map(|snapshot| (snapshot.memory_block_bytes, snapshot.blocks.clone())),
         })
     }
 
-    /// The same with what a frame has counted itself, by name.
+    /// The same with what a frame has counted that it touched, by name.
     pub fn touched_as(mut self, counted: &BTreeMap<String, u64>) -> Self {
         for row in &mut self.rows {
-            row.touched_bytes = counted.get(&row.name).copied().unwrap_or(row.touched_bytes);
+            row.touched_bytes = counted.get(&row.name).copied();
         }
         self
     }
@@ -120,33 +120,42 @@ impl MemoryTable {
         self.rows.iter().map(|row| row.bound_bytes).sum()
     }
 
-    fn touched_bytes(&self) -> u64 {
-        self.rows.iter().map(|row| row.touched_bytes).sum()
-    }
-
-    /// Sums by group.
-    fn groups(&self, bytes: impl Fn(&Row) -> u64) -> BTreeMap<&str, u64> {
+    /// Sums by group, of the resources that have `bytes`.
+    fn groups(&self, bytes: impl Fn(&Row) -> Option<u64>) -> BTreeMap<&str, u64> {
         let mut groups = BTreeMap::new();
         for row in &self.rows {
-            *groups.entry(row.group.as_str()).or_insert(0) += bytes(row);
+            if let Some(bytes) = bytes(row) {
+                *groups.entry(row.group.as_str()).or_insert(0) += bytes;
+            }
         }
         groups
     }
 
-    /// The report's `memory`.
-    pub fn json(&self) -> Value {
-        let mut document = json!({
+    /// The sums, as a benchmark's row has them.
+    pub fn sums(&self) -> Value {
+        let mut sums = json!({
             "planned_bytes": self.planned_bytes(),
             "allocated_bytes": self.allocated_bytes(),
             "aliased_bytes": self.sharing.aliased_bytes(),
-            "touched_bytes": self.touched_bytes(),
-            "arenas": self.sharing.arenas.iter().map(arena_json).collect::<Vec<_>>(),
             "peak_bytes": self.peak.bytes,
             "peak_pass": self.peak.pass,
-            "groups": self.groups(|row| row.bound_bytes),
-            "touched_groups": self.groups(|row| row.touched_bytes),
-            "resources": self.rows.iter().map(row_json).collect::<Vec<_>>(),
+            "groups": self.groups(|row| Some(row.bound_bytes)),
         });
+        // A sum is of those that were counted, and says how large they are: the others' share is not known.
+        let counted = self.rows.iter().filter_map(|row| Some([row.touched_bytes?, row.bytes]));
+        if let Some([touched, of]) = counted.reduce(|sum, row| [sum[0] + row[0], sum[1] + row[1]]) {
+            sums["touched_bytes"] = json!(touched);
+            sums["touched_of_bytes"] = json!(of);
+            sums["touched_groups"] = json!(self.groups(|row| row.touched_bytes));
+        }
+        sums
+    }
+
+    /// The report's `memory`.
+    pub fn json(&self) -> Value {
+        let mut document = self.sums();
+        document["arenas"] = self.sharing.arenas.iter().map(arena_json).collect();
+        document["resources"] = self.rows.iter().map(row_json).collect();
         if let Some((bytes, blocks)) = &self.made {
             document["memory_block_bytes"] = json!(bytes);
             document["memory_blocks"] = json!(blocks);
@@ -197,16 +206,15 @@ impl MemoryTable {
         for (memory_type, reason) in reasons {
             writeln!(text, "type {memory_type}: {reason}")?;
         }
-        for (group, bytes) in self.groups(|row| row.bound_bytes) {
+        for (group, bytes) in self.groups(|row| Some(row.bound_bytes)) {
             writeln!(text, "{group:<18} {}", Bytes(bytes))?;
         }
         writeln!(
             text,
-            "{} planned, {} allocated, {} of it saved by sharing, {} touched, peak {} in {}",
+            "{} planned, {} allocated, {} of it saved by sharing, peak {} in {}",
             Bytes(self.planned_bytes()),
             Bytes(self.allocated_bytes()),
             Bytes(self.sharing.aliased_bytes()),
-            Bytes(self.touched_bytes()),
             Bytes(self.peak.bytes),
             short(&self.peak.pass)
         )
@@ -259,7 +267,9 @@ fn row_json(row: &Row) -> Value {
             document["samples"] = json!(samples);
         }
     }
-    document["touched_bytes"] = json!(row.touched_bytes);
+    if let Some(bytes) = row.touched_bytes {
+        document["touched_bytes"] = json!(bytes);
+    }
     if let Some((arena, offset)) = row.shared {
         document["arena"] = json!({ "index": arena, "offset": offset, "shares_with": row.shares_with });
     }
@@ -302,6 +312,6 @@ fn row(plan: &Plan, sharing: &Sharing, index: usize, requirements: Requirements<
         place: None,
         shared: sharing.part(index).map(|(arena, part)| (arena, part.offset)),
         shares_with: sharing.shares_with(index).into_iter().map(|other| plan.resources[other].name.clone()).collect(),
-        touched_bytes: planned.touched_bytes,
+        touched_bytes: None,
     })
 }

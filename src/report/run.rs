@@ -57,12 +57,14 @@ pub fn median(sorted: &[f64]) -> f64 {
     if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
 }
 
-/// Every setting by its key, a number where it is one. `resolved`: what `auto` and percentages came to.
+/// A setting's text, a number where it is one.
+pub fn setting(text: &str) -> Value {
+    text.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number)
+}
+
+/// Every setting by its key. `resolved`: what `auto` and percentages came to.
 pub fn settings(values: &Values, resolved: &BTreeMap<&'static str, String>) -> Value {
-    let value = |key: &str, text: &str| {
-        let text = resolved.get(key).map_or(text, String::as_str);
-        text.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number)
-    };
+    let value = |key: &str, text: &str| setting(resolved.get(key).map_or(text, String::as_str));
     Value::Object(values.iter().map(|(key, text)| (key.to_owned(), value(key, text))).collect())
 }
 
@@ -328,13 +330,16 @@ impl Report {
         }
         let bytes = |key: &str| Bytes(document["memory"][key].as_u64().unwrap_or_default());
         line(format!(
-            "memory: {} planned, {} allocated, {} saved by sharing, {} touched, {} in memory blocks",
+            "memory: {} planned, {} allocated, {} saved by sharing, {} in memory blocks",
             bytes("planned_bytes"),
             bytes("allocated_bytes"),
             bytes("aliased_bytes"),
-            bytes("touched_bytes"),
             bytes("memory_block_bytes")
         ));
+        if document["memory"]["touched_bytes"].is_u64() {
+            let (touched, of) = (bytes("touched_bytes"), bytes("touched_of_bytes"));
+            line(format!("  touched: {touched} of the {of} of those resources that the frame counts"));
+        }
         if let Some(errors) = document.get("errors") {
             line(format!("errors against {}", string(&errors["reference"])));
             for name in Metrics::NAMES {

@@ -4,14 +4,17 @@
 //! when it is set, so that what `Values` holds is possible.
 
 mod optics;
+pub mod readers;
 mod shadow_maps;
 mod tables;
 mod tree;
 
 pub use optics::{
-    APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, earlier_s, exposure_s,
+    APERTURE, FOCUS, LENS_CONDITIONS, MEDIUM, MOTION_CONDITIONS, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO,
+    STEREO_EYES, earlier_s, exposure_s,
 };
-pub use shadow_maps::{MAPPED_DIRECT_SHADOW, SHADOW_MAPS};
+pub use readers::{Condition, Unread};
+pub use shadow_maps::{MAPPED_DIRECT_SHADOW, SHADOW_MAP_CONDITIONS, SHADOW_MAPS};
 pub use tables::{
     BRDF, COMMON, DEPTH_PREPASS, DIRECT_SHADOW, EMISSIVE, GEOMETRY, LIGHT_LISTS, MULTISAMPLE, NORMAL_THRESHOLD,
     SHADING, TEXELS, VPL_CLAMP, WORKGROUP,

@@ -1,6 +1,6 @@
 //! The rows of what lies between a surface and the film, which several techniques read.
 
-use super::{Kind, Part, Setting, Values};
+use super::{Condition, Kind, Part, Setting, Unread, Values};
 use crate::error::{Error, Result};
 
 /// How wide the lens is.
@@ -50,6 +50,18 @@ pub const STEREO_EYES: Setting = Setting {
            the stage stereo.right; or one eye's alone, as that one sees them",
 };
 
+/// What a pinhole and one eye leave unread.
+pub const LENS_CONDITIONS: &[Condition] = &[
+    Condition {
+        key: FOCUS.key,
+        unread: |values| match values.number(STEREO.key) > 0.0 {
+            true => None,
+            false => Unread::without(values, APERTURE.key, "through a pinhole all is sharp"),
+        },
+    },
+    Condition { key: STEREO_EYES.key, unread: |values| Unread::without(values, STEREO.key, "there is one eye") },
+];
+
 /// How long the film is exposed.
 pub const SHUTTER: Setting = Setting {
     key: "shutter",
@@ -84,6 +96,12 @@ pub const MOTION_INTERVAL: Setting = Setting {
     paper: "Kircher 2009, 2.1",
     help: "of --motion-vectors: the time of one frame; what moves begins at 0 s",
 };
+
+/// What a geometry pass without motion vectors leaves unread.
+pub const MOTION_CONDITIONS: &[Condition] = &[Condition {
+    key: MOTION_INTERVAL.key,
+    unread: |values| Unread::unless(values, MOTION_VECTORS.key, &["on"], "there are no motion vectors"),
+}];
 
 /// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads no
 /// such setting.

@@ -5,7 +5,7 @@
 //! 0.0088 and 0.027 without a slope's part, where surfaces shadow themselves; 0.032, 0.0083 and 0.0075 at 0.0001 %; at 0.1 % the
 //! RMSE of the fence is 0.103 instead of 0.061.
 
-use super::{Kind, Setting};
+use super::{Condition, Kind, Setting, Unread, Values};
 
 /// `DIRECT_SHADOW` with shadow maps among its choices.
 pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
@@ -81,4 +81,18 @@ pub const SHADOW_MAPS: &[Setting] = &[
         help: "what is drawn into a shadow map: the clusters of triangles that it may hold, or all (the plain way to the same \
                bits)",
     },
+];
+
+fn without_maps(values: &Values) -> Option<Unread> {
+    Unread::unless(values, MAPPED_DIRECT_SHADOW.key, &["map"], "there are no shadow maps")
+}
+
+/// `SHADOW_MAPS` are read where there are any.
+pub const SHADOW_MAP_CONDITIONS: &[Condition] = &[
+    Condition { key: "shadow-maps", unread: without_maps },
+    Condition { key: "shadow-map-size", unread: without_maps },
+    Condition { key: "shadow-filter", unread: without_maps },
+    Condition { key: "shadow-bias", unread: without_maps },
+    Condition { key: "shadow-slope-bias", unread: without_maps },
+    Condition { key: "shadow-casters", unread: without_maps },
 ];

@@ -22,7 +22,7 @@ use crate::plan::{Plan, Requirements, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::{Coverage, DrawList, GeometryChoice, Raster, SceneGpu, SceneStats};
 use crate::scene::Scene;
-use crate::settings::{Setting, Values};
+use crate::settings::{Condition, Setting, Values};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -76,6 +76,11 @@ pub trait Technique: Sync {
 
     /// Tables of the settings that it reads beside the common ones.
     fn settings(&self) -> &'static [&'static [Setting]];
+
+    /// When its settings are read, of those that not every value of others reads.
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[]
+    }
 
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
@@ -189,7 +194,7 @@ pub trait Frame {
     /// Errors: memory for reading them back (exit code 4).
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>>;
 
-    /// Bytes that the last frame touched of resources of which it does not touch all, by full name: as it counted them itself.
+    /// Bytes that the last frame touched, by full name: of the resources of which it counted them itself, and of no others.
     /// Names that the plan does not have are passed over.
     ///
     /// Errors: memory for reading the counts back (exit code 4).

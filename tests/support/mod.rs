@@ -1,5 +1,6 @@
 //! What several test files share.
 
+pub mod benched;
 pub mod boxes;
 pub mod counted;
 pub mod difference;

@@ -98,10 +98,10 @@ impl Counted {
         entries.into()
     }
 
-    /// How much of the buffers of one entry a sample was used, with lists.
-    pub fn entries(&self) -> Entries {
+    /// How much of the buffers of one entry a sample was used, with lists of `begins` shading pixels.
+    pub fn entries(&self, begins: u64) -> Entries {
         let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _, _] =
             self.0.map(u64::from);
-        Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples }
+        Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples, begins }
     }
 }

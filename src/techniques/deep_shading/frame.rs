@@ -211,7 +211,7 @@ impl Frame for DeepFrame {
             }
             // Without lists colours are cleared whole, and what the host inserts is copied whole.
             Shader::Apart(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
-            Shader::Apart(..) => Ok(self.counted(gpu)?.entries().bytes()),
+            Shader::Apart(..) => Ok(self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes()),
         }
     }
 

@@ -80,7 +80,7 @@ use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::{SHADOW_MAPS, Setting, Values};
+use crate::settings::{Condition, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use baseline::Shading;
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
@@ -127,6 +127,10 @@ impl Technique for DeepShading {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, SHADOW_MAPS]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[baseline::CONDITIONS, SHADOW_MAP_CONDITIONS, LENS_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

@@ -1,11 +1,13 @@
 //! Bytes that a frame touches of buffers that are as long as the worst case (Clarberg & Munkberg 2014, sections 3 and 6: "about
-//! 25 MB" of the deep shading buffer at 1.5 executions a pixel). What is cleared is touched whole and not listed here.
+//! 25 MB" of the deep shading buffer at 1.5 executions a pixel). Pointers to lists are cleared, so they are touched whole.
 
 use super::full;
-use super::plan::{ADDRESS_BYTES, ADDRESSES, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ROW_ID_BYTES};
+use super::plan::{
+    ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ROW_ID_BYTES,
+};
 use std::collections::BTreeMap;
 
-/// Entries that shaders counted.
+/// Entries that shaders counted, and those of all lists.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Entries {
     /// Written by insertion.
@@ -16,6 +18,8 @@ pub struct Entries {
     pub row_ids: u64,
     /// Of samples that see something.
     pub addresses: u64,
+    /// Of shading pixels.
+    pub begins: u64,
 }
 
 impl Entries {
@@ -23,6 +27,7 @@ impl Entries {
     pub fn bytes(&self) -> BTreeMap<String, u64> {
         let of = |name: &str, count: u64, entry_bytes: u64| (full(name), count * entry_bytes);
         BTreeMap::from([
+            of(BEGINS, self.begins, BEGIN_BYTES),
             of(NODES, self.nodes, NODE_BYTES),
             of(COLORS, self.colors, COLOR_BYTES),
             of(LINEAR, self.row_ids, ROW_ID_BYTES),
@@ -39,9 +44,8 @@ mod tests {
     #[test]
     fn what_the_paper_s_frame_touches_is_about_25_mib() {
         let executions = 1280 * 720 * 3 / 2;
-        let entries = Entries { nodes: executions, colors: executions, ..Entries::default() };
-        let bytes = entries.bytes();
-        let touched = bytes[&full(NODES)] + bytes[&full(COLORS)] + 1408 * 848 * 4;
+        let entries = Entries { nodes: executions, colors: executions, begins: 1408 * 848, ..Entries::default() };
+        let touched = entries.bytes().values().sum::<u64>();
         assert_eq!(touched, 26_894_336);
         assert_eq!(format!("{:.1}", touched as f64 / f64::from(1 << 20)), "25.6");
     }

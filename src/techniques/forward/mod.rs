@@ -38,7 +38,7 @@ use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{Coverage, DrawList, SceneGpu};
-use crate::settings::{LIGHT_LISTS, MULTISAMPLE, SHADOW_MAPS, Setting, Values};
+use crate::settings::{Condition, LIGHT_LISTS, MULTISAMPLE, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::units::Bytes;
 use glam::Vec2;
 use material::Material;
@@ -126,6 +126,10 @@ impl Technique for Forward {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, LIGHT_LISTS, SHADOW_MAPS, MULTISAMPLE]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[SHADOW_MAP_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

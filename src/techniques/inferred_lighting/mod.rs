@@ -37,7 +37,7 @@ use crate::lights::{LightSet, cull as light_masks};
 use crate::passes::{blend, direct, resolve};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::{MULTISAMPLE, Setting, Values};
+use crate::settings::{Condition, MOTION_CONDITIONS, MULTISAMPLE, Setting, Values};
 use choices::Choices;
 use encoding::Loss;
 use frame::InferredFrame;
@@ -70,6 +70,10 @@ impl Technique for InferredLighting {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, MULTISAMPLE]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[settings::CONDITIONS, MOTION_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

@@ -3,8 +3,8 @@
 use super::encoding::FIXED_LIMIT;
 use super::layer_names;
 use crate::settings::{
-    BRDF, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD, Setting,
-    TEXELS, WORKGROUP,
+    BRDF, Condition, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD,
+    Setting, TEXELS, Unread, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -202,5 +202,25 @@ pub const SETTINGS: &[Setting] = &[
         unit: "texels",
         paper: "Kircher 2009, 4",
         help: "of --alpha-filter cone, in texels of the light buffer; with --stipple 4x4 twice as much",
+    },
+];
+
+/// What its settings leave unread of each other.
+pub const CONDITIONS: &[Condition] = &[
+    Condition {
+        key: "light-roughness",
+        unread: |values| Unread::unless(values, "extras", &["off"], "each texel has its own roughness"),
+    },
+    Condition {
+        key: "stencil-least",
+        unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn alike"),
+    },
+    Condition {
+        key: "fixed-range",
+        unread: |values| Unread::unless(values, "packing", &["fixed"], "it packs without fixed point"),
+    },
+    Condition {
+        key: "cone-radius",
+        unread: |values| Unread::unless(values, "alpha-filter", &["cone"], "its weights have no radius"),
     },
 ];

@@ -50,6 +50,9 @@ pub struct Choices {
     pub direct_count: u32,
 }
 
+/// Workgroups that a list of texels is worth at least, where it has so many: the last one's threads may stand behind its end.
+const LEAST_WORKGROUPS: u64 = 4;
+
 /// Subsets that eight bits of stencil tell apart.
 const STENCIL_SUBSETS: u32 = 256;
 
@@ -228,10 +231,16 @@ impl Choices {
         [shadow, offset, ("HAS_JOINED", u32::from(self.joined_count() > 0))]
     }
 
-    /// Texels that a thread shades with one list of lights.
+    /// Texels that a thread shades with one reading of its list of lights; 1 where each pixel finds its own.
     pub fn list_texels(&self) -> u32 {
+        if matches!(self.road, Road::Branch | Road::Masked(_)) {
+            return 1;
+        }
         let joined = self.joined_count().div_ceil(self.direct_subset_count());
-        self.shading.texels.of_list(self.shading.direct.load(joined as usize))
+        let lanes = u64::from(self.shading.lane_count());
+        let room = self.mapping.sub_texel_count() / (lanes * LEAST_WORKGROUPS);
+        let room = room.checked_ilog2().map_or(1, |power| 1 << power);
+        self.shading.texels.of_list(self.shading.direct.load(joined as usize)).min(room)
     }
 
     /// Sub-buffers that share one subset of the punctual lights.

@@ -56,7 +56,7 @@ use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use choices::Choices;
 use filter::Filtered;
 use frame::{FrameLights, InterleavedFrame};
@@ -96,6 +96,10 @@ impl Technique for InterleavedDeferred {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, SHADING, LIGHT_LISTS]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[settings::CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

@@ -1,6 +1,6 @@
 //! The settings of interleaved deferred shading.
 
-use crate::settings::{EMISSIVE, Kind, NORMAL_THRESHOLD, Setting, VPL_CLAMP};
+use crate::settings::{Condition, EMISSIVE, Kind, NORMAL_THRESHOLD, Setting, Unread, VPL_CLAMP, Values};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -180,5 +180,69 @@ pub const SETTINGS: &[Setting] = &[
         unit: "m",
         paper: "Segovia 2006, 4.5",
         help: "a neighbour is across a discontinuity where it lies farther off the pixel's tangent plane",
+    },
+];
+
+/// Splits that copy into sub-buffers.
+const COPYING: &[&str] = &["one-pass", "two-pass", "tile", "layered", "fragment"];
+
+/// Every pixel that is shaded has all lights.
+fn sums_all(values: &Values) -> Option<Unread> {
+    Unread::with(values, "split", &["none", "subsample"], "every light is summed")
+}
+
+/// Nothing is interleaved that a filter would smooth.
+fn is_even(values: &Values) -> Option<Unread> {
+    sums_all(values).or_else(|| Unread::with(values, "pattern", &["1x1"], "nothing is interleaved"))
+}
+
+fn is_unfiltered(values: &Values) -> Option<Unread> {
+    is_even(values).or_else(|| Unread::unless(values, "filter", &["gauss", "gauss-fast"], "nothing is filtered"))
+}
+
+/// What its settings leave unread of each other.
+pub const CONDITIONS: &[Condition] = &[
+    Condition {
+        key: "pattern",
+        unread: |values| Unread::with(values, "split", &["none"], "every pixel has all lights"),
+    },
+    Condition { key: "storage", unread: |values| Unread::unless(values, "split", COPYING, "it copies nothing") },
+    Condition { key: "copy", unread: |values| Unread::unless(values, "split", COPYING, "it copies nothing") },
+    Condition {
+        key: "block",
+        unread: |values| {
+            Unread::unless(values, "split", &["two-pass", "tile", "fragment"], "it has no blocks").or_else(|| {
+                let draws = values.text("split") == "fragment";
+                let passes = || Unread::unless(values, "fragment-passes", &["2"], "one pass has no blocks");
+                if draws { passes() } else { None }
+            })
+        },
+    },
+    Condition {
+        key: "fragment-passes",
+        unread: |values| Unread::unless(values, "split", &["fragment"], "it has no fragment programs"),
+    },
+    Condition { key: "blend-lights", unread: is_even },
+    Condition { key: "brdf", unread: |values| Unread::with(values, "direct", &["none"], "no light is direct") },
+    Condition { key: "cull", unread: |values| Unread::with(values, "direct", &["none"], "no light is direct") },
+    Condition {
+        key: "direct-pattern",
+        unread: |values| {
+            Unread::unless(values, "direct", &["interleaved"], "no punctual light is in a subset")
+                .or_else(|| sums_all(values))
+        },
+    },
+    Condition { key: "filter", unread: is_even },
+    Condition { key: "kernel", unread: is_unfiltered },
+    Condition { key: "sigma", unread: is_unfiltered },
+    Condition { key: "discontinuity", unread: is_unfiltered },
+    Condition { key: "normal-threshold", unread: is_unfiltered },
+    Condition { key: "position-threshold", unread: is_unfiltered },
+    Condition {
+        key: "fuse",
+        unread: |values| {
+            is_even(values)
+                .or_else(|| Unread::unless(values, "filter", &["gauss"], "no pass walks rows and columns of buffers"))
+        },
     },
 ];

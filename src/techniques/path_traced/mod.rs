@@ -56,7 +56,7 @@ use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays, TexelLevels};
 use crate::scene::{AlphaMode, Light, Material};
-use crate::settings::{Setting, TREE, Values};
+use crate::settings::{Condition, LENS_CONDITIONS, Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
 use airlight::Air;
 use bytemuck::Zeroable;
@@ -90,6 +90,10 @@ impl Technique for PathTraced {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, TREE]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[settings::CONDITIONS, LENS_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

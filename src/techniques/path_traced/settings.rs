@@ -1,7 +1,8 @@
 //! The settings of path tracing.
 
 use crate::settings::{
-    APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, VPL_CLAMP, Values, WORKGROUP,
+    APERTURE, BRDF, Condition, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP,
+    Values, WORKGROUP,
 };
 
 /// Paths a pixel, at most: float sums of more lose what a path adds.
@@ -117,4 +118,16 @@ pub const SETTINGS: &[Setting] = &[
     VPL_CLAMP,
     BRDF,
     WORKGROUP,
+];
+
+/// What its settings leave unread of each other.
+pub const CONDITIONS: &[Condition] = &[
+    Condition {
+        key: "bounces",
+        unread: |values| Unread::unless(values, "transport", &["full"], "it says itself how often light is scattered"),
+    },
+    Condition {
+        key: "stack-entries",
+        unread: |values| Unread::unless(values, "stack", &["short"], "it has room for all that can wait"),
+    },
 ];

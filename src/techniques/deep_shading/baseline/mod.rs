@@ -28,7 +28,7 @@ use crate::gpu::{
 use crate::passes::{mesh, shadow_maps};
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{DrawList, SceneGpu};
-use crate::settings::Values;
+use crate::settings::{Condition, Unread, Values, readers};
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
 use std::collections::BTreeMap;
@@ -41,27 +41,75 @@ const COLORS: &str = "baseline.colors";
 const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
-/// Settings that not everything that is shaded reads: who does, and why others do not.
-const OF_SOME: [(&str, &[&str], &str); 19] = [
-    ("guard-band", OF_SPACE, NO_SPACE),
-    ("shading-scale", &["deep", "indirect-gbuffer", "texture-space"], "it shades no pixels of shading space"),
-    ("shading-warp", OF_SPACE, NO_SPACE),
-    ("warp-falloff", OF_SPACE, NO_SPACE),
-    ("lists", &["deep"], NO_LISTS),
-    ("list-access", OF_SPACE, "samples' colours are in images"),
-    ("duplicates", &["deep"], NO_LISTS),
-    ("compaction", &["deep"], NO_LISTS),
-    ("zmax", &["deep"], NO_LISTS),
-    ("address-buffer", &["deep"], NO_LISTS),
-    ("conservative", &["deep"], NO_LISTS),
-    ("shaded-triangles", &["deep"], NO_LISTS),
-    ("layer-from", OF_SPACE, "samples are drawn layer by layer"),
-    ("polygon-from", &["deep", "indirect-gbuffer", "ssaa", "texture-space"], "its triangles come from vertex shaders"),
-    ("sample-tests", OF_SPACE, "samples are drawn and coloured layer by layer, or as many at a time as an image has"),
-    ("pass-samples", &["msaa"], "samples are drawn one at a time"),
-    ("shading-cache", &["indirect-gbuffer"], "it has no cache"),
-    ("shading-textures", &["texture-space"], "it has no textures of its own"),
-    ("shading-texture-size", &["texture-space"], "it has no textures of its own"),
+/// Settings that not everything that is shaded reads.
+pub const CONDITIONS: &[Condition] = &[
+    Condition { key: "guard-band", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition {
+        key: "shading-scale",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                &["deep", "indirect-gbuffer", "texture-space"],
+                "it shades no pixels of shading space",
+            )
+        },
+    },
+    Condition { key: "shading-warp", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition { key: "warp-falloff", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition { key: "lists", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition {
+        key: "list-access",
+        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples' colours are in images"),
+    },
+    Condition { key: "duplicates", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "compaction", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "zmax", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "address-buffer", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "conservative", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "shaded-triangles", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition {
+        key: "layer-from",
+        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples are drawn layer by layer"),
+    },
+    Condition {
+        key: "polygon-from",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                &["deep", "indirect-gbuffer", "ssaa", "texture-space"],
+                "its triangles come from vertex shaders",
+            )
+        },
+    },
+    Condition {
+        key: "sample-tests",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                OF_SPACE,
+                "samples are drawn and coloured layer by layer, or as many at a time as an image has",
+            )
+        },
+    },
+    Condition {
+        key: "pass-samples",
+        unread: |values| Unread::unless(values, "shading", &["msaa"], "samples are drawn one at a time"),
+    },
+    Condition {
+        key: "shading-cache",
+        unread: |values| Unread::unless(values, "shading", &["indirect-gbuffer"], "it has no cache"),
+    },
+    Condition {
+        key: "shading-textures",
+        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
+    },
+    Condition {
+        key: "shading-texture-size",
+        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
+    },
 ];
 const OF_SPACE: &[&str] = &["deep", "indirect-gbuffer"];
 const NO_SPACE: &str = "it has no shading space";
@@ -96,14 +144,7 @@ impl Shading {
     /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
     pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
         let text = values.text("shading");
-        for (key, readers, why) in OF_SOME {
-            let default = SETTINGS.iter().find(|row| row.key == key).expect("it is a setting").default;
-            let value = values.text(key);
-            if value != default && !readers.contains(&text) {
-                return Err(Error::request(format!("--{key} {value} with --shading {text}: {why}"))
-                    .note(format!("--shading {} would; --{key} {default} goes with all", readers.join(" and "))));
-            }
-        }
+        readers::require_read(CONDITIONS, SETTINGS, values)?;
         Ok(match text {
             "deep" => Self::Deep,
             "indirect-gbuffer" => Self::IndirectGbuffer,

@@ -85,16 +85,11 @@ struct Listed {
     workgroup_count: u32,
 }
 
-/// Workgroups that a list is worth at least, where it has the texels: the last one's threads may stand behind its end.
-const LEAST_WORKGROUPS: u64 = 4;
-
 impl Listed {
     /// Over the texels of a sub-buffer.
     fn new(gpu: &Arc<Gpu>, choices: &Choices, shader: &Shader) -> Result<Self> {
         let (settings, count) = (&choices.shading, choices.mapping.sub_texel_count());
-        let lanes = u64::from(settings.lane_count());
-        let room = (count / (lanes * LEAST_WORKGROUPS)).checked_ilog2().map_or(1, |power| 1 << power);
-        let texels = choices.list_texels().min(room);
+        let (lanes, texels) = (u64::from(settings.lane_count()), choices.list_texels());
         let own = [("TEXELS", texels)];
         let constants = [&settings.workgroup_constants()[..], &choices.irradiance_constants(), &own].concat();
         let workgroup_count = count.div_ceil(lanes * u64::from(texels)) as u32;

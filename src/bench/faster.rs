@@ -1,0 +1,78 @@
+//! Which of two rows is the faster one, as far as their rounds tell. Rows may come from a file and say anything.
+
+use super::stats::{LEAST_PAIRS, Ratio, paired_ratio};
+use serde_json::Value;
+use std::cmp::Ordering;
+
+/// Milliseconds of each round, all positive.
+fn samples(row: &Value) -> Option<Vec<f64>> {
+    let times = if row["frame_ms"].is_object() { &row["frame_ms"] } else { &row["stage_ms"] };
+    let number = |value: &Value| value.as_f64().filter(|ms| ms.is_finite() && *ms > 0.0);
+    times["samples"].as_array()?.iter().map(number).collect()
+}
+
+/// How many times as long `a` takes as `b`, where both were measured in the same three rounds or more.
+pub fn paired(a: &Value, b: &Value) -> Option<Ratio> {
+    let group = a["group"].as_str()?;
+    let (long, short) = (samples(a)?, samples(b)?);
+    let is_pair = b["group"] == group && long.len() == short.len() && long.len() >= LEAST_PAIRS;
+    is_pair.then(|| paired_ratio(&long, &short))
+}
+
+/// `Less`: the interval lies below 1.
+pub fn told(ratio: &Ratio) -> Option<Ordering> {
+    let [low, high] = ratio.interval?;
+    Some(match (low, high) {
+        (_, high) if high < 1.0 => Ordering::Less,
+        (low, _) if low > 1.0 => Ordering::Greater,
+        _ => Ordering::Equal,
+    })
+}
+
+/// Whether `a` is told to be faster than `b`: by the interval of their ratio, or, of other rounds, where the intervals of
+/// their ratios to the one baseline have nothing in common.
+pub fn is_faster(a: &Value, b: &Value) -> bool {
+    if let Some(ratio) = paired(a, b) {
+        return told(&ratio) == Some(Ordering::Less);
+    }
+    let side = |row: &Value, index: usize| row["ratio"]["interval_95"][index].as_f64();
+    matches!((side(a, 1), side(b, 0)), (Some(high), Some(low)) if high < low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn only_what_was_measured_in_the_same_rounds_is_paired() {
+        let row = |group: &str, samples: &[f64]| json!({ "group": group, "stage_ms": { "samples": samples } });
+        // Both grow alike: to a baseline that does not, neither interval would be narrow.
+        let (slow, fast) = (row("g", &[1.1, 2.2, 4.6, 8.8]), row("g", &[1.0, 2.0, 4.0, 8.0]));
+        let ratio = paired(&slow, &fast).unwrap();
+        assert_eq!(told(&ratio), Some(Ordering::Greater));
+        assert!(is_faster(&fast, &slow) && !is_faster(&slow, &fast));
+        let noisy = row("g", &[2.0, 1.0, 8.0, 4.0]);
+        assert_eq!(told(&paired(&noisy, &fast).unwrap()), Some(Ordering::Equal));
+        assert!(!is_faster(&fast, &noisy) && !is_faster(&noisy, &fast));
+        for other in [
+            row("h", &[1.0, 2.0, 4.0, 8.0]),
+            row("g", &[1.0, 2.0, 4.0]),
+            row("g", &[1.0, 2.0, 4.0, -8.0]),
+            json!({ "stage_ms": { "samples": [1.0, 2.0, 4.0, 8.0] } }),
+            json!({ "group": "g", "stage_ms": 3 }),
+        ] {
+            assert!(paired(&slow, &other).is_none() && paired(&other, &slow).is_none(), "{other}");
+        }
+        let few = row("g", &[1.0, 2.0]);
+        assert!(paired(&few, &few).is_none(), "two rounds have no interval");
+    }
+
+    #[test]
+    fn rows_of_other_rounds_meet_at_the_baseline() {
+        let row = |low: f64, high: f64| json!({ "ratio": { "interval_95": [low, high] } });
+        assert!(is_faster(&row(0.5, 0.6), &row(0.7, 0.8)) && !is_faster(&row(0.7, 0.8), &row(0.5, 0.6)));
+        assert!(!is_faster(&row(0.5, 0.75), &row(0.7, 0.8)));
+        assert!(!is_faster(&json!({ "ratio": { "mean": 0.1 } }), &row(0.7, 0.8)));
+    }
+}

@@ -1,0 +1,159 @@
+//! Settings that not every choice of others reads: the table's rows say what a value may be, conditions when it matters.
+//!
+//! A render refuses a changed value that nothing reads, a benchmark measures what it leaves equal only once: both ask here.
+
+use super::{Setting, Values};
+use crate::error::{Error, Result};
+
+/// A setting that some values of other settings leave unread.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    pub key: &'static str,
+    /// None where something reads it. The values have every setting that this asks for.
+    pub unread: fn(&Values) -> Option<Unread>,
+}
+
+/// What leaves a setting unread, and what would read it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unread {
+    /// The value that does, as a flag.
+    with: String,
+    why: &'static str,
+    /// Flags that read it.
+    readers: String,
+}
+
+impl Unread {
+    /// None where `key` has one of the values `readers`; `why`: what the others lack, after the colon.
+    pub fn unless(values: &Values, key: &str, readers: &[&str], why: &'static str) -> Option<Self> {
+        let text = values.text(key);
+        let words = match readers {
+            [] => String::new(),
+            [one] => (*one).to_owned(),
+            [few @ .., last] => format!("{} or {last}", few.join(", ")),
+        };
+        (!readers.contains(&text)).then(|| Self {
+            with: format!("--{key} {text}"),
+            why,
+            readers: format!("--{key} {words}"),
+        })
+    }
+
+    /// Some where `key` has one of the values `others`.
+    pub fn with(values: &Values, key: &str, others: &[&str], why: &'static str) -> Option<Self> {
+        let text = values.text(key);
+        let readers = format!("any other --{key}");
+        others.contains(&text).then(|| Self { with: format!("--{key} {text}"), why, readers })
+    }
+
+    /// Some where `key`, a number of at least 0, is 0.
+    pub fn without(values: &Values, key: &str, why: &'static str) -> Option<Self> {
+        let readers = format!("--{key} above 0");
+        (values.number(key) <= 0.0).then(|| Self { with: format!("--{key} {}", values.text(key)), why, readers })
+    }
+
+    /// The refusal of `--KEY VALUE`, in one sentence.
+    pub fn sentence(&self, key: &str, value: &str) -> String {
+        let Self { with, why, readers } = self;
+        format!("--{key} {value} with {with}: {why}; {readers} would read it")
+    }
+}
+
+/// Why nothing reads `key`; None where something does.
+pub fn unread<'a>(conditions: impl IntoIterator<Item = &'a Condition>, values: &Values, key: &str) -> Option<Unread> {
+    conditions.into_iter().filter(|condition| condition.key == key).find_map(|condition| (condition.unread)(values))
+}
+
+/// Errors: the value of a setting is not its default, and nothing reads it (exit code 2).
+pub fn require_read<'a>(
+    conditions: impl IntoIterator<Item = &'a Condition> + Clone,
+    settings: &[Setting],
+    values: &Values,
+) -> Result<()> {
+    for setting in settings {
+        let (key, text) = (setting.key, values.text(setting.key));
+        if text != setting.default
+            && let Some(unread) = unread(conditions.clone(), values, key)
+        {
+            return Err(Error::request(unread.sentence(key, text))
+                .note(format!("--{key} {} is the default and goes with all", setting.default)));
+        }
+    }
+    Ok(())
+}
+
+/// `values` with every setting that nothing reads at its default: two requests that come to the same are equal.
+pub fn without_unread<'a>(
+    conditions: impl IntoIterator<Item = &'a Condition> + Clone,
+    settings: &[Setting],
+    values: &Values,
+) -> Values {
+    let mut read = values.clone();
+    for setting in settings {
+        if unread(conditions.clone(), values, setting.key).is_some() {
+            read.set(setting, setting.default).expect("a default is possible");
+        }
+    }
+    read
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Kind;
+
+    const ROAD: Setting = Setting {
+        key: "road",
+        symbol: "",
+        kind: Kind::Choice(&["short", "long", "none"]),
+        default: "short",
+        unit: "",
+        paper: "",
+        help: "",
+    };
+    const WIDTH: Setting = Setting { key: "width", kind: Kind::Integer { min: 0, max: 9 }, default: "3", ..ROAD };
+    const SIGNS: Setting = Setting { key: "signs", kind: Kind::Choice(&["off", "on"]), default: "off", ..ROAD };
+    const ALL: [Setting; 3] = [ROAD, WIDTH, SIGNS];
+    const CONDITIONS: &[Condition] = &[
+        Condition { key: "width", unread: |values| Unread::unless(values, "road", &["long"], "it is a point") },
+        Condition { key: "signs", unread: |values| Unread::with(values, "road", &["none"], "there is no road") },
+        Condition { key: "signs", unread: |values| Unread::without(values, "width", "it has no room") },
+    ];
+
+    fn values(changes: &[(&Setting, &str)]) -> Values {
+        let mut values = Values::defaults(&ALL);
+        changes.iter().for_each(|(setting, text)| values.set(setting, text).unwrap());
+        values
+    }
+
+    #[test]
+    fn a_changed_value_that_nothing_reads_is_refused_with_what_would_read_it() {
+        let refused = |changes: &[(&Setting, &str)]| require_read(CONDITIONS, &ALL, &values(changes)).err();
+        for fine in
+            [&[][..], &[(&ROAD, "none")], &[(&ROAD, "long"), (&WIDTH, "5")], &[(&SIGNS, "on")], &[(&WIDTH, "3")]]
+        {
+            assert!(refused(fine).is_none(), "{fine:?}");
+        }
+        for (changes, sentence) in [
+            (&[(&WIDTH, "5")][..], "--width 5 with --road short: it is a point; --road long would read it"),
+            (
+                &[(&ROAD, "none"), (&SIGNS, "on")],
+                "--signs on with --road none: there is no road; any other --road would read it",
+            ),
+            (
+                &[(&ROAD, "long"), (&WIDTH, "0"), (&SIGNS, "on")],
+                "--signs on with --width 0: it has no room; --width above 0 would read it",
+            ),
+        ] {
+            let error = refused(changes).unwrap();
+            assert_eq!((error.exit_code(), error.message()), (2, sentence));
+        }
+    }
+
+    #[test]
+    fn requests_that_come_to_the_same_are_equal() {
+        let read = |changes: &[(&Setting, &str)]| without_unread(CONDITIONS, &ALL, &values(changes));
+        assert_eq!(read(&[(&WIDTH, "5")]), values(&[]));
+        assert_eq!(read(&[(&ROAD, "long"), (&WIDTH, "5")]), values(&[(&ROAD, "long"), (&WIDTH, "5")]));
+    }
+}
