@@ -1,6 +1,7 @@
 //! The view of a frame: camera and extent, and the block of numbers that every shader may read (glsl/frame.glsl).
 
 use crate::error::{Error, Result};
+use crate::framing;
 use crate::gpu::shader::structs::FrameBlock;
 use crate::scene::{Bounds, Camera, Projection, Scene};
 use crate::units::Extent;
@@ -12,31 +13,33 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 pub struct View {
     pub extent: Extent,
     pub camera: Camera,
-    /// The scene had no camera: this one frames its bounds.
+    /// None of the scene's: this one frames what there is (`framing`).
     pub made_up: bool,
 }
 
 impl View {
-    /// The camera that `selector` (an index or a name) names; where the scene has none, one that frames its bounds along
-    /// -z with 45 degrees and a margin of 5 %.
+    /// The camera that `selector` (an index or a name) names; where the scene has none, and where it is `framing` and none
+    /// is called so, one that frames the scene (`framing`).
     ///
     /// Errors: no such camera (exit code 2).
     pub fn new(scene: &Scene, selector: &str, extent: Extent) -> Result<Self> {
-        if scene.cameras.is_empty() {
-            if selector != "0" {
-                return Err(Error::request(format!("--camera {selector}: {} has no camera", scene.name))
-                    .note("without --camera one is made that frames the scene"));
-            }
-            return Ok(Self { extent, camera: framing(&scene.lasting_bounds(), extent), made_up: true });
-        }
         let by_name = scene.cameras.iter().position(|camera| camera.name == selector);
+        let is_default = scene.cameras.is_empty() && selector == "0";
+        if is_default || by_name.is_none() && selector == framing::NAME {
+            let camera = framing::camera(&scene.lasting_bounds(), &scene.lasting_facing(), extent);
+            return Ok(Self { extent, camera, made_up: true });
+        }
+        if scene.cameras.is_empty() {
+            return Err(Error::request(format!("--camera {selector}: {} has no camera", scene.name))
+                .note("without --camera one is made that frames the scene"));
+        }
         let index = by_name.or_else(|| selector.parse().ok()).filter(|index| *index < scene.cameras.len());
         match index {
             Some(index) => Ok(Self { extent, camera: scene.cameras[index].clone(), made_up: false }),
             None => {
                 let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).take(12).collect();
                 Err(Error::request(format!("--camera {selector}: {} has no such camera", scene.name)).note(format!(
-                    "it has {}: {}",
+                    "`framing` makes one that frames the scene; it has {}: {}",
                     scene.cameras.len(),
                     names.join(", ")
                 )))
@@ -177,25 +180,6 @@ impl View {
     }
 }
 
-/// A camera that sees all of `bounds`.
-fn framing(bounds: &Bounds, extent: Extent) -> Camera {
-    const Y_FOV: f32 = 45.0 * std::f32::consts::PI / 180.0;
-    const MARGIN: f32 = 1.05;
-    let (center, half) =
-        if bounds.is_empty() { (Vec3::ZERO, Vec3::ONE) } else { (bounds.center(), (bounds.max - bounds.min) * 0.5) };
-    let tangent = (0.5 * Y_FOV).tan();
-    let aspect = extent.width as f32 / extent.height as f32;
-    let away = (half.y / tangent).max(half.x / (tangent * aspect)) * MARGIN;
-    let radius = half.length().max(1e-6);
-    let distance = half.z + away.max(1e-3 * radius);
-    let z_near = (distance - half.z) * 0.5;
-    Camera {
-        name: "framing".to_owned(),
-        world_from_view: Mat4::from_translation(center + Vec3::new(0.0, 0.0, distance)),
-        projection: Projection::Perspective { y_fov: Y_FOV, aspect: None, z_near, z_far: None },
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -238,31 +222,19 @@ mod tests {
     }
 
     #[test]
-    fn a_made_up_camera_sees_every_corner_of_the_bounds() {
-        let bounds = Bounds { min: Vec3::new(-3.0, 1.0, -7.0), max: Vec3::new(5.0, 2.0, 1.0) };
-        for extent in [Extent::new(640, 360), Extent::new(100, 300)] {
-            let clip = View { extent, camera: framing(&bounds, extent), made_up: true }.clip_from_world();
-            for corner in 0..8u32 {
-                let pick = |bit: u32, low: f32, high: f32| if corner & bit == 0 { low } else { high };
-                let point = Vec3::new(
-                    pick(1, bounds.min.x, bounds.max.x),
-                    pick(2, bounds.min.y, bounds.max.y),
-                    pick(4, bounds.min.z, bounds.max.z),
-                );
-                let seen = clip.project_point3(point);
-                assert!(seen.x.abs() <= 1.0 && seen.y.abs() <= 1.0 && (0.0..=1.0).contains(&seen.z), "{seen}");
-            }
-        }
-    }
-
-    #[test]
     fn a_camera_that_is_not_there_is_refused_with_those_that_are() {
         let mut scene = Scene { name: "room".to_owned(), ..Scene::default() };
         assert!(View::new(&scene, "0", Extent::new(8, 8)).unwrap().made_up);
         assert_eq!(View::new(&scene, "1", Extent::new(8, 8)).unwrap_err().exit_code(), 2);
-        scene.cameras.push(framing(&Bounds::EMPTY, Extent::new(8, 8)));
-        assert!(View::new(&scene, "framing", Extent::new(8, 8)).is_ok());
+        let projection = Projection::Orthographic { x_mag: 1.0, y_mag: 1.0, z_near: 0.0, z_far: 1.0 };
+        let own = |name: &str| Camera { name: name.to_owned(), world_from_view: Mat4::IDENTITY, projection };
+        scene.cameras.push(own("window"));
+        assert!(!View::new(&scene, "window", Extent::new(8, 8)).unwrap().made_up);
         let error = View::new(&scene, "door", Extent::new(8, 8)).unwrap_err();
-        assert!(error.to_string().contains("it has 1: framing"), "{error}");
+        assert!(error.to_string().contains("it has 1: window"), "{error}");
+        // One that frames the scene is there for who asks, unless the file has one of this name.
+        assert!(View::new(&scene, "framing", Extent::new(8, 8)).unwrap().made_up);
+        scene.cameras.push(own("framing"));
+        assert!(!View::new(&scene, "framing", Extent::new(8, 8)).unwrap().made_up);
     }
 }

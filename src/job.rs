@@ -12,9 +12,10 @@ use crate::memory::ledger::Snapshot;
 use crate::reference::Asked;
 use crate::report;
 use crate::report::image_file::{Aov, ExrPrecision, WriteOptions, write};
+use crate::report::notes;
 use crate::report::picture::Picture;
 use crate::report::run::Report;
-use crate::report::tonemap::ToneMap;
+use crate::report::tonemap::{ToneMap, exposure_for};
 use crate::report::visible::visible;
 use crate::report::whole_file::write_whole;
 use crate::resident::SceneStats;
@@ -22,7 +23,8 @@ use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::{COMMON, Setting, Values, earlier_s, exposure_s, readers};
 use crate::techniques::Technique;
-use serde_json::Value;
+use crate::units::Extent;
+use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -58,6 +60,10 @@ pub struct Outcome {
     pub report: Report,
     pub picture: Picture,
     pub path: PathBuf,
+    /// What `--exposure auto` came to for this picture, stops; None where it is set, or nothing shines.
+    pub auto_exposure_ev: Option<f64>,
+    /// What a person should know of the picture.
+    pub notes: Vec<String>,
     /// Ctrl-C ended it: samples a pixel that it has, and that it was to have.
     pub ended_after: Option<(u32, u32)>,
     /// Whether the gates of `Job::reference` hold; a caller prints first and fails then.
@@ -163,7 +169,7 @@ impl Job {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
         let recording = Recording { submits, has_statistics: self.statistics };
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
-        let settings = settings(session, &renderer, values);
+        let mut settings = settings(session, &renderer, values);
         if let Some(earlier) = &self.earlier {
             earlier.begin(&mut renderer, &settings)?;
         }
@@ -181,8 +187,21 @@ impl Job {
         let picture = renderer.picture()?;
         let sums = renderer.sums()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let mut report = self.report(session, &renderer, settings, &memory, &times, &picture, &aovs, path)?;
-        self.write(path, &picture, &aovs, sums.as_deref(), &report)?;
+        let asked_ev = values.number_or_auto("exposure");
+        let auto_exposure_ev = if asked_ev.is_none() { exposure_for(&picture) } else { None };
+        let exposure_ev = asked_ev.or(auto_exposure_ev).unwrap_or_default();
+        if asked_ev.is_none() {
+            settings["exposure"] = json!(exposure_ev);
+        }
+        let mut report = self.report(session, &renderer, settings, &memory, &times, &aovs, picture.extent)?;
+        report.image(&picture, path, (!is_exr(path)).then_some(exposure_ev))?;
+        let has_rig = renderer.lights.has_rig;
+        let seen = notes::of_nothing_seen(&picture, exposure_ev, &session.scene, &renderer.view, has_rig);
+        let notes: Vec<String> = seen.into_iter().collect();
+        report.notes(&notes);
+        // Stages are not light: what was made for the picture's is none of theirs.
+        let stages_ev = asked_ev.unwrap_or_default();
+        self.write(path, (&picture, exposure_ev), (&aovs, stages_ev), sums.as_deref(), &report)?;
         // A reference that is made needs the memory.
         drop(renderer);
         let mut gates = Ok(());
@@ -191,7 +210,7 @@ impl Job {
             report.errors(judged.errors);
             gates = judged.gates.map_err(|error| error.within(path.display()));
         }
-        Ok(Outcome { report, picture, path: path.to_owned(), ended_after, gates })
+        Ok(Outcome { report, picture, path: path.to_owned(), auto_exposure_ev, notes, ended_after, gates })
     }
 
     /// Where the picture of `scene` goes.
@@ -299,15 +318,13 @@ impl Job {
         settings: Value,
         memory: &Snapshot,
         times: &[FrameTime],
-        picture: &Picture,
         aovs: &[Aov],
-        path: &Path,
+        extent: Extent,
     ) -> Result<Report> {
         let mut report = Report::new(self.technique, &self.command, &session.gpu.caps.identity);
         report.scene(session, renderer);
         report.settings(settings);
-        report.image(picture, path)?;
-        report.aovs(aovs, picture.extent);
+        report.aovs(aovs, extent);
         report.times(renderer, times, self.profile);
         let table = session.memory_table(renderer, Some(memory))?;
         report.memory(&table.touched_as(&renderer.touched_bytes()?));
@@ -315,18 +332,19 @@ impl Job {
         Ok(report)
     }
 
-    /// `sums`: kept in an EXR of 32-bit floats, so that `--continue` can go on with it.
+    /// Picture and stages, both with the exposure that a PNG of them has, stops. `sums`: kept in an EXR of 32-bit floats, so
+    /// that `--continue` can go on with it.
     fn write(
         &self,
         path: &Path,
-        picture: &Picture,
-        aovs: &[Aov],
+        (picture, exposure_ev): (&Picture, f64),
+        (aovs, stages_ev): (&[Aov], f64),
         sums: Option<&[[f32; 4]]>,
         report: &Report,
     ) -> Result<()> {
-        let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+        let is_exr = is_exr(path);
         let mut options = WriteOptions {
-            exposure_ev: self.values.number("exposure"),
+            exposure_ev,
             tone_map: ToneMap::parse(self.values.text("tonemap"))?,
             exr_precision: if self.values.text("exr") == "half" { ExrPrecision::Half } else { ExrPrecision::Float },
             aovs: &[],
@@ -344,11 +362,16 @@ impl Job {
             // A PNG has no layers: each stage becomes a picture beside it.
             for aov in aovs {
                 let file = path.with_extension(format!("{}.png", aov.name));
-                write(&file, &visible(aov, picture.extent), &WriteOptions { aovs: &[], ..options.clone() })?;
+                let options = WriteOptions { aovs: &[], exposure_ev: stages_ev, ..options.clone() };
+                write(&file, &visible(aov, picture.extent), &options)?;
             }
         }
         Ok(())
     }
+}
+
+fn is_exr(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"))
 }
 
 /// `model` at the time of `values`, or while their shutter is open, with the moment before where motion vectors are asked for.

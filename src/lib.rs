@@ -47,6 +47,7 @@ pub mod cli;
 pub mod earlier;
 pub mod error;
 pub mod frame;
+pub mod framing;
 pub mod gpu;
 pub mod interrupt;
 pub mod job;

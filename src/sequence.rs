@@ -69,13 +69,16 @@ impl Frames {
         path.with_extension(format!("{frame:0digits$}.{extension}"))
     }
 
-    /// The settings of a frame: those of `job` at the frame's time.
+    /// The settings of a frame: those of `job` at the frame's time, at this exposure where it is known.
     ///
     /// Errors: the time is later than `--time` can be (exit code 2).
-    fn values(&self, job: &Job, frame: u32) -> Result<Values> {
+    fn values(&self, job: &Job, frame: u32, exposure_ev: Option<f64>) -> Result<Values> {
         let time_s = job.values.number("time") + f64::from(frame) / self.fps;
         let mut at = job.at(&job.values);
         at.set("time", &time_s.to_string()).map_err(|error| error.within(format!("frame {frame}")))?;
+        if let Some(exposure_ev) = exposure_ev {
+            at.set("exposure", &exposure_ev.to_string())?;
+        }
         Ok(at.values)
     }
 }
@@ -88,16 +91,18 @@ impl Job {
     pub fn run_sequence(&self, frames: &Frames, finished: &mut dyn FnMut(u32, &Outcome)) -> Result<Sequence> {
         self.check()?;
         self.reference.as_ref().map_or(Ok(()), Asked::check_sequence)?;
-        frames.values(self, frames.last)?;
+        frames.values(self, frames.last, None)?;
         let model = self.open_model()?;
         let mut session: Option<Session> = None;
+        // What `auto` comes to for the first frame that is not black holds for all: pictures of their own exposure flicker.
+        let mut exposure_ev: Option<f64> = None;
         let mut sequence = Sequence { reports: Vec::new(), is_interrupted: false, gates: Ok(()) };
         for frame in frames.first..=frames.last {
             if interrupt::check().is_err() {
                 sequence.is_interrupted = true;
                 break;
             }
-            let values = frames.values(self, frame)?;
+            let values = frames.values(self, frame, exposure_ev)?;
             let scene = scene_of(&model, &values)?;
             let path = frames.path_of(&self.output_path(&scene), frame);
             let shown = match session.take() {
@@ -111,6 +116,7 @@ impl Job {
             session = Some(shown);
             match made {
                 Ok(mut outcome) => {
+                    exposure_ev = exposure_ev.or(outcome.auto_exposure_ev);
                     outcome.report.frame(frame, values.number("time"));
                     finished(frame, &outcome);
                     sequence.gates = sequence.gates.and(outcome.gates);

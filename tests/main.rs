@@ -51,6 +51,7 @@ mod ray_query;
 mod rays;
 mod reference;
 mod scene_verbs;
+mod seen;
 mod sequence;
 mod shadow_maps;
 mod shadow_volumes;

@@ -96,6 +96,7 @@ fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> 
     let sequence = job.run_sequence(frames, &mut |frame, outcome| {
         done += 1;
         say(format!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display()));
+        outcome.notes.iter().for_each(|note| say(format!("frame {frame}: note: {note}")));
     })?;
     if json {
         super::print(&format!("{:#}\n", sequence.json()))?;

@@ -1,6 +1,7 @@
 //! Which lights there are, and which reach what: the scene's own, scattered ones, the default rig, virtual ones.
 
 pub mod cull;
+pub mod emission;
 pub mod emitters;
 pub mod object_lists;
 pub mod pieces;
@@ -18,6 +19,17 @@ use glam::Vec3;
 const RIG_KEY_LUX: f32 = 3.0;
 /// The default rig's ambient radiance.
 const RIG_AMBIENT: f32 = 0.3;
+/// Radiance of white diffuse surfaces under the rig, on average over a closed convex body: the key light falls on its
+/// projection, a quarter of its surface (Cauchy's formula); ambient light on all of it.
+const RIG_RADIANCE: f64 = (RIG_KEY_LUX as f64 / 4.0) / std::f64::consts::PI + RIG_AMBIENT as f64;
+/// What is as good as black: this part of what the rig gives, code 46 of 255 at exposure 0.
+const FAINT_RADIANCE: f64 = 0.05 * RIG_RADIANCE;
+/// Emissive surfaces are the scene's light where this part of its area is not as good as black by them
+/// (`emission::lit_part`). A half, because nothing known lies near it.
+///
+/// The part is 0.000 of WaterBottle, 0.011 of DamagedHelmet and 0.108 of MultiUVTest among Khronos' samples, 0.15 of a map whose
+/// lamps are punctual lights left out, and 1 of `cornell` and `power` by their panels alone.
+const LEAST_LIT_PART: f64 = 0.5;
 /// Irradiance that all scattered lights together give the scene's box on average, in lux: white diffuse surfaces then
 /// have radiance 1.
 const SCATTERED_LUX: f32 = std::f32::consts::PI;
@@ -28,8 +40,10 @@ pub struct LightSet {
     pub lights: Vec<Light>,
     /// Radiance.
     pub ambient: Vec3,
-    /// The scene had no light of its own, and got the rig; or `--rig always`.
+    /// The scene had no light of its own, or a faint glow, and got the rig; or `--rig always`.
     pub has_rig: bool,
+    /// Where emissive surfaces did not keep the rig away: the part of the scene that they light (`emission::lit_part`).
+    pub faint_part: Option<f64>,
     /// Nothing but emissive surfaces lights the scene.
     pub is_emissive_alone: bool,
     /// The scene, or `--lights`, has punctual lights that are not the rig's.
@@ -41,15 +55,31 @@ impl LightSet {
     ///
     /// Errors: `--lights` or `--ambient` cannot be read (exit code 2).
     pub fn new(scene: &Scene, view: &View, values: &Values) -> Result<Self> {
+        Self::collect(scene, view, values, None)
+    }
+
+    /// The same of `scene` when the shutter closes: under the rig as when it opened, which is here.
+    ///
+    /// Errors: as `new`.
+    pub fn closing(&self, scene: &Scene, view: &View, values: &Values) -> Result<Self> {
+        Self::collect(scene, view, values, Some(self))
+    }
+
+    fn collect(scene: &Scene, view: &View, values: &Values, opening: Option<&Self>) -> Result<Self> {
         let sun = values.is_on("sun");
         let kept = |light: &&Light| sun || light.kind != LightKind::Directional;
         let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
         let emissive = scene.drawn_materials().any(Material::is_emissive);
-        let has_rig = match values.text("rig") {
-            "default" => !has_punctual && !emissive,
-            rig => rig == "always",
+        let (has_rig, faint_part) = match (opening, values.text("rig")) {
+            (Some(opening), _) => (opening.has_rig, opening.faint_part),
+            (None, "default") if has_punctual => (false, None),
+            (None, "default") if emissive => {
+                let part = emission::lit_part(scene, FAINT_RADIANCE);
+                (part < LEAST_LIT_PART, Some(part).filter(|part| *part < LEAST_LIT_PART))
+            }
+            (None, rig) => (rig != "none", None),
         };
         if has_rig {
             lights.push(rig_key(view));
@@ -62,7 +92,7 @@ impl LightSet {
             })?,
         };
         let is_emissive_alone = emissive && lights.is_empty() && ambient == Vec3::ZERO;
-        Ok(Self { lights, ambient, has_rig, is_emissive_alone, has_punctual })
+        Ok(Self { lights, ambient, has_rig, faint_part, is_emissive_alone, has_punctual })
     }
 
     /// Directional lights.
@@ -153,6 +183,11 @@ mod tests {
         assert_eq!(lit(&dark, &[("rig", "none")]), (0, 0.0, false, false));
         assert_eq!(lit(&shining, &[]), (0, 0.0, false, true));
         assert_eq!(lit(&shining, &[("rig", "always")]), (1, RIG_AMBIENT, true, false));
+        let mut faint = shining.clone();
+        faint.materials.iter_mut().for_each(|material| material.emissive *= 0.01);
+        assert_eq!(lit(&faint, &[]), (1, RIG_AMBIENT, true, false));
+        assert_eq!(lit(&faint, &[("rig", "none")]), (0, 0.0, false, true));
+        assert_eq!(lit(&faint, &[("lights", "3")]), (3, 0.0, false, false));
         assert_eq!(lit(&shining, &[("ambient", "0.1")]), (0, 0.1, false, false));
         assert_eq!(lit(&shining, &[("lights", "3"), ("rig", "always")]).0, 4);
         assert_eq!(lit(&shining, &[("lights", "3")]), (3, 0.0, false, false));

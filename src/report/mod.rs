@@ -2,6 +2,7 @@
 
 pub mod image_file;
 pub mod memory;
+pub mod notes;
 pub mod picture;
 pub mod run;
 pub mod tonemap;

@@ -112,7 +112,14 @@ impl Report {
             entry["camera"] = json!("framing");
         }
         let mut warnings = scene.warnings.clone();
-        // A small glow counts as light: who sees a black picture should know why.
+        if let Some(part) = renderer.lights.faint_part {
+            warnings.push(format!(
+                "its emissive surfaces let {:.0} % of it be seen, less than half: the default rig is added; --rig none leaves \
+                 it to them",
+                100.0 * part
+            ));
+        }
+        // Some glow counts as light: who sees a dark picture should know why.
         if renderer.lights.is_emissive_alone {
             warnings.push("only its emissive surfaces light it; --rig always adds the default rig".to_owned());
         }
@@ -127,17 +134,27 @@ impl Report {
         self.document.insert("settings".into(), settings);
     }
 
+    /// `exposure_ev`: of a PNG, at how many stops it was written.
+    ///
     /// Errors: the picture holds NaN or infinity (exit code 1).
-    pub fn image(&mut self, picture: &Picture, path: &Path) -> Result<()> {
+    pub fn image(&mut self, picture: &Picture, path: &Path, exposure_ev: Option<f64>) -> Result<()> {
         let hash = picture.hash()?;
         let Extent { width, height } = picture.extent;
         let path = path.display().to_string();
         let mean = picture.mean();
-        self.document.insert(
-            "image".into(),
-            json!({ "width": width, "height": height, "mean": mean, "hash": hash, "path": path }),
-        );
+        let mut entry = json!({ "width": width, "height": height, "mean": mean, "hash": hash, "path": path });
+        if let Some(exposure_ev) = exposure_ev {
+            entry["exposure_ev"] = json!(exposure_ev);
+        }
+        self.document.insert("image".into(), entry);
         Ok(())
+    }
+
+    /// What a person should know of the picture.
+    pub fn notes(&mut self, notes: &[String]) {
+        if !notes.is_empty() {
+            self.document.insert("notes".into(), json!(notes));
+        }
     }
 
     pub fn aovs(&mut self, aovs: &[Aov], extent: Extent) {
@@ -348,6 +365,12 @@ impl Report {
                 let is_cut = errors["cut"].as_array().is_some_and(|cut| !cut.is_empty());
                 line(metrics::line(name, value, errors["threshold"].as_f64().unwrap_or_default(), is_cut));
             }
+        }
+        for note in document.get("notes").and_then(Value::as_array).into_iter().flatten() {
+            line(format!("note: {}", string(note)));
+        }
+        if let Some(exposure_ev) = document["image"]["exposure_ev"].as_f64().filter(|exposure_ev| *exposure_ev != 0.0) {
+            line(format!("exposure {exposure_ev} EV"));
         }
         line(format!("image hash {}", string(&document["image"]["hash"])));
         line(format!("wrote {}", string(&document["image"]["path"])));

@@ -6,6 +6,10 @@
 use crate::error::{Error, Result};
 use crate::report::picture::Picture;
 use crate::units::Extent;
+use std::ops::RangeInclusive;
+
+/// What `--exposure` may be, stops.
+pub const EXPOSURES_EV: RangeInclusive<f64> = -32.0..=32.0;
 
 /// How radiance above what a screen can show is brought down to 0 to 1. Input and output are linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,6 +58,34 @@ pub const REC709_WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// The sum of the channels, each times its weight.
 pub fn weighted(color: [f64; 3], weights: [f64; 3]) -> f64 {
     color[0] * weights[0] + color[1] * weights[1] + color[2] * weights[2]
+}
+
+/// What the log average of a picture's luminance is brought to: a middle grey (Reinhard et al. 2002, "Photographic Tone
+/// Reproduction for Digital Images", section 3.1).
+const KEY: f64 = 0.18;
+/// Pixels darker than this part of the brightest one do not count: noise of a path tracer, or one ray of a million.
+const DARKEST: f64 = 1e-6;
+/// What exposures of `--exposure auto` are rounded to, stops: typed again, such a number makes the same picture.
+const EXPOSURE_STEP_EV: f64 = 0.01;
+
+/// The exposure that brings the log average of the luminance (Reinhard et al. 2002, equations 1 and 2) to a middle grey,
+/// stops. It is that of the pixels that shine: where no surface is under the default background is no part of a picture's
+/// light, and its logarithm would outweigh everything. None where nothing shines.
+pub fn exposure_for(picture: &Picture) -> Option<f64> {
+    let luminances = picture.pixels.iter().map(|pixel| weighted(pixel.map(f64::from), REC709_WEIGHTS));
+    let brightest = luminances.clone().fold(0.0, f64::max);
+    let (mut sum, mut count) = (0.0, 0u64);
+    for luminance in luminances.filter(|luminance| *luminance > 0.0 && *luminance >= DARKEST * brightest) {
+        sum += luminance.log2();
+        count += 1;
+    }
+    if count == 0 {
+        return None;
+    }
+    let exposure_ev = KEY.log2() - sum / count as f64;
+    // Adding 0 turns -0 into 0.
+    let rounded = (exposure_ev / EXPOSURE_STEP_EV).round() / (1.0 / EXPOSURE_STEP_EV) + 0.0;
+    Some(rounded.clamp(*EXPOSURES_EV.start(), *EXPOSURES_EV.end()))
 }
 
 /// Linear 0 to 1 to sRGB-encoded 0 to 1 (IEC 61966-2-1).
@@ -128,6 +160,23 @@ mod tests {
         for encoded in [0.0, 0.02, 0.040_45, 0.2, 0.7, 1.0] {
             assert!((srgb_from_linear(linear_from_srgb(encoded)) - encoded).abs() < 1e-6, "{encoded}");
         }
+    }
+
+    #[test]
+    fn an_exposure_is_made_for_what_shines() {
+        let extent = Extent::new(4, 1);
+        let of = |pixels: [f32; 4]| exposure_for(&Picture { extent, pixels: pixels.map(|grey| [grey; 3]).to_vec() });
+        assert_eq!(of([0.18; 4]), Some(0.0));
+        assert_eq!(of([0.09; 4]), Some(1.0));
+        // The mean of logarithms, not the logarithm of the mean.
+        assert_eq!(of([0.72, 0.18, 0.18, 0.72]), Some(-1.0));
+        // Neither what does not shine counts, nor what shines a million times less.
+        assert_eq!(of([0.0, 0.09, 1e-9, 0.09]), Some(1.0));
+        assert_eq!(of([0.0; 4]), None);
+        assert_eq!(of([1e-30; 4]), Some(32.0));
+        assert_eq!(of([0.1; 4]), Some(0.85));
+        let green = Picture::filled(extent, [0.0, 0.18, 0.0]);
+        assert_eq!(exposure_for(&green), Some(0.48), "luminance, not the mean of the channels");
     }
 
     #[test]

@@ -204,7 +204,7 @@ impl<'a> Lens<'a> {
 
     /// True: no triangle of the cluster can make a fragment. `indices`: the cluster's.
     fn sees_nothing_of(&self, cluster: &Cluster, indices: &[u32]) -> bool {
-        let corners = corners(&cluster.bounds).map(|corner| self.clipped(corner));
+        let corners = cluster.bounds.corners().map(|corner| self.clipped(corner));
         if outside_one_plane(&corners) {
             return true;
         }
@@ -256,7 +256,7 @@ impl<'a> Lens<'a> {
 
     /// Metres from the eye, or from its plane, to the nearest point of the box's own box in world space.
     fn distance(&self, bounds: &Bounds) -> f64 {
-        let corners = corners(bounds).map(|corner| self.world_from_object.transform_point3(corner.as_dvec3()));
+        let corners = bounds.corners().map(|corner| self.world_from_object.transform_point3(corner.as_dvec3()));
         match self.forward_ws {
             Some(forward) => {
                 corners.iter().map(|corner| forward.dot(*corner - self.eye_ws)).fold(f64::INFINITY, f64::min)
@@ -268,11 +268,6 @@ impl<'a> Lens<'a> {
             }
         }
     }
-}
-
-fn corners(bounds: &Bounds) -> [Vec3; 8] {
-    let pick = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-    std::array::from_fn(|corner| Vec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2)))
 }
 
 /// True: for one plane, all points are surely outside of it.

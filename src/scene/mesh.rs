@@ -1,6 +1,6 @@
 //! Triangle lists and where they stand.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 
 /// One triangle list with one material, in object space.
 ///
@@ -92,6 +92,14 @@ pub struct Node {
 }
 
 impl Draw {
+    /// The front's normal of triangle `triangle` of `mesh`, which is the one drawn, in world space; as long as twice the area.
+    pub fn front(&self, mesh: &Mesh, triangle: usize) -> DVec3 {
+        let [a, b, c] =
+            mesh.triangle(triangle).map(|corner| self.world_from_object.transform_point3(corner).as_dvec3());
+        let normal = (b - a).cross(c - a);
+        if self.world_from_object.determinant() < 0.0 { -normal } else { normal }
+    }
+
     /// The box around the vertices of `mesh`, which is the one drawn, in world space.
     pub fn bounds(&self, mesh: &Mesh) -> Bounds {
         let mut bounds = Bounds::EMPTY;
@@ -125,6 +133,12 @@ impl Bounds {
     pub fn include(&mut self, point: Vec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
+    }
+
+    /// x changes fastest, then y.
+    pub fn corners(&self) -> [Vec3; 8] {
+        let pick = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+        std::array::from_fn(|corner| Vec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2)))
     }
 
     pub fn center(&self) -> Vec3 {

@@ -6,6 +6,7 @@
 pub mod animation;
 pub mod atlas;
 pub mod camera;
+pub mod facing;
 pub mod glb;
 pub mod gltf;
 pub mod light;
@@ -27,6 +28,7 @@ use std::sync::Arc;
 
 pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
+pub use facing::Facing;
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Bounds, Draw, Mesh, Node};
@@ -66,11 +68,13 @@ pub struct Scene {
     pub texture_limit_px: u32,
     /// Punctual lights. Emissive materials are not listed here.
     pub lights: Vec<Light>,
-    /// Cameras in file order. May be empty: the job then frames the bounds.
+    /// Cameras in file order. May be empty: the view then frames the bounds (`crate::framing`).
     pub cameras: Vec<Camera>,
     /// The box around everything that is drawn while the animations play, looked at in a few moments of them; None where
     /// nothing moves.
     pub reach: Option<Bounds>,
+    /// Which way front faces look when the animations begin; None where nothing moves.
+    pub facing: Option<Facing>,
     /// The scene when the shutter closes, where it is open while things move: other places of the same meshes, lights and
     /// cameras, without pictures. None: all stands as it stands here.
     pub closing: Option<Box<Scene>>,
@@ -231,5 +235,10 @@ impl Scene {
     /// at all times, `bounds` where nothing moves.
     pub fn lasting_bounds(&self) -> Bounds {
         self.reach.unwrap_or_else(|| self.bounds())
+    }
+
+    /// Which way front faces look, for a camera made up: the same at all times.
+    pub fn lasting_facing(&self) -> Facing {
+        self.facing.unwrap_or_else(|| Facing::of(self))
     }
 }

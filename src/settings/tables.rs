@@ -1,6 +1,7 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
 use super::{Kind, Setting};
+use crate::report::tonemap::EXPOSURES_EV;
 
 /// Settings that every technique and every picture has.
 pub const COMMON: &[Setting] = &[
@@ -20,7 +21,7 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "",
         paper: "",
-        help: "the scene's camera; a scene without one gets one that frames it",
+        help: "the scene's camera; framing: one that frames the scene, from three quarters above before the side that most front faces                look to, as a scene without a camera gets it",
     },
     Setting {
         key: "time",
@@ -61,11 +62,11 @@ pub const COMMON: &[Setting] = &[
     Setting {
         key: "exposure",
         symbol: "",
-        kind: Kind::Number { min: -32.0, max: 32.0 },
+        kind: Kind::NumberOrAuto { min: *EXPOSURES_EV.start(), max: *EXPOSURES_EV.end() },
         default: "0",
         unit: "EV",
         paper: "",
-        help: "of PNGs: at 0, white diffuse under radiance 1 is 1.0",
+        help: "of PNGs: at 0, white diffuse under radiance 1 is 1.0; auto: brings the log average of what shines to 0.18                (Reinhard et al. 2002), of --frames as the first frame that is not black; stages beside a PNG stay at 0 then",
     },
     Setting {
         key: "tonemap",
@@ -110,8 +111,8 @@ pub const COMMON: &[Setting] = &[
         default: "default",
         unit: "",
         paper: "",
-        help: "a key light of 3 lux from the camera's upper left and an ambient of 0.3: default, for a scene that has no light, neither \
-               punctual nor emissive; always, beside what it has",
+        help: "a key light of 3 lux from the camera's upper left and an ambient of 0.3: default, for a scene without punctual lights of which \
+               emissive surfaces, if any, let less than half be seen; always, beside what it has",
     },
     Setting {
         key: "sun",

@@ -19,7 +19,7 @@ impl Closing {
     pub fn new(inputs: &Inputs<'_>) -> Result<Option<Self>> {
         let Some(scene) = &inputs.scene.closing else { return Ok(None) };
         let view = View::new(scene, inputs.values.text("camera"), inputs.view.extent)?;
-        let lights = LightSet::new(scene, &view, inputs.values)?;
+        let lights = inputs.lights.closing(scene, &view, inputs.values)?;
         Ok(Some(Self { view, lights }))
     }
 

@@ -313,8 +313,14 @@ mod tests {
     }
 
     fn layout(lights: Vec<Light>, changes: &[(&str, &str)], caps: &Caps) -> Result<Option<MapLayout>> {
-        let set =
-            LightSet { lights, ambient: Vec3::ZERO, has_rig: false, is_emissive_alone: false, has_punctual: true };
+        let set = LightSet {
+            lights,
+            ambient: Vec3::ZERO,
+            has_rig: false,
+            faint_part: None,
+            is_emissive_alone: false,
+            has_punctual: true,
+        };
         let rules = caps.layout.as_ref().unwrap();
         let scene = Scene { reach: Some(ROOM), ..Scene::default() };
         let stats = SceneStats::of(&scene);

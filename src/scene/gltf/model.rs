@@ -24,7 +24,7 @@ use super::{cameras, deform, document, images, label, lights, marks, primitives}
 use crate::error::{Error, Result};
 use crate::progress::Stage;
 use crate::scene::animation::AnimationChoice;
-use crate::scene::{Bounds, Camera, Light, Scene};
+use crate::scene::{Bounds, Camera, Facing, Light, Mesh, Scene};
 
 /// Stands in the hash for how a file becomes a scene; a change that alters scenes alters this line.
 const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 4: posed, COLOR_0, two UV sets, flat normals, MikkTSpace at rest";
@@ -91,7 +91,10 @@ impl Model {
         let nodes = marks::nodes(&document)?;
         let still = Scene { name, nodes, meshes, materials, textures, images, warnings, ..Scene::default() };
         let mut model = Self { path: path.to_owned(), document, hasher, hierarchy, channels, bodies, still };
-        model.still.reach = model.reach()?;
+        if !model.channels.is_empty() {
+            model.still.reach = Some(model.reach()?);
+            model.still.facing = Some(model.facing()?);
+        }
         Ok(model)
     }
 
@@ -137,33 +140,49 @@ impl Model {
     }
 
     fn bounds(&self, shapes: &Shapes) -> Bounds {
-        let still = &self.still.meshes;
         let mut bounds = Bounds::EMPTY;
         for draw in &shapes.draws {
-            let mesh = still.get(draw.mesh).unwrap_or_else(|| &shapes.meshes[draw.mesh - still.len()]);
-            draw.extend(mesh, &mut bounds);
+            draw.extend(self.mesh(shapes, draw.mesh), &mut bounds);
         }
         bounds
     }
 
-    /// Where the scene reaches while its animations play; None where none does.
-    fn reach(&self) -> Result<Option<Bounds>> {
-        if self.channels.is_empty() {
-            return Ok(None);
+    /// The mesh of this index in the scene that has `shapes`.
+    fn mesh<'a>(&'a self, shapes: &'a Shapes, index: usize) -> &'a Mesh {
+        let still = &self.still.meshes;
+        still.get(index).unwrap_or_else(|| &shapes.meshes[index - still.len()])
+    }
+
+    fn shapes_at(&self, time_s: f64) -> Result<Shapes> {
+        let placed = self.hierarchy.place(&self.document, &self.channels, time_s)?;
+        self.bodies.shapes(&self.document, &self.channels, &placed, time_s)
+    }
+
+    /// Which way front faces look when the animations begin.
+    fn facing(&self) -> Result<Facing> {
+        let shapes = self.shapes_at(0.0)?;
+        let mut facing = Facing::default();
+        for draw in &shapes.draws {
+            let mesh = self.mesh(&shapes, draw.mesh);
+            facing.include(draw, mesh, &self.still.materials[mesh.material]);
         }
+        Ok(facing)
+    }
+
+    /// Where the scene reaches while its animations play.
+    fn reach(&self) -> Result<Bounds> {
         let end_s = self.channels.iter().map(|channel| f64::from(channel.curve.end_s())).fold(0.0, f64::max);
         let mut reach = Bounds::EMPTY;
         for part in 0..=REACH_PARTS {
             let time_s = end_s * f64::from(part) / f64::from(REACH_PARTS);
-            let placed = self.hierarchy.place(&self.document, &self.channels, time_s)?;
-            let bounds = self.bounds(&self.bodies.shapes(&self.document, &self.channels, &placed, time_s)?);
+            let bounds = self.bounds(&self.shapes_at(time_s)?);
             if !bounds.is_empty() {
                 reach.include(bounds.min);
                 reach.include(bounds.max);
             }
         }
         require_near(&reach)?;
-        Ok(Some(reach))
+        Ok(reach)
     }
 }
 

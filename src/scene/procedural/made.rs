@@ -5,7 +5,7 @@ use glam::{Mat4, Quat, Vec3};
 use super::curves;
 use crate::error::Result;
 use crate::scene::animation::{AnimationChoice, Curve};
-use crate::scene::{Bounds, Scene, gltf};
+use crate::scene::{Bounds, Facing, Scene, gltf};
 
 /// In how many moments of its period a thing is looked at for where the scene reaches.
 const REACH_PARTS: u32 = 8;
@@ -91,6 +91,7 @@ impl Made {
             }
         }
         self.scene.reach = self.reach();
+        self.scene.facing = self.scene.reach.map(|_| Facing::of(&self.scene));
         Ok(self)
     }
 
