@@ -63,6 +63,7 @@ impl Technique for Deferred {
             ("transport", "direct".to_owned()),
             ("light-visibility", light_visibility(values, lights, 0)?),
             ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
         ])
     }
 

@@ -127,6 +127,7 @@ impl Technique for InferredLighting {
             ("transport", "direct".to_owned()),
             ("light-visibility", light_visibility(values, lights, by_volumes)?),
             ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
         ])
     }
 

@@ -115,8 +115,11 @@ impl Technique for InterleavedDeferred {
 
     /// Direct light, and what as many bounces as light walks have bring, unshadowed (SNSM) and clamped.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        let mut settings =
-            vec![("light-visibility", light_visibility(values, lights, 0)?), ("vpl-visibility", "off".to_owned())];
+        let mut settings = vec![
+            ("light-visibility", light_visibility(values, lights, 0)?),
+            ("vpl-visibility", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
+        ];
         match values.integer("vpl-bounces") {
             1 => settings.push(("transport", "one-bounce".to_owned())),
             // The surface that is seen scatters too.
