@@ -133,6 +133,14 @@ impl Technique for DeepShading {
         frame::AOVS
     }
 
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        Ok(frame::left_out(&Choices::new(inputs)?))
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("list-access", "auto"), ("direct-shadow", "none")]
+    }
+
     fn needs(&self, values: &Values, caps: &Caps, _: bool) -> Vec<Need> {
         let need = |of: &str, ability, instead| Need { of: of.to_owned(), ability, instead };
         let mut needs = vec![

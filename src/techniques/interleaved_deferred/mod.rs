@@ -67,17 +67,6 @@ use std::time::Instant;
 
 const NAME: &str = "interleaved_deferred";
 
-/// The stages of figure 3.
-const AOVS: &[&str] = &[
-    "gbuffer.normal",
-    "gbuffer.color",
-    "split.normal",
-    "shade.irradiance",
-    "gather.irradiance",
-    "discontinuity.flags",
-    "filter.irradiance",
-];
-
 pub struct InterleavedDeferred;
 
 impl Technique for InterleavedDeferred {
@@ -98,7 +87,15 @@ impl Technique for InterleavedDeferred {
     }
 
     fn aovs(&self) -> &'static [&'static str] {
-        AOVS
+        aov::AOVS
+    }
+
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        Ok(aov::left_out(&Choices::new(inputs)?, inputs.values))
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("storage", "image"), ("position", "unorm16"), ("cull", "none"), ("direct-shadow", "none")]
     }
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {

@@ -42,7 +42,7 @@ pub mod sample;
 pub mod settings;
 
 use super::closing::Closing;
-use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
+use super::{Frame, Inputs, Prepared, Sums, Technique};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
 use crate::error::Result;
@@ -356,6 +356,6 @@ impl Frame for PathFrame {
     }
 
     fn aov(&self, _: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        Err(left_out(NAME, name, "it has no stages"))
+        unreachable!("{NAME} has no stage {name}")
     }
 }
