@@ -1,5 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
+use super::listed::Listed;
 use super::{job_args, progress, rays, reference_args};
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// The verb with its arguments.
-pub fn command() -> Command {
+pub fn command(listed: &Listed) -> Command {
     Command::new("bench")
         .about("Measure settings against each other: a frame, or one stage of it")
         .after_help(
@@ -24,7 +25,8 @@ pub fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands(
-            What::ALL.map(|what| reference_args::with_reference_args(job_args::with_job_args(sub_command(what)))),
+            What::ALL
+                .map(|what| reference_args::with_reference_args(job_args::with_job_args(listed, sub_command(what)))),
         )
         .subcommand(rays::command())
 }
