@@ -13,6 +13,9 @@ layout(constant_id = 65) const uint TEXEL_BUFFERS = 1;
 // 1: buffers hold every level of a picture, and rays read the one that their cone's width asks for; 0: the finest alone.
 layout(constant_id = 68) const uint TEXTURE_CONE = 0;
 
+// 1: rays read occlusion maps.
+layout(constant_id = 69) const uint HAS_OCCLUSION = 0;
+
 // Where a material finds one of its textures.
 struct TexelsBlock {
     // As PlacementBlock's: coordinates on the picture; u.w: 1 for the second UV set, else 0.
@@ -70,6 +73,7 @@ struct TracedMaterialBlock {
     TexelsBlock metallic_roughness;
     TexelsBlock normal;
     TexelsBlock emissive;
+    TexelsBlock occlusion;
     // How likely an emitter's point is chosen, per square metre; 0: it is none.
     float emitter_density;
     // ALPHA_IS_ values.

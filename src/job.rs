@@ -22,7 +22,7 @@ use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::{COMMON, Setting, Values, earlier_s, exposure_s, readers};
-use crate::techniques::Technique;
+use crate::techniques::{Technique, stages};
 use crate::units::Extent;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -241,14 +241,7 @@ impl Job {
         if let Some(asked) = &self.reference {
             asked.check(self.values.extent("size"))?;
         }
-        for aov in &self.aovs {
-            if !self.technique.aovs().contains(&aov.as_str()) {
-                let name = self.technique.name();
-                return Err(Error::request(format!("--aov {aov}: {name} has no such stage"))
-                    .note(format!("it has {}", self.technique.aovs().join(", "))));
-            }
-        }
-        Ok(())
+        stages::require_known(self.technique, &self.aovs)
     }
 
     /// What the request's scene is at any time.

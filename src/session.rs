@@ -21,7 +21,7 @@ use crate::report::picture::Picture;
 use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Sums, Technique, fitness};
+use crate::techniques::{Frame, Inputs, Sums, Technique, bindable, fitness, stages};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -111,7 +111,15 @@ impl Session {
         aovs: &[String],
         recording: impl Into<Recording>,
     ) -> Result<Renderer> {
-        self.make(technique, values, aovs, recording.into()).map_err(|error| {
+        let recording = recording.into();
+        if recording.has_statistics {
+            statistics::require(&self.gpu.caps)?;
+        }
+        let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
+        let lights = LightSet::new(&self.scene, &view, values)?;
+        // It says itself what would fit.
+        let plan = frame_plan(technique, &self.inputs(&view, &lights, values), aovs)?;
+        self.make(technique, values, (view, lights, plan), aovs, recording).map_err(|error| {
             if error.kind() != ErrorKind::Memory {
                 return error;
             }
@@ -129,33 +137,30 @@ impl Session {
         MemoryTable::new(&self.stats.plan(), &renderer.plan, sharing, requirements, &kinds, snapshot)
     }
 
+    fn inputs<'a>(&'a self, view: &'a View, lights: &'a LightSet, values: &'a Values) -> Inputs<'a> {
+        Inputs {
+            caps: &self.gpu.caps,
+            requirements: Requirements::Device(&self.gpu),
+            scene: &self.scene,
+            stats: &self.stats,
+            bvh: &self.bvh,
+            view,
+            lights,
+            values,
+        }
+    }
+
     fn make(
         &self,
         technique: &dyn Technique,
         values: &Values,
+        (view, lights, plan): (View, LightSet, Plan),
         aovs: &[String],
         recording: Recording,
     ) -> Result<Renderer> {
-        if recording.has_statistics {
-            statistics::require(&self.gpu.caps)?;
-        }
-        let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
-        let lights = LightSet::new(&self.scene, &view, values)?;
-        let requirements = Requirements::Device(&self.gpu);
-        let inputs = Inputs {
-            caps: &self.gpu.caps,
-            requirements,
-            scene: &self.scene,
-            stats: &self.stats,
-            bvh: &self.bvh,
-            view: &view,
-            lights: &lights,
-            values,
-        };
-        let plan = frame_plan(technique, &inputs, aovs)?;
+        let inputs = self.inputs(&view, &lights, values);
         let prepared = technique.prepare(&inputs)?;
-        let caps = &self.gpu.caps;
-        let sharing = Sharing::of(&plan, requirements, caps, values);
+        let sharing = Sharing::of(&plan, inputs.requirements, &self.gpu.caps, values);
         let mut resources = Resources::make(&self.gpu, technique.name(), &plan, &sharing)?;
         let [light_count, vpl_count] = prepared.light_counts();
         let background = values.color("background");
@@ -210,23 +215,21 @@ pub(crate) fn require_triangle(scene: &Scene, name: &str) -> Result<()> {
 /// The whole plan of a frame: the technique's, the block of numbers that every technique has, and `aovs` kept until they
 /// are read back.
 ///
-/// Errors: as `Technique::plan`; the device lacks what the settings need (exit code 3), or binds no buffer of a size that
-/// they need (4).
+/// Errors: as `Technique::plan`; there is no such stage, or the settings leave it out (exit code 2); the device lacks what the
+/// settings need (3), or binds no buffer of a size that they need (4).
 pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String]) -> Result<Plan> {
     fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend)?;
+    stages::require_made(technique, inputs, aovs)?;
     let mut plan = technique.plan(inputs)?;
     plan.host_buffer("frame", block_name(technique), size_of::<FrameBlock>() as u64);
     for aov in aovs {
-        // A resource, or a part of one such as `light.l_buffer.irradiance`. An AOV that is neither in this plan is refused when
-        // it is read, with the reason.
+        // A resource, or a part of one such as `light.l_buffer.irradiance`.
         let name = format!("{}.{aov}", technique.name());
-        if !plan.read_back(&name)
-            && let Some((whole, _)) = name.rsplit_once('.')
-        {
-            plan.read_back(whole);
-        }
+        let whole = name.rsplit_once('.').map_or("", |(whole, _)| whole);
+        assert!(plan.read_back(&name) || plan.read_back(whole), "{name} is neither planned nor left out");
     }
-    plan.check(inputs.caps.limits.max_storage_buffer_range_bytes)?;
+    plan.check(inputs.caps.limits.max_storage_buffer_range_bytes)
+        .map_err(|error| bindable::advise(error, technique, inputs))?;
     Ok(plan)
 }
 
@@ -394,7 +397,7 @@ impl Renderer {
     /// One of the last frame's intermediate results, which `Session::renderer` was asked for: others share their bytes
     /// with what came after them.
     ///
-    /// Errors: the settings leave its pass out (exit code 2).
+    /// Errors: memory for the copy (exit code 4).
     pub fn aov(&self, name: &str) -> Result<Aov> {
         assert!(self.aovs.iter().any(|asked| asked == name), "the renderer was not asked for {name}");
         self.frame.aov(&self.gpu, name)

@@ -1,7 +1,9 @@
 //! The program from outside: exit codes, what it says, and which files it leaves.
 
 use crate::support::program::Program;
+use quincunx::techniques::Technique;
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// A picture that costs next to nothing.
@@ -65,7 +67,15 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
     program.fails(&small(&["--patern", "4x4"]), 2, &["--patern"]);
     program.fails(&small(&["--aov", "split.colour"]), 2, &["split.colour", "split.normal"]);
     program.fails(&small(&["--split", "none", "--aov", "split.normal"]), 2, &["--aov split.normal", "one-pass"]);
-    program.fails(&small(&["--filter", "none", "--aov", "filter.irradiance"]), 2, &["--aov filter.irradiance"]);
+    let no_filter =
+        ["--filter none", "it has gbuffer.normal, gbuffer.color, split.normal, shade.irradiance, gather.irradiance"];
+    program.fails(&small(&["--filter", "none", "--aov", "filter.irradiance"]), 2, &no_filter);
+    program.fails(&small(&["--split", "none", "--aov", "filter.irradiance"]), 2, &["with --split none all lights"]);
+    let plan = ["memory", "cornell", "--plan", "--technique", "forward", "--aov", "depth.reversed"];
+    program.run(&plan).fine();
+    program.fails(&[&plan[..], &["--msaa", "4"]].concat(), 2, &["--msaa 4", "--msaa 1", "it has none"]);
+    let stageless = ["memory", "cornell", "--plan", "--technique", "path_traced", "--aov", "color"];
+    program.fails(&stageless, 2, &["--aov color: path_traced has no such stage", "it has none"]);
     program.fails(&small(&["--rig", "none", "--lights", "many"]), 2, &["--lights many"]);
 }
 
@@ -133,7 +143,8 @@ fn a_budget_that_is_spent_says_what_would_help() {
     let found = program.run(&[&textured[..], &["--technique", "deferred", "--json"]].concat()).fine().json();
     let limit_px = found["settings"]["texture-limit"].as_u64().unwrap();
     assert!(limit_px.is_power_of_two() && limit_px <= 256, "{limit_px}");
-    let planned = program.run(&["memory", textured[1], "--plan", "--memory-budget", "30MiB", "--json"]).fine().json();
+    let plan = ["memory", textured[1], "--size", "64x36", "--plan", "--memory-budget", "30MiB", "--json"];
+    let planned = program.run(&plan).fine().json();
     assert!(planned["techniques"][0]["memory"]["groups"]["scene.textures"].as_u64().unwrap() < 23 << 20, "{planned}");
     let limited = textured.iter().copied().chain(["--technique", "deferred", "--texture-limit", "256", "--json"]);
     let report = program.run(&limited.collect::<Vec<_>>()).fine().json();
@@ -200,8 +211,11 @@ fn without_a_driver_or_a_fitting_device_it_says_so() {
     }
     assert_eq!(program.files(), [] as [&str; 0]);
     // What is there is listed.
-    program.fails(&small(&["--device", "no such device"]), 3, &["no such device", "\n       0: ", "fits"]);
-    program.fails(&small(&["--device", "99"]), 3, &["99", "\n       0: "]);
+    let words = ["--device nvidia: no device's name or driver contains 'nvidia'", "there are:", "\n       0: "];
+    for verb in [&SMALL[..], &["bench", "rays", "cornell"], &["memory", "cornell", "--size", "32x18"]] {
+        program.fails(&[verb, &["--device", "nvidia"]].concat(), 3, &words);
+    }
+    program.fails(&small(&["--device", "99"]), 3, &["--device 99: no device has this index", "\n       0: "]);
 }
 
 #[test]
@@ -350,18 +364,83 @@ fn devices_and_scenes_are_listed() {
     assert_eq!(program.files(), [] as [&str; 0]);
 }
 
+/// Flags of the settings that a help lists.
+fn listed(help: &str) -> BTreeSet<&str> {
+    let flags = help.lines().filter_map(|line| line.trim_start().strip_prefix("--")?.split(' ').next());
+    let all: BTreeSet<&str> = quincunx::techniques::ALL.iter().flat_map(|technique| keys_of(*technique)).collect();
+    flags.filter(|flag| all.contains(flag)).collect()
+}
+
+/// A help without its line breaks.
+fn words(help: &str) -> String {
+    help.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn keys_of(technique: &dyn Technique) -> BTreeSet<&'static str> {
+    quincunx::job::settings_of(technique).iter().map(|setting| setting.key).collect()
+}
+
 #[test]
-fn help_names_every_setting() {
+fn help_lists_the_settings_of_one_technique_and_all_where_it_is_asked_to() {
     let program = Program::new();
-    let help = program.run(&["render", "--help"]).fine().out;
-    for technique in quincunx::techniques::ALL {
-        for setting in quincunx::job::settings_of(*technique) {
-            assert!(help.contains(&format!("--{} ", setting.key)), "--{} is not in the help", setting.key);
+    let help = |arguments: &[&str]| {
+        let out = program.run(arguments).fine().out;
+        assert!(!out.contains('\u{1b}'), "{arguments:?}: a pipe has no colours");
+        out
+    };
+    let all: BTreeSet<&str> = quincunx::techniques::ALL.iter().flat_map(|technique| keys_of(*technique)).collect();
+    for verb in [&["render"][..], &["memory"], &["bench", "frame"]] {
+        for flag in ["--help", "-h"] {
+            let plain = help(&[verb, &[flag]].concat());
+            let default = quincunx::techniques::find("interleaved_deferred").unwrap();
+            assert_eq!(listed(&plain), keys_of(default), "{verb:?}");
+            assert!(words(&plain).contains("--technique all --help"), "{plain}");
+            assert_eq!(listed(&help(&[verb, &[flag, "--technique", "all"]].concat())), all, "{verb:?}");
+            assert_eq!(listed(&help(&[verb, &["--technique", "all", flag]].concat())), all, "{verb:?}");
         }
     }
+    for technique in quincunx::techniques::ALL {
+        let name = technique.name();
+        let own = help(&["render", "--technique", name, "--help"]);
+        assert_eq!(listed(&own), keys_of(*technique), "{name}");
+        assert!(own.contains(&format!("Settings of {name}:")), "{own}");
+        // With the technique's own choices, and no other's.
+        for setting in quincunx::job::settings_of(*technique) {
+            let default = format!("[{}] [default: {}]", setting.range(), setting.default);
+            assert!(words(&own).contains(&default), "--{}: {default}", setting.key);
+        }
+    }
+    let two = ["memory", "--technique", "forward", "--technique=deferred", "--help"];
+    let keys = |name: &str| keys_of(quincunx::techniques::find(name).unwrap());
+    assert_eq!(listed(&help(&two)), keys("forward").union(&keys("deferred")).copied().collect());
+    assert!(listed(&help(&["help", "render"])).contains("pattern"));
+    program.fails(&small(&["--technique", "all"]), 2, &["--technique all", "interleaved_deferred"]);
     let ran = program.run(&[]);
     assert_eq!((ran.code, ran.out.as_str()), (2, ""));
     assert!(program.run(&["--version"]).fine().out.starts_with("quincunx "));
+}
+
+#[test]
+fn quiet_verbs_say_nothing_but_what_json_asks_for() {
+    let program = Program::new();
+    program.run(&small(&["--quiet", "-o", "a.png"])).fine();
+    for verb in [
+        &["devices"][..],
+        &["compare", "a.png", "a.png"],
+        &["memory", "cornell", "--plan"],
+        &["memory", "cornell", "--size", "32x18"],
+        &["scene", "list"],
+        &["scene", "inspect", "cornell"],
+        &["scene", "export", "cornell", "-o", "a.glb"],
+    ] {
+        assert_eq!(program.run(&[verb, &["--quiet"]].concat()).fine().out, "", "{verb:?}");
+        assert_ne!(program.run(verb).fine().out, "", "{verb:?}");
+    }
+    for verb in [&["devices"][..], &["compare", "a.png", "a.png"], &["scene", "inspect", "cornell"]] {
+        program.run(&[verb, &["--json", "--quiet"]].concat()).fine().json();
+    }
+    let failed = program.run(&["compare", "a.png", "a.png", "--max", "psnr=1", "--quiet"]);
+    assert!(failed.code == 1 && failed.out.is_empty() && failed.err.starts_with("error: "), "{}", failed.err);
 }
 
 #[test]

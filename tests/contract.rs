@@ -93,6 +93,7 @@ fn memory_that_is_too_small_ends_with_4() {
     for arguments in &verbs_with_device()[..3] {
         require_code(&program, &[&arguments[..], &["--memory-budget", "4KiB"]].concat(), &[], 4);
     }
+    require_code(&program, &small(&["memory", "--plan"], &["--memory-budget", "4KiB"]), &NOWHERE, 4);
     assert_eq!(program.files(), [] as [&str; 0]);
 }
 

@@ -8,6 +8,7 @@ use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has, placing_steps};
 use glam::{Mat4, Vec3};
+use quincunx::gpu::commands::Submits;
 use quincunx::report::picture::Picture;
 use quincunx::scene::{Camera, Material, Projection, Scene};
 use std::collections::BTreeMap;
@@ -245,13 +246,13 @@ fn settings_that_a_baseline_does_not_read_are_refused() {
         (&[("pass-samples", "1")], "--pass-samples 1 with --shading deep"),
         (&[MSAA, ("pass-samples", "4"), ("spp", "6")], "--pass-samples 4: --spp 6 is no multiple of it"),
     ] {
-        let made = watched.try_renderer(DEEP, changes, &[], quincunx::gpu::commands::Submits::One);
+        let made = watched.try_renderer(DEEP, changes, &[], Submits::One);
         let error = made.map(|_| ()).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{changes:?}");
         assert!(error.to_string().contains(said), "{changes:?}: {error}");
     }
     for stage in ["visibility.spids", "count.lengths"] {
-        let error = watched.render_stages(DEEP, &[SIZE, SSAA], &[stage]).aov(stage).map(|_| ()).unwrap_err();
-        assert!(error.to_string().contains("samples of a baseline"), "{error}");
+        let error = watched.try_renderer(DEEP, &[SIZE, SSAA], &[stage], Submits::One).map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains("--shading deep makes it"), "{error}");
     }
 }

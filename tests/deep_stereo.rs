@@ -284,7 +284,7 @@ fn what_knows_of_one_eye_refuses_two() {
         !over || text.contains(&format!("--tuples {tuples} of 2 eyes: this device has images of {layers}")),
         "{text}"
     );
-    let one = watched.render_stages(DEEP, &[SIZE, ("spp", "2"), two, RIGHT_ALONE], &[RIGHT]);
-    let error = one.aov(RIGHT).unwrap_err();
+    let one = watched.try_renderer(DEEP, &[SIZE, ("spp", "2"), two, RIGHT_ALONE], &[RIGHT], Submits::One);
+    let error = one.map(|_| ()).unwrap_err();
     assert!(error.exit_code() == 2 && error.to_string().contains("--stereo-eyes both"), "{error}");
 }

@@ -339,7 +339,7 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
             ("vpls", &vpls),
             ("seed", "5"),
         ];
-        let stages = ["gbuffer.normal", "shade.irradiance", "gather.irradiance"];
+        let stages = ["gbuffer.normal", "shade.irradiance"];
         let renderer = watched.render_stages("interleaved_deferred", &changes, &stages);
         let walk = vpl::Walk { count, bounces: 1, emissive: false, seed: 5 };
         let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;

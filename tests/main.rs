@@ -1,5 +1,6 @@
 //! All tests of the program, as one program: each of their files by itself would be linked with everything.
 
+mod advice;
 mod animation;
 mod animation_broken;
 mod bench;

@@ -207,11 +207,19 @@ fn occlusion_darkens_ambient_light_and_no_other() {
         scene.materials[0].occlusion_strength = strength;
         for alpha in [AlphaMode::Opaque, AlphaMode::Blend] {
             scene.materials[0].alpha = alpha;
-            for (index, found) in pixels(&scene, &[("direct-shadow", "none")]).into_iter().enumerate() {
-                let texel = if index % SIDE < SIDE / 2 { 0.0 } else { 0.4 };
-                // The sun alone gives pi / pi. Strength and what is left of the light are 255ths.
-                let expected = 1.0 + (1.0 + strength * (texel - 1.0));
-                require_near(found, Vec3::splat(expected), 1.0 / 255.0, "sun and ambient");
+            let watched = Watched::with_scene(scene.clone());
+            // Path tracing reads the map where no ray finds what it stands for.
+            let traced = [("spp", "4"), ("transport", "direct"), ("ambient-visibility", "off")];
+            for (technique, changes) in [("deferred", &[("direct-shadow", "none")][..]), ("path_traced", &traced)] {
+                for (index, found) in pixels_of(&watched, technique, &both(AMBIENT, changes)).into_iter().enumerate() {
+                    let texel = if index % SIDE < SIDE / 2 { 0.0 } else { 0.4 };
+                    // The sun alone gives pi / pi. Strength and what is left of the light are 255ths.
+                    let expected = 1.0 + (1.0 + strength * (texel - 1.0));
+                    require_near(found, Vec3::splat(expected), 1.0 / 255.0, &format!("sun and ambient by {technique}"));
+                }
+            }
+            for found in pixels_of(&watched, "path_traced", &both(AMBIENT, &traced[..2])) {
+                require_near(found, Vec3::splat(2.0), 1e-3, "ambient light that rays find");
             }
         }
     }

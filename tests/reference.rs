@@ -1,7 +1,10 @@
 //! References: from a file, made, kept, broken; what is judged against them, and what is refused.
 
 use crate::support::program::Program;
-use crate::support::watched::{Changes, Watched, values};
+use crate::support::watched::{Changes, Watched, both, values};
+use glam::Vec3;
+use quincunx::job::settings_of;
+use quincunx::metrics;
 use quincunx::reference::cache::Cache;
 use quincunx::reference::made::{Made, Watch, reference_picture};
 use quincunx::reference::recipe::Recipe;
@@ -159,6 +162,9 @@ fn a_transport_without_a_reference_says_so() {
     has(settings("deferred", &[("direct-shadow", "none")]), "light-visibility", "off");
     has(settings("deferred", &[]), "transport", "direct");
     has(settings("interleaved_deferred", &[]), "transport", "one-bounce");
+    for technique in techniques::ALL.iter().filter(|technique| technique.name() != "path_traced") {
+        has(settings(technique.name(), &[]), "ambient-visibility", "off");
+    }
     has(settings("interleaved_deferred", &[("vpl-bounces", "3")]), "bounces", "4");
     has(settings("interleaved_deferred", &[("direct", "interleaved")]), "brdf", "lambert");
     // Of its three lamps none, all and one cast by volumes.
@@ -171,6 +177,48 @@ fn a_transport_without_a_reference_says_so() {
     assert!(error.exit_code() == 2 && error.message().contains(words), "{error}");
     let error = settings("interleaved_deferred", &[("direct", "none")]).unwrap_err();
     assert!(error.exit_code() == 2 && error.message().contains("--direct none"), "{error}");
+}
+
+/// Nothing shadows ambient light but in path tracing: what is judged against that is judged against light that is not shadowed
+/// there either. In a closed room next to nothing comes in from outside.
+#[test]
+fn ambient_light_is_judged_by_ambient_light() {
+    let mut scene = quincunx::scene::load("cornell", 1).unwrap();
+    scene.lights.clear();
+    scene.materials.iter_mut().for_each(|material| material.emissive = Vec3::ZERO);
+    let watched = Watched::with_scene(scene);
+    let (truth, folder) = (techniques::find("path_traced").unwrap(), tempfile::tempdir().unwrap());
+    // Edges, which are one sample a pixel in all but the first, are most of what is left.
+    for (technique, changes, bound) in [
+        ("forward", &[("supersample", "8")][..], 0.004),
+        ("forward", &[("supersample", "8"), ("background", "0.5")], 0.004),
+        ("forward", &[("supersample", "8"), ("brdf", "lambert"), ("ambient", "0.1,0.5,0.2")], 0.004),
+        ("deferred", &[], 0.03),
+        ("inferred_lighting", &[], 0.04),
+        ("deep_shading", &[("spp", "64")], 0.02),
+    ] {
+        let changes = both(&[("size", "64x48"), ("rig", "always")], changes);
+        let recipe = Recipe::judging(
+            truth,
+            techniques::find(technique).unwrap(),
+            &values(technique, &changes),
+            &watched.session,
+            64,
+        );
+        let mut recipe = recipe.unwrap();
+        let picture = watched.picture(technique, &changes);
+        let error = |recipe: &Recipe| {
+            let reference = made(&watched, recipe, folder.path(), &Heard::default()).picture;
+            metrics::compare(&picture, &reference, 0.1).unwrap().metrics.rmse
+        };
+        let found = error(&recipe);
+        assert!(found < bound, "{technique} with {changes:?}: {found}");
+        let shadowed = settings_of(truth).into_iter().find(|setting| setting.key == "ambient-visibility").unwrap();
+        recipe.values.set(&shadowed, "on").unwrap();
+        let recipe = Recipe::new(truth, recipe.values, &watched.session).unwrap();
+        let unlike = error(&recipe);
+        assert!(unlike > 2.0 * bound, "{technique} with {changes:?}: {unlike} where ambient light is shadowed");
+    }
 }
 
 /// Names the folder to a process that this test starts of itself.

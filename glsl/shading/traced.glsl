@@ -21,6 +21,8 @@ struct SurfacePoint {
     // Radiance of its own towards where the ray comes from.
     vec3 emitted;
     float emitter_density;
+    // Part of ambient light that arrives by the occlusion map; 1 where none is read.
+    float openness;
     bool is_unlit;
     // The back of a single-sided surface: black.
     bool is_back;
@@ -164,6 +166,11 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws, floa
     point.emitted = textured(vec4(material.emissive.rgb, 1.0), traced.emissive, corners.uvs, FINEST).rgb;
     point.emitted = point.is_unlit ? base_color : point.emitted;
     point.emitter_density = traced.emitter_density;
+    point.openness = 1.0;
+    if (HAS_OCCLUSION != 0u && (material.flags & MATERIAL_OCCLUSION_TEXTURE) != 0u) {
+        float strength = float((material.flags >> 16) & 0xffu) / 255.0;
+        point.openness += strength * (texel_of(traced.occlusion, corners.uvs, footprints).r - 1.0);
+    }
     if (MOVES != 0u) {
         // Chances are by the area when the shutter opens.
         BvhTriangleBlock opening = bvh_triangles[index];

@@ -1,5 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
+use super::listed::Listed;
 use super::{job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
 use crate::bench::rows_file::{Existing, RowsFile};
@@ -18,7 +19,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// The verb with its arguments.
-pub fn command() -> Command {
+pub fn command(listed: &Listed) -> Command {
     Command::new("bench")
         .about("Measure settings against each other: a frame, or one stage of it")
         .after_help(
@@ -28,7 +29,8 @@ pub fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands(
-            What::ALL.map(|what| reference_args::with_reference_args(job_args::with_job_args(sub_command(what)))),
+            What::ALL
+                .map(|what| reference_args::with_reference_args(job_args::with_job_args(listed, sub_command(what)))),
         )
         .subcommand(rays::command())
 }
@@ -123,7 +125,7 @@ fn require_known(key: &str) -> Result<()> {
     }
     let error = Error::request(format!("--sweep {key}=: there is no setting --{key}"));
     // The parser itself says what a flag resembles.
-    let refused = command().try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")]).err();
+    let refused = command(&Listed::All).try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")]).err();
     let similar = refused.as_ref().and_then(|refused| refused.get(ContextKind::SuggestedArg));
     Err(match similar {
         Some(ContextValue::String(similar)) => error.note(format!("a similar one exists: {similar}")),

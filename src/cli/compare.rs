@@ -1,7 +1,6 @@
 //! `quincunx compare`: a picture against its reference, as a table or JSON, with gates for scripts.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -33,7 +32,8 @@ pub fn command() -> Command {
             "Also measure the pixels in which this channel differs between two EXR files, such as \
              geometry.dsf.id.Y=low.exr,high.exr; of one file, in which it is not 0; and the other pixels",
         ))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"));
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
+        .arg(super::quiet_flag());
     gate_args::with_gate_args(command)
 }
 
@@ -44,11 +44,11 @@ fn path_arg(name: &'static str, value_name: &'static str) -> Arg {
 /// Compares, writes the difference picture, prints, and only then fails on the first failed gate.
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let output = outcome(matches)?;
-    let mut stdout = std::io::stdout().lock();
-    stdout
-        .write_all(output.text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(|error| Error::request(format!("cannot write to standard output: {error}")))?;
+    if matches.get_flag("json") {
+        super::print(&output.text)?;
+    } else {
+        super::print_text(matches, &output.text)?;
+    }
     output.gates
 }
 

@@ -15,6 +15,7 @@ pub fn command() -> Command {
     Command::new("devices")
         .about("List the devices, what each can do and what it lacks")
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
+        .arg(super::quiet_flag())
 }
 
 /// Prints the list.
@@ -30,7 +31,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     for (index, one) in listed.iter().enumerate() {
         describe(&mut text, index, one).expect("writing to a string");
     }
-    super::print(&text)
+    super::print_text(matches, &text)
 }
 
 /// What `--json` says of a device; no technique where it cannot be used.

@@ -1,19 +1,21 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
+use super::listed::{self, Listed};
 use crate::error::Result;
 use crate::job::{Job, settings_of};
 use crate::settings::{COMMON, Kind, Setting};
 use crate::techniques::{self, Technique};
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 /// The technique that a command without --technique runs.
 pub const DEFAULT_TECHNIQUE: &str = "interleaved_deferred";
 
-/// Adds SCENE, --technique, --device, --validate and every setting.
-pub fn with_job_args(command: Command) -> Command {
-    let names = techniques::ALL.iter().map(|technique| technique.name());
+/// Adds SCENE, --technique, --device, --validate and every setting; help lists those that `listed` reads.
+pub fn with_job_args(listed: &Listed, command: Command) -> Command {
+    let names = techniques::ALL.iter().map(|technique| PossibleValue::new(technique.name()));
     let mut command = command
+        .after_help(listed.after_help())
         .arg(Arg::new("scene").value_name("SCENE").help(
             "A built-in scene (`quincunx scene list`), with parameters as in hall:triangles=80000, or a .gltf or .glb \
              file; default: the scene that shows the technique best",
@@ -22,8 +24,11 @@ pub fn with_job_args(command: Command) -> Command {
             Arg::new("technique")
                 .long("technique")
                 .value_name("NAME")
-                .value_parser(PossibleValuesParser::new(names))
-                .help(format!("What makes the picture; default {DEFAULT_TECHNIQUE}")),
+                // A help flag behind it is not seen where a value is refused.
+                .value_parser(PossibleValuesParser::new(names.chain([PossibleValue::new(listed::ALL).hide(true)])))
+                .help(format!(
+                    "What makes the picture; default {DEFAULT_TECHNIQUE}; with --help, whose settings are listed"
+                )),
         )
         .arg(
             Arg::new("device")
@@ -37,35 +42,52 @@ pub fn with_job_args(command: Command) -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Run under the validation layer with synchronization checks; a message fails the command"),
         )
-        .arg(Arg::new("quiet").long("quiet").action(ArgAction::SetTrue).help("Print nothing but errors"))
+        .arg(super::quiet_flag())
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON on standard output"));
-    for (heading, setting) in all_settings() {
-        command = command.arg(flag(setting).help_heading(heading));
+    for Row { setting, heading, is_listed } in rows(listed) {
+        command = command.arg(flag(setting).help_heading(heading).hide(!is_listed));
     }
     command
 }
 
-/// Every setting once, under the heading of where it comes from first; where techniques differ in what it may be, with all
-/// the choices that one of them has.
-fn all_settings() -> Vec<(String, &'static Setting)> {
-    let mut all: Vec<(String, &'static Setting)> =
-        COMMON.iter().map(|setting| ("Common settings".to_owned(), setting)).collect();
-    for setting in techniques::ALL.iter().flat_map(|technique| technique.settings()).copied().flatten() {
-        if let Some((_, known)) = all.iter_mut().find(|(_, known)| known.key == setting.key) {
-            if let (Kind::Choice(few), Kind::Choice(more)) = (known.kind, setting.kind)
-                && more.len() > few.len()
-            {
-                *known = setting;
+/// A setting among all flags.
+struct Row {
+    setting: &'static Setting,
+    heading: String,
+    is_listed: bool,
+}
+
+/// Every setting once: common ones, those that `listed` reads, all others. Where techniques differ in what it may be, with all
+/// the choices that one of them has: of those that are listed, if they read it.
+fn rows(listed: &Listed) -> Vec<Row> {
+    let common = |setting| Row { setting, heading: "Common settings".to_owned(), is_listed: true };
+    let mut all: Vec<Row> = COMMON.iter().map(common).collect();
+    let (first, later): (Vec<_>, Vec<_>) =
+        techniques::ALL.iter().copied().partition(|technique| listed.has(*technique));
+    for technique in first.iter().chain(&later) {
+        let is_listed = listed.has(*technique);
+        for setting in technique.settings().iter().copied().flatten() {
+            if let Some(known) = all.iter_mut().find(|known| known.setting.key == setting.key) {
+                if let (Kind::Choice(few), Kind::Choice(more)) = (known.setting.kind, setting.kind)
+                    && more.len() > few.len()
+                    && (is_listed || !known.is_listed)
+                {
+                    known.setting = setting;
+                }
+                continue;
             }
-            continue;
+            let among = if is_listed { &first } else { &later };
+            let is_reader = |technique: &&&dyn Technique| reads(**technique, setting.key);
+            let readers: Vec<&str> = among.iter().filter(is_reader).map(|technique| technique.name()).collect();
+            all.push(Row { setting, heading: format!("Settings of {}", readers.join(", ")), is_listed });
         }
-        let reads = |technique: &&&dyn Technique| {
-            technique.settings().iter().copied().flatten().any(|theirs| theirs.key == setting.key)
-        };
-        let readers: Vec<&str> = techniques::ALL.iter().filter(reads).map(|technique| technique.name()).collect();
-        all.push((format!("Settings of {}", readers.join(", ")), setting));
     }
     all
+}
+
+/// Whether it is one of the technique's own settings, or a common one.
+fn reads(technique: &dyn Technique, key: &str) -> bool {
+    settings_of(technique).iter().any(|setting| setting.key == key)
 }
 
 /// A setting as a flag, whose value is checked where it is set.
@@ -137,8 +159,7 @@ fn job_of(
 ) -> Result<Job> {
     let scene = matches.get_one::<String>("scene").map_or(technique.scene(), String::as_str);
     let mut job = Job::new(scene, technique);
-    let reads = |technique: &dyn Technique, key: &str| settings_of(technique).iter().any(|setting| setting.key == key);
-    for (_, setting) in all_settings() {
+    for Row { setting, .. } in rows(&Listed::All) {
         let key = setting.key;
         if let Some(value) = matches.get_one::<String>(key)
             && (reads(technique, key) || !others.iter().any(|other| reads(*other, key)))

@@ -1,6 +1,7 @@
 //! `quincunx memory`: every byte of a technique, with its owner and its lifetime, as a table or as JSON.
 
 use super::job_args;
+use super::listed::Listed;
 use crate::error::{Error, Result};
 use crate::gpu::known;
 use crate::report::whole_file::write_whole;
@@ -13,7 +14,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 /// The verb with its arguments.
-pub fn command() -> Command {
+pub fn command(listed: &Listed) -> Command {
     let command = Command::new("memory")
         .about("Print what a technique needs: each resource, its bytes, its memory type, its lifetime, the peak")
         .arg(
@@ -45,20 +46,20 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Write memory-TECHNIQUE.txt and memory-TECHNIQUE.json there"),
         );
-    job_args::with_job_args(command).mut_arg("technique", |technique| {
+    job_args::with_job_args(listed, command).mut_arg("technique", |technique| {
         technique
             .action(ArgAction::Append)
-            .help("What is planned; may be repeated; a setting must be read by one of them")
+            .help("What is planned; may be repeated; a setting must be read by one of them; with --help, whose settings are listed")
     })
 }
 
-/// Prints the table of each technique.
+/// Prints the table of each technique, and fails then where one does not fit --memory-budget.
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let folder = matches.get_one::<PathBuf>("output");
     if let Some(folder) = folder {
         std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
     }
-    let mut documents = Vec::new();
+    let (mut documents, mut budget) = (Vec::new(), Ok(()));
     for mut job in job_args::jobs(matches, argv)? {
         job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
         let study = if matches.get_flag("plan") {
@@ -82,16 +83,17 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
             write_whole(&file("txt"), |out| write!(out, "{text}"))?;
             write_whole(&file("json"), |out| writeln!(out, "{document:#}"))?;
         }
-        if !matches.get_flag("json") && !matches.get_flag("quiet") {
+        if !matches.get_flag("json") {
             let gap = if documents.is_empty() { "" } else { "\n" };
-            super::print(&format!("{gap}{text}"))?;
+            super::print_text(matches, &format!("{gap}{text}"))?;
         }
+        budget = budget.and(study.budget);
         documents.push(document);
     }
     if matches.get_flag("json") {
         super::print(&format!("{:#}\n", json!({ "schema": 1, "techniques": documents })))?;
     }
-    Ok(())
+    budget
 }
 
 fn document(technique: &str, study: &Study, rivals: &[Rival]) -> Value {

@@ -5,6 +5,7 @@ pub mod compare;
 pub mod devices;
 mod gate_args;
 mod job_args;
+mod listed;
 pub mod memory;
 mod progress;
 mod rays;
@@ -13,11 +14,12 @@ pub mod render;
 pub mod scene;
 
 use crate::error::{Error, Result};
-use clap::Command;
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use listed::Listed;
 use std::io::Write;
 
-/// The program with its verbs.
-pub fn command() -> Command {
+/// The program with its verbs. `listed`: whose settings help lists.
+fn command(listed: &Listed) -> Command {
     Command::new("quincunx")
         .version(concat!(env!("CARGO_PKG_VERSION"), " (", env!("QUINCUNX_COMMIT"), ")"))
         .about("A headless Vulkan renderer: interleaved, inferred and decoupled shading side by side")
@@ -28,12 +30,19 @@ pub fn command() -> Command {
         )
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([render::command(), compare::command(), bench::command(), memory::command(), scene::command(), devices::command()])
+        .subcommands([
+            render::command(listed),
+            compare::command(),
+            bench::command(listed),
+            memory::command(listed),
+            scene::command(),
+            devices::command(),
+        ])
 }
 
 /// Runs the verb of `argv`.
 pub fn run(argv: &[String]) -> Result<()> {
-    let matches = match command().try_get_matches_from(argv) {
+    let matches = match command(&Listed::of(argv)).try_get_matches_from(argv) {
         Ok(matches) => matches,
         // clap prints help to standard output, and its own words for what it cannot parse; exit code 2 for the latter.
         Err(error) => error.exit(),
@@ -47,6 +56,19 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("devices", matches)) => devices::run(matches),
         _ => unreachable!("clap requires one of the verbs"),
     }
+}
+
+/// The flag that every verb has.
+fn quiet_flag() -> Arg {
+    Arg::new("quiet")
+        .long("quiet")
+        .action(ArgAction::SetTrue)
+        .help("Print nothing but errors, and what --json asks for")
+}
+
+/// Prints what is for a person's eyes, unless --quiet.
+fn print_text(matches: &ArgMatches, text: &str) -> Result<()> {
+    if matches.get_flag("quiet") { Ok(()) } else { print(text) }
 }
 
 /// Prints to standard output; a reader that has gone (`| head`) is no failure.

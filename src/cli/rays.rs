@@ -34,7 +34,7 @@ pub fn command() -> Command {
         .arg(number("seed", "1", u64::from(u32::MAX)).help("Of the rays and of a built-in scene"))
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("As `quincunx devices` lists them"))
         .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
-        .arg(flag("quiet").help("Print nothing but errors"))
+        .arg(super::quiet_flag())
         .arg(flag("json").help("Print a JSON line a walk on standard output"))
         .arg(
             Arg::new("sweep")
@@ -99,8 +99,8 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     let rows = report::rows(&measured, &gpu, &scene, &request);
     if matches.get_flag("json") {
         super::print(&rows.iter().map(|row| format!("{row}\n")).collect::<String>())?;
-    } else if !matches.get_flag("quiet") {
-        super::print(&report::text(&rows))?;
+    } else {
+        super::print_text(matches, &report::text(&rows))?;
     }
     report::judge(&measured, &request)?;
     let log = gpu.validation_log();

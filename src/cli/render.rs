@@ -1,5 +1,6 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
+use super::listed::Listed;
 use super::{job_args, progress, reference_args};
 use crate::earlier::Earlier;
 use crate::error::{Error, Result};
@@ -13,11 +14,12 @@ use std::path::PathBuf;
 const DEFAULT_FPS: &str = "24";
 
 /// The verb with its arguments.
-pub fn command() -> Command {
+pub fn command(listed: &Listed) -> Command {
     let path = |name: &'static str, value: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf))
     };
     let command = job_args::with_job_args(
+        listed,
         Command::new("render")
             .about("Render a scene")
             .arg(
@@ -83,25 +85,25 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let outcome = job.run()?;
     if matches.get_flag("json") {
         super::print(&format!("{:#}\n", outcome.report.json()))?;
-    } else if !matches.get_flag("quiet") {
-        super::print(&outcome.report.text())?;
+    } else {
+        super::print_text(matches, &outcome.report.text())?;
     }
     outcome.gates
 }
 
 /// Renders each frame, with a line for it on standard error, and prints the sum.
 fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> {
-    let (json, quiet) = (matches.get_flag("json"), matches.get_flag("quiet"));
     let mut done = 0;
     let sequence = job.run_sequence(frames, &mut |frame, outcome| {
         done += 1;
         say(format!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display()));
         outcome.notes.iter().for_each(|note| say(format!("frame {frame}: note: {note}")));
     })?;
-    if json {
+    if matches.get_flag("json") {
         super::print(&format!("{:#}\n", sequence.json()))?;
-    } else if !quiet {
-        super::print(&format!("{} of {} frames are written\n", sequence.reports.len(), frames.count()))?;
+    } else {
+        let written = format!("{} of {} frames are written\n", sequence.reports.len(), frames.count());
+        super::print_text(matches, &written)?;
     }
     match sequence.is_interrupted {
         true => Err(Error::interrupted("interrupted; finished frames are valid")),

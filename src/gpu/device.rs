@@ -194,34 +194,40 @@ fn choose(instance: &ash::Instance, selector: Option<&str>) -> Result<(vk::Physi
         .enumerate()
         .map(|(index, physical)| (index, physical, probe::caps(instance, physical)))
         .collect();
-    let mut fitting: Vec<_> = all
-        .iter()
-        .filter(|(index, _, caps)| match selector {
-            None => true,
-            Some(text) => text.parse::<usize>().map_or_else(
-                |_| {
-                    let name = format!("{} {}", caps.identity.name, caps.identity.driver_info).to_lowercase();
-                    name.contains(&text.to_lowercase())
-                },
-                |wanted| wanted == *index,
-            ),
-        })
-        .collect();
+    let named = |(index, _, caps): &&(usize, _, Caps)| is_named(selector, *index, &caps.identity);
+    let mut fitting: Vec<_> = all.iter().filter(named).collect();
     fitting.sort_by_key(|(_, _, caps)| preference(&caps.identity));
     let usable = fitting.iter().find(|(_, physical, caps)| missing(instance, *physical, caps).is_empty());
     if let Some((_, physical, caps)) = usable {
         return Ok((*physical, caps.clone()));
     }
-    let mut error = Error::no_device(match selector {
-        Some(text) => format!("--device {text}: no fitting device"),
-        None => "no fitting device".to_owned(),
-    });
-    for (index, physical, caps) in &all {
-        let lacks = missing(instance, *physical, caps);
-        let verdict = if lacks.is_empty() { "fits".to_owned() } else { format!("lacks {}", lacks.join(", ")) };
-        error = error.note(format!("{index}: {} ({}): {verdict}", caps.identity.name, caps.identity.driver_text()));
+    let lacking: Vec<_> =
+        all.iter().map(|(_, physical, caps)| (&caps.identity, missing(instance, *physical, caps))).collect();
+    Err(unfit(selector, &lacking))
+}
+
+/// Whether `--device` names the device of this index; without, every one is.
+fn is_named(selector: Option<&str>, index: usize, identity: &Identity) -> bool {
+    let Some(text) = selector else { return true };
+    match text.parse::<usize>() {
+        Ok(wanted) => wanted == index,
+        Err(_) => format!("{} {}", identity.name, identity.driver_info).to_lowercase().contains(&text.to_lowercase()),
     }
-    Err(error)
+}
+
+/// What is said where no device that `selector` names can be used. `all`: each with what it lacks, by index.
+fn unfit(selector: Option<&str>, all: &[(&Identity, Vec<String>)]) -> Error {
+    let has_named = all.iter().enumerate().any(|(index, (identity, _))| is_named(selector, index, identity));
+    let error = Error::no_device(match selector {
+        None => "no device can be used".to_owned(),
+        Some(text) if has_named => format!("--device {text}: it cannot be used"),
+        Some(text) if text.parse::<usize>().is_ok() => format!("--device {text}: no device has this index"),
+        Some(text) => format!("--device {text}: no device's name or driver contains '{text}'"),
+    });
+    all.iter().enumerate().fold(error.note("there are:"), |error, (index, (identity, lacks))| {
+        let verdict = if lacks.is_empty() { String::new() } else { format!(", which lacks {}", lacks.join(", ")) };
+        error.note(format!("{index}: {} ({}){verdict}", identity.name, identity.driver_text()))
+    })
 }
 
 impl Gpu {
@@ -417,6 +423,44 @@ impl Drop for Gpu {
                 validation.functions.destroy_debug_utils_messenger(validation.messenger, None);
             }
             self.instance.destroy_instance(None);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity(name: &str, driver_info: &str) -> Identity {
+        let text = str::to_owned;
+        Identity {
+            name: text(name),
+            device_type: text("cpu"),
+            driver: text("llvmpipe"),
+            driver_info: text(driver_info),
+            api: text("1.3.230"),
+        }
+    }
+
+    #[test]
+    fn an_unfit_device_is_answered_with_what_was_asked_for() {
+        let (lava, swift) = (identity("llvmpipe (LLVM 15)", "Mesa 22.3.6"), identity("SwiftShader Device", ""));
+        let all = [(&lava, Vec::new()), (&swift, vec!["feature maintenance4".to_owned()])];
+        let list = "\n       there are:\n       0: llvmpipe (LLVM 15) (Mesa 22.3.6)\
+                    \n       1: SwiftShader Device (llvmpipe), which lacks feature maintenance4";
+        for (selector, first) in [
+            (Some("nvidia"), "--device nvidia: no device's name or driver contains 'nvidia'"),
+            (Some("2"), "--device 2: no device has this index"),
+            (Some("swift"), "--device swift: it cannot be used"),
+            (Some("1"), "--device 1: it cannot be used"),
+            (None, "no device can be used"),
+        ] {
+            let error = unfit(selector, &all);
+            assert_eq!((error.exit_code(), error.to_string()), (3, format!("{first}{list}")));
+        }
+        for (selector, named) in [("LLVMPIPE", [true, false]), ("22.3", [true, false]), ("1", [false, true])] {
+            let found = [(0, &lava), (1, &swift)].map(|(index, identity)| is_named(Some(selector), index, identity));
+            assert_eq!(found, named, "{selector}");
         }
     }
 }

@@ -11,6 +11,7 @@ pub mod kinds;
 pub mod ledger;
 pub mod pool;
 pub mod refusal;
+pub mod rehearsal;
 pub mod suballocate;
 
 use crate::error::{Error, Result};
@@ -194,8 +195,11 @@ impl Memory {
                 }
                 Err(result) => {
                     state.pool.give_back(place.block, place.offset, ask.bytes);
-                    return Err(Error::memory(format!("{}: {result}", allocating(ask, name, usage)))
-                        .note(held(state, ask.type_index)));
+                    return Err(Error::memory(format!("{}: {result}", allocating(ask, name, usage))).note(held(
+                        &state.ledger,
+                        &state.pool,
+                        ask.type_index,
+                    )));
                 }
             }
         }
@@ -249,31 +253,41 @@ fn allocating(ask: &Ask, name: &str, usage: Use) -> String {
 }
 
 /// What the heap of this memory type holds, and for whom.
-fn held(state: &State, type_index: u32) -> String {
-    let groups = state.ledger.greatest_groups(3, |other| state.pool.share_a_heap(other, type_index));
+fn held(ledger: &Ledger, pool: &Pool, type_index: u32) -> String {
+    let groups = ledger.greatest_groups(3, |other| pool.share_a_heap(other, type_index));
     if groups.is_empty() {
         return "nothing else is held".to_owned();
     }
-    let bytes = Bytes(state.pool.held_bytes(type_index));
+    let bytes = Bytes(pool.held_bytes(type_index));
     format!("{bytes} are held in memory blocks, most of it by {}", groups.join(", "))
 }
 
 fn refuse(state: &mut State, ask: &Ask, name: &str, usage: Use, misfit: Misfit) -> Error {
+    if let Misfit::Spent { .. } = misfit {
+        let owners: BTreeMap<u64, &str> = state.ledger.names().collect();
+        let named = |(key, ask): (&u64, &Ask)| (owners[key].to_owned(), *ask);
+        let held_now = state.asks.iter().map(named).collect();
+        let rules = state.pool.rules().clone();
+        state.refusal = Some(Refusal { rules, held: held_now, name: name.to_owned(), ask: *ask });
+    }
+    refused(&state.ledger, &state.pool, ask, name, usage, misfit)
+}
+
+/// Why a resource goes nowhere, and who holds what.
+fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misfit: Misfit) -> Error {
     let what = allocating(ask, name, usage);
     match misfit {
         Misfit::TooLarge { most_bytes } => {
             Error::memory(format!("{what}: the device makes memory blocks of at most {}", Bytes(most_bytes)))
         }
         Misfit::Spent { limit_bytes, held_bytes, is_budget } => {
-            let owners: BTreeMap<u64, &str> = state.ledger.names().collect();
-            let named = |(key, ask): (&u64, &Ask)| (owners[key].to_owned(), *ask);
-            let held_now = state.asks.iter().map(named).collect();
-            let rules = state.pool.rules().clone();
-            state.refusal = Some(Refusal { rules, held: held_now, name: name.to_owned(), ask: *ask });
             let limit = if is_budget { "the budget" } else { "the heap" };
             let spent = if held_bytes > 0 { "spent" } else { "too small for it" };
-            Error::memory(format!("{what}: {limit} of {} is {spent}", Bytes(limit_bytes)))
-                .note(held(state, ask.type_index))
+            Error::memory(format!("{what}: {limit} of {} is {spent}", Bytes(limit_bytes))).note(held(
+                ledger,
+                pool,
+                ask.type_index,
+            ))
         }
     }
 }

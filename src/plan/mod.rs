@@ -196,7 +196,7 @@ impl Plan {
     /// Storage buffers that are longer than one binding may be are refused before anything is made, but those that shaders come to by
     /// their addresses.
     ///
-    /// Errors: exit code 4, naming the resource and the limit.
+    /// Errors: exit code 4, naming the resource and the limit; what would fit, the technique knows (`techniques::bindable`).
     pub fn check(&self, max_storage_buffer_range_bytes: u64) -> Result<()> {
         for planned in &self.resources {
             if let Shape::Buffer { bytes, flags, .. } = planned.shape
@@ -209,8 +209,7 @@ impl Plan {
                     planned.name,
                     Bytes(bytes),
                     Bytes(max_storage_buffer_range_bytes)
-                ))
-                .note("a smaller --size, or a scene with fewer triangles, would fit"));
+                )));
             }
         }
         Ok(())

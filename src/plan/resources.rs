@@ -29,8 +29,7 @@ impl Resources {
             .enumerate()
             .map(|(index, arena)| {
                 let (bytes, alignment, bits) = (arena.bytes, arena.alignment_bytes, arena.memory_type_bits);
-                let name = if index == 0 { format!("{name}.shared") } else { format!("{name}.shared.{index}") };
-                gpu.memory.arena(&name, "shared", bytes, alignment, bits, Use::Device)
+                gpu.memory.arena(&sharing.arena_name(name, index), "shared", bytes, alignment, bits, Use::Device)
             })
             .collect::<Result<Vec<_>>>()?;
         let mut resources = Self::default();

@@ -69,6 +69,11 @@ impl Sharing {
         Self { arenas: by_type.into_iter().map(|(bits, members)| arena(plan, bits, &members, mode)).collect() }
     }
 
+    /// Name of an arena among those of `technique`.
+    pub fn arena_name(&self, technique: &str, index: usize) -> String {
+        if index == 0 { format!("{technique}.shared") } else { format!("{technique}.shared.{index}") }
+    }
+
     /// The part of a resource, and which arena it is of; None where its bytes are its own.
     pub fn part(&self, resource: usize) -> Option<(usize, &Part)> {
         self.arenas.iter().enumerate().find_map(|(index, arena)| {

@@ -79,6 +79,20 @@ impl TexelLevels {
     }
 }
 
+/// What of a scene's textures rays read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reads {
+    pub levels: TexelLevels,
+    /// Occlusion maps too: where no ray finds what they stand for.
+    pub occlusion: bool,
+}
+
+impl Reads {
+    fn slots(self) -> impl Iterator<Item = TextureSlot> {
+        TextureSlot::ALL.into_iter().filter(move |slot| self.occlusion || *slot != TextureSlot::Occlusion)
+    }
+}
+
 /// Where the first texel of a picture lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
@@ -103,18 +117,14 @@ pub struct Layout {
     places: Vec<Option<Place>>,
     /// Texels of each buffer.
     texel_counts: Vec<u64>,
-    levels: TexelLevels,
+    reads: Reads,
 }
 
-/// Textures that rays read: occlusion is found by rays.
-const SLOTS: [TextureSlot; 4] =
-    [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Normal, TextureSlot::Emissive];
-
 impl Layout {
-    /// `rays`: nodes are of `bvh`. `levels`: of textures. `most_bytes`: what a device binds of a buffer at once.
+    /// `rays`: nodes are of `bvh`. `reads`: of textures. `most_bytes`: what a device binds of a buffer at once.
     ///
     /// Errors: the textures are more than the shader's buffers hold (exit code 4); structures of what moves (2).
-    pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, levels: TexelLevels, most_bytes: u64) -> Result<Self> {
+    pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, reads: Reads, most_bytes: u64) -> Result<Self> {
         if matches!(rays, Rays::Query { .. }) && !bvh.closing.is_empty() {
             return Err(Error::request(format!(
                 "--rays query: {} moves while its --shutter is open, and what ray queries go through stands still",
@@ -125,14 +135,14 @@ impl Layout {
         let mut places = vec![None; scene.images.len()];
         let mut texel_counts = Vec::new();
         let most_texels = (most_bytes / 4).min(u64::from(u32::MAX));
-        for texture in scene.drawn_materials().flat_map(|material| SLOTS.map(|slot| material.texture(slot))) {
+        for texture in scene.drawn_materials().flat_map(|material| reads.slots().map(|slot| material.texture(slot))) {
             let Some(index) = texture.map(|texture| scene.textures[texture].image) else { continue };
             if places[index].is_some() {
                 continue;
             }
             let extent = limited(&scene.images[index], scene.texture_limit_px);
             let all = mipmaps::level_count(extent.width, extent.height);
-            let count = mipmaps::texel_count(extent.width, extent.height, levels.of(0, all));
+            let count = mipmaps::texel_count(extent.width, extent.height, reads.levels.of(0, all));
             let fits = |used: &u64| used + count <= most_texels;
             let buffer = texel_counts.iter().position(fits).unwrap_or(texel_counts.len());
             if buffer == TEXEL_BUFFERS || count > most_texels {
@@ -164,7 +174,7 @@ impl Layout {
             rays,
             places,
             texel_counts,
-            levels,
+            reads,
         })
     }
 
@@ -216,14 +226,15 @@ impl Layout {
         }
     }
 
-    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, TEXTURE_CONE, MOVES.
-    pub fn constants(&self) -> [(&'static str, u32); 6] {
+    /// HAS_TEXTURES, HAS_TANGENTS, HAS_EXTENDED, TEXEL_BUFFERS, TEXTURE_CONE, HAS_OCCLUSION, MOVES.
+    pub fn constants(&self) -> [(&'static str, u32); 7] {
         [
             ("HAS_TEXTURES", u32::from(!self.texel_counts.is_empty())),
             ("HAS_TANGENTS", u32::from(self.has_tangents)),
             ("HAS_EXTENDED", u32::from(self.has_extended)),
             ("TEXEL_BUFFERS", self.texel_counts.len().max(1) as u32),
-            ("TEXTURE_CONE", u32::from(self.levels == TexelLevels::Cone)),
+            ("TEXTURE_CONE", u32::from(self.reads.levels == TexelLevels::Cone)),
+            ("HAS_OCCLUSION", u32::from(self.reads.occlusion)),
             ("MOVES", u32::from(self.is_moving)),
         ]
     }
@@ -265,6 +276,7 @@ impl Layout {
             metallic_roughness: self.texels(scene, material, TextureSlot::MetallicRoughness),
             normal: self.texels(scene, material, TextureSlot::Normal),
             emissive: self.texels(scene, material, TextureSlot::Emissive),
+            occlusion: self.texels(scene, material, TextureSlot::Occlusion),
             emitter_density: emitter_density(material),
             alpha: match material.alpha {
                 AlphaMode::Opaque => ALPHA_OPAQUE,
@@ -288,7 +300,7 @@ impl Layout {
                 .map_or(ColorSpace::Linear, |texture| texture.color_space);
             let levels = [(image.width, image.height), (place.width_px, place.height_px)]
                 .map(|(width, height)| mipmaps::level_count(width, height));
-            let written = self.levels.of(levels[0] - levels[1], levels[0]);
+            let written = self.reads.levels.of(levels[0] - levels[1], levels[0]);
             let start = 4 * place.first as usize;
             let bytes = 4 * mipmaps::texel_count(image.width, image.height, written.clone()) as usize;
             mipmaps::write(image, color_space, written, &mut words[start..start + bytes]);

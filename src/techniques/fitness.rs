@@ -2,10 +2,10 @@
 //! every value of every setting.
 
 use super::Technique;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::{Caps, Need};
 use crate::job::settings_of;
-use crate::settings::{Kind, Values};
+use crate::settings::{Kind, Values, WORKGROUP};
 
 /// What a technique lacks on a device, and how far its settings go.
 #[derive(Clone, Debug)]
@@ -18,12 +18,36 @@ pub struct Fitness {
     pub bounds: Vec<(&'static str, String)>,
 }
 
-/// Errors: the device cannot do what the settings ask for (exit code 3). `has_blend`: the scene has BLEND surfaces.
+/// Errors: the device cannot do what the settings ask for (exit code 3), or has no workgroups of their shape (2). `has_blend`:
+/// the scene has BLEND surfaces.
 pub fn require(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Result<()> {
+    if reads_workgroup(technique) {
+        require_workgroup(values.pair(WORKGROUP.key), caps).map_err(|error| error.within(technique.name()))?;
+    }
     match unmet(technique, values, caps, has_blend).first() {
         Some(need) => Err(need.refusal(caps).within(technique.name())),
         None => Ok(()),
     }
+}
+
+fn reads_workgroup(technique: &dyn Technique) -> bool {
+    technique.settings().iter().copied().flatten().any(|setting| setting.key == WORKGROUP.key)
+}
+
+/// Errors: the device's workgroups are smaller (exit code 2).
+fn require_workgroup([x, y]: [u32; 2], caps: &Caps) -> Result<()> {
+    let (most, [x_most, y_most, _]) = (caps.limits.max_workgroup_invocations, caps.limits.max_workgroup_size);
+    if x <= x_most && y <= y_most && x * y <= most {
+        return Ok(());
+    }
+    let (device, driver, count) = (&caps.identity.name, caps.identity.driver_text(), x * y);
+    let fitting_x = x.min(x_most).min(most);
+    let fitting_y = y.min(y_most).min(most / fitting_x);
+    Err(Error::request(format!(
+        "--workgroup {x}x{y}: {count} invocations; {device} on {driver} has workgroups of at most {most} \
+         (maxComputeWorkGroupInvocations), {x_most} by {y_most} at most (maxComputeWorkGroupSize)"
+    ))
+    .note(format!("--workgroup {fitting_x}x{fitting_y} fits")))
 }
 
 fn unmet(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
@@ -53,10 +77,11 @@ pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
     }
     leave_out(unmet(technique, &defaults, caps, true));
     let limits = &caps.limits;
-    let mut bounds = vec![
-        ("--size", format!("{} px a side", limits.max_image_side_px)),
-        ("--workgroup", format!("{} invocations", limits.max_workgroup_invocations)),
-    ];
+    let mut bounds = vec![("--size", format!("{} px a side", limits.max_image_side_px))];
+    if reads_workgroup(technique) {
+        let [x, y, _] = limits.max_workgroup_size;
+        bounds.push(("--workgroup", format!("{} invocations, {x} by {y} at most", limits.max_workgroup_invocations)));
+    }
     bounds.extend(technique.bounds(caps));
     Fitness { stopped_by, left_out, bounds }
 }
@@ -128,6 +153,52 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// What limits say is refused, by name and with a shape that fits, and all below is not: by every technique that has the setting.
+    #[test]
+    fn workgroups_that_the_device_does_not_have_are_refused_by_their_flag() {
+        let limited = |most: u32, size: [u32; 3]| {
+            device(|caps| {
+                caps.limits.max_workgroup_invocations = most;
+                caps.limits.max_workgroup_size = size;
+            })
+        };
+        let mut readers = 0;
+        for technique in ALL {
+            let settings = settings_of(*technique);
+            let has_bound = |caps: &Caps| fitness(*technique, caps).bounds.iter().any(|(of, _)| *of == "--workgroup");
+            let Some(workgroup) = settings.iter().find(|setting| setting.key == "workgroup") else {
+                assert!(!has_bound(&device(|_| {})), "{} has no --workgroup", technique.name());
+                continue;
+            };
+            readers += 1;
+            for (caps, shape, fits) in [
+                (limited(1024, [1024, 1024, 64]), "256x4", None),
+                (limited(1024, [1024, 1024, 64]), "256x256", Some("--workgroup 256x4 fits")),
+                (limited(1024, [1024, 1024, 64]), "33x32", Some("--workgroup 33x31 fits")),
+                (limited(1024, [128, 128, 64]), "256x1", Some("--workgroup 128x1 fits")),
+                (limited(128, [128, 128, 64]), "1x129", Some("--workgroup 1x128 fits")),
+                (limited(128, [128, 64, 64]), "1x128", Some("--workgroup 1x64 fits")),
+                (limited(128, [128, 128, 64]), "128x1", None),
+            ] {
+                assert!(has_bound(&caps));
+                let mut values = Values::defaults(&settings);
+                values.set(workgroup, shape).unwrap();
+                let refused = require(*technique, &values, &caps, false);
+                assert_eq!(refused.is_err(), fits.is_some(), "{} --workgroup {shape}: {refused:?}", technique.name());
+                let (Err(error), Some(fits)) = (refused, fits) else { continue };
+                let most = caps.limits.max_workgroup_invocations.to_string();
+                let text = error.to_string();
+                for words in [&format!("{}: --workgroup {shape}: ", technique.name()), fits, &most] {
+                    assert!(text.contains(words), "{text} does not say {words}");
+                }
+                assert_eq!(error.exit_code(), 2);
+                values.set(workgroup, fits.split(' ').nth(1).unwrap()).unwrap();
+                require(*technique, &values, &caps, false).unwrap();
+            }
+        }
+        assert!(readers > 1);
     }
 
     #[test]

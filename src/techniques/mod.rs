@@ -4,6 +4,7 @@
 //! does the host's part, `Prepared::build` makes pipelines and takes the planned resources, and `Frame::record` writes
 //! the commands of one frame, in the order of the paper's overview figure.
 
+pub mod bindable;
 mod closing;
 pub mod deep_shading;
 pub mod deferred;
@@ -12,6 +13,7 @@ pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
 pub mod path_traced;
+pub mod stages;
 
 use crate::bvh::LazyBvh;
 use crate::error::{Error, Result};
@@ -84,6 +86,19 @@ pub trait Technique: Sync {
 
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
+
+    /// Those that these settings leave out, each with the reason, which names the setting.
+    ///
+    /// Errors: as `plan`.
+    fn stages_left_out(&self, _: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        Ok(Vec::new())
+    }
+
+    /// Settings with values, each of which has shorter buffers, or none, where others have long ones: what is tried for advice
+    /// where a device does not bind a buffer at once.
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
 
     /// What these settings need of a device beyond Vulkan 1.3, met or not. `caps`: `auto` may depend on them. `has_blend`:
     /// the scene has BLEND surfaces. Settings that contradict each other need nothing: `plan` refuses them.
@@ -202,9 +217,9 @@ pub trait Frame {
         Ok(BTreeMap::new())
     }
 
-    /// One intermediate result, read back after a frame.
+    /// One intermediate result, read back after a frame; none that `Technique::stages_left_out` names.
     ///
-    /// Errors: the settings leave its pass out (exit code 2).
+    /// Errors: memory for the copy (exit code 4).
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>;
 }
 
@@ -250,9 +265,4 @@ fn light_visibility(values: &Values, lights: &LightSet, by_volumes: usize) -> Re
                 .note("--direct-shadow ray and none have a reference"))
         }
     }
-}
-
-/// An AOV that the settings leave out.
-fn left_out(technique: &str, aov: &str, why: &str) -> Error {
-    Error::request(format!("--aov {aov}: {technique} does not make it: {why}"))
 }

@@ -26,6 +26,8 @@ layout(constant_id = 9) const uint WALK_LANDINGS = 0;
 layout(constant_id = 10) const uint MEDIUM = 0;
 // 1: rays leave all over a lens, or from beside the camera.
 layout(constant_id = 11) const uint HAS_LENS = 0;
+// 0: ambient light is added to the surface that is seen, and nothing else comes from around the scene.
+layout(constant_id = 12) const uint AMBIENT_VISIBILITY = 1;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.

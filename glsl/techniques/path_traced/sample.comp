@@ -91,10 +91,17 @@ Path camera_path(vec2 at_px) {
     return path;
 }
 
+// Radiance from around the scene on a ray that leaves it.
+vec3 around_scene(uint bounce) {
+    if (bounce == 0u) {
+        return frame.background.rgb;
+    }
+    return AMBIENT_VISIBILITY != 0u ? frame.background.rgb + frame.ambient.rgb : vec3(0.0);
+}
+
 // What a path may still find by scattering once more: a last scattering leads to what shines by itself alone.
 bool finds_more(Path path) {
-    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u
-        || largest(frame.background.rgb + frame.ambient.rgb) > 0.0;
+    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u || largest(around_scene(path.bounce + 1u)) > 0.0;
 }
 
 // Width of the path's cone at a distance from its origin.
@@ -224,8 +231,7 @@ vec3 radiance_along(vec2 at_px) {
         if (is_in_medium) {
             scatter_in_medium(path, place);
         } else if (!hit.is_hit) {
-            vec3 around_all = path.bounce == 0u ? frame.background.rgb : frame.background.rgb + frame.ambient.rgb;
-            radiance += path.throughput * around_all;
+            radiance += path.throughput * around_scene(path.bounce);
             path.goes_on = false;
         } else {
             SurfacePoint point = surface_point(hit.triangle, hit.barycentric, path.direction, cone_width_at(path, hit.distance));
@@ -235,6 +241,10 @@ vec3 radiance_along(vec2 at_px) {
                 path.goes_on = !point.is_unlit && path.bounce < BOUNCES;
             }
             if (path.goes_on) {
+                if (AMBIENT_VISIBILITY == 0u && path.bounce == 0u) {
+                    vec3 reflected = ambient_reflectance(BRDF_KIND, point.surface) * frame.ambient.rgb;
+                    radiance += path.throughput * reflected * point.openness;
+                }
                 vec3 to_eye = -path.direction;
                 light = punctual_light(point, to_eye);
                 panel = IS_WALKED != 0u ? NOTHING : emitter(point, to_eye);

@@ -30,6 +30,7 @@ pub fn command() -> Command {
                 .help("The file, written whole or not at all"),
         )
         .arg(super::seed_argument())
+        .arg(cli::quiet_flag())
 }
 
 /// Writes the file and prints what it holds.
@@ -48,5 +49,6 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     })?;
     let bytes = glb::encode(&scene, &motions).map_err(|error| error.within(spec))?;
     write_whole(path, |out| out.write_all(&bytes))?;
-    cli::print(&format!("{}: {}, {} triangles\n", path.display(), Bytes(bytes.len() as u64), scene.triangle_count()))
+    let (bytes, triangles) = (Bytes(bytes.len() as u64), scene.triangle_count());
+    cli::print_text(matches, &format!("{}: {bytes}, {triangles} triangles\n", path.display()))
 }

@@ -23,6 +23,7 @@ pub fn command() -> Command {
         )
         .arg(super::seed_argument())
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
+        .arg(cli::quiet_flag())
 }
 
 /// Prints the inventory.
@@ -36,7 +37,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     }
     let mut text = String::new();
     describe(&mut text, &scene, facts.as_ref()).expect("writing to a string");
-    cli::print(&text)
+    cli::print_text(matches, &text)
 }
 
 fn document(scene: &Scene, facts: Option<&Facts>) -> Value {

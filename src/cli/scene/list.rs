@@ -1,17 +1,18 @@
 //! `quincunx scene list`: the scenes that the program makes itself.
 
+use crate::cli;
 use crate::error::Result;
 use crate::scene::procedural::{self, Choice, Parameter};
-use clap::Command;
+use clap::{ArgMatches, Command};
 use std::fmt::Write;
 
 /// The sub-verb.
 pub fn command() -> Command {
-    Command::new("list").about("List the built-in scenes with their parameters")
+    Command::new("list").about("List the built-in scenes with their parameters").arg(cli::quiet_flag())
 }
 
 /// Prints the list.
-pub fn run() -> Result<()> {
+pub fn run(matches: &ArgMatches) -> Result<()> {
     let mut text = String::new();
     for scene in procedural::ALL {
         writeln!(text, "{:<8} {}", scene.name, scene.description).expect("writing to a string");
@@ -22,5 +23,5 @@ pub fn run() -> Result<()> {
                 .expect("writing to a string");
         }
     }
-    crate::cli::print(&text)
+    cli::print_text(matches, &text)
 }

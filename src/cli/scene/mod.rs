@@ -19,7 +19,7 @@ pub fn command() -> Command {
 /// Runs the sub-verb.
 pub fn run(matches: &ArgMatches) -> Result<()> {
     match matches.subcommand() {
-        Some(("list", _)) => list::run(),
+        Some(("list", matches)) => list::run(matches),
         Some(("inspect", matches)) => inspect::run(matches),
         Some(("export", matches)) => export::run(matches),
         _ => unreachable!("clap requires one of them"),

@@ -6,7 +6,7 @@ use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
 use super::counters::Counted;
 use super::indirect;
-use super::plan::{COLOR, COUNTERS, SPIDS};
+use super::plan::{COLOR, COUNTERS, LENGTHS, SPIDS};
 use super::primitives::{self, Primitives};
 use super::reach::Reach;
 use super::reconstruct::Reconstruct;
@@ -22,11 +22,34 @@ use crate::passes::accumulate::Accumulate;
 use crate::plan::Resources;
 use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{DrawList, SceneGpu};
-use crate::techniques::{Frame, Inputs, left_out};
+use crate::techniques::{Frame, Inputs};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub const AOVS: &[&str] = &["count.lengths", SPIDS, stereo::RIGHT];
+pub const AOVS: &[&str] = &[LENGTHS, SPIDS, stereo::RIGHT];
+
+/// Those that the settings leave out, with the reason.
+pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
+    let is_apart = matches!(choices.shading, Shading::Deep | Shading::IndirectGbuffer);
+    let mut left_out = Vec::new();
+    let mut leave_out = |stage, why: &str| left_out.push((stage, why.to_owned()));
+    if !is_apart {
+        let why = "samples of this --shading have colours and nothing else; --shading deep makes it";
+        leave_out(LENGTHS, why);
+        leave_out(SPIDS, why);
+    } else {
+        if !(choices.has_lists && choices.is_counted) {
+            leave_out(LENGTHS, "lists are counted with --shading deep, --lists linked or direct, and --instrument on");
+        }
+        if choices.is_direct {
+            leave_out(SPIDS, "--lists direct has no SPIDs; --lists linked makes them");
+        }
+    }
+    if !choices.has_right_eye() {
+        leave_out(stereo::RIGHT, "two eyes see with --stereo above 0 and --stereo-eyes both");
+    }
+    left_out
+}
 
 /// From the scene to samples that have colours.
 enum Shader {
@@ -216,20 +239,15 @@ impl Frame for DeepFrame {
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        const REFUSED: &str = "a stage that the settings leave out is refused";
         if name == stereo::RIGHT {
-            let why = "two eyes see with --stereo above 0 and --stereo-eyes both";
-            return self.right.as_ref().ok_or_else(|| left_out(NAME, name, why))?.stage(gpu);
+            return self.right.as_ref().expect(REFUSED).stage(gpu);
         }
-        let Some(apart) = self.apart() else {
-            return Err(left_out(NAME, name, "samples of a baseline (--shading) have colours and nothing else"));
-        };
+        let apart = self.apart().expect(REFUSED);
         if name == SPIDS {
-            let samples = apart.samples().ok_or_else(|| left_out(NAME, name, "--lists direct has no SPIDs"))?;
-            return self.first_primitives(gpu, samples);
+            return self.first_primitives(gpu, apart.samples().expect(REFUSED));
         }
-        let Some(count) = apart.count() else {
-            return Err(left_out(NAME, name, "lists are counted with --lists linked and --instrument on"));
-        };
+        let count = apart.count().expect(REFUSED);
         let bytes = readback::buffer(gpu, &count.lengths, count.lengths.bytes, Access::ComputeWrite)?;
         let lengths: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         Ok(self.of_pixels(name, |at| lengths[self.choices.space.index_under(at)]))

@@ -137,6 +137,14 @@ impl Technique for DeepShading {
         frame::AOVS
     }
 
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        Ok(frame::left_out(&Choices::new(inputs)?))
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("list-access", "auto"), ("direct-shadow", "none")]
+    }
+
     fn needs(&self, values: &Values, caps: &Caps, _: bool) -> Vec<Need> {
         let need = |of: &str, ability, instead| Need { of: of.to_owned(), ability, instead };
         let mut needs = vec![
@@ -189,6 +197,7 @@ impl Technique for DeepShading {
             ("transport", "direct".to_owned()),
             ("light-visibility", light_visibility(values, lights, 0)?),
             ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
         ])
     }
 

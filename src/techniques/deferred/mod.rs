@@ -5,7 +5,7 @@
 
 pub mod shade;
 
-use super::{Frame, Inputs, Prepared, Technique, left_out, light_visibility};
+use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
@@ -50,6 +50,10 @@ impl Technique for Deferred {
         gbuffer::AOVS
     }
 
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("cull", "none"), ("direct-shadow", "none")]
+    }
+
     fn needs(&self, _: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
         [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect()
     }
@@ -64,6 +68,7 @@ impl Technique for Deferred {
             ("transport", "direct".to_owned()),
             ("light-visibility", light_visibility(values, lights, 0)?),
             ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
         ])
     }
 
@@ -229,6 +234,6 @@ impl Frame for DeferredFrame {
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        self.gbuffer.aov(gpu, name).unwrap_or_else(|| Err(left_out(NAME, name, "no pass of it has that name")))
+        self.gbuffer.aov(gpu, name).unwrap_or_else(|| unreachable!("{NAME} has no stage {name}"))
     }
 }

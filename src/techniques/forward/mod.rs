@@ -23,7 +23,7 @@ pub mod material;
 mod plan;
 mod settings;
 
-use super::{Frame, Inputs, Prepared, Technique, left_out, light_visibility};
+use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Ability, Access, Bound, Buffer, Caps, Commands, Gpu, Image, Need, readback, upload};
@@ -47,6 +47,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 const NAME: &str = "forward";
+const DEPTH_STAGE: &str = "depth.reversed";
 
 pub struct Forward;
 
@@ -133,7 +134,17 @@ impl Technique for Forward {
     }
 
     fn aovs(&self) -> &'static [&'static str] {
-        &["depth.reversed"]
+        &[DEPTH_STAGE]
+    }
+
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        let samples = resolve::samples(inputs.values);
+        let why = format!("with --msaa {samples} a pixel has several depths; --msaa 1 makes it");
+        Ok(Vec::from_iter((samples > 1).then_some((DEPTH_STAGE, why))))
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("light-lists", "none"), ("direct-shadow", "none")]
     }
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
@@ -152,6 +163,7 @@ impl Technique for Forward {
             ("transport", "direct".to_owned()),
             ("light-visibility", light_visibility(values, lights, 0)?),
             ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
         ])
     }
 
@@ -359,9 +371,6 @@ impl Frame for ForwardFrame {
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
         let depth = &self.targets.depth;
-        if depth.description.samples > 1 {
-            return Err(left_out(NAME, name, "with --msaa a pixel has several depths"));
-        }
         let last = depth_prepass::access(self.depth.is_some() || self.blend.is_some());
         let depths = bytemuck::pod_collect_to_vec(&readback::image(gpu, depth, last)?);
         Ok(Aov { name: name.to_owned(), channels: AovChannels::Y(depths) })

@@ -7,23 +7,32 @@ use super::{NAME, motion};
 use crate::error::Result;
 use crate::gpu::{Access, Gpu, readback};
 use crate::report::image_file::{Aov, AovChannels};
-use crate::techniques::{Frame, left_out};
+use crate::settings::Values;
+use crate::techniques::Frame;
 use crate::units::Extent;
 use std::sync::Arc;
+
+const MOTION: &str = "geometry.motion";
 
 /// Names that `--aov` takes.
 pub const AOVS: &[&str] = &[
     "geometry.normal",
     "geometry.dsf.id",
     "geometry.dsf.depth",
-    "geometry.motion",
+    MOTION,
     "light.l_buffer.irradiance",
     "light.l_buffer.highlight",
 ];
 
-/// Reads `name` back.
+/// Those that the settings leave out.
+pub fn left_out(values: &Values) -> Vec<(&'static str, String)> {
+    let why = "--motion-vectors off has no earlier moment; --motion-vectors on makes it";
+    Vec::from_iter((!values.is_on("motion-vectors")).then(|| (MOTION, why.to_owned())))
+}
+
+/// Reads `name` back, which the settings make.
 ///
-/// Errors: the settings leave its pass out (exit code 2).
+/// Errors: memory for the copy (exit code 4).
 pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
     let geometry = &frame.geometry;
     let last = Access::FragmentSample;
@@ -44,10 +53,8 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
             AovChannels::Y(spread(frame, &words(&bytes).map(depth).collect::<Vec<_>>()))
         }
         // Texels of the light buffer, right and down; 0 where no surface is.
-        "geometry.motion" => {
-            let Some(image) = &geometry.motion else {
-                return Err(left_out(NAME, name, "--motion-vectors on makes it"));
-            };
+        MOTION => {
+            let image = geometry.motion.as_ref().expect("a stage that the settings leave out is refused");
             let bytes = readback::image(gpu, image, Access::ColorWrite)?;
             let vectors: Vec<_> = words(&bytes).map(|word| motion::vector_px(word).extend(0.0).to_array()).collect();
             AovChannels::Rgb(spread(frame, &vectors))
@@ -60,7 +67,7 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
             let texels = l_buffer(frame, gpu)?;
             AovChannels::Y(spread(frame, &texels.iter().map(|[.., a]| *a).collect::<Vec<_>>()))
         }
-        _ => return Err(left_out(NAME, name, "no pass of it has that name")),
+        _ => unreachable!("{NAME} has no stage {name}"),
     };
     Ok(Aov { name: name.to_owned(), channels })
 }

@@ -80,6 +80,14 @@ impl Technique for InferredLighting {
         aov::AOVS
     }
 
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        Ok(aov::left_out(inputs.values))
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("direct-shadow", "none")]
+    }
+
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
         let of = "the geometry pass".to_owned();
         let mut needs = vec![Need { of, ability: Ability::FloatDepth, instead: "" }];
@@ -131,6 +139,7 @@ impl Technique for InferredLighting {
             ("transport", "direct".to_owned()),
             ("light-visibility", light_visibility(values, lights, by_volumes)?),
             ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
         ])
     }
 

@@ -1,67 +1,94 @@
 //! The stages of the paper's figure 3, read back after a frame.
 
+use super::NAME;
+use super::choices::{Choices, Filter};
 use super::frame::InterleavedFrame;
 use super::roads::Roads;
 use super::sub_buffers::{Stage, Texels};
-use super::{AOVS, NAME};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
 use crate::report::image_file::{Aov, AovChannels};
-use crate::techniques::left_out;
+use crate::settings::Values;
 use std::sync::Arc;
 
-/// Reads `name` back.
+const SPLIT: &str = "split.normal";
+const SHADED: &str = "shade.irradiance";
+const GATHERED: &str = "gather.irradiance";
+const FLAGS: &str = "discontinuity.flags";
+const FILTERED: &str = "filter.irradiance";
+
+/// Names that `--aov` takes.
+pub const AOVS: &[&str] = &["gbuffer.normal", "gbuffer.color", SPLIT, SHADED, GATHERED, FLAGS, FILTERED];
+
+/// Those that the settings leave out, with the reason.
+pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String)> {
+    let mut left_out = Vec::new();
+    let split = values.text("split");
+    if choices.road.copies().is_none() {
+        for stage in [SPLIT, GATHERED] {
+            left_out.push((
+                stage,
+                format!("--split {split} copies nothing; one-pass, two-pass, tile, layered and fragment do"),
+            ));
+        }
+    } else if choices.gather_filters() {
+        left_out.push((GATHERED, "with --fuse on the gather filters what it reads; --fuse off makes it".to_owned()));
+    }
+    if choices.filter == Filter::None {
+        let why = match choices.road.sums_all() {
+            true => format!("with --split {split} all lights are summed, and nothing is filtered"),
+            false if choices.subset_count() == 1 => {
+                "with --pattern 1x1 all lights are summed, and nothing is filtered".to_owned()
+            }
+            false => "--filter none leaves it out; gauss and gauss-fast make it".to_owned(),
+        };
+        left_out.extend([FLAGS, FILTERED].map(|stage| (stage, why.clone())));
+    } else if choices.fused {
+        left_out.push((FILTERED, "with --fuse on the composite ends the filter; --fuse off makes it".to_owned()));
+    }
+    left_out
+}
+
+/// Reads `name` back, which the settings make.
 ///
-/// Errors: the settings leave its pass out (exit code 2).
+/// Errors: memory for the copy (exit code 4).
 pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
     if let Some(aov) = frame.gbuffer.aov(gpu, name) {
         return aov;
     }
-    let why_no_split = "of the roads of --split only one-pass, two-pass, tile, layered and fragment copy";
-    let why_no_filter = "--filter none, --split none, --split subsample and a pattern of 1x1 leave it out";
+    let filter = || frame.filter.as_ref().expect("a stage that the settings leave out is refused");
     let rgb = |values: Vec<[f32; 3]>| Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(values) });
     match (name, &frame.roads) {
-        ("split.normal", Roads::SubBuffers(road)) => {
+        (SPLIT, Roads::SubBuffers(road)) => {
             let last = road.copies.storage.read(Stage::Compute);
             rgb(side_by_side(frame, gpu, &road.surface.normal, last, decode::normal)?)
         }
-        ("shade.irradiance", Roads::SubBuffers(road)) => {
+        (SHADED, Roads::SubBuffers(road)) => {
             let last = road.copies.storage.read(road.copies.stage());
             rgb(side_by_side(frame, gpu, &road.shaded, last, decode::halves)?)
         }
-        ("shade.irradiance", Roads::Subsample { cells: shaded, .. }) => {
+        (SHADED, Roads::Subsample { cells: shaded, .. }) => {
             let texels = texels(gpu, shaded, decode::halves)?;
             rgb(cells(frame, &texels))
         }
         (
-            "shade.irradiance",
+            SHADED,
             Roads::Branch { irradiance, .. } | Roads::Strided { irradiance, .. } | Roads::Masked { irradiance, .. },
         ) => rgb(in_frame_order(frame, gpu, irradiance)?),
-        ("gather.irradiance", Roads::SubBuffers(road)) if road.gather_filters() => {
-            Err(left_out(NAME, name, "with --fuse on the gather filters what it reads; --fuse off"))
+        (GATHERED, Roads::SubBuffers(road)) => rgb(in_frame_order(frame, gpu, &road.gathered)?),
+        (FLAGS, _) => {
+            let flags = &filter().flags;
+            let bytes = readback::buffer(gpu, flags, flags.bytes, Access::ComputeRead)?;
+            let flags =
+                rows(frame, bytes.chunks_exact(4).map(|flag| u32::from_le_bytes([flag[0], flag[1], flag[2], flag[3]])));
+            Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(flags) })
         }
-        ("gather.irradiance", Roads::SubBuffers(road)) => rgb(in_frame_order(frame, gpu, &road.gathered)?),
-        ("discontinuity.flags", _) => match &frame.filter {
-            Some(filter) => {
-                let bytes = readback::buffer(gpu, &filter.flags, filter.flags.bytes, Access::ComputeRead)?;
-                let flags = rows(
-                    frame,
-                    bytes.chunks_exact(4).map(|flag| u32::from_le_bytes([flag[0], flag[1], flag[2], flag[3]])),
-                );
-                Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(flags) })
-            }
-            None => Err(left_out(NAME, name, why_no_filter)),
-        },
-        ("filter.irradiance", _) => match &frame.filter {
-            Some(filter) => match filter.irradiance() {
-                Some(irradiance) => rgb(in_frame_order(frame, gpu, irradiance)?),
-                None => Err(left_out(NAME, name, "with --fuse on the composite ends the filter; --fuse off")),
-            },
-            None => Err(left_out(NAME, name, why_no_filter)),
-        },
-        ("split.normal" | "gather.irradiance", _) => Err(left_out(NAME, name, why_no_split)),
-        _ => Err(left_out(NAME, name, &format!("it has {}", AOVS.join(", ")))),
+        (FILTERED, _) => {
+            let irradiance = filter().irradiance().expect("with --fuse on it is refused");
+            rgb(in_frame_order(frame, gpu, irradiance)?)
+        }
+        _ => unreachable!("{NAME} has no stage {name} on this road"),
     }
 }
 

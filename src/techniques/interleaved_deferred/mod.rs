@@ -68,17 +68,6 @@ use std::time::Instant;
 
 const NAME: &str = "interleaved_deferred";
 
-/// The stages of figure 3.
-const AOVS: &[&str] = &[
-    "gbuffer.normal",
-    "gbuffer.color",
-    "split.normal",
-    "shade.irradiance",
-    "gather.irradiance",
-    "discontinuity.flags",
-    "filter.irradiance",
-];
-
 pub struct InterleavedDeferred;
 
 impl Technique for InterleavedDeferred {
@@ -103,7 +92,15 @@ impl Technique for InterleavedDeferred {
     }
 
     fn aovs(&self) -> &'static [&'static str] {
-        AOVS
+        aov::AOVS
+    }
+
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
+        Ok(aov::left_out(&Choices::new(inputs)?, inputs.values))
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("storage", "image"), ("position", "unorm16"), ("cull", "none"), ("direct-shadow", "none")]
     }
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
@@ -120,8 +117,11 @@ impl Technique for InterleavedDeferred {
 
     /// Direct light, and what as many bounces as light walks have bring, unshadowed (SNSM) and clamped.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        let mut settings =
-            vec![("light-visibility", light_visibility(values, lights, 0)?), ("vpl-visibility", "off".to_owned())];
+        let mut settings = vec![
+            ("light-visibility", light_visibility(values, lights, 0)?),
+            ("vpl-visibility", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
+        ];
         match values.integer("vpl-bounces") {
             1 => settings.push(("transport", "one-bounce".to_owned())),
             // The surface that is seen scatters too.

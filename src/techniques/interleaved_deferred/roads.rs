@@ -43,13 +43,6 @@ pub struct SubBuffers {
     pub gathered: Buffer,
 }
 
-impl SubBuffers {
-    /// Whether `gathered` is filtered along the rows already.
-    pub fn gather_filters(&self) -> bool {
-        matches!(self.gather, Gather::Filtered(_))
-    }
-}
-
 /// What a road leaves.
 pub struct Lit<'a> {
     /// In frame order.

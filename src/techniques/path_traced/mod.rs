@@ -12,14 +12,15 @@
 //! - punctual lights and materials: as the others do (glsl/shading/light.glsl, brdf.glsl, glTF's window included)
 //! - emissive triangles: seen always; they light others with `--emissive`
 //! - rays that leave the scene: those from the camera find `--background`, those from surfaces `--background` and
-//!   `--ambient` together. What the others add to every surface as ambient light comes from outside here, and is shadowed
+//!   `--ambient` together. What the others add to every surface as ambient light comes from outside here, and is shadowed;
+//!   with `--ambient-visibility off` it is added to the surface that is seen, as the others do, and nothing comes from outside
 //! - backs of single-sided surfaces: not there for the camera, as the others draw them; for all other rays black walls, as
 //!   for the shadow rays and light walks of the others
 //! - MASK surfaces have their holes for every ray, BLEND surfaces stop the part of all rays that alpha says (the others'
 //!   shadow rays take the first for solid and the second for nothing)
 //! - `--rays`: rays go through this program's tree or, by ray queries, through a structure that the driver builds over the
 //!   same triangles; the two pictures differ where a ray grazes an edge or meets two triangles at one distance
-//! - occlusion maps: not read, because rays find what they stand for
+//! - occlusion maps: not read, because rays find what they stand for; with `--ambient-visibility off` none does, and they are
 //! - unlit surfaces: seen in their colour, black for all other rays
 //! - textures: `--texture-level cone` reads the level that a cone through the pixel asks for, by the triangle's constant of
 //!   Akenine-Moeller et al. (2019, Texture level of detail strategies for real-time ray tracing). From a surface on the cone
@@ -41,7 +42,7 @@ pub mod sample;
 pub mod settings;
 
 use super::closing::Closing;
-use super::{Frame, Inputs, Prepared, Sums, Technique, left_out};
+use super::{Frame, Inputs, Prepared, Sums, Technique};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
 use crate::error::Result;
@@ -54,12 +55,13 @@ use crate::passes::direct;
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::resident::traced::{Layout, Rays, TexelLevels};
+use crate::resident::traced::{Layout, Rays, Reads, TexelLevels};
 use crate::scene::{AlphaMode, Light, Material};
 use crate::settings::{Condition, LENS_CONDITIONS, Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
 use airlight::Air;
 use bytemuck::Zeroable;
+use glam::Vec3;
 use sample::{Choices, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -146,8 +148,11 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
         let walk = Walk::from_values(values);
         Rays::Tree(Nodes::new(bvh, walk, threads, limits).map_err(|error| error.within(NAME))?)
     };
-    let levels = if values.text("texture-level") == "cone" { TexelLevels::Cone } else { TexelLevels::Finest };
-    Layout::new(inputs.scene, bvh, rays, levels, limits.max_storage_buffer_range_bytes)
+    let reads = Reads {
+        levels: if values.text("texture-level") == "cone" { TexelLevels::Cone } else { TexelLevels::Finest },
+        occlusion: !values.is_on("ambient-visibility") && inputs.lights.ambient != Vec3::ZERO,
+    };
+    Layout::new(inputs.scene, bvh, rays, reads, limits.max_storage_buffer_range_bytes)
 }
 
 /// The scene has MASK or BLEND surfaces.
@@ -238,6 +243,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         bounces: if is_walked { 1 } else { bounces },
         roulette: values.text("transport") == "full" && !is_walked,
         light_visibility: values.is_on("light-visibility"),
+        ambient_visibility: values.is_on("ambient-visibility"),
         walk_landings: is_walked.then_some(bounces - 1),
         brdf: Brdf::from_setting(values.text("brdf")) as u32,
         extras: inputs.scene.drawn_materials().any(Material::has_extras),
@@ -354,6 +360,6 @@ impl Frame for PathFrame {
     }
 
     fn aov(&self, _: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        Err(left_out(NAME, name, "it has no stages"))
+        unreachable!("{NAME} has no stage {name}")
     }
 }

@@ -28,6 +28,8 @@ pub struct Choices {
     pub bounces: u32,
     pub roulette: bool,
     pub light_visibility: bool,
+    /// What surrounds the scene lights it as rays find it.
+    pub ambient_visibility: bool,
     /// Light walks instead of paths between surfaces, each with this many landings.
     pub walk_landings: Option<u32>,
     pub brdf: u32,
@@ -76,6 +78,7 @@ impl Sample {
             ("BOUNCES", choices.bounces),
             ("ROULETTE", u32::from(choices.roulette)),
             ("LIGHT_VISIBILITY", u32::from(choices.light_visibility)),
+            ("AMBIENT_VISIBILITY", u32::from(choices.ambient_visibility)),
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
             ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
             ("MEDIUM", choices.air as u32),

@@ -80,6 +80,17 @@ pub const SETTINGS: &[Setting] = &[
                without shadows give, diffuse and with --vpl-clamp, by a light walk of its own for each pixel",
     },
     Setting {
+        key: "ambient-visibility",
+        symbol: "",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        paper: "",
+        help: "--ambient and --background light surfaces from all around: stopped by what stands between, and scattered on; off: each \
+               surface that is seen sends all of --ambient on, which goes no further, and --background is seen and lights nothing, as \
+               in all other techniques",
+    },
+    Setting {
         key: "punctual",
         symbol: "",
         kind: Kind::Choice(&["on", "off"]),

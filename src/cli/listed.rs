@@ -1,0 +1,78 @@
+//! Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the default
+//! one. The other flags are there all the same, so that a technique can say what it does not read.
+
+use super::job_args::DEFAULT_TECHNIQUE;
+use crate::techniques::{self, Technique};
+
+/// What `--technique` takes beside names, for help alone.
+pub const ALL: &str = "all";
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Listed {
+    All,
+    /// By name.
+    Of(Vec<String>),
+}
+
+impl Listed {
+    /// As the command line asks for it. It is read before it is parsed, because a help flag ends the parsing where it stands.
+    pub fn of(argv: &[String]) -> Self {
+        let flag = "--technique";
+        let behind = argv.windows(2).filter(|pair| pair[0] == flag).map(|pair| pair[1].as_str());
+        let joined = argv.iter().filter_map(|argument| argument.strip_prefix(flag)?.strip_prefix('='));
+        let asked: Vec<&str> = behind.chain(joined).collect();
+        if asked.contains(&ALL) {
+            return Self::All;
+        }
+        let known = asked.into_iter().filter(|name| techniques::find(name).is_ok());
+        let names: Vec<String> = known.map(str::to_owned).collect();
+        Self::Of(if names.is_empty() { vec![DEFAULT_TECHNIQUE.to_owned()] } else { names })
+    }
+
+    pub fn has(&self, technique: &dyn Technique) -> bool {
+        match self {
+            Self::All => true,
+            Self::Of(names) => names.iter().any(|name| name == technique.name()),
+        }
+    }
+
+    /// How to see the others.
+    pub fn after_help(&self) -> String {
+        let all: Vec<&str> = techniques::ALL.iter().map(|technique| technique.name()).collect();
+        match self {
+            Self::All => format!("--technique NAME --help lists the settings of one technique: {}", all.join(", ")),
+            Self::Of(names) => {
+                let others: Vec<&str> =
+                    all.into_iter().filter(|name| names.iter().all(|listed| listed != name)).collect();
+                format!(
+                    "Beside the common settings these are those of {}. --technique NAME --help lists those of another ({}), --technique {ALL} --help \
+                     all of them.",
+                    names.join(", "),
+                    others.join(", ")
+                )
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_says_whose_settings_are_listed() {
+        let of = |line: &str| Listed::of(&line.split(' ').map(str::to_owned).collect::<Vec<_>>());
+        let names = |names: &[&str]| Listed::Of(names.iter().map(|name| (*name).to_owned()).collect());
+        for (line, expected) in [
+            ("quincunx render --help", names(&[DEFAULT_TECHNIQUE])),
+            ("quincunx render --technique forward --help", names(&["forward"])),
+            ("quincunx render --help --technique=forward", names(&["forward"])),
+            ("quincunx render --technique forwards -h", names(&[DEFAULT_TECHNIQUE])),
+            ("quincunx render -h --technique", names(&[DEFAULT_TECHNIQUE])),
+            ("quincunx memory --technique forward --technique deferred", names(&["forward", "deferred"])),
+            ("quincunx memory --technique forward --technique all", Listed::All),
+        ] {
+            assert_eq!(of(line), expected, "{line}");
+        }
+    }
+}
