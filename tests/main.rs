@@ -21,6 +21,7 @@ mod depth_prepass;
 mod drivers;
 mod filter;
 mod forward;
+mod gbuffer;
 mod geometry;
 mod gltf;
 mod gltf_allowed;

@@ -8,6 +8,7 @@ pub mod gltf_file;
 pub mod measured;
 pub mod moving;
 pub mod program;
+pub mod seen;
 pub mod watched;
 
 use quincunx::gpu::{Caps, DeviceRequest, Gpu};

@@ -71,6 +71,7 @@ const NAME: &str = "interleaved_deferred";
 const AOVS: &[&str] = &[
     "gbuffer.normal",
     "gbuffer.color",
+    "gbuffer.color.id",
     "split.normal",
     "shade.irradiance",
     "gather.irradiance",
