@@ -57,6 +57,7 @@ mod sobol;
 mod split;
 mod statistics;
 mod study;
+mod subsample;
 mod support;
 mod traced_twins;
 mod traced_walks;

@@ -34,6 +34,8 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
             let texels = texels(gpu, shaded, decode::halves)?;
             rgb(cells(frame, &texels))
         }
+        ("upscale.irradiance", Roads::Subsample { irradiance, .. }) => rgb(in_frame_order(frame, gpu, irradiance)?),
+        ("upscale.irradiance", _) => Err(left_out(NAME, name, "--split subsample alone interpolates")),
         (
             "shade.irradiance",
             Roads::Branch { irradiance, .. } | Roads::Strided { irradiance, .. } | Roads::Masked { irradiance, .. },

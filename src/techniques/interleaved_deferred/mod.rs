@@ -67,13 +67,14 @@ use std::time::Instant;
 
 const NAME: &str = "interleaved_deferred";
 
-/// The stages of figure 3.
+/// The stages of figure 3, and what `--split subsample` interpolates.
 const AOVS: &[&str] = &[
     "gbuffer.normal",
     "gbuffer.color",
     "gbuffer.color.id",
     "split.normal",
     "shade.irradiance",
+    "upscale.irradiance",
     "gather.irradiance",
     "discontinuity.flags",
     "filter.irradiance",
