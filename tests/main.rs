@@ -18,6 +18,7 @@ mod deep_stereo;
 mod deep_texture_space;
 mod deep_visibility;
 mod depth_prepass;
+mod discontinuity;
 mod drivers;
 mod filter;
 mod forward;
