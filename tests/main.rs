@@ -8,6 +8,7 @@ mod cli;
 mod collapse;
 mod compare;
 mod contract;
+mod contract_values;
 mod deep_baselines;
 mod deep_hostile;
 mod deep_looped;
