@@ -145,56 +145,6 @@ fn a_frames_filter_is_its_twin() {
     }
 }
 
-/// Flags by normals alone: a threshold of a kilometre leaves positions out. Bit 0 is +x, bit 1 +y, bit 2 +xy.
-#[test]
-fn flags_stand_where_normals_turn() {
-    let watched = Watched::open("cornell");
-    for extent in [Extent::new(160, 90), Extent::new(97, 53)] {
-        let size = extent.to_string();
-        let own = [("position-threshold", "1000"), ("normal-threshold", "0.1")];
-        let renderer =
-            watched.render_stages(TECHNIQUE, &both(&[("size", size.as_str()), ("vpls", "64")], &own), &STAGES);
-        let normals = watched.rgb(&renderer, "gbuffer.normal");
-        let flags = watched.integers(&renderer, "discontinuity.flags");
-        let normal = |x: u32, y: u32| {
-            let (x, y) = (x.min(extent.width - 1), y.min(extent.height - 1));
-            Vec3::from_array(normals[(y * extent.width + x) as usize])
-        };
-        for y in 0..extent.height {
-            for x in 0..extent.width {
-                let own = normal(x, y);
-                let differs = |other: Vec3| match (own == Vec3::ZERO, other == Vec3::ZERO) {
-                    (false, false) => 1.0 - own.dot(other) > 0.1,
-                    (own, other) => own != other,
-                };
-                let neighbours = [(1, 0), (0, 1), (1, 1)].map(|(dx, dy)| u32::from(differs(normal(x + dx, y + dy))));
-                let expected = neighbours[0] | neighbours[1] << 1 | neighbours[2] << 2;
-                assert_eq!(flags[(y * extent.width + x) as usize], expected, "{extent} ({x}, {y})");
-            }
-        }
-    }
-}
-
-/// The same discontinuities with and without the thresholds at their ends.
-#[test]
-fn thresholds_switch_discontinuities_off() {
-    let watched = Watched::open("cornell");
-    let common = [("size", "97x53"), ("vpls", "64")];
-    let flagged = |changes: &[(&str, &str)]| {
-        let renderer = watched.render_stages(TECHNIQUE, &both(&common, changes), &STAGES);
-        watched.integers(&renderer, "discontinuity.flags").iter().filter(|flag| **flag != 0).count()
-    };
-    let all = flagged(&[]);
-    let normals = flagged(&[("position-threshold", "1000")]);
-    let positions = flagged(&[("normal-threshold", "2")]);
-    let edges = flagged(&[("position-threshold", "1000"), ("normal-threshold", "2")]);
-    // What is left is where the frame shows no surface beside one.
-    assert!(
-        edges < normals && edges < positions && normals <= all && positions <= all,
-        "{all} {normals} {positions} {edges}"
-    );
-}
-
 /// The pass by itself, on irradiance and flags that no scene gives; however many texels a thread filters, the same bits.
 fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2]) -> Vec<[f32; 3]> {
     let plain = run_texels(gpu, frame, kernel, workgroup, 1);

@@ -8,23 +8,65 @@ use crate::support::Feature;
 use crate::support::watched::{Changes, Watched};
 use quincunx::metrics;
 use quincunx::report::image_file::{self, write_srgb8};
-use quincunx::report::tonemap::{Srgb8, ToneMap};
+use quincunx::report::picture::Picture;
+use quincunx::report::tonemap::{Srgb8, ToneMap, linear_from_srgb};
+use quincunx::units::Extent;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Greatest root mean square of the differences of all 8-bit codes. Another CPU rounds sums otherwise: some codes move by
-/// one, and a pixel on an edge may fall to the other side. A quarter of all codes moved by one is 0.5; twelve pixels
-/// turned from black to white are 6. What a person would call another picture is beyond 2.
-const CODES_BOUND: f64 = 1.0;
+/// Most pixels of a hundred that may differ at all, and most of a thousand by more than one code. Drivers compile shaders for
+/// what the CPU has; with AVX2 and without (GALLIUM_OVERRIDE_CPU_CAPS=avx) every golden is the same to the bit, so this is
+/// room for CPUs that nobody has tried: sums that round otherwise move a code by one, and a pixel on an edge or of a shadow
+/// may fall to the other side. What the bounds are to catch is far beyond them: with a weight of the filter as large as its
+/// neighbour's, a third of cornell_interleaved differs and a tenth by more than one code; with ten times the threshold of
+/// positions, 7 % of hall_interleaved and 3 %; with 1.3 times, 3 % and 1 %.
+const MOST_DIFFERING_PERCENT: f64 = 1.0;
+const MOST_FAR_PER_MILLE: f64 = 1.0;
 const MOST_BYTES: u64 = 64 << 10;
 
 fn golden_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/golden").join(format!("{name}.png"))
 }
 
-fn rms_of_codes(actual: &Srgb8, expected: &Srgb8) -> f64 {
-    let codes = actual.as_bytes().iter().zip(expected.as_bytes());
-    let sum: f64 = codes.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
-    (sum / actual.as_bytes().len() as f64).sqrt()
+/// How far two pictures of one size are apart, in 8-bit codes.
+struct Difference {
+    pixel_count: usize,
+    /// Pixels of which some code differs, and by more than one.
+    differing_count: usize,
+    far_count: usize,
+    greatest: u8,
+    mean: f64,
+}
+
+impl Difference {
+    fn of(actual: &Srgb8, expected: &Srgb8) -> Self {
+        let steps: Vec<u8> = actual.as_bytes().iter().zip(expected.as_bytes()).map(|(a, b)| a.abs_diff(*b)).collect();
+        let beyond = |codes: u8| steps.chunks_exact(3).filter(|pixel| pixel.iter().any(|step| *step > codes)).count();
+        Self {
+            pixel_count: steps.len() / 3,
+            differing_count: beyond(0),
+            far_count: beyond(1),
+            greatest: steps.iter().copied().max().unwrap_or(0),
+            mean: steps.iter().map(|step| f64::from(*step)).sum::<f64>() / steps.len() as f64,
+        }
+    }
+
+    fn is_within_bounds(&self) -> bool {
+        let part = |count: usize| count as f64 / self.pixel_count as f64;
+        100.0 * part(self.differing_count) <= MOST_DIFFERING_PERCENT
+            && 1000.0 * part(self.far_count) <= MOST_FAR_PER_MILLE
+    }
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pixel_count, differing_count, far_count, greatest, mean } = self;
+        write!(
+            out,
+            "{differing_count} of {pixel_count} pixels differ, {far_count} by more than one code; {greatest} codes at most, \
+             {mean:.4} on average"
+        )
+    }
 }
 
 /// Where a miss leaves its pictures.
@@ -65,15 +107,38 @@ fn require_golden(name: &str, spec: &str, technique: &str, changes: Changes<'_>)
         panic!("{name}: there is no {}; the picture is in {}\n{bless}", path.display(), folder.display());
     }
     let expected = Srgb8::from_picture(&image_file::read(&path).unwrap(), 0.0, ToneMap::Clip);
-    let difference = if actual.extent == expected.extent { rms_of_codes(&actual, &expected) } else { f64::INFINITY };
-    if difference > CODES_BOUND {
+    assert_eq!(actual.extent, expected.extent, "{name}");
+    let difference = Difference::of(&actual, &expected);
+    if !difference.is_within_bounds() {
         let folder = leave(name, &actual, Some(&expected));
         panic!(
-            "{name}: {difference:.3} codes from its golden, {CODES_BOUND} are allowed; actual, expected and difference are \
-             in {}\n{bless}",
+            "{name}: {difference}; {MOST_DIFFERING_PERCENT} % may differ, and {MOST_FAR_PER_MILLE} in a thousand by more than one; \
+             actual, expected and difference are in {}\n{bless}",
             folder.display()
         );
     }
+}
+
+/// One pixel in a hundred may differ by a code, and one in a thousand by any number of them.
+#[test]
+fn differences_are_counted_by_pixels() {
+    let extent = Extent::new(100, 10);
+    let of = |changed: &[(usize, u8)]| {
+        let mut picture = Picture::filled(extent, [0.1; 3]);
+        let plain = Srgb8::from_picture(&picture, 0.0, ToneMap::Clip);
+        let green = plain.as_bytes()[1];
+        for (pixel, codes) in changed {
+            picture.pixels[*pixel][1] = linear_from_srgb(f64::from(green + codes) / 255.0) as f32;
+        }
+        Difference::of(&Srgb8::from_picture(&picture, 0.0, ToneMap::Clip), &plain)
+    };
+    let ten: Vec<(usize, u8)> = (0..10).map(|pixel| (37 * pixel, 1)).collect();
+    let eleven = [&ten[..], &[(999, 1)]].concat();
+    assert!(of(&ten).is_within_bounds() && !of(&eleven).is_within_bounds());
+    assert!(of(&[(3, 90)]).is_within_bounds() && !of(&[(3, 2), (4, 2)]).is_within_bounds());
+    let Difference { pixel_count, differing_count, far_count, greatest, mean } = of(&[(3, 90), (500, 1)]);
+    assert_eq!((pixel_count, differing_count, far_count, greatest), (1000, 2, 1, 90));
+    assert!((mean - 91.0 / 3000.0).abs() < 1e-12);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 
 use crate::support;
 use crate::support::Feature;
+use crate::support::seen::point_at;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{DVec3, Mat4, Quat, Vec3, dvec3, vec3};
 use quincunx::bvh::Bvh;
@@ -84,15 +85,13 @@ fn points_are_exact() -> bool {
 
 /// The plane's point at each pixel's middle, in the plane's space.
 fn points(renderer: &Renderer) -> Vec<DVec3> {
-    let world_from_clip = renderer.view.clip_from_world().as_dmat4().inverse();
     let plane_from_world = world_from_plane().as_dmat4().inverse();
     let Extent { width, height } = renderer.view.extent;
     let eye = plane_from_world.transform_point3(renderer.view.eye().as_dvec3());
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     pixels
         .map(|(x, y)| {
-            let ndc = |at: u32, side: u32| (f64::from(at) + 0.5) / f64::from(side) * 2.0 - 1.0;
-            let seen = world_from_clip.project_point3(dvec3(ndc(x, width), ndc(y, height), 0.5));
+            let seen = point_at(&renderer.view, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
             let ray = plane_from_world.transform_point3(seen) - eye;
             let point = eye - ray * (eye.y / ray.y);
             assert!(ray.y < 0.0 && point.abs().max_element() < 30.0, "the plane fills the picture");
@@ -348,13 +347,11 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
         let diagonal = session.scene.bounds().diagonal();
         let found = watched.rgb(&renderer, "shade.irradiance");
         let normals = watched.rgb(&renderer, "gbuffer.normal");
-        let world_from_clip = renderer.view.clip_from_world().as_dmat4().inverse();
         let (eye, Extent { width, height }) = (renderer.view.eye(), renderer.view.extent);
         let mut lit = 0;
         for (index, (found, normal)) in found.iter().zip(&normals).enumerate() {
             let (x, y) = (index as u32 % width, index as u32 / width);
-            let ndc = |at: u32, side: u32| (f64::from(at) + 0.5) / f64::from(side) * 2.0 - 1.0;
-            let seen = world_from_clip.project_point3(dvec3(ndc(x, width), ndc(y, height), 0.5));
+            let seen = point_at(&renderer.view, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
             let direction = (seen - eye.as_dvec3()).normalize().as_vec3();
             let Some(hit) = bvh.closest_hit(eye, direction, 100.0, |_| true) else {
                 assert_eq!(*normal, [0.0; 3], "({x}, {y}) has a surface that no ray meets");

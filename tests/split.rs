@@ -118,21 +118,22 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
     let stages = quincunx::techniques::find(TECHNIQUE).unwrap().aovs();
     let filtered = ["discontinuity.flags", "filter.irradiance"];
     let split = ["split.normal", "gather.irradiance"];
+    let upscaled = ["upscale.irradiance"];
     for (change, missing) in [
-        (("split", "none"), [split, filtered].concat()),
+        (("split", "none"), [&split[..], &filtered, &upscaled].concat()),
         (("split", "subsample"), [split, filtered].concat()),
-        (("split", "branch"), split.to_vec()),
-        (("split", "indirect"), split.to_vec()),
-        (("split", "remap"), split.to_vec()),
-        (("split", "stencil"), split.to_vec()),
-        (("split", "depth"), split.to_vec()),
-        (("split", "two-pass"), vec![]),
-        (("split", "tile"), vec![]),
-        (("split", "layered"), vec![]),
-        (("split", "fragment"), vec![]),
-        (("filter", "none"), filtered.to_vec()),
-        (("pattern", "1x1"), filtered.to_vec()),
-        (("pattern", "2x2"), vec![]),
+        (("split", "branch"), [&split[..], &upscaled].concat()),
+        (("split", "indirect"), [&split[..], &upscaled].concat()),
+        (("split", "remap"), [&split[..], &upscaled].concat()),
+        (("split", "stencil"), [&split[..], &upscaled].concat()),
+        (("split", "depth"), [&split[..], &upscaled].concat()),
+        (("split", "two-pass"), upscaled.to_vec()),
+        (("split", "tile"), upscaled.to_vec()),
+        (("split", "layered"), upscaled.to_vec()),
+        (("split", "fragment"), upscaled.to_vec()),
+        (("filter", "none"), [&filtered[..], &upscaled].concat()),
+        (("pattern", "1x1"), [&filtered[..], &upscaled].concat()),
+        (("pattern", "2x2"), upscaled.to_vec()),
     ] {
         let changes = both(&common, &[change]);
         let (without, with): (Vec<&str>, Vec<&str>) = stages.iter().partition(|name| missing.contains(name));

@@ -22,6 +22,11 @@ pub fn halves([xy, z]: [u32; 2]) -> [f32; 3] {
     [xy, xy >> 16, z].map(|bits| f16::from_bits(bits as u16).to_f32())
 }
 
+/// The fourth 16 bits.
+pub fn last16([_, z]: [u32; 2]) -> u32 {
+    z >> 16
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,6 +35,7 @@ mod tests {
     fn halves_and_normals_come_back() {
         let pack = |a: f32, b: f32| u32::from(f16::from_f32(a).to_bits()) | u32::from(f16::from_f32(b).to_bits()) << 16;
         assert_eq!(halves([pack(1.5, -2.0), pack(0.25, 9.0)]), [1.5, -2.0, 0.25]);
+        assert_eq!(last16([0x1234_5678, 0xfedc_4321]), 0xfedc);
         assert_eq!(normal([0, 0xff00_7fff]), [0.0, 0.0, 1.0]);
         assert_eq!(normal([0x8001, 0]), [-1.0, 0.0, 0.0]);
         assert_eq!(normal([0, 0xab_0000]), [0.0; 3]);

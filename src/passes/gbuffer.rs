@@ -253,7 +253,7 @@ impl Edge<'_, GBuffer> {
 }
 
 /// AOVs that every technique with a G-buffer has.
-pub const AOVS: &[&str] = &["gbuffer.normal", "gbuffer.color"];
+pub const AOVS: &[&str] = &["gbuffer.normal", "gbuffer.color", "gbuffer.color.id"];
 
 impl GBuffer {
     /// How a pass that tests depth takes it over: written by the G-buffer pass, or since sampled as positions by
@@ -267,15 +267,23 @@ impl GBuffer {
         }
     }
 
-    /// One of `AOVS`, read back; None where the name is another's. Normals are in world space.
+    /// One of `AOVS`, read back; None where the name is another's. Normals are in world space; an id is the material's number
+    /// in the scene, its lower 16 bits, and 0 where no surface is.
     pub fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Option<Result<Aov>> {
-        let decoded = |image: &Image, decode: fn([u32; 2]) -> [f32; 3]| -> Result<Aov> {
+        let decoded = |image: &Image, channels: fn(&[u8]) -> AovChannels| -> Result<Aov> {
             let bytes = readback::image(gpu, image, Access::ComputeSample)?;
-            Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(decode::words(&bytes).map(decode).collect()) })
+            Ok(Aov { name: name.to_owned(), channels: channels(&bytes) })
         };
         match name {
-            "gbuffer.normal" => Some(decoded(&self.normal, decode::normal)),
-            "gbuffer.color" => Some(decoded(&self.color, decode::halves)),
+            "gbuffer.normal" => Some(decoded(&self.normal, |bytes| {
+                AovChannels::Rgb(decode::words(bytes).map(decode::normal).collect())
+            })),
+            "gbuffer.color" => {
+                Some(decoded(&self.color, |bytes| AovChannels::Rgb(decode::words(bytes).map(decode::halves).collect())))
+            }
+            "gbuffer.color.id" => Some(decoded(&self.color, |bytes| {
+                AovChannels::YU32(decode::words(bytes).map(decode::last16).collect())
+            })),
             _ => None,
         }
     }

@@ -9,6 +9,7 @@ pub mod gltf_file;
 pub mod measured;
 pub mod moving;
 pub mod program;
+pub mod seen;
 pub mod square;
 pub mod watched;
 

@@ -67,6 +67,13 @@ uvec2 place_in_pattern(MappingParams mapping, uint subset) {
     return uvec2(subset % mapping.pattern_x, subset / mapping.pattern_x);
 }
 
+// The pixel that is shaded for all of a cell of the pattern (--split subsample): its middle, or the frame's last pixel on the
+// way there.
+uvec2 middle_of_cell(MappingParams mapping, uvec2 cell) {
+    uvec2 last = uvec2(mapping.width_px, mapping.height_px) - 1u;
+    return min(cell * pattern_of(mapping) + pattern_of(mapping) / 2u, last);
+}
+
 // Split in one pass: pixel (x, y) goes to (x / n, y / m) of sub-buffer (x mod n, y mod m).
 uvec3 texel_of_pixel(MappingParams mapping, uvec2 pixel) {
     return uvec3(pixel / pattern_of(mapping), subset_of(mapping, pixel));

@@ -1,4 +1,5 @@
-// Sub-sampled irradiance back to the frame by bilinear interpolation (Segovia 2006, section 5.4).
+// Sub-sampled irradiance back to the frame by bilinear interpolation between the pixels that were shaded (Segovia 2006,
+// section 5.4).
 // Pass: src/techniques/interleaved_deferred/upscale.rs.
 #version 460
 #include "passes/gbuffer.glsl"
@@ -15,18 +16,20 @@ void main() {
     if (pixel.x >= mapping.width_px || pixel.y >= mapping.height_px) {
         return;
     }
-    vec2 pattern = vec2(mapping.pattern_x, mapping.pattern_y);
-    ivec2 last = ivec2((uvec2(mapping.width_px, mapping.height_px) - 1u) / uvec2(mapping.pattern_x, mapping.pattern_y));
-    // Where the pixel lies between the middles of the cells.
-    vec2 at = (vec2(pixel) - floor(pattern * 0.5)) / pattern;
-    ivec2 low = ivec2(floor(at));
-    vec2 fraction = at - vec2(low);
+    uvec2 pattern = pattern_of(mapping);
+    uvec2 last = (uvec2(mapping.width_px, mapping.height_px) - 1u) / pattern;
+    // The cells whose middles the pixel lies between; one and the same before the first and behind the last.
+    uvec2 low = (max(pixel, pattern / 2u) - pattern / 2u) / pattern;
+    uvec2 high = min(low + 1u, last);
+    uvec2 from = middle_of_cell(mapping, low);
+    uvec2 stretch = max(middle_of_cell(mapping, high) - from, uvec2(1u));
+    vec2 fraction = min(vec2(max(pixel, from) - from) / vec2(stretch), vec2(1.0));
     vec3 sum = vec3(0.0);
-    for (int corner = 0; corner < 4; corner++) {
-        ivec2 step = ivec2(corner & 1, corner >> 1);
-        ivec2 cell = clamp(low + step, ivec2(0), last);
-        vec2 weight = mix(1.0 - fraction, fraction, vec2(step));
-        sum += unpack_halves(source[uint(cell.y) * mapping.sub_width_px + uint(cell.x)]) * (weight.x * weight.y);
+    for (uint corner = 0u; corner < 4u; corner++) {
+        bvec2 is_high = bvec2((corner & 1u) != 0u, (corner & 2u) != 0u);
+        uvec2 cell = mix(low, high, is_high);
+        vec2 weight = mix(1.0 - fraction, fraction, is_high);
+        sum += unpack_halves(source[cell.y * mapping.sub_width_px + cell.x]) * (weight.x * weight.y);
     }
     irradiance[pixel.y * row_pitch(mapping) + pixel.x] = pack_halves(sum, 0u);
 }

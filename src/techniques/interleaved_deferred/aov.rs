@@ -1,8 +1,9 @@
-//! The stages of the paper's figure 3, read back after a frame.
+//! The stages of the paper's figure 3, and what `--split subsample` interpolates, read back after a frame.
 
 use super::NAME;
 use super::choices::{Choices, Filter};
 use super::frame::InterleavedFrame;
+use super::road::Road;
 use super::roads::Roads;
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
@@ -14,17 +15,22 @@ use std::sync::Arc;
 
 const SPLIT: &str = "split.normal";
 const SHADED: &str = "shade.irradiance";
+const UPSCALED: &str = "upscale.irradiance";
 const GATHERED: &str = "gather.irradiance";
 const FLAGS: &str = "discontinuity.flags";
 const FILTERED: &str = "filter.irradiance";
 
 /// Names that `--aov` takes.
-pub const AOVS: &[&str] = &["gbuffer.normal", "gbuffer.color", SPLIT, SHADED, GATHERED, FLAGS, FILTERED];
+pub const AOVS: &[&str] =
+    &["gbuffer.normal", "gbuffer.color", "gbuffer.color.id", SPLIT, SHADED, UPSCALED, GATHERED, FLAGS, FILTERED];
 
 /// Those that the settings leave out, with the reason.
 pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String)> {
     let mut left_out = Vec::new();
     let split = values.text("split");
+    if choices.road != Road::Subsample {
+        left_out.push((UPSCALED, format!("--split {split} interpolates nothing; subsample does")));
+    }
     if choices.road.copies().is_none() {
         for stage in [SPLIT, GATHERED] {
             left_out.push((
@@ -72,6 +78,7 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
             let texels = texels(gpu, shaded, decode::halves)?;
             rgb(cells(frame, &texels))
         }
+        (UPSCALED, Roads::Subsample { irradiance, .. }) => rgb(in_frame_order(frame, gpu, irradiance)?),
         (
             SHADED,
             Roads::Branch { irradiance, .. } | Roads::Strided { irradiance, .. } | Roads::Masked { irradiance, .. },

@@ -10,12 +10,10 @@ layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradia
 
 void main() {
     uint cell_count = params.mapping.sub_width_px * params.mapping.sub_height_px;
-    uvec2 pattern = pattern_of(params.mapping);
-    uvec2 last = uvec2(params.mapping.width_px, params.mapping.height_px) - 1u;
     for (uint i = 0u; i < TEXELS; i++) {
         uint cell = listed(i);
         uvec2 at = uvec2(cell % params.mapping.sub_width_px, cell / params.mapping.sub_width_px);
-        uvec2 pixel = min(at * pattern + pattern / 2u, last);
+        uvec2 pixel = middle_of_cell(params.mapping, at);
         set_point(i, cell < cell_count, normal_words(pixel), position_words(pixel), pixel);
     }
     shade_points(subsets[0]);
