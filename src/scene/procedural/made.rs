@@ -135,14 +135,15 @@ impl Made {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Draw, Mesh, Projection};
+    use crate::scene::{Camera, Draw, Material, Mesh, Projection};
     use glam::DVec3;
 
     fn made() -> Made {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let meshes = vec![Mesh { positions, indices: vec![0, 1, 2], ..Mesh::default() }];
         let draws = vec![Draw { mesh: 0, world_from_object: Mat4::IDENTITY }; 2];
-        let scene = Scene { hash: "a hash".to_owned(), meshes, draws, ..Scene::default() };
+        let materials = vec![Material::default()];
+        let scene = Scene { hash: "a hash".to_owned(), meshes, draws, materials, ..Scene::default() };
         let wheel = Motion::turning("wheel", Thing::Draw(1), Vec3::new(5.0, 0.0, 0.0), Vec3::Y, 2);
         Made { scene, motions: vec![wheel] }
     }
