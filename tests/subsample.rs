@@ -109,31 +109,37 @@ fn pixels_between_the_middles_are_interpolated() {
     }
 }
 
-/// The composite takes what was interpolated: the picture without emission is albedo / pi of it.
+/// The composite takes what was interpolated: the picture of matt surfaces without emission is albedo / pi of it, and albedo of
+/// the ambient light.
 #[test]
-fn the_picture_is_made_of_what_was_interpolated() {
+fn the_picture_is_made_of_what_was_interpolated_and_of_ambient_light() {
     let mut scene = quincunx::scene::load("cornell", 1).unwrap();
     for material in &mut scene.materials {
         material.emissive = Vec3::ZERO;
     }
     scene.hash = "cornell without emission".to_owned();
     let watched = Watched::with_scene(scene);
-    let changes = [
-        ("size", "97x53"),
-        ("pattern", "4x4"),
-        ("vpls", "96"),
-        ("split", "subsample"),
-        ("direct", "none"),
-        ("ambient", "0,0,0"),
-    ];
-    let renderer = watched.render_stages(TECHNIQUE, &changes, &["gbuffer.color", "upscale.irradiance"]);
-    let albedo = watched.rgb(&renderer, "gbuffer.color");
-    let irradiance = watched.rgb(&renderer, "upscale.irradiance");
-    let picture = renderer.picture().unwrap();
-    for ((found, albedo), irradiance) in picture.pixels.iter().zip(&albedo).zip(&irradiance) {
-        let expected = Vec3::from_array(*albedo) * Vec3::from_array(*irradiance) / std::f32::consts::PI;
-        let difference = (Vec3::from_array(*found) - expected).abs();
-        assert!(difference.cmple(expected * 1e-6).all(), "{found:?} for {expected}");
+    for ambient in [Vec3::ZERO, Vec3::new(0.125, 0.25, 0.5)] {
+        let text = format!("{},{},{}", ambient.x, ambient.y, ambient.z);
+        let changes = [
+            ("size", "97x53"),
+            ("pattern", "4x4"),
+            ("vpls", "96"),
+            ("split", "subsample"),
+            ("direct", "none"),
+            ("brdf", "lambert"),
+            ("ambient", &text),
+        ];
+        let renderer = watched.render_stages(TECHNIQUE, &changes, &["gbuffer.color", "upscale.irradiance"]);
+        let albedo = watched.rgb(&renderer, "gbuffer.color");
+        let irradiance = watched.rgb(&renderer, "upscale.irradiance");
+        let picture = renderer.picture().unwrap();
+        for ((found, albedo), irradiance) in picture.pixels.iter().zip(&albedo).zip(&irradiance) {
+            let arriving = Vec3::from_array(*irradiance) / std::f32::consts::PI + ambient;
+            let expected = Vec3::from_array(*albedo) * arriving;
+            let difference = (Vec3::from_array(*found) - expected).abs();
+            assert!(difference.cmple(expected * 1e-6).all(), "{ambient}: {found:?} for {expected}");
+        }
+        assert!(picture.mean()[0] > 0.0);
     }
-    assert!(picture.mean()[0] > 0.0);
 }

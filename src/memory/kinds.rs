@@ -106,4 +106,14 @@ mod tests {
         }
         assert!(!kinds.choose(Use::Device, 1).unwrap().mapped);
     }
+
+    /// Such memory is for attachments that are never stored; where the driver allows no other, there is none.
+    #[test]
+    fn memory_that_is_allocated_lazily_is_never_chosen() {
+        let lazy = || MemoryType { lazily_allocated: true, ..kind(true, true, false) };
+        let kinds = Kinds { types: vec![lazy(), kind(true, true, true), lazy(), kind(false, true, true)] };
+        assert_eq!(kinds.choose(Use::Device, 0b1111).unwrap().type_index, 1);
+        assert_eq!(kinds.choose(Use::Device, 0b1101).unwrap().type_index, 3);
+        assert_eq!(kinds.choose(Use::Device, 0b0101).unwrap_err().exit_code(), 4);
+    }
 }

@@ -241,4 +241,18 @@ mod tests {
             prop_assert_eq!(shown.len() as u64, Extent::new(w, h).pixel_count());
         }
     }
+
+    /// 33x17 in patterns of 4x2 and blocks of 12x4: three blocks across would leave sub-buffers of nine columns, so there are
+    /// four, and five down.
+    #[test]
+    fn sizes_are_those_counted_on_paper() {
+        let made = mapping(Extent::new(33, 17), [4, 2], [12, 4]);
+        assert_eq!([made.sub_width_px, made.sub_height_px], [12, 10]);
+        assert_eq!((made.subset_count(), made.sub_texel_count(), made.texel_count()), (8, 120, 960));
+        assert_eq!((made.padded(), made.extent()), (Extent::new(48, 20), Extent::new(33, 17)));
+        assert_eq!(made.block_counts(), [4, 5]);
+        assert_eq!((made.row_pitch(), made.frame_texel_count()), (34, 34 * 17));
+        let inside = [[32, 16], [33, 16], [32, 17], [33, 17]].map(|pixel| made.is_in_frame(pixel));
+        assert_eq!(inside, [true, false, false, false]);
+    }
 }
