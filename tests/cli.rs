@@ -67,8 +67,10 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
     program.fails(&small(&["--patern", "4x4"]), 2, &["--patern"]);
     program.fails(&small(&["--aov", "split.colour"]), 2, &["split.colour", "split.normal"]);
     program.fails(&small(&["--split", "none", "--aov", "split.normal"]), 2, &["--aov split.normal", "one-pass"]);
-    let no_filter =
-        ["--filter none", "it has gbuffer.normal, gbuffer.color, split.normal, shade.irradiance, gather.irradiance"];
+    let no_filter = [
+        "--filter none",
+        "it has gbuffer.normal, gbuffer.color, gbuffer.color.id, split.normal, shade.irradiance, gather.irradiance",
+    ];
     program.fails(&small(&["--filter", "none", "--aov", "filter.irradiance"]), 2, &no_filter);
     program.fails(&small(&["--split", "none", "--aov", "filter.irradiance"]), 2, &["with --split none all lights"]);
     let plan = ["memory", "cornell", "--plan", "--technique", "forward", "--aov", "depth.reversed"];

@@ -308,6 +308,16 @@ mod tests {
     }
 
     #[test]
+    fn a_range_that_is_taken_whole_leaves_none_behind() {
+        let mut tlsf = Tlsf::new(8192);
+        let [first, second] = [4096; 2].map(|bytes| tlsf.take(bytes, 4096).unwrap());
+        assert_eq!((first, second, tlsf.require_whole()), (0, 4096, 2));
+        tlsf.give_back(first, 4096);
+        assert_eq!((tlsf.take(4096, 256), tlsf.require_whole()), (Some(first), 2));
+        assert_eq!(tlsf.take(1, 1), None);
+    }
+
+    #[test]
     fn a_hole_is_taken_again_at_once() {
         let mut tlsf = Tlsf::new(1 << 20);
         let offsets: Vec<u64> = (0..8).map(|_| tlsf.take(4096, 256).unwrap()).collect();
