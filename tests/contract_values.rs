@@ -20,7 +20,13 @@ const LAMPS: &str = "lamps:objects=10,lights=20";
 const LAMP_COUNT: u64 = 20;
 
 fn command<'a>(verb: &[&'a str], scene: &'a str, technique: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let own: &[&str] = if technique == INTERLEAVED { &["--vpls", "32", "--pattern", "4x2"] } else { &[] };
+    // A frame in which every light is summed reads no pattern.
+    let is_even = more.windows(2).any(|pair| pair == ["--split", "none"]);
+    let own: &[&str] = match technique == INTERLEAVED {
+        true if is_even => &["--vpls", "32"],
+        true => &["--vpls", "32", "--pattern", "4x2"],
+        false => &[],
+    };
     [verb, &[scene, "--technique", technique, "--size", "33x17"], own, more].concat()
 }
 
