@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::bench::sweep::axes;
 
-    /// Of one group: three rounds of `ms`, more or less by `reach` of it.
+    /// Rows of one group: three rounds of `ms`, more or less by `reach` of it.
     fn row(pattern: &str, block: &str, ms: f64, reach: f64) -> Value {
         let samples = [ms * (1.0 - reach), ms, ms * (1.0 + reach)];
         json!({

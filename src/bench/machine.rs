@@ -37,7 +37,7 @@ impl Ticks {
         Self::of(&read("/proc/stat")?, &read("/proc/self/stat")?)
     }
 
-    /// Of the texts of /proc/stat and /proc/self/stat.
+    /// Ticks from the texts of /proc/stat and /proc/self/stat.
     fn of(machine: &str, process: &str) -> Option<Self> {
         let line = machine.lines().find_map(|line| line.strip_prefix("cpu "))?;
         let numbers: Vec<u64> = line.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;

@@ -29,7 +29,7 @@ pub struct Head<'a> {
 pub struct Rounds {
     /// Shared by the rows of a group, and by no others.
     pub group: String,
-    /// Of every probe of the group.
+    /// Times of every probe of the group.
     pub samples: Vec<Samples>,
     /// What else the machine did meanwhile; None where nobody tells.
     pub load: Option<Load>,

@@ -11,7 +11,7 @@ pub struct Rehearsal<'a> {
     kinds: &'a Kinds,
     pool: Pool,
     ledger: Ledger,
-    /// Of the memory blocks.
+    /// Bytes of the memory blocks.
     held_bytes: u64,
     most_bytes: u64,
 }

@@ -10,12 +10,12 @@ pub struct Facing {
     pub net: DVec3,
     /// Sum of area times the sizes of the normal's three numbers, of all faces.
     pub along: DVec3,
-    /// Of all faces.
+    /// Area of all faces.
     pub area: f64,
 }
 
 impl Facing {
-    /// Of everything that is drawn.
+    /// The faces of everything that is drawn.
     pub fn of(scene: &Scene) -> Self {
         let mut facing = Self::default();
         for draw in &scene.draws {

@@ -18,7 +18,7 @@ pub struct Entries {
     pub row_ids: u64,
     /// Of samples that see something.
     pub addresses: u64,
-    /// Of shading pixels.
+    /// Entries for shading pixels.
     pub begins: u64,
 }
 
