@@ -4,6 +4,7 @@
 
 use crate::support::square::{matt, picture, square};
 use crate::support::watched::{Changes, Watched};
+use crate::support::{self, Feature};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use quincunx::scene::{AlphaMode, ColorSpace, Placement, Scene};
 
@@ -51,10 +52,15 @@ fn the_finest_level_is_seen_on_every_edge() {
         ("a second set of coordinates", Placement { uv_set: 1, ..Placement::default() }, false, false),
         ("a texture transform", Placement { uv_set: 0, picture_from_uv: moved }, false, true),
     ];
+    let mut techniques = vec!["forward", "deferred", "inferred_lighting", "interleaved_deferred"];
+    // Its samples find their shading points through placed vertices.
+    if support::has(&support::driver(), Feature::ExactPositions) {
+        techniques.push("deep_shading");
+    }
     for (case, placement, has_colors, is_swapped) in cases {
         for alpha in [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend] {
             let watched = Watched::with_scene(board(placement, has_colors, alpha));
-            for technique in ["forward", "deferred", "inferred_lighting", "interleaved_deferred", "deep_shading"] {
+            for technique in &techniques {
                 let found = watched.picture(technique, AMBIENT);
                 let wrong: Vec<_> = (0..SIDE * SIDE)
                     .filter(|at| {

@@ -1,13 +1,14 @@
 //! Which triangle a pixel shows, by rays on the host.
 
+use crate::support::placing_steps;
 use crate::support::watched::Watched;
 use glam::{DVec3, dvec3};
 use quincunx::bvh::{Bvh, Hit, Source};
 use quincunx::frame::View;
 use quincunx::scene::AlphaMode;
 
-/// A pixel's middle on each side of which the rasteriser may have placed an edge, in pixels: vertices lie on a grid of 256
-/// a pixel, and rays and edges are rounded.
+/// A pixel's middle on each side of which the rasteriser may have placed an edge, in pixels, where vertices lie on a grid of 256
+/// a pixel; rays and edges are rounded.
 const EDGE_PX: f64 = 0.02;
 
 /// A part of a distance: where two surfaces are less apart, either may be seen.
@@ -36,6 +37,7 @@ pub fn sources(watched: &Watched, view: &View) -> Vec<Seen> {
     assert!(scene.drawn_materials().all(|material| material.alpha == AlphaMode::Opaque), "rays know no holes");
     let bvh = Bvh::build(scene).unwrap();
     let eye = view.eye();
+    let edge_px = EDGE_PX * placing_steps(&watched.session.gpu.caps);
     let hit_at = |at: [f64; 2], unlike: Option<Source>| {
         let direction = (point_at(view, at) - eye.as_dvec3()).normalize().as_vec3();
         let is_another = |hit: &Hit| unlike.is_none_or(|source| bvh.sources[hit.triangle].draw != source.draw);
@@ -49,7 +51,7 @@ pub fn sources(watched: &Watched, view: &View) -> Vec<Seen> {
             let hit = hit_at(middle, None);
             let source = hit.map(|hit| bvh.sources[hit.triangle]);
             let draw = source.map(|source| source.draw);
-            let around = [[-EDGE_PX, 0.0], [EDGE_PX, 0.0], [0.0, -EDGE_PX], [0.0, EDGE_PX]];
+            let around = [[-edge_px, 0.0], [edge_px, 0.0], [0.0, -edge_px], [0.0, edge_px]];
             if around.iter().any(|step| draw_at([middle[0] + step[0], middle[1] + step[1]]) != draw) {
                 return Seen::Unclear;
             }
