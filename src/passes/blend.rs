@@ -4,7 +4,7 @@
 //!
 //! Punctual lights come from a list for each piece of a draw (`lights::object_lists`). A fragment stage reads each light for one
 //! pixel, at 19 ns a light on lavapipe, where a compute stage that reads it for 16 to 32 pixels takes 2.3: without lists what
-//! blends takes more of a map's frame than all other surfaces.
+//! blends took 27 to 83 % of the frames of two maps of a thousand lights, with them 4 to 39 % (640x360, `--cull tiled`).
 //!
 //! Their indirect light comes from all virtual point lights, or from the subset of the pixel as that of every other
 //! surface does. A blended surface has no neighbours to filter with, so that its subsets show as a faint pattern; hall at
