@@ -135,6 +135,11 @@ impl Access {
         }
     }
 
+    /// Whether it writes this part, depth or stencil, of an image that has both.
+    pub fn writes_aspect(self, aspect: vk::ImageAspectFlags) -> bool {
+        self.writes() && !(self == Self::StencilWrite && aspect == vk::ImageAspectFlags::DEPTH)
+    }
+
     fn bit(self) -> u32 {
         1 << self as u16
     }

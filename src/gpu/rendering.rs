@@ -106,26 +106,32 @@ impl Commands {
             self.check_attached(image, access);
         }
         let color_infos: Vec<_> = colors.iter().map(|color| color.info(layers)).collect();
-        let depth_info = depth.map(|(image, clear, access)| {
-            let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
-            vk::RenderingAttachmentInfo::default()
-                .image_view(layers.view(image))
-                .image_layout(access.layout())
-                .load_op(load(clear.is_some()))
-                .store_op(if access.writes() { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
-                .clear_value(vk::ClearValue { depth_stencil: value })
-        });
+        let depth_stencil_info = |aspect| {
+            depth.filter(|(image, ..)| image.aspect().contains(aspect)).map(|(image, clear, access)| {
+                let value = vk::ClearDepthStencilValue { depth: clear.unwrap_or_default(), stencil: 0 };
+                let stores = access.writes_aspect(aspect);
+                vk::RenderingAttachmentInfo::default()
+                    .image_view(layers.view(image))
+                    .image_layout(access.layout())
+                    .load_op(load(clear.is_some()))
+                    // A store is a write, which what is sampled meanwhile may not have.
+                    .store_op(if stores { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
+                    .clear_value(vk::ClearValue { depth_stencil: value })
+            })
+        };
+        let depth_info = depth_stencil_info(vk::ImageAspectFlags::DEPTH);
+        let stencil_info = depth_stencil_info(vk::ImageAspectFlags::STENCIL);
         let area = vk::Rect2D {
             offset: vk::Offset2D::default(),
             extent: vk::Extent2D { width: extent.width, height: extent.height },
         };
         let mut info =
             vk::RenderingInfo::default().render_area(area).layer_count(layers.count()).color_attachments(&color_infos);
-        if let (Some(depth_info), Some((image, ..))) = (&depth_info, depth) {
+        if let Some(depth_info) = &depth_info {
             info = info.depth_attachment(depth_info);
-            if image.aspect().contains(vk::ImageAspectFlags::STENCIL) {
-                info = info.stencil_attachment(depth_info);
-            }
+        }
+        if let Some(stencil_info) = &stencil_info {
+            info = info.stencil_attachment(stencil_info);
         }
         let viewport = vk::Viewport {
             x: 0.0,
