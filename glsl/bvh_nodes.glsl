@@ -56,9 +56,10 @@ Entered entered_below(uint first, vec3 origin, vec3 inverse, float limit) {
     vec4 entry = max(max(min(near_x, far_x), min(near_y, far_y)), max(min(near_z, far_z), 0.0));
     vec4 leave = min(min(max(near_x, far_x), max(near_y, far_y)), max(near_z, far_z));
     // Bits of floats from 0 on are in order; the last two say which child it is, so that sorting is of words alone. What is
-    // cut off makes an entry earlier, never later.
+    // cut off makes an entry earlier, never later. The sign goes too: the greater one of -0 and 0 may be -0.
+    const uint ORDER_MASK = 0x7ffffffcu;
     const uint MISSED = 0xffffffffu;
-    uvec4 keys = mix(uvec4(MISSED), (floatBitsToUint(entry) & ~3u) | uvec4(0u, 1u, 2u, 3u), lessThanEqual(entry, leave));
+    uvec4 keys = mix(uvec4(MISSED), (floatBitsToUint(entry) & ORDER_MASK) | uvec4(0u, 1u, 2u, 3u), lessThanEqual(entry, leave));
     keys = uvec4(min(keys.xz, keys.yw), max(keys.xz, keys.yw));
     keys = uvec4(min(keys.x, keys.y), max(keys.x, keys.y), min(keys.z, keys.w), max(keys.z, keys.w));
     keys.yz = uvec2(min(keys.y, keys.z), max(keys.y, keys.z));

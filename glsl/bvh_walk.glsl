@@ -21,6 +21,10 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
         direction_ws = to_light / max(distance, 1e-12);
     }
     float limit = distance - 2.0 * RAY_OFFSET;
+    // The least and the greatest of NaN and a number may be the number: boxes would hold such a ray.
+    if (!(limit > 0.0)) {
+        return false;
+    }
     vec3 inverse = 1.0 / mix(direction_ws, vec3(1e-20), equal(direction_ws, vec3(0.0)));
     vec3 met;
     uint stack[BVH_STACK];

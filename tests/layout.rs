@@ -212,3 +212,44 @@ fn memory_is_allocated_in_one_room() {
         .collect();
     assert_eq!(outside, [] as [&str; 0]);
 }
+
+/// Pipelines that draw the same triangles in the same places, one after the other, must cover the same pixels: without `invariant` a
+/// driver may compile one vertex shader in two ways.
+#[test]
+fn vertices_that_several_pipelines_place_are_invariant() {
+    const INVARIANT: u32 = 18;
+    let is_invariant = |spirv: &[u8]| {
+        let words: Vec<u32> = spirv.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+        let mut at = 5;
+        let mut is_there = false;
+        while at < words.len() {
+            // OpDecorate and OpMemberDecorate, whose third and fourth words are the decoration.
+            is_there |= words[at] & 0xffff == 71 && words[at + 2] == INVARIANT;
+            is_there |= words[at] & 0xffff == 72 && words[at + 3] == INVARIANT;
+            at += (words[at] >> 16) as usize;
+        }
+        is_there
+    };
+    let places = |stage| matches!(stage, shader::Stage::Vertex | shader::Stage::Geometry);
+    let without: BTreeSet<&str> = shader::ALL
+        .iter()
+        .filter(|shader| places(shader.stage) && !is_invariant(shader.spirv))
+        .map(|shader| shader.name)
+        .collect();
+    let needless = [
+        // Corners are constants.
+        "passes/fullscreen",
+        // One pipeline of a frame draws with it.
+        "techniques/deep_shading/baseline/msaa",
+        "techniques/deep_shading/shade/corner",
+        "techniques/deep_shading/shade/geometry",
+        "techniques/deep_shading/shade/vertex",
+        "techniques/inferred_lighting/light/shadow_volumes",
+        "techniques/inferred_lighting/light/volumes",
+        // It copies places.
+        "techniques/deep_shading/visibility/layer",
+        // Its vertex shader places nothing.
+        "techniques/deep_shading/visibility/polygon",
+    ];
+    assert_eq!(without, BTreeSet::from(needless));
+}

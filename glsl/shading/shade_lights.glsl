@@ -17,7 +17,8 @@
 vec3 shade_light(LightBlock light, Surface surface, vec3 position_ws, vec3 normal_ws, vec3 eye_ws) {
     Incident incident = incident_from(light, position_ws);
     precise float cosine = dot(normal_ws, incident.direction_ws);
-    if (cosine <= 0.0 || incident.irradiance == vec3(0.0)) {
+    // NaN faces no light: a ray into nowhere would look into every node of the tree.
+    if (!(cosine > 0.0) || incident.irradiance == vec3(0.0)) {
         return vec3(0.0);
     }
 #ifdef SHADOWS_MAPPED

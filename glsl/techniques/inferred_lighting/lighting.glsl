@@ -15,7 +15,8 @@ float luminance(vec3 color) {
 vec4 lighting_by(LightBlock light, LitSurface surface) {
     Incident incident = incident_from(light, surface.position_ws);
     precise float cosine = dot(surface.normal_ws, incident.direction_ws);
-    if (cosine <= 0.0 || incident.irradiance == vec3(0.0)) {
+    // NaN faces no light: a ray into nowhere would look into every node of the tree.
+    if (!(cosine > 0.0) || incident.irradiance == vec3(0.0)) {
         return vec4(0.0);
     }
     if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL)) {

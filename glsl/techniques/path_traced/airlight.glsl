@@ -49,11 +49,17 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
     uint first = is_punctual ? params.emitter_count : 0u;
     uint count = is_punctual ? params.punctual_count : params.emitter_count;
     SourceBlock source = source_of(first, count, min(choice, 0.99999994));
-    // Of the other kind there may be none to be read.
-    LightBlock light = light_at(is_punctual ? source.index : 0u);
-    uint triangle = is_punctual ? 0u : source.index;
-    vec3 source_ws = is_punctual ? light.position_ws.xyz : place_of(triangle, barycentric);
-    bool is_somewhere = !is_punctual || light.kind != LIGHT_DIRECTIONAL;
+    // Of either kind there may be none: only what was chosen is read.
+    LightBlock light;
+    vec3 source_ws;
+    bool is_somewhere = true;
+    if (is_punctual) {
+        light = light_at(source.index);
+        source_ws = light.position_ws.xyz;
+        is_somewhere = light.kind != LIGHT_DIRECTIONAL;
+    } else {
+        source_ws = place_of(source.index, barycentric);
+    }
     Stretch stretch = stretch_of(origin, direction, ends, params.extinction, source_ws, is_somewhere);
     float place = place_on(stretch, choices.y, number);
     place_ws = origin + direction * place;
@@ -63,6 +69,7 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
         waiting = Waiting(incident.irradiance / source.chance, incident.direction_ws, incident.distance);
         waiting.radiance *= phase(params.asymmetry, dot(incident.direction_ws, direction));
     } else {
+        uint triangle = source.index;
         Shining shining = shining_to(place_ws, source, source_ws);
         if (shining.density > 0.0) {
             float scattered = phase(params.asymmetry, dot(shining.direction_ws, direction));
