@@ -287,7 +287,16 @@ impl Job {
     pub fn device_request(&self) -> DeviceRequest {
         let strategy = Strategy::from_setting(self.values.text("allocation")).expect("the table holds its words");
         let budget_bytes = self.values.bytes("memory-budget");
-        DeviceRequest { selector: self.device.clone(), validate: self.validate, strategy, budget_bytes, hook: None }
+        DeviceRequest {
+            selector: self.device.clone(),
+            validate: self.validate,
+            strategy,
+            budget_bytes,
+            // The layer's checks of what shaders read see nothing where the device mends it; and it may cost time.
+            robust: !self.validate && !self.profile,
+            hook: None,
+            pretense: None,
+        }
     }
 
     fn frames(&self, renderer: &Renderer) -> Result<Vec<FrameTime>> {
@@ -314,7 +323,7 @@ impl Job {
         aovs: &[Aov],
         extent: Extent,
     ) -> Result<Report> {
-        let mut report = Report::new(self.technique, &self.command, &session.gpu.caps.identity);
+        let mut report = Report::new(self.technique, &self.command, &session.gpu);
         report.scene(session, renderer);
         report.settings(settings);
         report.aovs(aovs, extent);

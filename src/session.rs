@@ -7,6 +7,7 @@ use crate::gpu::commands::{RecordedPass, Recording};
 use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
+use crate::gpu::timing::Clock;
 use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, statistics, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
@@ -333,6 +334,11 @@ impl Renderer {
         self.recorded.run_first(pass_count)
     }
 
+    /// Whose clock the times of its frames are.
+    pub fn clock(&self) -> Clock {
+        self.recorded.clock()
+    }
+
     /// The passes of a frame, in order.
     pub fn passes(&self) -> &[RecordedPass] {
         self.recorded.passes()
@@ -359,6 +365,8 @@ impl Renderer {
     /// Shaders write NaN where a driver has ended their loops (glsl/loops.glsl).
     fn explained(&self, error: Error, picture: &Picture) -> Error {
         let is_nan = picture.pixels.iter().flatten().any(|channel| channel.is_nan());
+        let own = self.frame.explained_nan().filter(|_| is_nan);
+        let error = own.into_iter().flatten().fold(error, Error::note);
         match self.gpu.caps.identity.loop_turns() {
             Some(turns) if is_nan => error
                 .note(format!(

@@ -34,6 +34,7 @@ mod gltf_allowed;
 mod gltf_broken;
 mod gltf_broken_corpus;
 mod golden;
+mod gpu;
 mod inferred;
 mod inferred_filter;
 mod inferred_geometry;

@@ -114,8 +114,11 @@ pub fn pass_ms(job: &Job, session: &Session, values: &Values) -> Result<Option<V
     renderer.frame()?;
     let frames = (0..PASS_FRAMES).map(|_| renderer.frame()).collect::<Result<Vec<_>>>()?;
     let times = renderer.passes().iter().enumerate().map(|(index, pass)| {
-        let samples: Vec<f64> =
-            frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(|ns| ns as f64 / 1e6).collect();
+        let samples: Vec<f64> = frames
+            .iter()
+            .filter_map(|frame| frame.passes[index].figure_ns(renderer.clock()))
+            .map(|ns| ns as f64 / 1e6)
+            .collect();
         (pass.name.clone(), super::stats::median(&samples))
     });
     Ok(Some(times.collect()))

@@ -97,6 +97,7 @@ impl Head<'_> {
         row["command"] = json!(repeating_command(job, *what, candidate.job.technique, values));
         row["group"] = json!(rounds.group);
         row["machine"] = json!(rounds.load.map(Load::json));
+        row["clock"] = json!(renderer.clock().name());
         row["image_hash"] = json!(picture.hash()?);
         row[what.time_key()] = spread(&times);
         row["pass_ms"] = self.pass_ms(candidate, member, samples)?;

@@ -10,6 +10,7 @@ use super::sweep::{self, Axis};
 use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::DeviceRequest;
 use crate::interrupt;
 use crate::job::{Job, judge};
 use crate::session::Session;
@@ -69,7 +70,7 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     }
     let grid = sweep::grid(request.axes);
     let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
-    let session = job.open_session(&job.device_request(), job.load_scene()?)?;
+    let session = job.open_session(&DeviceRequest { robust: false, ..job.device_request() }, job.load_scene()?)?;
     let (axes, hash) = (request.axes, &session.scene.hash);
     let candidates: Vec<Candidate> =
         grid.iter().map(|point| Candidate::new(job, axes, point, request.is_fair, hash)).collect();

@@ -71,11 +71,13 @@ impl Probe for Variant {
     fn measure(&self) -> Result<Vec<f64>> {
         let milliseconds = |ns: u64| ns as f64 / 1e6;
         if self.what == What::Frame {
-            return Ok(vec![milliseconds(self.renderer.frame()?.wall_ns)]);
+            return Ok(vec![milliseconds(self.renderer.frame()?.figure_ns(self.renderer.clock()))]);
         }
         let last = self.stage.last().expect("at least one pass");
         let frame = self.renderer.frame_first(last + 1)?;
-        let wall = |index: &usize| frame.passes[*index].wall_ns.expect("a submit a pass has a wall time a pass");
-        Ok(self.stage.iter().map(wall).map(milliseconds).collect())
+        let clock = self.renderer.clock();
+        let time =
+            |index: &usize| frame.passes[*index].figure_ns(clock).expect("a submit a pass has a wall time a pass");
+        Ok(self.stage.iter().map(time).map(milliseconds).collect())
     }
 }

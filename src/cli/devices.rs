@@ -111,7 +111,7 @@ fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Resul
         (features.draw_indirect_count, "draws counted by buffers"),
         (features.shader_float16, "16-bit floats"),
         (features.shader_int64_atomics, "64-bit atomics"),
-        (features.conservative_rasterization, "conservative rasterisation"),
+        (caps.conservative.is_some(), "conservative rasterisation"),
         (features.ray_query, "ray queries"),
         (features.pipeline_statistics, "pipeline statistics"),
         (features.memory_budget, "memory budget"),

@@ -10,11 +10,35 @@ pub struct Caps {
     pub limits: Limits,
     pub features: Features,
     pub formats: Formats,
+    /// None: there is no VK_EXT_conservative_rasterization, or nobody has looked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conservative: Option<ConservativeRules>,
     pub heaps: Vec<Heap>,
     pub memory_types: Vec<MemoryType>,
     /// Of known drivers only; a live device is asked instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<LayoutRules>,
+}
+
+/// What VK_EXT_conservative_rasterization promises on a device.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConservativeRules {
+    /// By how much every edge is moved outwards before pixels are asked whether a triangle touches them (pixels).
+    pub overestimation_px: f32,
+    /// What a pipeline may add to that at most, and in which steps (pixels).
+    pub most_extra_px: f32,
+    pub extra_step_px: f32,
+    /// Triangles that have no area once their corners are snapped are drawn too.
+    pub draws_degenerate_triangles: bool,
+}
+
+impl ConservativeRules {
+    /// What a pipeline adds so that edges lie `margin_px` farther out at least, as near to that as the device comes.
+    pub fn extra_px(&self, margin_px: f32) -> f32 {
+        let lacking = (margin_px - self.overestimation_px).max(0.0);
+        let step = if self.extra_step_px > 0.0 { self.extra_step_px } else { self.most_extra_px };
+        if step > 0.0 { ((lacking / step).ceil() * step).min(self.most_extra_px) } else { 0.0 }
+    }
 }
 
 /// How a driver rounds sizes up, measured on it.
@@ -105,6 +129,12 @@ impl Identity {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Limits {
     pub max_image_side_px: u32,
+    /// Width and height of a viewport; data from before it was looked up gets the least that Vulkan promises.
+    #[serde(default = "least_drawn_px")]
+    pub max_viewport_px: [u32; 2],
+    /// Width and height of what one rendering draws into; the same.
+    #[serde(default = "least_drawn_px")]
+    pub max_framebuffer_px: [u32; 2],
     /// Data from before it was looked up gets the least that Vulkan promises.
     #[serde(default = "least_image_layers")]
     pub max_image_layers: u32,
@@ -120,6 +150,12 @@ pub struct Limits {
     #[serde(default = "least_shared_memory_bytes")]
     pub max_shared_memory_bytes: u32,
     pub max_sampled_images_per_stage: u32,
+    /// As for `max_image_layers`.
+    #[serde(default = "least_storage_buffers_per_stage")]
+    pub max_storage_buffers_per_stage: u32,
+    /// The same.
+    #[serde(default = "least_storage_images_per_stage")]
+    pub max_storage_images_per_stage: u32,
     pub max_bound_descriptor_sets: u32,
     pub max_color_attachments: u32,
     pub max_allocation_count: u32,
@@ -144,11 +180,37 @@ pub struct Limits {
     pub subgroup_size: u32,
     /// Nanoseconds a tick; 0 where the queue writes no timestamps.
     pub timestamp_period_ns: f32,
+    /// Bits of a timestamp that count, 36 to 64, of data from before it was looked up 36; 0 as for the period.
+    #[serde(default = "least_timestamp_bits")]
+    pub timestamp_bits: u32,
     pub framebuffer_sample_counts: Vec<u32>,
+}
+
+impl Limits {
+    /// The longest sides of what can be drawn into, pixels.
+    pub fn most_drawn_px(&self) -> [u32; 2] {
+        [0, 1].map(|axis| self.max_image_side_px.min(self.max_viewport_px[axis]).min(self.max_framebuffer_px[axis]))
+    }
 }
 
 fn one_sample() -> Vec<u32> {
     vec![1]
+}
+
+fn least_drawn_px() -> [u32; 2] {
+    [4096; 2]
+}
+
+fn least_storage_buffers_per_stage() -> u32 {
+    4
+}
+
+fn least_storage_images_per_stage() -> u32 {
+    4
+}
+
+fn least_timestamp_bits() -> u32 {
+    36
 }
 
 fn least_image_layers() -> u32 {
@@ -197,7 +259,6 @@ pub struct Features {
     /// Of storage buffers, with integers of 64 bits.
     pub shader_int64_atomics: bool,
     pub pipeline_statistics: bool,
-    pub conservative_rasterization: bool,
     /// VK_KHR_ray_query and VK_KHR_acceleration_structure with their features, and addresses of buffers.
     pub ray_query: bool,
     pub memory_budget: bool,
@@ -247,4 +308,30 @@ pub struct MemoryType {
     pub host_coherent: bool,
     pub host_cached: bool,
     pub lazily_allocated: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_move_outwards_by_whole_steps_as_far_as_the_device_lets_them() {
+        let rules = |overestimation_px, most_extra_px, extra_step_px| ConservativeRules {
+            overestimation_px,
+            most_extra_px,
+            extra_step_px,
+            draws_degenerate_triangles: true,
+        };
+        let margin = 4.0 / 256.0;
+        for (rules, extra) in [
+            // AMD's, as RADV says; one that does it already; NVIDIA's steps; one whose most is less than is asked for.
+            (rules(0.0, 0.0, 0.0), 0.0),
+            (rules(0.5, 0.75, 0.25), 0.0),
+            (rules(0.0, 0.75, 0.25), 0.25),
+            (rules(1.0 / 512.0, 0.75, 1.0 / 128.0), 2.0 / 128.0),
+            (rules(0.0, 1.0 / 128.0, 1.0 / 256.0), 1.0 / 128.0),
+        ] {
+            assert_eq!(rules.extra_px(margin), extra, "{rules:?}");
+        }
+    }
 }

@@ -9,7 +9,7 @@ use super::image::Image;
 use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
 use super::recorded::Recorded;
 use super::statistics::Statistics;
-use super::timing::Timestamps;
+use super::timing::{Clock, Timestamps};
 use super::{Access, Buffer, Gpu};
 use crate::error::{Error, Result};
 use crate::units::Extent;
@@ -110,16 +110,10 @@ impl Commands {
             heirs: Heirs::new(),
         };
         gpu.name(pool, name);
-        if submits == Submits::PerPass {
-            commands.timestamps = Timestamps::new(gpu, MAX_PASS_COUNT)?;
-        }
         if has_statistics {
             commands.statistics = Some(Statistics::new(gpu, MAX_PASS_COUNT)?);
         }
         commands.next_buffer()?;
-        if let Some(timestamps) = &commands.timestamps {
-            timestamps.reset(commands.buffer());
-        }
         if let Some(statistics) = &commands.statistics {
             statistics.reset(commands.buffer());
         }
@@ -162,6 +156,9 @@ impl Commands {
             self.end_buffer()?;
             self.next_buffer()?;
         }
+        if index == 0 {
+            self.make_timestamps()?;
+        }
         self.passes.push(RecordedPass { name: name.to_owned(), traffic });
         self.gpu.label(self.buffer(), Some(name));
         if let Some(timestamps) = &self.timestamps {
@@ -178,6 +175,17 @@ impl Commands {
             timestamps.write(self.buffer(), index, true);
         }
         self.gpu.label(self.buffer(), None);
+        Ok(())
+    }
+
+    /// Before the first pass, where anybody looks at them.
+    fn make_timestamps(&mut self) -> Result<()> {
+        if self.submits == Submits::PerPass || Clock::of(&self.gpu.caps) == Clock::Timestamps {
+            self.timestamps = Timestamps::new(&self.gpu, MAX_PASS_COUNT)?;
+        }
+        if let Some(timestamps) = &self.timestamps {
+            timestamps.reset(self.buffer());
+        }
         Ok(())
     }
 

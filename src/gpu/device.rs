@@ -11,6 +11,9 @@ use std::sync::{Arc, Mutex};
 /// Vulkan version that this program is written for.
 pub const API: u32 = vk::API_VERSION_1_3;
 
+const PORTABILITY_SUBSET: &CStr = ash::khr::portability_subset::NAME;
+const PORTABILITY_ENUMERATION: &CStr = ash::khr::portability_enumeration::NAME;
+
 /// Replaces a device function by name, or leaves it: how a test stands between this program and the driver.
 pub type DeviceHook = fn(&CStr, *const c_void) -> *const c_void;
 
@@ -24,8 +27,13 @@ pub struct DeviceRequest {
     pub strategy: Strategy,
     /// What memory blocks in one heap may sum up to; None: the heap's size.
     pub budget_bytes: Option<u64>,
+    /// Reads and writes of shaders beyond a buffer's end hit nothing else (robustBufferAccess). Without, such a mistake may
+    /// lose the device; what looks for mistakes and what is timed does without.
+    pub robust: bool,
     /// None: the driver's own functions.
     pub hook: Option<DeviceHook>,
+    /// Changes what devices say of themselves before one is chosen: how a test has a device that is not there.
+    pub pretense: Option<fn(&mut Caps)>,
 }
 
 /// An open device with one queue, its memory and its validation log.
@@ -34,6 +42,8 @@ pub struct Gpu {
     pub device: ash::Device,
     pub queue: vk::Queue,
     pub queue_family: u32,
+    /// `DeviceRequest::robust`.
+    pub is_robust: bool,
     pub memory: Arc<Memory>,
     /// Pipelines that were made before: a second renderer of the same settings compiles nothing on drivers that keep them.
     pub(super) pipelines: vk::PipelineCache,
@@ -88,11 +98,18 @@ fn create_instance(entry: &ash::Entry, validate: Option<&validation::Log>) -> Re
     if has_names {
         extensions.push(ash::ext::debug_utils::NAME.as_ptr());
     }
+    // Without being asked so, loaders hide drivers that stand on another interface, as MoltenVK does.
+    let has_portability = available.iter().any(|e| e.extension_name_as_c_str() == Ok(PORTABILITY_ENUMERATION));
+    let mut flags = vk::InstanceCreateFlags::empty();
+    if has_portability {
+        extensions.push(PORTABILITY_ENUMERATION.as_ptr());
+        flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
+    }
     let layers = [validation::LAYER.as_ptr()];
     let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
     let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
     let mut messenger = validate.map(validation::Log::messenger_info);
-    let mut info = vk::InstanceCreateInfo::default().application_info(&application);
+    let mut info = vk::InstanceCreateInfo::default().application_info(&application).flags(flags);
     if validate.is_some() {
         // SAFETY: as above.
         let present = unsafe { entry.enumerate_instance_layer_properties() }.unwrap_or_default();
@@ -188,11 +205,17 @@ fn preference(identity: &Identity) -> u32 {
     }
 }
 
-fn choose(instance: &ash::Instance, selector: Option<&str>) -> Result<(vk::PhysicalDevice, Caps)> {
+fn choose(instance: &ash::Instance, request: &DeviceRequest) -> Result<(vk::PhysicalDevice, Caps)> {
+    let selector = request.selector.as_deref();
+    let said = |physical| {
+        let mut caps = probe::caps(instance, physical);
+        request.pretense.inspect(|pretend| pretend(&mut caps));
+        caps
+    };
     let all: Vec<(usize, vk::PhysicalDevice, Caps)> = physical_devices(instance)?
         .into_iter()
         .enumerate()
-        .map(|(index, physical)| (index, physical, probe::caps(instance, physical)))
+        .map(|(index, physical)| (index, physical, said(physical)))
         .collect();
     let named = |(index, _, caps): &&(usize, _, Caps)| is_named(selector, *index, &caps.identity);
     let mut fitting: Vec<_> = all.iter().filter(named).collect();
@@ -254,7 +277,7 @@ impl Gpu {
         log: Option<Arc<validation::Log>>,
         request: &DeviceRequest,
     ) -> Result<Self> {
-        let (physical, caps) = choose(&instance, request.selector.as_deref())?;
+        let (physical, caps) = choose(&instance, request)?;
         let queue_family = probe::queue_family(&instance, physical).expect("`choose` asked for it");
         let priorities = [1.0];
         let queues =
@@ -266,6 +289,8 @@ impl Gpu {
             // What glslang makes of `discard`.
             .shader_demote_to_helper_invocation(true);
         let features = vk::PhysicalDeviceFeatures::default()
+            // Every device has it.
+            .robust_buffer_access(request.robust)
             .sampler_anisotropy(caps.features.sampler_anisotropy)
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
@@ -285,8 +310,12 @@ impl Gpu {
         if caps.features.ray_query {
             extensions.extend(probe::RAY_QUERY_EXTENSIONS.map(CStr::as_ptr));
         }
-        if caps.features.conservative_rasterization {
+        if caps.conservative.is_some() {
             extensions.push(ash::ext::conservative_rasterization::NAME.as_ptr());
+        }
+        // A device that has it wants it enabled.
+        if probe::extensions(&instance, physical).iter().any(|name| PORTABILITY_SUBSET.to_str() == Ok(name.as_str())) {
+            extensions.push(PORTABILITY_SUBSET.as_ptr());
         }
         let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
@@ -345,6 +374,7 @@ impl Gpu {
             device,
             queue,
             queue_family,
+            is_robust: request.robust,
             memory,
             pipelines,
             names,

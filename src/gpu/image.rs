@@ -141,9 +141,12 @@ impl Image {
         berth: Berth<'_>,
     ) -> Result<Self> {
         let ImageDescription { extent, format, .. } = description;
-        let limit = gpu.caps.limits.max_image_side_px;
-        if extent.width > limit || extent.height > limit {
-            return Err(Error::request(format!("{name}: {extent} pixels: this device allows {limit} a side")));
+        let limits = &gpu.caps.limits;
+        let drawn = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let is_drawn = description.usage.intersects(drawn);
+        let [width, height] = if is_drawn { limits.most_drawn_px() } else { [limits.max_image_side_px; 2] };
+        if extent.width > width || extent.height > height {
+            return Err(Error::request(format!("{name}: {extent} pixels: this device allows {width} x {height}")));
         }
         let (layers, limit) = (description.layers(), gpu.caps.limits.max_image_layers);
         if layers > limit {

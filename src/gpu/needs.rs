@@ -36,7 +36,7 @@ pub enum Ability {
     LayerFromVertex,
     /// Shaders keep the greatest of 64 bits in storage buffers.
     WideAtomics,
-    /// All pixels that a triangle touches are drawn.
+    /// All pixels that a triangle touches are drawn, those of triangles without an area too.
     ConservativeRaster,
     /// Shaders send rays through structures that the driver builds.
     RayQuery,
@@ -62,7 +62,7 @@ impl Ability {
             Self::GeometryShader => caps.features.geometry_shader,
             Self::WideAtomics => caps.features.shader_int64_atomics,
             Self::LayerFromVertex => caps.features.layer_from_vertex_shader,
-            Self::ConservativeRaster => caps.features.conservative_rasterization,
+            Self::ConservativeRaster => caps.conservative.is_some_and(|rules| rules.draws_degenerate_triangles),
             Self::RayQuery => caps.features.ray_query,
             Self::PipelineStatistics => caps.features.pipeline_statistics,
         }
@@ -85,7 +85,7 @@ impl Ability {
             Self::GeometryShader => "geometryShader",
             Self::WideAtomics => "shaderBufferInt64Atomics with shaderInt64",
             Self::LayerFromVertex => "shaderOutputLayer",
-            Self::ConservativeRaster => "VK_EXT_conservative_rasterization",
+            Self::ConservativeRaster => "VK_EXT_conservative_rasterization with degenerateTrianglesRasterized",
             Self::RayQuery => "VK_KHR_ray_query with VK_KHR_acceleration_structure",
             Self::PipelineStatistics => "pipelineStatisticsQuery",
         }

@@ -2,7 +2,7 @@
 
 use super::Gpu;
 use super::descriptors::Bound;
-use super::shader::{Binding, Shader, Side};
+use super::shader::{Binding, BindingKind, Shader, Side};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::collections::BTreeMap;
@@ -28,6 +28,7 @@ impl Interface {
     /// `foreign`: layouts for sets from 1 on that were made elsewhere.
     fn new(gpu: &Arc<Gpu>, shaders: &[&Shader], foreign: &[vk::DescriptorSetLayout]) -> Result<Self> {
         let label = shaders.iter().map(|shader| shader.label()).collect::<Vec<_>>().join("+");
+        shaders.iter().try_for_each(|shader| require_bindable(shader, gpu))?;
         let mut merged: BTreeMap<u32, (Binding, vk::ShaderStageFlags)> = BTreeMap::new();
         let mut push_stages = vk::ShaderStageFlags::empty();
         let mut push_bytes = 0;
@@ -87,6 +88,30 @@ impl Interface {
             }
         }
     }
+}
+
+/// Errors: a stage binds more of a kind than the device lets one (exit code 3).
+fn require_bindable(shader: &Shader, gpu: &Gpu) -> Result<()> {
+    let limits = &gpu.caps.limits;
+    for (kinds, most, limit) in [
+        (&[BindingKind::StorageBuffer][..], limits.max_storage_buffers_per_stage, "StorageBuffers"),
+        (&[BindingKind::StorageImage], limits.max_storage_images_per_stage, "StorageImages"),
+        (
+            &[BindingKind::SampledImage, BindingKind::CombinedImageSampler],
+            limits.max_sampled_images_per_stage,
+            "SampledImages",
+        ),
+    ] {
+        let of_kind = shader.bindings.iter().filter(|binding| kinds.contains(&binding.kind));
+        let count: u32 = of_kind.map(|binding| binding.count).sum();
+        if count > most {
+            let (label, device) = (shader.label(), &gpu.caps.identity.name);
+            let why =
+                format!("{label} binds {count}, and {device} lets a stage bind {most} (maxPerStageDescriptor{limit})");
+            return Err(Error::no_device(why).note("--device takes another one; `quincunx devices` lists them"));
+        }
+    }
+    Ok(())
 }
 
 impl Interface {
@@ -251,8 +276,9 @@ pub struct GraphicsDescription<'a> {
     pub depth_clamp: bool,
     /// What is added to depth: parts of what it changes by from a pixel to the next where the surface is steepest.
     pub depth_slope_bias: f32,
-    /// Every pixel that a triangle touches is drawn (VK_EXT_conservative_rasterization).
-    pub conservative: bool,
+    /// Every pixel is drawn that a triangle touches whose edges lie this much farther out, pixels
+    /// (VK_EXT_conservative_rasterization). None: every pixel whose middle it covers.
+    pub conservative_margin_px: Option<f32>,
     /// None: no stencil test. Reference and write mask are set by commands.
     pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
@@ -387,15 +413,19 @@ impl GraphicsPipeline {
         let assembly =
             vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let mut overestimate = vk::PipelineRasterizationConservativeStateCreateInfoEXT::default()
-            .conservative_rasterization_mode(vk::ConservativeRasterizationModeEXT::OVERESTIMATE);
+        let mut overestimate = description.conservative_margin_px.map(|margin_px| {
+            let rules = gpu.caps.conservative.expect("a device without it is refused before");
+            vk::PipelineRasterizationConservativeStateCreateInfoEXT::default()
+                .conservative_rasterization_mode(vk::ConservativeRasterizationModeEXT::OVERESTIMATE)
+                .extra_primitive_overestimation_size(rules.extra_px(margin_px))
+        });
         let mut raster = vk::PipelineRasterizationStateCreateInfo::default()
             .line_width(1.0)
             .depth_clamp_enable(description.depth_clamp)
             .depth_bias_enable(description.depth_slope_bias != 0.0)
             .depth_bias_slope_factor(description.depth_slope_bias);
-        if description.conservative {
-            raster = raster.push_next(&mut overestimate);
+        if let Some(overestimate) = &mut overestimate {
+            raster = raster.push_next(overestimate);
         }
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(description.samples));

@@ -1,6 +1,6 @@
 //! A physical device's answers, looked up once, as `Caps`.
 
-use super::caps::{Caps, Features, Formats, Heap, Identity, Limits, MemoryType};
+use super::caps::{Caps, ConservativeRules, Features, Formats, Heap, Identity, Limits, MemoryType};
 use ash::vk;
 use std::ffi::CStr;
 
@@ -42,7 +42,9 @@ fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
         };
         found.map_or(Vec::new(), |properties| counts(properties.sample_counts))
     };
-    let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+    // As multisampled images are used here: drawn into, and fetched by shaders.
+    let color = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
+    let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
     Formats {
         float_depth: has(vk::Format::D32_SFLOAT, Flags::DEPTH_STENCIL_ATTACHMENT | Flags::SAMPLED_IMAGE),
         float_depth_linear: has(vk::Format::D32_SFLOAT, Flags::SAMPLED_IMAGE_FILTER_LINEAR),
@@ -52,13 +54,26 @@ fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
         fixed_quad_sampled: has(vk::Format::R16G16B16A16_UNORM, Flags::SAMPLED_IMAGE),
         float_color_sample_counts: samples(vk::Format::R32G32B32A32_SFLOAT, color),
         half_color_sample_counts: samples(vk::Format::R16G16B16A16_SFLOAT, color),
-        float_depth_sample_counts: samples(vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
+        float_depth_sample_counts: samples(vk::Format::D32_SFLOAT, depth),
     }
 }
 
 /// The numbers of samples a pixel that a set of flags stands for, rising.
 fn counts(flags: vk::SampleCountFlags) -> Vec<u32> {
     (0..7).map(|bit| 1 << bit).filter(|count| flags.as_raw() & count != 0).collect()
+}
+
+fn conservative(instance: &ash::Instance, physical: vk::PhysicalDevice) -> ConservativeRules {
+    let mut conservative = vk::PhysicalDeviceConservativeRasterizationPropertiesEXT::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut conservative);
+    // SAFETY: a live instance and one of its physical devices, which has the extension of the chained struct.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    ConservativeRules {
+        overestimation_px: conservative.primitive_overestimation_size,
+        most_extra_px: conservative.max_extra_primitive_overestimation_size,
+        extra_step_px: conservative.extra_primitive_overestimation_size_granularity,
+        draws_degenerate_triangles: conservative.degenerate_triangles_rasterized != 0,
+    }
 }
 
 /// Everything that `Caps` holds.
@@ -119,6 +134,8 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
         },
         limits: Limits {
             max_image_side_px: limits.max_image_dimension2_d,
+            max_viewport_px: limits.max_viewport_dimensions,
+            max_framebuffer_px: [limits.max_framebuffer_width, limits.max_framebuffer_height],
             max_image_layers: limits.max_image_array_layers,
             max_storage_buffer_range_bytes: u64::from(limits.max_storage_buffer_range),
             max_uniform_buffer_range_bytes: u64::from(limits.max_uniform_buffer_range),
@@ -128,6 +145,8 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             max_workgroup_count: limits.max_compute_work_group_count,
             max_shared_memory_bytes: limits.max_compute_shared_memory_size,
             max_sampled_images_per_stage: limits.max_per_stage_descriptor_sampled_images,
+            max_storage_buffers_per_stage: limits.max_per_stage_descriptor_storage_buffers,
+            max_storage_images_per_stage: limits.max_per_stage_descriptor_storage_images,
             max_bound_descriptor_sets: limits.max_bound_descriptor_sets,
             max_color_attachments: limits.max_color_attachments,
             max_allocation_count: limits.max_memory_allocation_count,
@@ -142,6 +161,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             max_geometry_components: limits.max_geometry_total_output_components,
             subgroup_size: subgroup.subgroup_size,
             timestamp_period_ns: if timestamp_bits == 0 { 0.0 } else { limits.timestamp_period },
+            timestamp_bits,
             framebuffer_sample_counts: counts(limits.framebuffer_color_sample_counts),
         },
         features: Features {
@@ -155,7 +175,6 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             shader_float16: features12.shader_float16 != 0,
             shader_int64_atomics: features.shader_int64 != 0 && features12.shader_buffer_int64_atomics != 0,
             pipeline_statistics: features.pipeline_statistics_query != 0,
-            conservative_rasterization: has("VK_EXT_conservative_rasterization"),
             ray_query: RAY_QUERY_EXTENSIONS.iter().all(|name| has(&name.to_string_lossy()))
                 && ray_queries.ray_query != 0
                 && structures.acceleration_structure != 0
@@ -163,6 +182,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             memory_budget: has("VK_EXT_memory_budget"),
         },
         formats: formats(instance, physical),
+        conservative: has("VK_EXT_conservative_rasterization").then(|| conservative(instance, physical)),
         heaps: memory
             .memory_heaps_as_slice()
             .iter()

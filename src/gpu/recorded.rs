@@ -7,7 +7,7 @@
 use super::commands::{Commands, RecordedPass, Submits};
 use super::failure::failed;
 use super::statistics::PassStatistics;
-use super::timing::PassTime;
+use super::timing::{Clock, PassTime};
 use crate::error::Result;
 use ash::vk;
 use std::time::Instant;
@@ -22,6 +22,9 @@ pub struct Recorded {
 pub struct FrameTime {
     /// First submit to last fence.
     pub wall_ns: u64,
+    /// By the device's clock, where it has one that is looked at: from the first pass's beginning to the last one's end in one
+    /// submit, else the sum of its passes.
+    pub device_ns: Option<u64>,
     /// Of the passes that ran, in the order of `Recorded::passes`.
     pub passes: Vec<PassTime>,
     /// Of the same passes; empty where none were asked for.
@@ -29,11 +32,20 @@ pub struct FrameTime {
 }
 
 impl FrameTime {
+    /// The frame's time by this clock; by the host's where the device has none.
+    pub fn figure_ns(&self, clock: Clock) -> u64 {
+        match clock {
+            Clock::Wall => self.wall_ns,
+            Clock::Timestamps => self.device_ns.unwrap_or(self.wall_ns),
+        }
+    }
+
     /// Another run of the same frame, which makes the same picture with it. Statistics become its own, as counters are
     /// those of the last run.
     pub fn add(&mut self, run: Self) {
         let sum = |total: &mut Option<u64>, more: Option<u64>| *total = total.zip(more).map(|(a, b)| a + b);
         self.wall_ns += run.wall_ns;
+        sum(&mut self.device_ns, run.device_ns);
         self.statistics = run.statistics;
         for (total, more) in self.passes.iter_mut().zip(&run.passes) {
             sum(&mut total.wall_ns, more.wall_ns);
@@ -50,6 +62,11 @@ impl Recorded {
 
     pub fn passes(&self) -> &[RecordedPass] {
         &self.commands.passes
+    }
+
+    /// Whose clock the times of its runs are.
+    pub fn clock(&self) -> Clock {
+        Clock::of(&self.commands.gpu.caps)
     }
 
     /// Submits the frame and waits for it.
@@ -82,20 +99,23 @@ impl Recorded {
         }
         let wall_ns = started.elapsed().as_nanos() as u64;
         let timestamps = match &commands.timestamps {
-            Some(timestamps) => timestamps.read_first(pass_count)?,
-            None => Vec::new(),
+            Some(timestamps) if pass_count > 0 => Some(timestamps.read_first(pass_count)?),
+            _ => None,
         };
+        let is_per_pass = commands.submits == Submits::PerPass;
         let passes = (0..pass_count)
             .map(|pass| PassTime {
-                wall_ns: (commands.submits == Submits::PerPass).then(|| walls[pass]),
-                timestamp_ns: timestamps.get(pass).copied(),
+                wall_ns: is_per_pass.then(|| walls[pass]),
+                timestamp_ns: timestamps.as_ref().map(|times| times.passes[pass]),
             })
             .collect();
+        // Between submits the device waits for the host.
+        let device_ns = timestamps.map(|times| if is_per_pass { times.passes.iter().sum() } else { times.all_ns });
         let statistics = match &commands.statistics {
             Some(statistics) => statistics.read_first(pass_count)?,
             None => Vec::new(),
         };
-        Ok(FrameTime { wall_ns, passes, statistics })
+        Ok(FrameTime { wall_ns, device_ns, passes, statistics })
     }
 
     fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {

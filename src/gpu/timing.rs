@@ -1,13 +1,45 @@
 //! Pass times by name: the wall clock of one submit a pass, and the device's timestamps beside it.
 //!
-//! Lavapipe writes a dispatch's time into the draw before it when both stand in one command buffer, so the wall clock of
-//! a submit with a fence is the figure and the timestamp a second column; a disagreement is reported, not hidden.
+//! Which of the two is the figure hangs on the device (`Clock`); the other one is a second column, and what does not fit
+//! together is reported, not hidden.
 
-use super::Gpu;
 use super::failure::failed;
+use super::{Caps, Gpu};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
+
+/// Whose clock a time is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The host's, from a submit to its fence. Lavapipe writes a dispatch's time into the draw before it when both stand in
+    /// one command buffer, and a submit costs a processor little.
+    Wall,
+    /// The device's. A submit and its fence take a GPU tens of microseconds, as long as many a pass.
+    Timestamps,
+}
+
+impl Clock {
+    /// The clock of a device's figures.
+    pub fn of(caps: &Caps) -> Self {
+        let has_timestamps = caps.limits.timestamp_period_ns > 0.0;
+        if has_timestamps && !caps.identity.is_software() { Self::Timestamps } else { Self::Wall }
+    }
+
+    /// Reports' word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wall => "wall",
+            Self::Timestamps => "timestamps",
+        }
+    }
+}
+
+/// Nanoseconds between two timestamps of which `bits` count, each tick `period_ns` long. The counter may have gone around once.
+fn elapsed_ns([begin, end]: [u64; 2], bits: u32, period_ns: f32) -> u64 {
+    let mask = if bits >= 64 { u64::MAX } else { (1 << bits) - 1 };
+    ((end.wrapping_sub(begin) & mask) as f64 * f64::from(period_ns)) as u64
+}
 
 /// What one pass took in one frame.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,6 +48,16 @@ pub struct PassTime {
     pub wall_ns: Option<u64>,
     /// Between the device's timestamps around the pass; None where it writes none.
     pub timestamp_ns: Option<u64>,
+}
+
+impl PassTime {
+    /// The pass's time by this clock; by the other one where this one did not run.
+    pub fn figure_ns(&self, clock: Clock) -> Option<u64> {
+        match clock {
+            Clock::Wall => self.wall_ns,
+            Clock::Timestamps => self.timestamp_ns.or(self.wall_ns),
+        }
+    }
 }
 
 /// Two timestamps a pass.
@@ -53,21 +95,59 @@ impl Timestamps {
         unsafe { self.gpu.device.cmd_write_timestamp2(buffer, stage, self.pool, query) };
     }
 
-    /// Nanoseconds of each of the first `pass_count` passes, after the fence of the frame that wrote them.
-    pub fn read_first(&self, pass_count: usize) -> Result<Vec<u64>> {
+    /// The times of the first `pass_count` passes, at least one, after the fence of the frame that wrote them.
+    pub fn read_first(&self, pass_count: usize) -> Result<DeviceTimes> {
         let mut ticks = vec![0u64; 2 * pass_count];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         // SAFETY: the queries were written by the submit whose fence the caller waited for.
         unsafe { self.gpu.device.get_query_pool_results(self.pool, 0, &mut ticks, flags) }
             .map_err(|result| failed("reading timestamps", result))?;
-        let period = f64::from(self.gpu.caps.limits.timestamp_period_ns);
-        Ok(ticks.chunks_exact(2).map(|pair| (pair[1].saturating_sub(pair[0]) as f64 * period) as u64).collect())
+        let limits = &self.gpu.caps.limits;
+        let elapsed = |begin, end| elapsed_ns([begin, end], limits.timestamp_bits, limits.timestamp_period_ns);
+        let passes = ticks.chunks_exact(2).map(|pair| elapsed(pair[0], pair[1])).collect();
+        Ok(DeviceTimes { passes, all_ns: elapsed(ticks[0], ticks[ticks.len() - 1]) })
     }
+}
+
+/// Times by the device's clock, nanoseconds.
+pub struct DeviceTimes {
+    pub passes: Vec<u64>,
+    /// From the first pass's beginning to the last one's end.
+    pub all_ns: u64,
 }
 
 impl Drop for Timestamps {
     fn drop(&mut self) {
         // SAFETY: the fence of the last frame that used it was waited for.
         unsafe { self.gpu.device.destroy_query_pool(self.pool, None) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::known;
+
+    #[test]
+    fn a_clock_that_goes_around_goes_on() {
+        assert_eq!(elapsed_ns([100, 350], 64, 2.0), 500);
+        // What stands above the bits that count is noise.
+        assert_eq!(elapsed_ns([0xabc0_0000_0000_0064, 0x0120_0000_0000_015e], 36, 1.0), 250);
+        assert_eq!(elapsed_ns([(1 << 36) - 10, 5], 36, 10.0), 150);
+        assert_eq!(elapsed_ns([u64::MAX - 9, 5], 64, 1.0), 15);
+    }
+
+    #[test]
+    fn figures_of_a_gpu_are_its_timestamps_where_it_has_any() {
+        let mut caps = known::caps(known::DEFAULT).unwrap();
+        assert_eq!(Clock::of(&caps), Clock::Wall);
+        caps.identity.device_type = "discrete-gpu".to_owned();
+        assert_eq!(Clock::of(&caps), Clock::Timestamps);
+        caps.limits.timestamp_period_ns = 0.0;
+        assert_eq!(Clock::of(&caps), Clock::Wall);
+        let time = PassTime { wall_ns: Some(90_000), timestamp_ns: Some(20_000) };
+        assert_eq!([Clock::Wall, Clock::Timestamps].map(|clock| time.figure_ns(clock)), [Some(90_000), Some(20_000)]);
+        let unstamped = PassTime { timestamp_ns: None, ..time };
+        assert_eq!(unstamped.figure_ns(Clock::Timestamps), Some(90_000));
     }
 }

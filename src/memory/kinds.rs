@@ -54,7 +54,10 @@ impl Kinds {
         let host = |kind: &MemoryType| kind.host_visible && kind.host_coherent;
         let wanted: &[Wanted] = match usage {
             Use::Device => &[
-                (|kind| kind.device_local && !kind.host_visible, "device-local, kept from the host"),
+                (
+                    |kind| kind.device_local && !kind.host_visible && !kind.lazily_allocated,
+                    "device-local, kept from the host",
+                ),
                 (|kind| kind.device_local && !kind.lazily_allocated, "device-local, and the host sees it: no other is"),
                 (|kind| !kind.lazily_allocated, "not device-local: the driver allows no other"),
             ],
@@ -115,5 +118,10 @@ mod tests {
         assert_eq!(kinds.choose(Use::Device, 0b1111).unwrap().type_index, 1);
         assert_eq!(kinds.choose(Use::Device, 0b1101).unwrap().type_index, 3);
         assert_eq!(kinds.choose(Use::Device, 0b0101).unwrap_err().exit_code(), 4);
+        // As tilers have it: what the host does not see is for attachments that are never stored.
+        let tiler = Kinds {
+            types: vec![MemoryType { host_visible: false, host_coherent: false, ..lazy() }, kind(true, true, true)],
+        };
+        assert_eq!(tiler.choose(Use::Device, 0b11).unwrap().type_index, 1);
     }
 }

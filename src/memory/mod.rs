@@ -280,6 +280,10 @@ fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misf
         Misfit::TooLarge { most_bytes } => {
             Error::memory(format!("{what}: the device makes memory blocks of at most {}", Bytes(most_bytes)))
         }
+        Misfit::TooMany { most } => Error::memory(format!(
+            "{what}: the device makes at most {most} memory blocks (maxMemoryAllocationCount), and as many are there"
+        ))
+        .note("--allocation linear and tlsf put several resources into one"),
         Misfit::Spent { limit_bytes, held_bytes, is_budget } => {
             let limit = if is_budget { "the budget" } else { "the heap" };
             let spent = if held_bytes > 0 { "spent" } else { "too small for it" };

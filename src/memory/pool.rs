@@ -54,6 +54,8 @@ pub struct Place {
 pub enum Misfit {
     /// One memory block may not be that large.
     TooLarge { most_bytes: u64 },
+    /// There are as many memory blocks as the device makes.
+    TooMany { most: u32 },
     /// The heap's share of the budget, or the heap, is spent.
     Spent { limit_bytes: u64, held_bytes: u64, is_budget: bool },
 }
@@ -67,6 +69,7 @@ pub struct Rules {
     heap_bytes: Vec<u64>,
     heap_of_type: Vec<usize>,
     max_allocation_bytes: u64,
+    max_allocation_count: u32,
 }
 
 impl Rules {
@@ -78,6 +81,7 @@ impl Rules {
             heap_bytes: caps.heaps.iter().map(|heap| heap.bytes).collect(),
             heap_of_type: caps.memory_types.iter().map(|kind| kind.heap as usize).collect(),
             max_allocation_bytes: caps.limits.max_allocation_bytes,
+            max_allocation_count: caps.limits.max_allocation_count,
         }
     }
 
@@ -85,7 +89,14 @@ impl Rules {
     #[cfg(test)]
     pub fn of_one_heap(strategy: Strategy, heap_bytes: u64) -> Self {
         let (heap_bytes, heap_of_type) = (vec![heap_bytes], vec![0]);
-        Self { strategy, budget_bytes: None, heap_bytes, heap_of_type, max_allocation_bytes: u64::MAX }
+        Self {
+            strategy,
+            budget_bytes: None,
+            heap_bytes,
+            heap_of_type,
+            max_allocation_bytes: u64::MAX,
+            max_allocation_count: u32::MAX,
+        }
     }
 }
 
@@ -146,6 +157,10 @@ impl Pool {
         let bytes = if is_shared { shared_bytes } else { ask.bytes };
         if bytes > left {
             return Err(Misfit::Spent { limit_bytes, held_bytes, is_budget: limit_bytes < heap_bytes });
+        }
+        let most = self.rules.max_allocation_count;
+        if self.blocks.iter().flatten().count() >= most as usize {
+            return Err(Misfit::TooMany { most });
         }
         let mut ranges: Box<dyn Suballocate> = match self.rules.strategy {
             Strategy::Linear if is_shared => Box::new(Linear::new(bytes)),
@@ -246,6 +261,7 @@ mod tests {
             heap_bytes: vec![256 * MIB, 64 * MIB],
             heap_of_type: vec![0, 1, 1],
             max_allocation_bytes: 128 * MIB,
+            max_allocation_count: u32::MAX,
         }
     }
 
@@ -381,6 +397,21 @@ mod tests {
             let spent = Misfit::Spent { limit_bytes: 256 * MIB, held_bytes: 200 * MIB, is_budget: false };
             assert_eq!(pool.place(&ask(100 * MIB)), Err(spent));
             assert_eq!(pool.place(&ask(129 * MIB)), Err(Misfit::TooLarge { most_bytes: 128 * MIB }));
+        }
+    }
+
+    #[test]
+    fn no_more_memory_blocks_are_made_than_the_device_allows() {
+        let few = Rules { max_allocation_count: 3, ..rules(Strategy::Dedicated, None) };
+        let mut pool = Pool::new(few);
+        let places: Vec<Place> = (0..3).map(|_| pool.place(&ask(MIB)).unwrap()).collect();
+        assert_eq!(pool.place(&ask(MIB)), Err(Misfit::TooMany { most: 3 }));
+        pool.give_back(places[1].block, places[1].offset, MIB);
+        pool.place(&ask(MIB)).unwrap();
+        // Ranges of one block are one.
+        let mut pool = Pool::new(Rules { max_allocation_count: 1, ..rules(Strategy::Linear, None) });
+        for _ in 0..3 {
+            pool.place(&ask(1024)).unwrap();
         }
     }
 }

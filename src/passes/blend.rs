@@ -173,7 +173,7 @@ impl Blend {
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
-                conservative: false,
+                conservative_margin_px: None,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

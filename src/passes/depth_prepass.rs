@@ -66,7 +66,7 @@ impl DepthPrepass {
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
-                    conservative: false,
+                    conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -22,7 +22,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         depth_compare: vk::CompareOp::ALWAYS,
         depth_clamp: false,
         depth_slope_bias: 0.0,
-        conservative: false,
+        conservative_margin_px: None,
         stencil: None,
         foreign_sets: &[],
     }

@@ -62,9 +62,9 @@ fn trial(recipe: &Recipe, session: &Session) -> Result<Option<Duration>> {
     // The first frame also pays for what drivers compile.
     renderer.frame()?;
     interrupt::check()?;
-    let wall_ns = renderer.frame()?.wall_ns;
+    let frame_ns = renderer.frame()?.figure_ns(renderer.clock());
     interrupt::check()?;
-    Ok(Some(Duration::from_nanos(wall_ns).mul_f64(samples as f64 / TRIAL_SAMPLES as f64)))
+    Ok(Some(Duration::from_nanos(frame_ns).mul_f64(samples as f64 / TRIAL_SAMPLES as f64)))
 }
 
 fn render(recipe: &Recipe, session: &Session) -> Result<Picture> {

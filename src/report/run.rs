@@ -2,8 +2,9 @@
 //! section 2; within a schema number a key is only ever added.
 
 use crate::error::Result;
-use crate::gpu::caps::Identity;
+use crate::gpu::Gpu;
 use crate::gpu::recorded::FrameTime;
+use crate::gpu::timing::Clock;
 use crate::metrics::{self, Metrics};
 use crate::report::image_file::{Aov, AovChannels};
 use crate::report::memory::MemoryTable;
@@ -77,21 +78,32 @@ fn invocations(pass: &Value) -> Option<String> {
     Some(format!("{} invocations", if told.is_empty() { "no".to_owned() } else { told.join(", ") }))
 }
 
+/// Whether a pass's two times, milliseconds, cannot both be right: a submit adds to the wall time what it takes.
+fn disagrees(clock: Clock, wall: f64, stamp: f64) -> bool {
+    let is_apart = match clock {
+        Clock::Wall => (wall - stamp).abs() > DISAGREEMENT * wall,
+        Clock::Timestamps => stamp > (1.0 + DISAGREEMENT) * wall,
+    };
+    wall.max(stamp) >= JUDGED_FROM_MS && is_apart
+}
+
 fn milliseconds(ns: u64) -> f64 {
     ns as f64 / 1e6
 }
 
 impl Report {
-    pub fn new(technique: &dyn Technique, command: &[String], device: &Identity) -> Self {
+    pub fn new(technique: &dyn Technique, command: &[String], gpu: &Gpu) -> Self {
         let mut document = Map::new();
         document.insert("schema".into(), json!(SCHEMA));
         let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("QUINCUNX_COMMIT"));
         document.insert("quincunx".into(), json!({ "version": version, "commit": commit }));
         document.insert("command".into(), json!(command));
-        document.insert("device".into(), json!(device));
+        let mut device = json!(gpu.caps.identity);
+        device["robust_buffer_access"] = json!(gpu.is_robust);
+        document.insert("device".into(), device);
         document.insert("technique".into(), json!(technique.name()));
         document.insert("estimator".into(), json!(technique.estimator_version()));
-        Self { document, is_software: device.is_software() }
+        Self { document, is_software: gpu.caps.identity.is_software() }
     }
 
     pub fn scene(&mut self, session: &Session, renderer: &Renderer) {
@@ -198,15 +210,14 @@ impl Report {
         };
         let mut rows = once(&renderer.host_passes, "host, once");
         rows.extend(once(&renderer.once_passes, "device, once"));
+        let clock = renderer.clock();
         let mut warnings = Vec::new();
         for (index, pass) in renderer.passes().iter().enumerate() {
             let walls: Vec<f64> =
                 frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(milliseconds).collect();
             let stamps: Vec<f64> =
                 frames.iter().filter_map(|frame| frame.passes[index].timestamp_ns).map(milliseconds).collect();
-            let disagrees =
-                |(wall, stamp): (&f64, &f64)| *wall >= JUDGED_FROM_MS && (wall - stamp).abs() > DISAGREEMENT * wall;
-            if walls.iter().zip(&stamps).any(disagrees) {
+            if walls.iter().zip(&stamps).any(|(wall, stamp)| disagrees(clock, *wall, *stamp)) {
                 warnings.push(format!("{}: timestamp and wall time differ by over 10 %", pass.name));
             }
             let mut row = json!({
@@ -216,8 +227,10 @@ impl Report {
                 "invocations": pass.traffic.invocations,
             });
             if profile {
-                row["ms"] = spread(&walls);
+                let figures = frames.iter().filter_map(|frame| frame.passes[index].figure_ns(clock));
+                row["ms"] = spread(&figures.map(milliseconds).collect::<Vec<f64>>());
                 row["timestamp_ms"] = spread(&stamps);
+                row["wall_ms"] = spread(&walls);
             }
             // Of the last frame, as counters are.
             if let Some(counts) = frames.last().and_then(|frame| frame.statistics.get(index)) {
@@ -225,8 +238,9 @@ impl Report {
             }
             rows.push(row);
         }
-        let totals: Vec<f64> = frames.iter().map(|frame| milliseconds(frame.wall_ns)).collect();
+        let totals: Vec<f64> = frames.iter().map(|frame| milliseconds(frame.figure_ns(clock))).collect();
         self.document.insert("passes".into(), json!(rows));
+        self.document.insert("clock".into(), json!(clock.name()));
         self.document.insert("total_ms".into(), spread(&totals));
         // Without --profile the one frame also pays for what drivers compile at first use.
         self.document.insert("warmup_frames".into(), json!(u32::from(profile)));

@@ -77,7 +77,8 @@ pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
     }
     leave_out(unmet(technique, &defaults, caps, true));
     let limits = &caps.limits;
-    let mut bounds = vec![("--size", format!("{} px a side", limits.max_image_side_px))];
+    let mut bounds =
+        vec![("--size", format!("{} px a side", limits.most_drawn_px().into_iter().min().unwrap_or_default()))];
     if reads_workgroup(technique) {
         let [x, y, _] = limits.max_workgroup_size;
         bounds.push(("--workgroup", format!("{} invocations, {x} by {y} at most", limits.max_workgroup_invocations)));
@@ -89,7 +90,7 @@ pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::caps::Formats;
+    use crate::gpu::caps::{ConservativeRules, Formats};
     use crate::gpu::known;
     use crate::techniques::{ALL, find};
 
@@ -97,7 +98,12 @@ mod tests {
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
         let mut caps = known::caps(known::DEFAULT).unwrap();
         caps.features.ray_query = true;
-        caps.features.conservative_rasterization = true;
+        caps.conservative = Some(ConservativeRules {
+            overestimation_px: 0.0,
+            most_extra_px: 0.0,
+            extra_step_px: 0.0,
+            draws_degenerate_triangles: true,
+        });
         caps.formats.float_depth_linear = true;
         let Formats { float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts, .. } =
             &mut caps.formats;
@@ -237,6 +243,16 @@ mod tests {
         let text = error.to_string();
         assert_eq!(error.exit_code(), 3);
         assert!(text.contains("D32_SFLOAT sampled with linear") && text.contains("--shadow-filter gather"), "{text}");
+    }
+
+    /// A triangle that the device drops because it has no area is one whose samples have no colour.
+    #[test]
+    fn conservative_rasterisation_without_degenerate_triangles_is_left_out() {
+        let deep = find("deep_shading").unwrap();
+        let drops = |caps: &mut Caps| caps.conservative.as_mut().unwrap().draws_degenerate_triangles = false;
+        for caps in [device(drops), device(|caps| caps.conservative = None)] {
+            assert_eq!(of(&fitness(deep, &caps).left_out), ["--conservative hardware"]);
+        }
     }
 
     #[test]

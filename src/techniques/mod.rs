@@ -204,6 +204,11 @@ pub trait Frame {
     /// The finished picture (RGBA32F) and how the frame touched it last.
     fn picture(&self) -> (&Image, Access);
 
+    /// What a NaN in the picture may stand for, and what would help; None: nothing that is the technique's own.
+    fn explained_nan(&self) -> Option<[String; 2]> {
+        None
+    }
+
     /// Numbers that a frame leaves, for the report's `counters`.
     ///
     /// Errors: memory for reading them back (exit code 4).

@@ -43,6 +43,8 @@ const uint COUNTED_FORGOTTEN = 17u;
 const uint COUNTED_OTHER_CHARTS = 18u;
 // Pixels of shading space that triangles were drawn at, before any look-up.
 const uint COUNTED_DRAWN = 19u;
-const uint COUNTER_COUNT = 20u;
+// 1 where there are strays, else 0: the draw count of what draws them, of which there may be no great number.
+const uint COUNTED_ANY_STRAY = 20u;
+const uint COUNTER_COUNT = 21u;
 
 #endif

@@ -19,6 +19,8 @@ layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
 READS_PAIRS(kept_color, colors)
+// 1: a sample without a colour makes its pixel NaN, which fails the picture.
+layout(constant_id = 102) const uint MISSING_FAILS = 0;
 #endif
 #if defined(FETCH_ADDRESS) || defined(FETCH_DIRECT)
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
@@ -84,7 +86,9 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
     uint where = color_of(spid, own);
 #endif
     uvec2 words = where < sample_total(deep) ? kept_color(where) : uvec2(0u);
-    return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
+    vec4 color = vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
+    bool fails = MISSING_FAILS != 0u && color.a == 0.0;
+    return fails ? vec4(vec3(uintBitsToFloat(0x7fc00000u)), 0.0) : color;
 #endif
 }
 

@@ -4,8 +4,8 @@
 
 // Two words: red and green, blue and 1, as half floats. The 1 says that it was stored.
 uvec2 stored_color(vec3 radiance) {
-    // A half float holds no more.
-    radiance = min(radiance, vec3(65504.0));
+    // A half float holds no more. NaN stays what it is.
+    radiance = mix(radiance, vec3(65504.0), greaterThan(radiance, vec3(65504.0)));
     return uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 1.0)));
 }
 

@@ -171,7 +171,7 @@ impl ShadowMaps {
                     depth_clamp: false,
                     // Depth is reversed: less is farther from the light.
                     depth_slope_bias: -layout.slope_bias_px,
-                    conservative: false,
+                    conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },
@@ -218,7 +218,8 @@ impl ShadowMaps {
         self.record_all(&mut cmd, technique, scene, places)?;
         cmd.barriers([self.depth.from(Access::DepthWrite).to(Access::FragmentSample)]);
         cmd.barriers([self.depth.from(Access::FragmentSample).to(Access::ComputeSample)]);
-        Ok(Some((pass(technique), cmd.finish()?.run()?.wall_ns)))
+        let recorded = cmd.finish()?;
+        Ok(Some((pass(technique), recorded.run()?.figure_ns(recorded.clock()))))
     }
 
     fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu, places: Places<'_>) -> Result<()> {

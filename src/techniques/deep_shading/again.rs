@@ -64,7 +64,7 @@ impl Again {
                 depth_compare: vk::CompareOp::EQUAL,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
-                conservative: false,
+                conservative_margin_px: None,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

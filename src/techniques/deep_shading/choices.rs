@@ -89,8 +89,7 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
         "geometry" => Road::Geometry,
         "vertex" => Road::Vertex,
         "none" => Road::Plain,
-        // Triangles that are bent have no corners that the device could draw them by.
-        _ if caps.features.conservative_rasterization && values.text("shading-warp") == "even" => Road::Hardware,
+        // Never the device's own: no device was there on which it could be seen to leave no sample without a colour.
         _ if caps.features.geometry_shader => Road::Geometry,
         _ => Road::Vertex,
     }
@@ -139,7 +138,8 @@ impl Choices {
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
         let table = Table { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
-        let space = ShadingSpace::new(values, inputs.view.extent).map_err(|error| error.within(NAME))?;
+        let space =
+            ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
         let cache_entries = values.integer_or_auto("shading-cache");
         let mut choices = Self {
@@ -217,6 +217,16 @@ impl Choices {
         if self.has_lists { "strays" } else { "brute" }
     }
 
+    /// By how much what must hold a triangle is drawn too large, pixels: `snap_px` of snap.glsl.
+    pub fn snap_px(&self) -> f32 {
+        4.0 / (1u32 << self.sub_pixel_bits()) as f32
+    }
+
+    /// Of what the rasteriser snaps corners to: SUB_PIXEL_BITS.
+    fn sub_pixel_bits(&self) -> u32 {
+        self.sub_pixel_bits.min(16)
+    }
+
     /// Samples of one set, padding included.
     pub fn samples_of(&self, frame: Extent) -> u64 {
         self.table.sample_count(frame)
@@ -233,12 +243,42 @@ impl Choices {
             ("IS_COMPACTED", u32::from(self.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("HAS_PADDING", u32::from(self.has_padding)),
-            ("SUB_PIXEL_BITS", self.sub_pixel_bits.min(16)),
+            ("SUB_PIXEL_BITS", self.sub_pixel_bits()),
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("CACHE_ENTRIES", self.cache_entries as u32),
+            ("MISSING_FAILS", u32::from(self.road != Road::Plain)),
             ("PASS_SAMPLES", self.shading.pass_samples()),
             ("TEXTURE_SIDE_BITS", self.shading.texture_side_bits()),
         ]);
         constants
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::caps::ConservativeRules;
+    use crate::gpu::known;
+    use crate::techniques::deep_shading::settings::SETTINGS;
+
+    /// What nobody has seen run is taken where it is asked for by name, and nowhere else.
+    #[test]
+    fn the_device_s_own_conservative_rasterisation_is_never_taken_by_itself() {
+        let mut caps = known::caps(known::DEFAULT).unwrap();
+        caps.conservative = Some(ConservativeRules {
+            overestimation_px: 0.5,
+            most_extra_px: 0.75,
+            extra_step_px: 0.25,
+            draws_degenerate_triangles: true,
+        });
+        let of = |caps: &Caps, text: &str| {
+            let mut values = Values::defaults(SETTINGS);
+            values.set(SETTINGS.iter().find(|row| row.key == "conservative").unwrap(), text).unwrap();
+            road(&values, caps)
+        };
+        assert_eq!(of(&caps, "hardware"), Road::Hardware);
+        assert_eq!(of(&caps, "auto"), Road::Geometry);
+        caps.features.geometry_shader = false;
+        assert_eq!(of(&caps, "auto"), Road::Vertex);
     }
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// COUNTER_COUNT of counters.glsl.
-pub const COUNT: u64 = 20;
+pub const COUNT: u64 = 21;
 
 /// Numbers that a frame left, as counters.glsl has them.
 pub struct Counted([u32; COUNT as usize]);
@@ -60,6 +60,7 @@ impl Counted {
             _,
             _,
             drawn,
+            _,
         ] = self.0.map(f64::from);
         [
             ("samples_outside_shading_space", strays - crowded),
@@ -78,7 +79,7 @@ impl Counted {
 
     /// Of a compact geometry buffer.
     pub fn of_entries(&self) -> [(&'static str, f64); 3] {
-        let [_, strays, _, missing, .., forgotten, _, _] = self.0.map(f64::from);
+        let [_, strays, _, missing, .., forgotten, _, _, _] = self.0.map(f64::from);
         [
             ("samples_outside_shading_space", strays),
             ("samples_without_colour", missing),
@@ -88,7 +89,7 @@ impl Counted {
 
     /// Of textures that draws are shaded in.
     pub fn of_textures(&self) -> [(&'static str, f64); 2] {
-        let [_, _, _, missing, .., of_other_charts, _] = self.0.map(f64::from);
+        let [_, _, _, missing, .., of_other_charts, _, _] = self.0.map(f64::from);
         [("samples_without_colour", missing), ("samples_of_other_charts", of_other_charts)]
     }
 
@@ -100,7 +101,7 @@ impl Counted {
 
     /// How much of the buffers of one entry a sample was used, with lists of `begins` shading pixels.
     pub fn entries(&self, begins: u64) -> Entries {
-        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _, _] =
+        let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _, _, _] =
             self.0.map(u64::from);
         Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples, begins }
     }

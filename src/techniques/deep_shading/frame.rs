@@ -205,6 +205,25 @@ impl Frame for DeepFrame {
         (self.accumulate.as_ref().map_or(self.run_picture(), |accumulate| &accumulate.color), Access::ComputeWrite)
     }
 
+    fn explained_nan(&self) -> Option<[String; 2]> {
+        let road = self.choices.road.name();
+        let (what, help) = match self.choices.shading {
+            Shading::Deep if self.choices.has_lists => (
+                format!("a sample that finds no colour is NaN: --conservative {road} has not drawn what it needs"),
+                "--conservative vertex draws with what every device has; --conservative none lets such samples be black",
+            ),
+            Shading::Deep | Shading::IndirectGbuffer => {
+                ("a sample that finds no colour is NaN".to_owned(), "--shading ssaa shades each sample by itself")
+            }
+            Shading::TextureSpace(_) => (
+                "a sample whose texels nobody has shaded is NaN".to_owned(),
+                "--shading ssaa shades each sample by itself",
+            ),
+            Shading::Ssaa | Shading::Msaa { .. } => return None,
+        };
+        Some([what, help.to_owned()])
+    }
+
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
         if !self.choices.is_counted {
             return Ok(BTreeMap::new());

@@ -1,5 +1,5 @@
 //! The draws of strays, which the device leaves out where no sample strays: nearly always in sharp pictures, and often under
-//! blur. The number of strays is their draw count.
+//! blur. Whether there are any is their draw count.
 //! reads  count.counters, strays.draws      writes  strays.count
 
 use super::full;
@@ -16,8 +16,9 @@ use std::sync::Arc;
 const DRAWS: &str = "strays.draws";
 pub const COUNT: &str = "strays.count";
 
-/// COUNTED_STRAYS of counters.glsl.
-const STRAYS_WORD: u64 = 1;
+/// COUNTED_ANY_STRAY of counters.glsl. The number of strays itself, millions, is more than a device may take for a draw count
+/// (maxDrawIndirectCount).
+const ANY_STRAY_WORD: u64 = 20;
 
 const COMMAND_BYTES: u64 = size_of::<vk::DrawIndirectCommand>() as u64;
 
@@ -60,11 +61,11 @@ impl Gate {
         Ok(Self { draws, count: resources.buffer(&full(COUNT)) })
     }
 
-    /// Takes the number of strays over, before the draws. `counters`: as fragments write them, before and after.
+    /// Takes over whether there are strays, before the draws. `counters`: as fragments write them, before and after.
     pub fn record(&self, cmd: &mut Commands, counters: &Buffer) {
         cmd.barriers([counters.from(Access::FragmentWrite).to(Access::TransferRead)]);
         cmd.barriers([self.count.discard(Access::TransferWrite)]);
-        cmd.copy_word(counters, STRAYS_WORD, &self.count);
+        cmd.copy_word(counters, ANY_STRAY_WORD, &self.count);
         cmd.barriers([self.count.from(Access::TransferWrite).to(Access::IndirectRead)]);
         cmd.barriers([counters.from(Access::TransferRead).to(Access::FragmentWrite)]);
     }

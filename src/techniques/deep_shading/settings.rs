@@ -7,6 +7,9 @@ use crate::settings::{
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
 const MOST_GUARD_PX: u64 = 4096;
 
+/// The least `--shading-scale`.
+pub const LEAST_SCALE: f64 = 0.05;
+
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "shading",
@@ -141,7 +144,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "shading-scale",
         symbol: "",
-        kind: Kind::Number { min: 0.05, max: 4.0 },
+        kind: Kind::Number { min: LEAST_SCALE, max: 4.0 },
         default: "1",
         unit: "",
         paper: "Clarberg 2014, 6",
@@ -232,8 +235,8 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Clarberg 2014, 4.4",
         help: "how every pixel that a triangle touches is drawn: its hull from a geometry shader or from vertex shaders, or the \
-               device's own conservative rasterisation; the same picture; auto: the last of these that the device has, of the first two the \
-               first; none: only pixels whose middle it covers, to measure what the others cost and what is without colour then",
+               device's own conservative rasterisation, which nobody has seen run yet; the same picture, or an error that says how many \
+               samples have no colour; auto: geometry where there are such shaders, else vertex; none: only pixels whose middle it covers, to measure what the others cost and what is without colour then",
     },
     Setting {
         key: "shaded-triangles",

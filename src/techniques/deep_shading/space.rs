@@ -1,10 +1,12 @@
 //! Canonical shading space: the frame in the middle of the exposure, from the middle of the lens, with a guard band around it
 //! (Clarberg & Munkberg 2014, sections 3 and 6).
 
+use super::settings::LEAST_SCALE;
 use super::stereo;
 use super::tuples::Table;
 use crate::error::{Error, Result};
 use crate::frame::View;
+use crate::gpu::caps::Limits;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::settings::Values;
@@ -30,20 +32,30 @@ pub struct ShadingSpace {
 impl ShadingSpace {
     /// Reads `--guard-band`, `--shading-scale`, `--shading-warp` and `--warp-falloff`.
     ///
-    /// Errors: a side is longer than shading points can be packed (exit code 2).
-    pub fn new(values: &Values, frame: Extent) -> Result<Self> {
+    /// Errors: a side is longer than shading points can be packed, or than a device of these limits draws (exit code 2).
+    pub fn new(values: &Values, limits: &Limits, frame: Extent) -> Result<Self> {
         let (guard_px, scale) = (values.integer("guard-band") as u32, values.number("shading-scale"));
         let scaled = [frame.width, frame.height].map(|side| f64::from(side) * scale);
         let warp_falloff = if values.text("shading-warp") == "foveated" { values.number("warp-falloff") } else { 0.0 };
         let even = scaled.map(|side| side.ceil() + 2.0 * f64::from(guard_px));
         // Its middle stays as fine.
         let [width, height] = even.map(|side| (side / (1.0 + warp_falloff)).ceil() as u64);
-        if width.max(height) > MOST_SIDE_PX {
+        let most = limits.most_drawn_px().map(|side| u64::from(side).min(MOST_SIDE_PX));
+        if width > most[0] || height > most[1] {
+            // Of both sides the scale that fits, to be typed: three digits, cut off.
+            let room = |axis: usize| most[axis] as f64 * (1.0 + warp_falloff) - 2.0 * f64::from(guard_px) - 1.0;
+            let fitting = (room(0) / f64::from(frame.width)).min(room(1) / f64::from(frame.height));
+            let fitting = (fitting * 1000.0).floor() / 1000.0;
+            let advice = match fitting >= LEAST_SCALE {
+                true => format!("--shading-scale {fitting} fits"),
+                false => "a smaller --size or --guard-band would fit".to_owned(),
+            };
             return Err(Error::request(format!(
-                "--guard-band {guard_px}, --shading-scale {scale}: shading space has {width} x {height} pixels, and a side holds \
-                 {MOST_SIDE_PX}"
+                "--guard-band {guard_px}, --shading-scale {scale}: shading space has {width} x {height} pixels, and at most {} x {} \
+                 can be drawn",
+                most[0], most[1]
             ))
-            .note("a smaller --size or --shading-scale would fit"));
+            .note(advice));
         }
         let scaled_px = scaled.map(|side| side as f32);
         Ok(Self { guard_px, scale, scaled_px, warp_falloff, extent: Extent::new(width as u32, height as u32) })
@@ -129,6 +141,7 @@ fn depth_row(view: &View) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::known;
     use crate::settings::Values;
 
     fn space(guard: &str, scale: &str, extent: Extent) -> Result<ShadingSpace> {
@@ -137,7 +150,7 @@ mod tests {
         for (key, text) in [("guard-band", guard), ("shading-scale", scale)] {
             values.set(rows.iter().find(|row| row.key == key).unwrap(), text).unwrap();
         }
-        ShadingSpace::new(&values, extent)
+        ShadingSpace::new(&values, &known::caps(known::DEFAULT).unwrap().limits, extent)
     }
 
     #[test]
@@ -147,6 +160,50 @@ mod tests {
         assert_eq!(side(space("0", "0.5", Extent::new(101, 31)).unwrap()), (51, 16));
         let error = space("4096", "4", Extent::new(16384, 16)).unwrap_err();
         assert!(error.to_string().contains("73728 x 8256"), "{error}");
+    }
+
+    /// The scale that an error advises fits, and what is a little larger does not: on devices that draw more or less than lavapipe.
+    #[test]
+    fn a_shading_space_that_cannot_be_drawn_is_refused_with_the_scale_that_fits() {
+        let known = known::caps(known::DEFAULT).unwrap().limits;
+        let limits = |viewport: u32, framebuffer: u32| Limits {
+            max_image_side_px: 65_536,
+            max_viewport_px: [viewport; 2],
+            max_framebuffer_px: [framebuffer; 2],
+            ..known.clone()
+        };
+        for (limits, most) in [
+            (limits(16_384, 16_384), 16_384),
+            (limits(4096, 32_768), 4096),
+            (limits(32_768, 8192), 8192),
+            (limits(100_000, 100_000), MOST_SIDE_PX as u32),
+        ] {
+            for (guard, frame) in
+                [("0", Extent::new(5000, 8)), ("64", Extent::new(17, 6001)), ("200", Extent::new(16_384, 16_384))]
+            {
+                let of_scale = |scale: &str| {
+                    let rows = super::super::settings::SETTINGS;
+                    let mut values = Values::defaults(rows);
+                    for (key, text) in [("guard-band", guard), ("shading-scale", scale)] {
+                        values.set(rows.iter().find(|row| row.key == key).unwrap(), text).unwrap();
+                    }
+                    ShadingSpace::new(&values, &limits, frame)
+                };
+                let Err(error) = of_scale("4") else {
+                    let side = frame.width.max(frame.height) * 4 + 2 * guard.parse::<u32>().unwrap();
+                    assert!(side <= most, "{frame} with {most}");
+                    continue;
+                };
+                assert_eq!(error.exit_code(), 2);
+                let text = error.to_string();
+                assert!(text.contains(&format!("at most {most} x {most}")), "{text}");
+                let scale: f64 =
+                    text.split("--shading-scale ").last().unwrap().split(' ').next().unwrap().parse().unwrap();
+                let fitting = of_scale(&scale.to_string()).unwrap().extent;
+                assert!(fitting.width.max(fitting.height) <= most, "{fitting} of {most}");
+                assert!(of_scale(&(scale + 0.002).min(4.0).to_string()).is_err(), "{text}");
+            }
+        }
     }
 
     /// Middles stay middles, the rim stays the rim, and a step there is shorter as the falloff says.

@@ -61,7 +61,7 @@ impl Material {
                     depth_compare: depth_prepass::compare(has_prepass),
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
-                    conservative: false,
+                    conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -54,11 +54,19 @@ bool has_written = false;
 // stays short whatever is seen there: a sample that finds its list full is shaded by itself.
 const uint LIST_MOST = 1024u;
 
+// What is behind a head that was read is as its writer left it.
+void acquire() {
+    if (HAS_FENCES != 0u) {
+        memoryBarrierBuffer();
+    }
+}
+
 // Returns the node that holds `primitive`: `own`, or one that was there; NO_PRIMITIVE where the list is full.
 uint insert(uint pixel, uint primitive, uint own) {
     // From `known` on the list does not hold it.
     uint known = 0u;
     uint head = begin_of(pixel);
+    acquire();
     uint holder = NO_PRIMITIVE;
     uint length = 0u;
     while (holder == NO_PRIMITIVE && length < LIST_MOST) {
@@ -76,6 +84,7 @@ uint insert(uint pixel, uint primitive, uint own) {
                 memoryBarrierBuffer();
             }
             uint found = swap_begin(pixel, head, own + 1u);
+            acquire();
             holder = found == head ? own : NO_PRIMITIVE;
             // Somebody was quicker: only what is new need be looked at.
             known = TOLERATES_DUPLICATES != 0u ? found : head;
@@ -119,6 +128,7 @@ void main() {
     if (color == NO_PRIMITIVE) {
         color = own;
         uint stray = atomicAdd(counters[COUNTED_STRAYS], 1u);
+        counters[COUNTED_ANY_STRAY] = 1u;
         if (IS_COMPACTED != 0u) {
             color = sample_total(deep) - 1u - stray;
         }

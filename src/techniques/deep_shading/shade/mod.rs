@@ -96,7 +96,7 @@ impl Shade {
                 depth_compare: vk::CompareOp::ALWAYS,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
-                conservative: stages.is_conservative,
+                conservative_margin_px: stages.is_conservative.then(|| choices.snap_px()),
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

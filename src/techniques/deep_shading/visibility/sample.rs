@@ -130,7 +130,7 @@ impl Sample {
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
                     depth_slope_bias: 0.0,
-                    conservative: false,
+                    conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
                 },

@@ -44,7 +44,8 @@ uvec2 looked_up(uint triangle, vec3 weights) {
     if (!(is_own[0] || is_own[1] || is_own[2] || is_own[3])) {
         if (!(is_there[0] || is_there[1] || is_there[2] || is_there[3])) {
             count(COUNTED_MISSING);
-            return stored_color(vec3(0.0));
+            // Where nothing nearer covers it later, the picture fails.
+            return stored_color(vec3(uintBitsToFloat(0x7fc00000u)));
         }
         count(COUNTED_OTHER_CHARTS);
         is_own = is_there;

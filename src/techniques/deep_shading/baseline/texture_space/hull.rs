@@ -47,7 +47,7 @@ impl Hulls {
                 depth_compare: vk::CompareOp::ALWAYS,
                 depth_clamp: false,
                 depth_slope_bias: 0.0,
-                conservative: false,
+                conservative_margin_px: None,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
             },

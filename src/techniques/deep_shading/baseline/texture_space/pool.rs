@@ -51,7 +51,9 @@ impl PoolSize {
     pub fn require_fitting(self, inputs: &Inputs<'_>) -> Result<()> {
         let limits = &inputs.caps.limits;
         let range = limits.max_storage_buffer_range_bytes;
-        let fits = |side_px: u32| texels(side_px) * TEXEL_BYTES <= range && side_px <= limits.max_image_side_px;
+        let fits = |side_px: u32| {
+            texels(side_px) * TEXEL_BYTES <= range && limits.most_drawn_px().iter().all(|most| side_px <= *most)
+        };
         if fits(self.side_px) {
             return Ok(());
         }

@@ -1,0 +1,276 @@
+//! What a GPU would do and no software driver does, pretended: another clock, a rasteriser that leaves pixels out, rays that are
+//! none.
+
+use crate::support::program::Program;
+use crate::support::square::{matt, square};
+use crate::support::watched::{Watched, values, watched_device};
+use ash::vk;
+use glam::{Vec3, Vec4};
+use quincunx::gpu::commands::Submits;
+use quincunx::gpu::timing::Clock;
+use quincunx::gpu::{Caps, DeviceRequest};
+use quincunx::scene::Material;
+use quincunx::session::Session;
+use quincunx::{scene, techniques};
+use std::ffi::{CStr, c_void};
+use std::mem::transmute;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// The driver's own functions behind those of the tests; what was found once stays, for tests that share a process.
+#[derive(Clone, Copy)]
+struct Own {
+    begin: Option<vk::PFN_vkCmdBeginRendering>,
+    draw: Option<vk::PFN_vkCmdDraw>,
+    submit: Option<vk::PFN_vkQueueSubmit2>,
+    results: Option<vk::PFN_vkGetQueryPoolResults>,
+}
+
+static OWN: Mutex<Own> = Mutex::new(Own { begin: None, draw: None, submit: None, results: None });
+
+fn own() -> Own {
+    *OWN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Whether what is recorded is drawn into nothing: only shading space is.
+static DRAWS_INTO_NOTHING: AtomicBool = AtomicBool::new(false);
+
+unsafe extern "system" fn noted_begin(buffer: vk::CommandBuffer, info: *const vk::RenderingInfo<'_>) {
+    // SAFETY: the caller's own struct.
+    let into_nothing = unsafe { (*info).color_attachment_count == 0 && (*info).p_depth_attachment.is_null() };
+    DRAWS_INTO_NOTHING.store(into_nothing, Ordering::SeqCst);
+    let begin = own().begin.expect("the hook stored it");
+    // SAFETY: the driver's own function with the caller's arguments.
+    unsafe { begin(buffer, info) };
+}
+
+unsafe extern "system" fn draw_into_something(
+    buffer: vk::CommandBuffer,
+    vertices: u32,
+    instances: u32,
+    v: u32,
+    i: u32,
+) {
+    if !DRAWS_INTO_NOTHING.load(Ordering::SeqCst) {
+        let draw = own().draw.expect("the hook stored it");
+        // SAFETY: as above.
+        unsafe { draw(buffer, vertices, instances, v, i) };
+    }
+}
+
+fn without_shading_space(name: &CStr, function: *const c_void) -> *const c_void {
+    let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
+    match name.to_bytes() {
+        b"vkCmdBeginRendering" => {
+            // SAFETY: the pointer is the function of that name.
+            own.begin = Some(unsafe { transmute::<*const c_void, vk::PFN_vkCmdBeginRendering>(function) });
+            noted_begin as vk::PFN_vkCmdBeginRendering as *const c_void
+        }
+        b"vkCmdDraw" => {
+            // SAFETY: as above.
+            own.draw = Some(unsafe { transmute::<*const c_void, vk::PFN_vkCmdDraw>(function) });
+            draw_into_something as vk::PFN_vkCmdDraw as *const c_void
+        }
+        _ => function,
+    }
+}
+
+/// A rasteriser that draws less than what a road needs is found out: by the picture, whatever counts and whatever sums.
+#[test]
+fn samples_that_find_no_colour_fail_the_picture() {
+    let request = DeviceRequest { hook: Some(without_shading_space), ..watched_device() };
+    let watched = Watched::with_request(&request, scene::load("cornell", 1).unwrap());
+    let common = [("size", "33x17"), ("spp", "2"), ("visibility", "repeat-frame")];
+    for more in
+        [&[][..], &[("instrument", "off")], &[("accumulate", "2")], &[("aperture", "0.2"), ("reconstruct", "on")]]
+    {
+        let changes = [&common[..], more].concat();
+        let renderer = watched.render("deep_shading", &changes);
+        let error = renderer.picture().err().unwrap();
+        assert_eq!(error.exit_code(), 1, "{more:?}: {error}");
+        let text = error.to_string();
+        for words in ["NaN", "a sample that finds no colour", "--conservative", "--conservative vertex"] {
+            assert!(text.contains(words), "{more:?}: {text}");
+        }
+    }
+    let black = watched.render("deep_shading", &[&common[..], &[("conservative", "none")]].concat());
+    assert_eq!(black.picture().unwrap().mean(), [0.0; 3]);
+    assert!(black.measured_counters().unwrap()["samples_without_colour"] > 0.0);
+}
+
+const TICK_NS: u64 = 10;
+const PASS_TICKS: u64 = 500;
+const SUBMIT: Duration = Duration::from_millis(1);
+
+/// A submit that takes its time, as a GPU's way there and back does.
+unsafe extern "system" fn slow_submit(
+    queue: vk::Queue,
+    count: u32,
+    submits: *const vk::SubmitInfo2<'_>,
+    fence: vk::Fence,
+) -> vk::Result {
+    std::thread::sleep(SUBMIT);
+    let submit = own().submit.expect("the hook stored it");
+    // SAFETY: the driver's own function with the caller's arguments.
+    unsafe { submit(queue, count, submits, fence) }
+}
+
+/// The n-th query of a pool was written PASS_TICKS times n ticks after a start near the end of 36 bits; noise stands above them.
+unsafe extern "system" fn set_results(
+    device: vk::Device,
+    pool: vk::QueryPool,
+    first: u32,
+    count: u32,
+    bytes: usize,
+    data: *mut c_void,
+    stride: vk::DeviceSize,
+    flags: vk::QueryResultFlags,
+) -> vk::Result {
+    let results = own().results.expect("the hook stored it");
+    // SAFETY: the driver's own function with the caller's arguments.
+    let result = unsafe { results(device, pool, first, count, bytes, data, stride, flags) };
+    for query in 0..u64::from(count) {
+        let ticks = ((1u64 << 36) - 700 + query * PASS_TICKS) & ((1 << 36) - 1);
+        // SAFETY: the caller's array holds `count` numbers of eight bytes, which the driver has just written.
+        unsafe { *data.cast::<u64>().add(query as usize) = ticks | query << 40 };
+    }
+    result
+}
+
+fn with_a_clock(name: &CStr, function: *const c_void) -> *const c_void {
+    let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
+    match name.to_bytes() {
+        b"vkQueueSubmit2" => {
+            // SAFETY: the pointer is the function of that name.
+            own.submit = Some(unsafe { transmute::<*const c_void, vk::PFN_vkQueueSubmit2>(function) });
+            slow_submit as vk::PFN_vkQueueSubmit2 as *const c_void
+        }
+        b"vkGetQueryPoolResults" => {
+            // SAFETY: as above.
+            own.results = Some(unsafe { transmute::<*const c_void, vk::PFN_vkGetQueryPoolResults>(function) });
+            set_results as vk::PFN_vkGetQueryPoolResults as *const c_void
+        }
+        _ => function,
+    }
+}
+
+fn as_a_gpu(caps: &mut Caps) {
+    caps.identity.device_type = "discrete-gpu".to_owned();
+    caps.limits.timestamp_period_ns = TICK_NS as f32;
+    caps.limits.timestamp_bits = 36;
+}
+
+/// On a GPU a pass's time is the one between its timestamps, and a frame's too: not that of the submits around them.
+#[test]
+fn times_of_a_gpu_are_those_of_its_own_clock() {
+    let changes = values("deferred", &[("size", "33x17")]);
+    for (pretense, clock) in [(None, Clock::Wall), (Some(as_a_gpu as fn(&mut Caps)), Clock::Timestamps)] {
+        let request = DeviceRequest { hook: Some(with_a_clock), pretense, ..watched_device() };
+        let session = Session::open(&request, scene::load("cornell", 1).unwrap()).unwrap();
+        let technique = techniques::find("deferred").unwrap();
+        for submits in [Submits::One, Submits::PerPass] {
+            let renderer = session.renderer(technique, &changes, &[], submits).unwrap();
+            assert_eq!(renderer.clock(), clock);
+            let frame = renderer.frame().unwrap();
+            let count = frame.passes.len() as u64;
+            let submit_count = if submits == Submits::One { 1 } else { count };
+            assert!(count > 1 && frame.wall_ns > submit_count * SUBMIT.as_nanos() as u64, "{clock:?} {submits:?}");
+            let pass_ns = PASS_TICKS * TICK_NS;
+            let expected = match (clock, submits) {
+                (Clock::Wall, _) => frame.wall_ns,
+                // From the first query to the last, or what lies between each pair of them.
+                (Clock::Timestamps, Submits::One) => (2 * count - 1) * pass_ns,
+                (Clock::Timestamps, Submits::PerPass) => count * pass_ns,
+            };
+            assert_eq!(frame.figure_ns(clock), expected, "{clock:?} {submits:?}");
+            let of_pass = frame.passes[1].figure_ns(clock);
+            match (clock, submits) {
+                (Clock::Wall, Submits::One) => assert_eq!(of_pass, None),
+                (Clock::Wall, Submits::PerPass) => assert!(of_pass > Some(SUBMIT.as_nanos() as u64)),
+                (Clock::Timestamps, _) => assert_eq!(of_pass, Some(pass_ns)),
+            }
+        }
+    }
+}
+
+/// What a stage binds is counted before a driver sees it: refused with the shader, both numbers and the limit's name, whatever the
+/// technique; on a device with as many as GPUs have nothing is.
+#[test]
+fn stages_that_bind_more_than_the_device_has_are_refused() {
+    let least = |caps: &mut Caps| caps.limits.max_storage_buffers_per_stage = 4;
+    let mut refused = 0;
+    for (pretense, most) in [(least as fn(&mut Caps), 4), (|caps| caps.limits.max_storage_buffers_per_stage = 31, 31)] {
+        let request = DeviceRequest { pretense: Some(pretense), ..watched_device() };
+        let watched = Watched::with_request(&request, scene::load("cornell", 1).unwrap());
+        for technique in techniques::ALL {
+            let Err(error) = watched.try_renderer(technique.name(), &[("size", "33x17")], &[], Submits::One) else {
+                continue;
+            };
+            refused += 1;
+            assert_eq!(error.exit_code(), 3, "{error}");
+            let text = error.to_string();
+            assert!(text.contains(&format!("bind {most} (maxPerStageDescriptorStorageBuffers)")), "{text}");
+            assert_eq!(most, 4, "{text}");
+        }
+    }
+    assert!(refused >= 4, "{refused}");
+}
+
+/// A surface that faces nowhere is lit by nothing; a ray from there would look into every node of the tree.
+#[test]
+fn surfaces_without_a_direction_are_black_and_not_nan() {
+    let mut scene = square(matt(Vec4::ONE));
+    scene.meshes[0].normals = vec![Vec3::ZERO; 4];
+    let watched = Watched::with_scene(scene);
+    let common = [("size", "16x16"), ("rig", "always"), ("ambient", "0"), ("direct-shadow", "ray")];
+    for (technique, more) in [
+        ("forward", &[][..]),
+        ("inferred_lighting", &[]),
+        ("deferred", &[]),
+        ("interleaved_deferred", &[("vpls", "16")]),
+    ] {
+        let picture = watched.picture(technique, &[&common[..], more].concat());
+        assert!(picture.mean()[0] < 1e-6, "{technique}: {:?}", picture.mean());
+    }
+}
+
+/// A ray that begins on a box's upper plane and goes down enters the box: the distance to it is a zero of either sign.
+#[test]
+fn rays_from_a_box_s_plane_go_into_it() {
+    let mut scene = square(Material { emissive: Vec3::ONE, ..matt(Vec4::ONE) });
+    // As high as the camera, where the box ends.
+    for position in &mut scene.meshes[0].positions {
+        position.z = position.y + 1.0;
+    }
+    scene.meshes[0].indices = [0, 1, 2, 0, 2, 3].repeat(40);
+    let watched = Watched::with_scene(scene);
+    let common = [("size", "16x16"), ("spp", "1"), ("rig", "none"), ("ambient", "1"), ("camera", "0")];
+    for width in ["2", "4"] {
+        let picture = watched.picture("path_traced", &[&common[..], &[("node-width", width)]].concat());
+        // The uppermost part lies before the camera's near plane.
+        let unseen = picture.pixels[2 * 16..].iter().filter(|pixel| pixel[0] == 0.0).count();
+        assert_eq!(unseen, 0, "--node-width {width}");
+    }
+}
+
+/// What is timed and what looks for mistakes goes without; the report says so.
+#[test]
+fn shaders_are_kept_within_buffers_where_nothing_is_measured() {
+    let program = Program::new();
+    let robust = |more: &[&str]| {
+        let arguments = [&["render", "cornell", "--technique", "deferred", "--size", "16x16", "--json"], more].concat();
+        program.run(&arguments).fine().json()["device"]["robust_buffer_access"].as_bool().unwrap()
+    };
+    assert!(robust(&[]));
+    assert!(!robust(&["--profile"]) && !robust(&["--validate"]));
+}
+
+/// As many pixels as no viewport has: refused before anything is drawn, with what fits.
+#[test]
+fn a_shading_space_beyond_the_device_s_viewport_is_refused() {
+    let program = Program::new();
+    let tall = ["render", "power", "--technique", "deep_shading", "--size", "5000x8", "--spp", "1"];
+    let refused = [&tall[..], &["--shading-scale", "4", "--validate"]].concat();
+    program.fails(&refused, 2, &["deep_shading: ", "20128 x 160", "can be drawn", "--shading-scale", "fits"]);
+}
