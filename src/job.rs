@@ -167,7 +167,7 @@ impl Job {
         unfinished: Unfinished,
     ) -> Result<Outcome> {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
-        let recording = Recording { submits, has_statistics: self.statistics };
+        let recording = Recording { has_statistics: self.statistics, ..submits.into() };
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
         let mut settings = settings(session, &renderer, values);
         if let Some(earlier) = &self.earlier {

@@ -8,7 +8,7 @@ use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::timing::Clock;
-use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, statistics, upload};
+use crate::gpu::{Access, Buffer, Caps, Commands, DeviceRequest, Gpu, statistics, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
 use crate::memory::kinds::Kinds;
@@ -26,6 +26,11 @@ use crate::techniques::{Frame, Inputs, Sums, Technique, bindable, fitness, stage
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
+
+/// What a submit takes on a GPU with `--submit-ms auto`: a twentieth of what Windows lets it take, and a thousand times what a submit
+/// itself takes.
+const GPU_SUBMIT_MS: f64 = 100.0;
 
 /// A device and a scene.
 pub struct Session {
@@ -112,7 +117,7 @@ impl Session {
         aovs: &[String],
         recording: impl Into<Recording>,
     ) -> Result<Renderer> {
-        let recording = recording.into();
+        let recording = Recording { limit: submit_limit(values, &self.gpu.caps), ..recording.into() };
         if recording.has_statistics {
             statistics::require(&self.gpu.caps)?;
         }
@@ -232,6 +237,13 @@ pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String
     plan.check(inputs.caps.limits.max_storage_buffer_range_bytes)
         .map_err(|error| bindable::advise(error, technique, inputs))?;
     Ok(plan)
+}
+
+/// `--submit-ms`, `auto` resolved.
+fn submit_limit(values: &Values, caps: &Caps) -> Option<Duration> {
+    let of_kind = if caps.identity.is_software() { 0.0 } else { GPU_SUBMIT_MS };
+    let milliseconds = values.number_or_auto("submit-ms").unwrap_or(of_kind);
+    (milliseconds > 0.0).then(|| Duration::from_secs_f64(milliseconds / 1e3))
 }
 
 fn block_name(technique: &dyn Technique) -> String {

@@ -10,7 +10,7 @@ use quincunx::gpu::commands::Submits;
 use quincunx::gpu::timing::Clock;
 use quincunx::gpu::{Caps, DeviceRequest};
 use quincunx::scene::Material;
-use quincunx::session::Session;
+use quincunx::session::{Renderer, Session};
 use quincunx::{scene, techniques};
 use std::ffi::{CStr, c_void};
 use std::mem::transmute;
@@ -191,6 +191,104 @@ fn times_of_a_gpu_are_those_of_its_own_clock() {
                 (Clock::Timestamps, _) => assert_eq!(of_pass, Some(pass_ns)),
             }
         }
+    }
+}
+
+/// Submits of frames, and the most command buffers in one.
+static SUBMITTED: Mutex<[u32; 2]> = Mutex::new([0; 2]);
+
+unsafe extern "system" fn counted_submit(
+    queue: vk::Queue,
+    count: u32,
+    submits: *const vk::SubmitInfo2<'_>,
+    fence: vk::Fence,
+) -> vk::Result {
+    // SAFETY: the caller's own structs.
+    let buffers = unsafe { std::slice::from_raw_parts(submits, count as usize) };
+    {
+        let mut submitted = SUBMITTED.lock().unwrap_or_else(PoisonError::into_inner);
+        submitted[0] += 1;
+        submitted[1] = buffers.iter().map(|submit| submit.command_buffer_info_count).fold(submitted[1], u32::max);
+    }
+    let submit = own().submit.expect("the hook stored it");
+    // SAFETY: the driver's own function with the caller's arguments.
+    unsafe { submit(queue, count, submits, fence) }
+}
+
+fn with_counted_submits(name: &CStr, function: *const c_void) -> *const c_void {
+    if name.to_bytes() != b"vkQueueSubmit2" {
+        return function;
+    }
+    // SAFETY: the pointer is the function of that name.
+    let submit = unsafe { transmute::<*const c_void, vk::PFN_vkQueueSubmit2>(function) };
+    OWN.lock().unwrap_or_else(PoisonError::into_inner).submit = Some(submit);
+    counted_submit as vk::PFN_vkQueueSubmit2 as *const c_void
+}
+
+/// Submits and the most command buffers of one, since the last time.
+fn submitted() -> [u32; 2] {
+    std::mem::take(&mut *SUBMITTED.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// What a watchdog would end goes in bands: a submit each where the limit is shorter than any, all in one again where they are known to be
+/// short enough; the same picture, counters and stages.
+#[test]
+fn frames_in_bands_are_the_same_frames() {
+    let request = DeviceRequest { hook: Some(with_counted_submits), ..watched_device() };
+    let watched = Watched::with_request(&request, scene::load("hall:triangles=8000", 1).unwrap());
+    // Odd: the last band is a part of one.
+    let size = [("size", "97x53")];
+    let rays = [("direct-shadow", "ray")];
+    let cases: [(&str, &[(&str, &str)]); 9] = [
+        ("deferred", &rays),
+        ("deferred", &[("cull", "tiled")]),
+        ("interleaved_deferred", &[("split", "one-pass")]),
+        ("interleaved_deferred", &[("split", "tile"), ("fuse", "on")]),
+        ("interleaved_deferred", &[("split", "indirect"), ("direct-shadow", "ray")]),
+        ("inferred_lighting", &[]),
+        ("forward", &[]),
+        ("deep_shading", &[("spp", "4"), ("aperture", "0.1"), ("reconstruct", "on")]),
+        ("path_traced", &[("spp", "2"), ("medium", "0.05,0.01,0.3")]),
+    ];
+    for (technique, changes) in cases {
+        let common = [&size[..], changes].concat();
+        let whole = watched.render(technique, &common);
+        let [of_whole, _] = submitted();
+        let expected = whole.picture().unwrap().hash().unwrap();
+        // Nodes of insertions that another was quicker than are counted too: no two runs have as many.
+        let counted = |renderer: &Renderer| {
+            let mut counters = renderer.measured_counters().unwrap();
+            counters.remove("nodes_written");
+            counters
+        };
+        let counters = counted(&whole);
+        for submits in [Submits::One, Submits::PerPass] {
+            let cut = watched
+                .try_renderer(technique, &[&common[..], &[("submit-ms", "0.0001")]].concat(), &[], submits)
+                .unwrap();
+            for _ in 0..2 {
+                submitted();
+                cut.frame().unwrap();
+                let [count, most] = submitted();
+                assert_eq!(most, 1, "{technique} {changes:?} {submits:?}");
+                let runs = cut.runs().1;
+                // What is drawn is not cut, and forward only draws.
+                let least = runs * cut.passes().len() as u32 + u32::from(technique != "forward");
+                assert!(count >= least, "{technique} {changes:?}: {count} submits in {runs} runs");
+                assert_eq!(cut.picture().unwrap().hash().unwrap(), expected, "{technique} {changes:?} {submits:?}");
+                assert_eq!(counted(&cut), counters, "{technique} {changes:?} {submits:?}");
+            }
+        }
+        let roomy =
+            watched.try_renderer(technique, &[&common[..], &[("submit-ms", "1000000")]].concat(), &[], Submits::One);
+        let roomy = roomy.unwrap();
+        roomy.frame().unwrap();
+        submitted();
+        roomy.frame().unwrap();
+        let [count, most] = submitted();
+        assert!(count == roomy.runs().1 && most > 1, "{technique} {changes:?}: {count} submits of up to {most}");
+        assert_eq!(roomy.picture().unwrap().hash().unwrap(), expected, "{technique} {changes:?}");
+        assert!(of_whole > 0);
     }
 }
 

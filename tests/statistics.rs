@@ -17,7 +17,7 @@ const WIDTH: u64 = 97;
 const HEIGHT: u64 = 55;
 
 fn counting(submits: Submits) -> Recording {
-    Recording { submits, has_statistics: true }
+    Recording { has_statistics: true, ..submits.into() }
 }
 
 /// Of each pass of one more frame.

@@ -10,12 +10,13 @@ use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
 use super::recorded::Recorded;
 use super::statistics::Statistics;
 use super::timing::{Clock, Timestamps};
-use super::{Access, Buffer, Gpu};
+use super::{Access, Buffer, Gpu, bands};
 use crate::error::{Error, Result};
 use crate::units::Extent;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// How a frame is submitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,11 +33,14 @@ pub struct Recording {
     pub submits: Submits,
     /// Whether the device counts what each pass does, which may cost time.
     pub has_statistics: bool,
+    /// What a submit may take; a frame whose work is longer is cut where it can be (bands.rs). None: it is not. With statistics
+    /// dispatches stay whole.
+    pub limit: Option<Duration>,
 }
 
 impl From<Submits> for Recording {
     fn from(submits: Submits) -> Self {
-        Self { submits, has_statistics: false }
+        Self { submits, has_statistics: false, limit: None }
     }
 }
 
@@ -65,13 +69,22 @@ pub struct Touched {
     pub access: Access,
 }
 
+/// A command buffer, which is never cut.
+#[derive(Clone, Copy)]
+pub(super) struct Piece {
+    pub buffer: vk::CommandBuffer,
+    /// Index of the pass that it is of, or begins with.
+    pub pass: usize,
+}
+
 /// A frame being recorded.
 pub struct Commands {
     pub(super) gpu: Arc<Gpu>,
     pub(super) name: String,
     pub(super) submits: Submits,
+    pub(super) limit: Option<Duration>,
     pool: vk::CommandPool,
-    pub(super) buffers: Vec<vk::CommandBuffer>,
+    pub(super) pieces: Vec<Piece>,
     descriptors: Descriptors,
     pub(super) passes: Vec<RecordedPass>,
     pub(super) timestamps: Option<Timestamps>,
@@ -90,7 +103,7 @@ const MAX_PASS_COUNT: u32 = 256;
 impl Commands {
     /// Starts recording. `name` labels the command buffers. Statistics need a device that has them (`statistics::require`).
     pub fn begin(gpu: &Arc<Gpu>, name: &str, recording: impl Into<Recording>) -> Result<Self> {
-        let Recording { submits, has_statistics } = recording.into();
+        let Recording { submits, has_statistics, limit } = recording.into();
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: a live device and its queue family.
         let pool = unsafe { gpu.device.create_command_pool(&info, None) }
@@ -99,8 +112,9 @@ impl Commands {
             gpu: gpu.clone(),
             name: name.to_owned(),
             submits,
+            limit,
             pool,
-            buffers: Vec::new(),
+            pieces: Vec::new(),
             descriptors: Descriptors::new(gpu),
             passes: Vec::new(),
             timestamps: None,
@@ -113,7 +127,7 @@ impl Commands {
         if has_statistics {
             commands.statistics = Some(Statistics::new(gpu, MAX_PASS_COUNT)?);
         }
-        commands.next_buffer()?;
+        commands.next_piece()?;
         if let Some(statistics) = &commands.statistics {
             statistics.reset(commands.buffer());
         }
@@ -126,10 +140,10 @@ impl Commands {
 
     /// The command buffer that is being recorded.
     pub fn buffer(&self) -> vk::CommandBuffer {
-        *self.buffers.last().expect("`begin` made the first")
+        self.pieces.last().expect("`begin` made the first").buffer
     }
 
-    fn next_buffer(&mut self) -> Result<()> {
+    fn next_piece(&mut self) -> Result<()> {
         let device = &self.gpu.device;
         let fail = |result| Error::device(format!("recording commands: {result}"));
         let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
@@ -137,13 +151,13 @@ impl Commands {
         let buffer = unsafe { device.allocate_command_buffers(&info) }.map_err(fail)?[0];
         // SAFETY: fresh from the pool.
         unsafe { device.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default()) }.map_err(fail)?;
-        self.gpu.name(buffer, &format!("{}.{}", self.name, self.buffers.len()));
-        self.buffers.push(buffer);
+        self.gpu.name(buffer, &format!("{}.{}", self.name, self.pieces.len()));
+        self.pieces.push(Piece { buffer, pass: self.passes.len().saturating_sub(1) });
         Ok(())
     }
 
     fn end_buffer(&self) -> Result<()> {
-        // SAFETY: begun in `next_buffer`.
+        // SAFETY: begun in `next_piece`.
         unsafe { self.gpu.device.end_command_buffer(self.buffer()) }
             .map_err(|result| Error::device(format!("recording commands: {result}")))
     }
@@ -152,14 +166,14 @@ impl Commands {
     pub fn pass(&mut self, name: &str, traffic: Traffic, record: impl FnOnce(&mut Self) -> Result<()>) -> Result<()> {
         let index = self.passes.len() as u32;
         assert!(index < MAX_PASS_COUNT, "{name}: more than {MAX_PASS_COUNT} passes in a frame");
-        if self.submits == Submits::PerPass && index > 0 {
-            self.end_buffer()?;
-            self.next_buffer()?;
-        }
         if index == 0 {
             self.make_timestamps()?;
         }
         self.passes.push(RecordedPass { name: name.to_owned(), traffic });
+        if index > 0 && (self.submits == Submits::PerPass || self.limit.is_some()) {
+            self.end_buffer()?;
+            self.next_piece()?;
+        }
         self.gpu.label(self.buffer(), Some(name));
         if let Some(timestamps) = &self.timestamps {
             timestamps.write(self.buffer(), index, false);
@@ -274,12 +288,18 @@ impl Commands {
 
     /// Writes a set for `interface` from what is bound by name, and binds it as set 0.
     fn bind(&mut self, point: vk::PipelineBindPoint, interface: &Interface, bound: &[(&str, Bound<'_>)]) -> Result<()> {
-        let Some(set) = self.descriptors.set(interface, bound)? else { return Ok(()) };
-        // SAFETY: the buffer is being recorded; the set was made for this layout.
+        let set = self.descriptors.set(interface, bound)?;
+        self.bind_set(point, interface, set);
+        Ok(())
+    }
+
+    /// Binds a set that was made for `interface` as set 0.
+    fn bind_set(&self, point: vk::PipelineBindPoint, interface: &Interface, set: Option<vk::DescriptorSet>) {
+        let Some(set) = set else { return };
+        // SAFETY: the buffer is being recorded; the set was made for this layout and outlives the recorded frame.
         unsafe {
             self.gpu.device.cmd_bind_descriptor_sets(self.buffer(), point, interface.layout, 0, &[set], &[]);
         }
-        Ok(())
     }
 
     /// Sets the push constants of what is bound, between its draws.
@@ -313,14 +333,39 @@ impl Commands {
             let label = &pipeline.interface.label;
             return Err(Error::request(format!("{label}: {groups:?} workgroups: this device allows {limit:?}")));
         }
-        // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
-        unsafe {
-            self.gpu.device.cmd_bind_pipeline(self.buffer(), vk::PipelineBindPoint::COMPUTE, pipeline.handle);
+        let set = self.descriptors.set(&pipeline.interface, bound)?;
+        if self.limit.is_none() || self.statistics.is_some() {
+            self.bind_compute(pipeline, params, set);
+            // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers.
+            unsafe { self.gpu.device.cmd_dispatch(self.buffer(), groups[0], groups[1], groups[2]) };
+            return Ok(());
         }
-        self.bind(vk::PipelineBindPoint::COMPUTE, &pipeline.interface, bound)?;
+        for ([x, y, z], [width, height, depth]) in bands::bands(groups) {
+            if [x, y, z] != [0; 3] {
+                self.next_band()?;
+            }
+            self.bind_compute(pipeline, params, set);
+            // SAFETY: as above; the band lies in the dispatch, whose pipeline was made for bases.
+            unsafe { self.gpu.device.cmd_dispatch_base(self.buffer(), x, y, z, width, height, depth) };
+        }
+        Ok(())
+    }
+
+    /// Binds what a dispatch needs: again in every command buffer.
+    fn bind_compute(&mut self, pipeline: &ComputePipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
+        let point = vk::PipelineBindPoint::COMPUTE;
+        // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
+        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle) };
+        self.bind_set(point, &pipeline.interface, set);
         self.push(&pipeline.interface, params);
-        // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers.
-        unsafe { self.gpu.device.cmd_dispatch(self.buffer(), groups[0], groups[1], groups[2]) };
+    }
+
+    /// Goes on with the pass in another command buffer.
+    fn next_band(&mut self) -> Result<()> {
+        self.gpu.label(self.buffer(), None);
+        self.end_buffer()?;
+        self.next_piece()?;
+        self.gpu.label(self.buffer(), self.passes.last().map(|pass| pass.name.as_str()));
         Ok(())
     }
 
@@ -354,20 +399,9 @@ impl Commands {
     /// Binds a graphics pipeline with a set of `set_for`, inside rendering.
     pub fn bind_with_set(&mut self, pipeline: &GraphicsPipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
         let point = vk::PipelineBindPoint::GRAPHICS;
-        // SAFETY: the buffer is being recorded; pipeline and set outlive the recorded frame, and the set is of its layout.
-        unsafe {
-            self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle);
-            if let Some(set) = set {
-                self.gpu.device.cmd_bind_descriptor_sets(
-                    self.buffer(),
-                    point,
-                    pipeline.interface.layout,
-                    0,
-                    &[set],
-                    &[],
-                );
-            }
-        }
+        // SAFETY: the buffer is being recorded; the pipeline outlives the recorded frame.
+        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle) };
+        self.bind_set(point, &pipeline.interface, set);
         self.push(&pipeline.interface, params);
     }
 

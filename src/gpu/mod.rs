@@ -1,6 +1,7 @@
 //! A thin floor over ash: device, commands, barriers, buffers, images, pipelines. It knows no technique and no scene.
 
 pub mod access;
+mod bands;
 pub mod berth;
 pub mod buffer;
 pub mod caps;

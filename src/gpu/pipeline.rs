@@ -234,7 +234,11 @@ impl ComputePipeline {
             .module(module.handle)
             .name(c"main")
             .specialization_info(&specialization_info);
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(interface.layout);
+        let info = vk::ComputePipelineCreateInfo::default()
+            .stage(stage)
+            .layout(interface.layout)
+            // Dispatches may go in bands.
+            .flags(vk::PipelineCreateFlags::DISPATCH_BASE);
         // SAFETY: every handle is alive and every pointer outlives the call.
         let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipelines, &[info], None) };
         let handle =

@@ -4,18 +4,23 @@
 //! aliased resources share), which is only true inside a frame. A frame's start assumes nothing, so any beginning of a
 //! frame can be repeated.
 
+use super::bands::Estimates;
 use super::commands::{Commands, RecordedPass, Submits};
 use super::failure::failed;
 use super::statistics::PassStatistics;
 use super::timing::{Clock, PassTime};
 use crate::error::Result;
 use ash::vk;
+use std::cell::RefCell;
+use std::ops::Range;
 use std::time::Instant;
 
 /// A frame that can be run again and again.
 pub struct Recorded {
     commands: Commands,
     fence: vk::Fence,
+    /// None: its submits take what they take.
+    estimates: Option<RefCell<Estimates>>,
 }
 
 /// What one run of a frame took, and what the device counted in it.
@@ -57,7 +62,8 @@ impl FrameTime {
 impl Recorded {
     /// `commands` are ended; the fence is unsignalled and theirs alone.
     pub(super) fn new(commands: Commands, fence: vk::Fence) -> Self {
-        Self { commands, fence }
+        let estimates = commands.limit.map(|limit| RefCell::new(Estimates::new(limit, commands.pieces.len())));
+        Self { commands, fence, estimates }
     }
 
     pub fn passes(&self) -> &[RecordedPass] {
@@ -74,7 +80,7 @@ impl Recorded {
     /// Errors: the device is lost or out of memory (exit code 4).
     pub fn run(&self) -> Result<FrameTime> {
         let commands = &self.commands;
-        self.run_buffers(&commands.buffers, commands.passes.len())
+        self.run_pieces(commands.pieces.len(), commands.passes.len())
     }
 
     /// Runs the first `pass_count` passes, at least one, of a frame that was recorded with a submit a pass; what later
@@ -85,17 +91,25 @@ impl Recorded {
         let commands = &self.commands;
         assert!(commands.submits == Submits::PerPass, "only a frame with a submit a pass can stop between passes");
         assert!((1..=commands.passes.len()).contains(&pass_count), "{pass_count} of {} passes", commands.passes.len());
-        self.run_buffers(&commands.buffers[..pass_count], pass_count)
+        let end = commands.pieces.iter().position(|piece| piece.pass == pass_count);
+        self.run_pieces(end.unwrap_or(commands.pieces.len()), pass_count)
     }
 
-    fn run_buffers(&self, buffers: &[vk::CommandBuffer], pass_count: usize) -> Result<FrameTime> {
+    fn run_pieces(&self, piece_count: usize, pass_count: usize) -> Result<FrameTime> {
         let commands = &self.commands;
         let started = Instant::now();
-        let mut walls = Vec::with_capacity(buffers.len());
-        for buffer in buffers {
+        let mut walls = vec![0; pass_count.max(1)];
+        let mut first = 0;
+        while first < piece_count {
+            let end = self.end_of_submit(first, piece_count);
             let submitted = Instant::now();
-            self.submit(*buffer)?;
-            walls.push(submitted.elapsed().as_nanos() as u64);
+            self.submit(first..end)?;
+            let took = submitted.elapsed();
+            walls[commands.pieces[first].pass] += took.as_nanos() as u64;
+            if let Some(estimates) = &self.estimates {
+                estimates.borrow_mut().learn(first..end, took);
+            }
+            first = end;
         }
         let wall_ns = started.elapsed().as_nanos() as u64;
         let timestamps = match &commands.timestamps {
@@ -118,16 +132,30 @@ impl Recorded {
         Ok(FrameTime { wall_ns, device_ns, passes, statistics })
     }
 
-    fn submit(&self, buffer: vk::CommandBuffer) -> Result<()> {
+    /// Where a submit ends that begins with the piece `first`.
+    fn end_of_submit(&self, first: usize, end: usize) -> usize {
+        let Commands { pieces, submits, .. } = &self.commands;
+        let pass = pieces[first].pass;
+        let end = match submits {
+            Submits::One => end,
+            Submits::PerPass => (first..end).find(|piece| pieces[*piece].pass != pass).unwrap_or(end),
+        };
+        self.estimates.as_ref().map_or(end, |estimates| estimates.borrow().end_of_submit(first, end))
+    }
+
+    fn submit(&self, pieces: Range<usize>) -> Result<()> {
         let gpu = &self.commands.gpu;
         let fail = |result| match self.commands.passes.is_empty() {
             true => failed(&format!("running commands ({})", self.commands.name), result),
             false => failed(&format!("running a frame of {}", self.commands.name), result),
         };
-        let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(buffer)];
+        let infos: Vec<_> = self.commands.pieces[pieces]
+            .iter()
+            .map(|piece| vk::CommandBufferSubmitInfo::default().command_buffer(piece.buffer))
+            .collect();
         let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
         let _one_at_a_time = gpu.submit_lock.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // SAFETY: the buffer is recorded and not running; the queue is locked; the fence is unsignalled.
+        // SAFETY: the buffers are recorded and not running; the queue is locked; the fence is unsignalled.
         unsafe {
             gpu.device.queue_submit2(gpu.queue, &[submit], self.fence).map_err(fail)?;
             gpu.device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(|result| {

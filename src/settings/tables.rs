@@ -153,6 +153,17 @@ pub const COMMON: &[Setting] = &[
                search for the least sum, or never",
     },
     Setting {
+        key: "submit-ms",
+        symbol: "",
+        kind: Kind::NumberOrAuto { min: 0.0, max: 1e6 },
+        default: "auto",
+        unit: "ms",
+        paper: "",
+        help: "what a submit takes at most, as far as work can be cut: passes go one by one and dispatches in bands of rows, as many together \
+               as took that long before; drivers of GPUs end what takes seconds. 0: a frame is one submit; auto: 100 on GPUs, 0 on software \
+               drivers; the same picture",
+    },
+    Setting {
         key: "memory-budget",
         symbol: "",
         kind: Kind::Bytes,
