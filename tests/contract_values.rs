@@ -1,6 +1,7 @@
 //! What the numbers of a report mean, by arithmetic of its own: each is made again from the picture, the scene, the request
 //! or the other numbers (design.md, section 2).
 
+use crate::support::known_driver;
 use crate::support::program::Program;
 use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
 use quincunx::report::image_file;
@@ -258,6 +259,7 @@ fn require_places(memory: &Value, what: &str) {
 fn memory_adds_up() {
     let program = Program::new();
     let names = techniques::ALL.iter().map(|technique| (technique.name(), &[][..]));
+    let caps = known_driver();
     let alone: [(&str, &[&str]); 2] = [(INTERLEAVED, &["--alias", "off"]), ("deferred", &["--cull", "tiled"])];
     for (technique, more) in names.chain(alone) {
         let what = format!("{technique} with {more:?}");
@@ -277,8 +279,9 @@ fn memory_adds_up() {
         let (most, peak) = (most_live_bytes(memory, &passes), count(&memory["peak_bytes"]));
         assert!(most <= peak && peak <= count(&memory["allocated_bytes"]), "{what}: {most} live, a peak of {peak}");
         assert!(passes.iter().any(|pass| *pass == text(&memory["peak_pass"])), "{what}: {}", memory["peak_pass"]);
-        // The same request without a device; and once on one, without a frame.
-        let mut studied = vec![&["--plan", "--json"][..]];
+        // The same request without a device, by the caps of the one that the tests run on; and once on one, without a frame.
+        let planned = caps.map(|name| ["--plan", "--json", "--caps", name]);
+        let mut studied: Vec<&[&str]> = planned.iter().map(|arguments| &arguments[..]).collect();
         if more.contains(&"off") {
             studied.push(&["--json"]);
         }

@@ -97,7 +97,9 @@ fn every_kind_of_visibility_comes_to_one_picture_as_far_as_its_samples_agree() {
         for kind in ["stochastic", "ray"] {
             let (means, filters) = (rmse(&picture(kind, "off"), &mean), rmse(&picture(kind, "on"), &filtered));
             println!("{kind}: means differ by {means}, filtered pictures by {filters}; the filter changes {changed}");
-            assert!(filters <= 1.5 * means && filters < 0.5 * changed, "{kind}: {filters}, {means}, {changed}");
+            // Coarse steps of vertices move stochastic samples' triangles against those of others.
+            let part = if has(&watched.session.gpu.caps, Feature::ExactPositions) { 0.5 } else { 1.0 };
+            assert!(filters <= 1.5 * means && filters < part * changed, "{kind}: {filters}, {means}, {changed}");
         }
         if watched.session.scene.closing.is_some() && has(&watched.session.gpu.caps, Feature::GeometryShader) {
             let hash = filtered.hash().unwrap();

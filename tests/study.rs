@@ -8,23 +8,9 @@ use quincunx::plan::Requirements;
 use quincunx::{study, techniques};
 use serde_json::Value;
 
-/// The known driver that runs, by name; None, and said, where another one does.
-fn known_driver() -> Option<&'static str> {
-    let live = support::driver().identity;
-    let is_live = |name: &&str| {
-        let known = known::caps(name).unwrap().identity;
-        (known.driver, known.driver_info) == (live.driver.clone(), live.driver_info.clone())
-    };
-    let name = known::names().find(is_live);
-    if name.is_none() {
-        support::skip(&format!("{} has no rules in assets/caps", live.driver_text()));
-    }
-    name
-}
-
 #[test]
 fn the_known_caps_are_those_of_the_driver() {
-    let Some(name) = known_driver() else { return };
+    let Some(name) = support::known_driver() else { return };
     let mut known = known::caps(name).unwrap();
     known.layout = None;
     let live = support::driver();
@@ -41,7 +27,7 @@ fn the_known_caps_are_those_of_the_driver() {
 
 #[test]
 fn what_is_planned_without_a_device_is_what_is_made_on_it() {
-    let Some(known) = known_driver() else { return };
+    let Some(known) = support::known_driver() else { return };
     let mut specs = vec!["cornell".to_owned(), "lamps:objects=10,lights=24".to_owned()];
     if let Some(folder) = support::shared_scenes() {
         specs.push(folder.join("samples/CesiumMilkTruck/CesiumMilkTruck.gltf").to_str().unwrap().to_owned());
@@ -80,7 +66,7 @@ fn what_is_planned_without_a_device_is_what_is_made_on_it() {
 /// paper's has a stencil of a byte among the 4) and 8 of its light. What a driver adds is said to be padding.
 #[test]
 fn the_buffers_of_inferred_lighting_are_as_large_as_its_texels() {
-    let Some(known) = known_driver() else { return };
+    let Some(known) = support::known_driver() else { return };
     for (light_size, texels) in [("800x450", 800 * 450), ("1280x720", 1280 * 720)] {
         let changes = [("size", "1280x720"), ("light-size", light_size), ("extras", "off")];
         let job = job("lamps:objects=10,lights=24", "inferred_lighting", &changes);
@@ -136,7 +122,7 @@ const QUERY: [(&str, &str); 3] = [("size", "97x53"), ("spp", "1"), ("rays", "que
 /// What is measured of a driver's structures is what it asks for, from none on, and what is planned is made.
 #[test]
 fn structures_are_as_large_as_their_driver_s_rules_say() {
-    let Some(known) = known_driver() else { return };
+    let Some(known) = support::known_driver() else { return };
     if !support::has(&support::driver(), support::Feature::RayQuery) {
         return;
     }

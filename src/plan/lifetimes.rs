@@ -113,6 +113,18 @@ mod tests {
         assert_eq!(peak(Mode::Off), Peak { bytes: 10 + 100 + 1000 + 2000 + 4000, pass: "first".to_owned() });
     }
 
+    /// Parts that lie a granularity apart may take more together than they share.
+    #[test]
+    fn bytes_are_shared_where_that_saves_some() {
+        let plan = plan();
+        let caps = known::caps(known::DEFAULT).unwrap();
+        let rules = Requirements::Rules(caps.layout.as_ref().unwrap());
+        for (granularity_bytes, expected) in [(1, 1), (64, 1), (4096, 1), (131_072, 0)] {
+            let sharing = Sharing::new(&plan, rules, granularity_bytes, Mode::Greedy);
+            assert_eq!(sharing.arenas.len(), expected, "{granularity_bytes}");
+        }
+    }
+
     #[test]
     fn who_takes_bytes_over_waits_for_every_reader_since_the_last_write() {
         let plan = plan();

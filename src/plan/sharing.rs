@@ -25,12 +25,20 @@ pub struct Part {
 /// Memory that several resources share.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlannedArena {
+    /// At most what its parts would take apart from each other.
     pub bytes: u64,
     pub alignment_bytes: u64,
     pub memory_type_bits: u32,
     pub parts: Vec<Part>,
     /// No placement is smaller.
     pub proven_optimal: bool,
+}
+
+impl PlannedArena {
+    /// What its parts would take apart from each other.
+    fn parts_bytes(&self) -> u64 {
+        self.parts.iter().map(|part| part.bound_bytes).sum()
+    }
 }
 
 /// The arenas of a frame: none with `--alias off`.
@@ -66,7 +74,9 @@ impl Sharing {
             };
             by_type.entry(required.memory_type_bits).or_default().push((index, span));
         }
-        Self { arenas: by_type.into_iter().map(|(bits, members)| arena(plan, bits, &members, mode)).collect() }
+        let arenas = by_type.into_iter().map(|(bits, members)| arena(plan, bits, &members, mode));
+        // A coarse granularity may take more between parts than they share.
+        Self { arenas: arenas.filter(|arena| arena.bytes <= arena.parts_bytes()).collect() }
     }
 
     /// Name of an arena among those of `technique`.
@@ -94,11 +104,7 @@ impl Sharing {
 
     /// What sharing saves.
     pub fn aliased_bytes(&self) -> u64 {
-        let saved = |arena: &PlannedArena| {
-            let parts: u64 = arena.parts.iter().map(|part| part.bound_bytes).sum();
-            parts.saturating_sub(arena.bytes)
-        };
-        self.arenas.iter().map(saved).sum()
+        self.arenas.iter().map(|arena| arena.parts_bytes() - arena.bytes).sum()
     }
 }
 

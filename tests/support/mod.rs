@@ -13,7 +13,7 @@ pub mod seen;
 pub mod square;
 pub mod watched;
 
-use quincunx::gpu::{Caps, DeviceRequest, Gpu};
+use quincunx::gpu::{Caps, DeviceRequest, Gpu, known};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -56,6 +56,20 @@ fn name_skip(why: &str) -> String {
 /// The caps of the device that tests run on.
 pub fn driver() -> Caps {
     Gpu::open(&DeviceRequest::default()).unwrap().caps.clone()
+}
+
+/// The known driver that runs, by name; None, and said, where another one does.
+pub fn known_driver() -> Option<&'static str> {
+    let live = driver().identity;
+    let is_live = |name: &&str| {
+        let known = known::caps(name).unwrap().identity;
+        (known.driver, known.driver_info) == (live.driver.clone(), live.driver_info.clone())
+    };
+    let name = known::names().find(is_live);
+    if name.is_none() {
+        skip(&format!("{} has no rules in assets/caps", live.driver_text()));
+    }
+    name
 }
 
 /// How many times as coarse as to a 256th of a pixel the driver places vertices, eight at most: bounds of what depends on it are
