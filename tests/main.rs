@@ -50,6 +50,7 @@ mod medium;
 mod memory;
 mod multisample;
 mod path_traced;
+mod pretend;
 mod progress;
 mod progressive;
 mod ray_query;

@@ -160,6 +160,16 @@ use_software_driver() {
     say "Vulkan driver: $VK_DRIVER_FILES (set VK_DRIVER_FILES for another)"
 }
 
+# Builds the layer of tools/pretend, for Linux; its folder is $QUINCUNX_PRETEND_LAYER then.
+build_pretend_layer() {
+    [ "$(uname -s)" = Linux ] || return 0
+    say "Building: cargo build --locked --release --manifest-path tools/pretend/Cargo.toml"
+    cargo build --quiet --locked --release --manifest-path tools/pretend/Cargo.toml --target-dir target/pretend
+    cp tools/pretend/layer.json target/pretend/release/
+    QUINCUNX_PRETEND_LAYER=$PWD/target/pretend/release
+    export QUINCUNX_PRETEND_LAYER
+}
+
 # Builds the program with the profile of QUINCUNX_PROFILE (release or dev) and puts its path in $program.
 build_program() {
     local profile=${QUINCUNX_PROFILE:-release} folder target

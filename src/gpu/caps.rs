@@ -104,7 +104,7 @@ impl Identity {
     pub fn loop_turns(&self) -> Option<u32> {
         let (_, version) = self.driver_info.split_once("Mesa ")?;
         let major: u32 = version.split('.').next()?.parse().ok()?;
-        (self.is_software() && major < 25).then_some(65_535)
+        (self.driver == "llvmpipe" && major < 25).then_some(65_535)
     }
 
     /// Whether a memory barrier inside a divergent loop ends the threads of a workgroup that reach it more often than others:

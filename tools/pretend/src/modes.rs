@@ -1,0 +1,38 @@
+//! What is pretended, by QUINCUNX_PRETEND.
+
+use std::sync::LazyLock;
+
+#[derive(Default)]
+pub struct Modes {
+    /// Memory comes with all bits set, which are NaN.
+    pub poison: bool,
+    /// What a barrier from an undefined layout may drop is overwritten.
+    pub discard: bool,
+    /// Behind every buffer lie bytes that nobody may write, and that are NaN to who reads them.
+    pub padding: bool,
+    /// Memory types as of a discrete GPU: some that the host does not see, one that is not coherent.
+    pub discrete: bool,
+    /// The device says that it is a discrete GPU.
+    pub gpu: bool,
+    /// The least limits and features that Vulkan 1.3 lets a device have.
+    pub least_limits: bool,
+}
+
+pub static MODES: LazyLock<Modes> = LazyLock::new(|| {
+    let mut modes = Modes::default();
+    let text = std::env::var("QUINCUNX_PRETEND").unwrap_or_default();
+    for word in text.split(',').filter(|word| !word.is_empty()) {
+        match word {
+            "poison" => modes.poison = true,
+            "discard" => modes.discard = true,
+            "padding" => modes.padding = true,
+            "discrete" => modes.discrete = true,
+            "gpu" => modes.gpu = true,
+            "least-limits" => modes.least_limits = true,
+            _ => crate::fail(&format!(
+                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu and least-limits"
+            )),
+        }
+    }
+    modes
+});
