@@ -10,8 +10,10 @@ use std::fmt;
 pub enum Use {
     /// Read and written by the device alone.
     Device,
-    /// Written by the host, read by the device: staging and per-frame numbers.
+    /// Written by the host, read by the device once: staging.
     Upload,
+    /// Written by the host between frames, read by every invocation of them.
+    Frame,
     /// Written by the device, read by the host.
     Readback,
 }
@@ -21,6 +23,7 @@ impl fmt::Display for Use {
         f.write_str(match self {
             Self::Device => "device-local",
             Self::Upload => "host-visible",
+            Self::Frame => "host-visible, device-local",
             Self::Readback => "host-cached",
         })
     }
@@ -65,6 +68,15 @@ impl Kinds {
                 (|kind| kind.host_visible && kind.host_coherent && !kind.host_cached, "host-coherent, write-combined"),
                 (|kind| kind.host_visible && kind.host_coherent, "host-coherent"),
             ],
+            Use::Frame => &[
+                // Else each wave of a discrete GPU reads it from the host.
+                (
+                    |kind| kind.device_local && kind.host_visible && kind.host_coherent && !kind.lazily_allocated,
+                    "device-local, and the host writes it",
+                ),
+                (|kind| kind.host_visible && kind.host_coherent && !kind.host_cached, "host-coherent, write-combined"),
+                (|kind| kind.host_visible && kind.host_coherent, "host-coherent"),
+            ],
             Use::Readback => &[
                 (|kind| kind.host_visible && kind.host_coherent && kind.host_cached, "host-coherent and cached"),
                 (|kind| kind.host_visible && kind.host_coherent, "host-coherent, uncached: no cached type"),
@@ -96,6 +108,12 @@ mod tests {
         assert_eq!(kinds.choose(Use::Device, 0b111).unwrap().type_index, 0);
         assert_eq!(kinds.choose(Use::Upload, 0b111).unwrap().type_index, 1);
         assert_eq!(kinds.choose(Use::Readback, 0b111).unwrap().type_index, 2);
+        // What both see is there on some: frames' numbers lie there, and staging does not.
+        let types =
+            [kind(true, false, false), kind(false, true, false), kind(false, true, true), kind(true, true, false)];
+        let both = Kinds { types: types.to_vec() };
+        assert_eq!([Use::Frame, Use::Upload].map(|usage| both.choose(usage, 0b1111).unwrap().type_index), [3, 1]);
+        assert_eq!(kinds.choose(Use::Frame, 0b111).unwrap().type_index, 1);
         // The driver's mask decides first.
         assert_eq!(kinds.choose(Use::Device, 0b110).unwrap().type_index, 1);
         assert_eq!(kinds.choose(Use::Upload, 0b001).unwrap_err().exit_code(), 4);
@@ -104,7 +122,7 @@ mod tests {
     #[test]
     fn a_software_driver_has_one_type_for_all() {
         let kinds = Kinds { types: vec![kind(true, true, true)] };
-        for usage in [Use::Device, Use::Upload, Use::Readback] {
+        for usage in [Use::Device, Use::Upload, Use::Frame, Use::Readback] {
             assert_eq!(kinds.choose(usage, 1).unwrap().type_index, 0);
         }
         assert!(!kinds.choose(Use::Device, 1).unwrap().mapped);

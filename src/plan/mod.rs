@@ -102,10 +102,10 @@ impl Plan {
         }
     }
 
-    /// A buffer that the host writes.
+    /// A buffer that the host writes before a frame, and all of the frame's invocations read.
     pub fn host_buffer(&mut self, group: &'static str, name: impl Into<String>, bytes: u64) {
         let flags = vk::BufferUsageFlags::STORAGE_BUFFER;
-        self.push(group, name, Shape::Buffer { bytes, flags, usage: Use::Upload });
+        self.push(group, name, Shape::Buffer { bytes, flags, usage: Use::Frame });
     }
 
     pub fn push(&mut self, group: &'static str, name: impl Into<String>, shape: Shape) {

@@ -73,6 +73,7 @@ void main() {
         covered |= 1u << index;
         depths[index] = hit_depth(corners, weights);
     }
+    count_tests();
     if (covered == 0u) {
         discard;
     }

@@ -31,7 +31,9 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
 bool is_placed(out Place place) {
 #ifdef VISIBILITY_STOCHASTIC
     vec3 weights;
-    if (!is_hit(in_corners, gl_FragCoord.xy, weights)) {
+    bool has_hit = is_hit(in_corners, gl_FragCoord.xy, weights);
+    count_tests();
+    if (!has_hit) {
         return false;
     }
     place = hit_place(in_corners, gl_FragCoord.xy, weights);

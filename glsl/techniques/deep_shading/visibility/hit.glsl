@@ -6,24 +6,34 @@
 #ifndef DEEP_SHADING_HIT_GLSL
 #define DEEP_SHADING_HIT_GLSL
 
-// More than a word counts: the second has what the first was carried over.
-void count_test() {
-    if (atomicAdd(counters[COUNTED_TESTS], 1u) == 0xffffffffu) {
-        atomicAdd(counters[COUNTED_TESTS_CARRIED], 1u);
+// Of this invocation: all of them add to the same words.
+uint tests_done = 0u;
+uint tests_hit = 0u;
+
+// After the last test, before the invocation is dropped. More than a word counts: the second has what the first was carried over.
+void count_tests() {
+    if (tests_done > 0u) {
+        uint before = atomicAdd(counters[COUNTED_TESTS], tests_done);
+        if (before + tests_done < before) {
+            atomicAdd(counters[COUNTED_TESTS_CARRIED], 1u);
+        }
+    }
+    if (tests_hit > 0u) {
+        atomicAdd(counters[COUNTED_TESTS_HIT], tests_hit);
     }
 }
 
-// `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the corners' where it is true.
+// Counted by `count_tests`. `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the corners' where it is true.
 bool is_hit(vec4 corners[3], vec2 at, out vec3 weights) {
     if (IS_COUNTED != 0u) {
-        count_test();
+        tests_done++;
     }
     bool is_front;
     if (!covers(corners[0], corners[1], corners[2], at, weights, is_front)) {
         return false;
     }
     if (IS_COUNTED != 0u) {
-        atomicAdd(counters[COUNTED_TESTS_HIT], 1u);
+        tests_hit++;
     }
     bool is_seen_front = is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
     return is_seen_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;

@@ -67,4 +67,5 @@ void main() {
             atomicMax(nearest[sample_index(deep, uvec3(layer_px, own))], packUint2x32(words));
         }
     }
+    count_tests();
 }

@@ -34,7 +34,9 @@ void main() {
     // A layer has one sample a pixel, in its middle: the tuple's shift has put it there.
     vec2 at = gl_FragCoord.xy;
     vec3 weights;
-    if (!is_hit(in_corners, at, weights)) {
+    bool has_hit = is_hit(in_corners, at, weights);
+    count_tests();
+    if (!has_hit) {
         discard;
     }
 #ifdef ALPHA_TESTED
