@@ -3,7 +3,7 @@
 use crate::bvh::LazyBvh;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
-use crate::gpu::commands::{RecordedPass, Recording};
+use crate::gpu::commands::{RecordedPass, Recording, Submits};
 use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
@@ -14,6 +14,7 @@ use crate::lights::LightSet;
 use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
 use crate::metrics::noise;
+use crate::passes::next_run::NextRun;
 use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::progress::Stage;
 use crate::report::image_file::Aov;
@@ -45,6 +46,8 @@ pub struct Session {
 pub struct Renderer {
     // Dropped in this order: commands, what they use, the scene.
     recorded: Recorded,
+    /// Several runs may go at once.
+    next_run: Option<NextRun>,
     frame: Box<dyn Frame>,
     /// What `numbers` is in device memory, written between runs.
     block: RefCell<Buffer>,
@@ -184,12 +187,19 @@ impl Session {
         let mut cmd = Commands::begin(&self.gpu, technique.name(), recording)?;
         cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
+        let may_batch = recording.limit.is_some() && recording.submits == Submits::One;
+        let next_run = match may_batch && frame.runs_alike() && frame.run_count() > 1 {
+            true => Some(NextRun::new(&self.gpu)?),
+            false => None,
+        };
+        next_run.as_ref().map_or(Ok(()), |next_run| next_run.record(&mut cmd, &block))?;
         if cfg!(debug_assertions) {
             let names: Vec<&str> = cmd.passes().iter().map(|pass| pass.name.as_str()).collect();
             resources.assert_recorded(&plan, &names, cmd.touched());
         }
         Ok(Renderer {
             recorded: cmd.finish()?,
+            next_run,
             frame,
             block: RefCell::new(block),
             numbers,
@@ -259,7 +269,7 @@ impl Renderer {
         let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
         let until_error = self.frame.sums().and_then(|sums| sums.until_error);
         let mut expected = all;
-        let mut total = self.run(self.begin()?)?;
+        let mut total = self.run(self.begin()?, 1)?;
         while self.runs.get() < all && interrupt::check().is_ok() {
             let count = self.runs.get();
             if let Some(most) = until_error.filter(|_| noise::is_checked(count.into())) {
@@ -271,7 +281,7 @@ impl Renderer {
                 expected = noise::samples_for(most, count.into(), error).min(all.into()) as u32;
             }
             stage.reach(count.into(), expected.into());
-            total.add(self.run(count)?);
+            total.add(self.run(count, self.runs_at_once(count, until_error.is_some()))?);
         }
         if all > 1 {
             stage.reach(self.runs.get().into(), expected.into());
@@ -303,14 +313,23 @@ impl Renderer {
         Ok(*count)
     }
 
-    fn run(&self, index: u32) -> Result<FrameTime> {
+    /// Runs that may go in one submit after `count` of them: up to the next look at their error.
+    fn runs_at_once(&self, count: u32, is_checked: bool) -> u32 {
+        let all = self.frame.run_count();
+        let fitting = if self.next_run.is_some() { self.recorded.runs_of_submit() } else { 1 };
+        let end = (count + 1..all).find(|end| is_checked && noise::is_checked((*end).into())).unwrap_or(all);
+        fitting.min(end - count)
+    }
+
+    /// `times` runs from `index` on.
+    fn run(&self, index: u32, times: u32) -> Result<FrameTime> {
         let numbers = self.view.moved(self.numbers, self.frame.offset_px(index));
         let numbers = FrameBlock { sample_index: index, ..numbers };
         // The run before has ended: the device reads the block no more.
         self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
         self.frame.begin_run(index);
-        let time = self.recorded.run()?;
-        self.runs.set(index + 1);
+        let time = self.recorded.run_times(times)?;
+        self.runs.set(index + times);
         Ok(time)
     }
 

@@ -53,6 +53,12 @@ impl Estimates {
         end
     }
 
+    /// How many times all pieces fit into a submit; once while nobody knows what they take.
+    pub fn runs_of_submit(&self) -> u32 {
+        let sum_ns: Option<f64> = self.pieces_ns.iter().copied().sum();
+        sum_ns.map_or(1, |sum_ns| ((self.limit.as_nanos() as f64 / sum_ns.max(1.0)) as u32).max(1))
+    }
+
     /// These pieces took so long in one submit: each its part of what was expected of them.
     pub fn learn(&mut self, pieces: Range<usize>, took: Duration) {
         let took_ns = took.as_nanos() as f64;
@@ -117,6 +123,10 @@ mod tests {
         assert_eq!(submits[0].len(), takes_ms.len(), "pieces that nobody knows go alone");
         assert_eq!(submits[1], [0..4, 4..5, 5..11, 11..13]);
         assert_eq!(submits[2], submits[1]);
+        assert_eq!(estimates.runs_of_submit(), 1);
+        let roomy = Estimates { limit: Duration::from_millis(200), pieces_ns: estimates.pieces_ns.clone() };
+        assert_eq!(roomy.runs_of_submit(), 2, "of 76 ms each");
+        assert_eq!(Estimates::new(Duration::from_secs(1), 3).runs_of_submit(), 1);
         // It slows down by four: what went together goes apart.
         estimates.learn(0..4, Duration::from_millis(24));
         assert_eq!(estimates.end_of_submit(0, takes_ms.len()), 1);

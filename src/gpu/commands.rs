@@ -149,8 +149,14 @@ impl Commands {
         let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
         // SAFETY: a live pool.
         let buffer = unsafe { device.allocate_command_buffers(&info) }.map_err(fail)?[0];
+        // Runs of a frame may go in one submit, as many as the limit lets.
+        let flags = match self.limit {
+            Some(_) => vk::CommandBufferUsageFlags::SIMULTANEOUS_USE,
+            None => vk::CommandBufferUsageFlags::empty(),
+        };
         // SAFETY: fresh from the pool.
-        unsafe { device.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default()) }.map_err(fail)?;
+        unsafe { device.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default().flags(flags)) }
+            .map_err(fail)?;
         self.gpu.name(buffer, &format!("{}.{}", self.name, self.pieces.len()));
         self.pieces.push(Piece { buffer, pass: self.passes.len().saturating_sub(1) });
         Ok(())
@@ -233,6 +239,20 @@ impl Commands {
             .buffer_memory_barriers(&buffers)
             .image_memory_barriers(&images);
         // SAFETY: the buffer is being recorded, outside rendering; the resources are alive.
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
+    }
+
+    /// All work that comes waits for all that was, and sees what it wrote.
+    pub fn wait_for_all(&mut self) {
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let barrier = vk::MemoryBarrier2::default()
+            .src_stage_mask(all)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .dst_stage_mask(all)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE);
+        let barriers = [barrier];
+        let info = vk::DependencyInfo::default().memory_barriers(&barriers);
+        // SAFETY: the buffer is being recorded, outside rendering.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
     }
 

@@ -12,7 +12,6 @@ use super::timing::{Clock, PassTime};
 use crate::error::Result;
 use ash::vk;
 use std::cell::RefCell;
-use std::ops::Range;
 use std::time::Instant;
 
 /// A frame that can be run again and again.
@@ -83,6 +82,35 @@ impl Recorded {
         self.run_pieces(commands.pieces.len(), commands.passes.len())
     }
 
+    /// How many runs of the frame fit into one submit, by what they took before.
+    pub fn runs_of_submit(&self) -> u32 {
+        self.estimates.as_ref().map_or(1, |estimates| estimates.borrow().runs_of_submit())
+    }
+
+    /// Submits the frame so many times at once, as `runs_of_submit` allows, and waits; what is recorded makes each run's end ready for
+    /// the next one. Times are of all runs, those of the device by the last of them; statistics are of the last.
+    ///
+    /// Errors: as `run`.
+    pub fn run_times(&self, times: u32) -> Result<FrameTime> {
+        let commands = &self.commands;
+        if times == 1 || commands.submits == Submits::PerPass {
+            assert_eq!(times, 1, "a frame with a submit a pass runs once");
+            return self.run();
+        }
+        let all: Vec<usize> = (0..times).flat_map(|_| 0..commands.pieces.len()).collect();
+        let started = Instant::now();
+        self.submit(&all)?;
+        let took = started.elapsed();
+        if let Some(estimates) = &self.estimates {
+            estimates.borrow_mut().learn(0..commands.pieces.len(), took / times);
+        }
+        let mut time = self.times(Vec::new(), took.as_nanos() as u64, commands.passes.len())?;
+        let all_of = |ns: &mut Option<u64>| *ns = ns.map(|ns| ns * u64::from(times));
+        all_of(&mut time.device_ns);
+        time.passes.iter_mut().for_each(|pass| all_of(&mut pass.timestamp_ns));
+        Ok(time)
+    }
+
     /// Runs the first `pass_count` passes, at least one, of a frame that was recorded with a submit a pass; what later
     /// passes write is then of an older frame, or of none.
     ///
@@ -103,7 +131,7 @@ impl Recorded {
         while first < piece_count {
             let end = self.end_of_submit(first, piece_count);
             let submitted = Instant::now();
-            self.submit(first..end)?;
+            self.submit(&(first..end).collect::<Vec<_>>())?;
             let took = submitted.elapsed();
             walls[commands.pieces[first].pass] += took.as_nanos() as u64;
             if let Some(estimates) = &self.estimates {
@@ -111,7 +139,12 @@ impl Recorded {
             }
             first = end;
         }
-        let wall_ns = started.elapsed().as_nanos() as u64;
+        self.times(walls, started.elapsed().as_nanos() as u64, pass_count)
+    }
+
+    /// Of a run that has just ended. `walls`: of its passes, where each had submits of its own.
+    fn times(&self, walls: Vec<u64>, wall_ns: u64, pass_count: usize) -> Result<FrameTime> {
+        let commands = &self.commands;
         let timestamps = match &commands.timestamps {
             Some(timestamps) if pass_count > 0 => Some(timestamps.read_first(pass_count)?),
             _ => None,
@@ -143,16 +176,15 @@ impl Recorded {
         self.estimates.as_ref().map_or(end, |estimates| estimates.borrow().end_of_submit(first, end))
     }
 
-    fn submit(&self, pieces: Range<usize>) -> Result<()> {
+    fn submit(&self, pieces: &[usize]) -> Result<()> {
         let gpu = &self.commands.gpu;
         let fail = |result| match self.commands.passes.is_empty() {
             true => failed(&format!("running commands ({})", self.commands.name), result),
             false => failed(&format!("running a frame of {}", self.commands.name), result),
         };
-        let infos: Vec<_> = self.commands.pieces[pieces]
-            .iter()
-            .map(|piece| vk::CommandBufferSubmitInfo::default().command_buffer(piece.buffer))
-            .collect();
+        let buffers = pieces.iter().map(|piece| self.commands.pieces[*piece].buffer);
+        let infos: Vec<_> =
+            buffers.map(|buffer| vk::CommandBufferSubmitInfo::default().command_buffer(buffer)).collect();
         let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);
         let _one_at_a_time = gpu.submit_lock.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         // SAFETY: the buffers are recorded and not running; the queue is locked; the fence is unsignalled.

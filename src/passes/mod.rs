@@ -9,6 +9,7 @@ pub mod filter;
 pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;
+pub mod next_run;
 pub mod resolve;
 pub mod shadow_maps;
 pub mod texels;

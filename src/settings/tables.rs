@@ -160,7 +160,7 @@ pub const COMMON: &[Setting] = &[
         unit: "ms",
         paper: "",
         help: "what a submit takes at most, as far as work can be cut: passes go one by one and dispatches in bands of rows, as many together \
-               as took that long before; drivers of GPUs end what takes seconds. 0: a frame is one submit; auto: 100 on GPUs, 0 on software \
+               as took that long before, samples of paths too; drivers of GPUs end what takes seconds. 0: a frame is one submit; auto: 100 on GPUs, 0 on software \
                drivers; the same picture",
     },
     Setting {

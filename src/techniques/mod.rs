@@ -185,6 +185,11 @@ pub trait Frame {
         1
     }
 
+    /// Whether runs differ by the block's `sample_index` alone: then several may go at once.
+    fn runs_alike(&self) -> bool {
+        false
+    }
+
     /// The host's part of a run, before it is submitted: the run before has ended.
     fn begin_run(&self, _run: u32) {}
 

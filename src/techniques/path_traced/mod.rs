@@ -343,6 +343,10 @@ impl Frame for PathFrame {
         self.sample_count
     }
 
+    fn runs_alike(&self) -> bool {
+        true
+    }
+
     fn sums(&self) -> Option<Sums<'_>> {
         Some(Sums { buffer: &self.sample.sums, until_error: self.until_error })
     }
