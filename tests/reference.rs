@@ -1,5 +1,6 @@
 //! References: from a file, made, kept, broken; what is judged against them, and what is refused.
 
+use crate::support::placing_steps;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both, values};
 use glam::Vec3;
@@ -212,6 +213,8 @@ fn ambient_light_is_judged_by_ambient_light() {
             metrics::compare(&picture, &reference, 0.1).unwrap().metrics.rmse
         };
         let found = error(&recipe);
+        // Coarsely placed vertices move edges.
+        let bound = bound + 0.002 * (placing_steps(&watched.session.gpu.caps) - 1.0);
         assert!(found < bound, "{technique} with {changes:?}: {found}");
         let shadowed = settings_of(truth).into_iter().find(|setting| setting.key == "ambient-visibility").unwrap();
         recipe.values.set(&shadowed, "on").unwrap();
