@@ -3,6 +3,8 @@
 #ifndef LOOPS_GLSL
 #define LOOPS_GLSL
 
+#include "nan.glsl"
+
 bool loops_were_cut = false;
 
 // `is_done`: that what the loop was to do is done.
@@ -11,7 +13,7 @@ void expect_done(bool is_done) {
 }
 
 vec3 nan_if_cut(vec3 value) {
-    return loops_were_cut ? vec3(uintBitsToFloat(0x7fc00000u)) : value;
+    return loops_were_cut ? vec3(no_number()) : value;
 }
 
 #endif

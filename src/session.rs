@@ -188,11 +188,12 @@ impl Session {
         cmd.set_heirs(resources.heirs(&sharing));
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
         let may_batch = recording.limit.is_some() && recording.submits == Submits::One;
-        let next_run = match may_batch && frame.runs_alike() && frame.run_count() > 1 {
-            true => Some(NextRun::new(&self.gpu)?),
-            false => None,
-        };
-        next_run.as_ref().map_or(Ok(()), |next_run| next_run.record(&mut cmd, &block))?;
+        let mut next_run = None;
+        if may_batch && frame.runs_alike() && frame.run_count() > 1 {
+            let between = NextRun::new(&self.gpu)?;
+            between.record(&mut cmd, &block)?;
+            next_run = Some(between);
+        }
         if cfg!(debug_assertions) {
             let names: Vec<&str> = cmd.passes().iter().map(|pass| pass.name.as_str()).collect();
             resources.assert_recorded(&plan, &names, cmd.touched());

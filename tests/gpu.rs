@@ -94,6 +94,10 @@ fn samples_that_find_no_colour_fail_the_picture() {
             assert!(text.contains(words), "{more:?}: {text}");
         }
     }
+    // Where draws are shaded in textures, these are drawn into nothing too.
+    let textures = [&common[..2], &[("shading", "texture-space")]].concat();
+    let error = watched.render("deep_shading", &textures).picture().err().unwrap();
+    assert!(error.exit_code() == 1 && error.to_string().contains("texels nobody has shaded"), "{error}");
     let black = watched.render("deep_shading", &[&common[..], &[("conservative", "none")]].concat());
     assert_eq!(black.picture().unwrap().mean(), [0.0; 3]);
     assert!(black.measured_counters().unwrap()["samples_without_colour"] > 0.0);

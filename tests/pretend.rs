@@ -1,6 +1,6 @@
 //! Pictures on a device that behaves as others may (tools/pretend): the same to the bit, or refused by name.
 
-use crate::support::program::{Program, Ran};
+use crate::support::program::Program;
 use crate::support::skip;
 
 /// A scene and settings; what each mode may change lies in some of them: `auto`, sharing of bytes, discards, lists, host-written buffers.
@@ -22,10 +22,6 @@ const COMMANDS: [&str; 15] = [
     "cornell --technique path_traced --size 33x17 --spp 2 --medium 0.05,0.01,0.3 --punctual off",
 ];
 
-fn hash(ran: Ran) -> String {
-    ran.fine().json()["image"]["hash"].as_str().unwrap().to_owned()
-}
-
 /// Modes together, and whether a device may lack what a command needs and say so.
 const MODES: [(&str, bool); 3] =
     [("poison,discard,padding", false), ("discrete,gpu,poison", false), ("least-limits", true)];
@@ -41,12 +37,12 @@ fn pictures_on_devices_that_are_not_there_are_the_same_or_refused_by_name() {
     for command in COMMANDS {
         let words: Vec<&str> = command.split(' ').collect();
         let command = [&["render"], &words[..], &["-o", "a.exr", "--json", "--quiet"]].concat();
-        let expected = hash(program.run(&command));
+        let expected = program.run(&command).fine().json()["image"]["hash"].clone();
         for (modes, may_refuse) in MODES {
             let pretending = [
                 ("QUINCUNX_PRETEND", modes),
                 ("VK_INSTANCE_LAYERS", "VK_LAYER_QUINCUNX_pretend"),
-                ("VK_ADD_LAYER_PATH", layer.as_str()),
+                ("VK_LAYER_PATH", layer.as_str()),
             ];
             // Bytes that several share have no guarded ones behind them.
             let alone: &[&str] = if modes.contains("padding") { &["--alias", "off"] } else { &[] };
@@ -58,7 +54,11 @@ fn pictures_on_devices_that_are_not_there_are_the_same_or_refused_by_name() {
                 refused += 1;
                 continue;
             }
-            assert_eq!(hash(ran), expected, "{command:?} under {modes}");
+            let report = ran.fine().json();
+            assert_eq!(report["image"]["hash"], expected, "{command:?} under {modes}");
+            // Without the layer a test of what it does would pass.
+            let is_gpu = report["device"]["name"] == "Pretended GPU";
+            assert_eq!(is_gpu, modes.contains("gpu"), "{modes}: {}", report["device"]);
         }
     }
     assert!((1..COMMANDS.len()).contains(&refused), "{refused} refused");

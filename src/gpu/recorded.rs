@@ -93,13 +93,12 @@ impl Recorded {
     /// Errors: as `run`.
     pub fn run_times(&self, times: u32) -> Result<FrameTime> {
         let commands = &self.commands;
-        if times == 1 || commands.submits == Submits::PerPass {
-            assert_eq!(times, 1, "a frame with a submit a pass runs once");
+        if times == 1 {
             return self.run();
         }
-        let all: Vec<usize> = (0..times).flat_map(|_| 0..commands.pieces.len()).collect();
+        assert!(commands.submits == Submits::One, "a frame with a submit a pass runs once at a time");
         let started = Instant::now();
-        self.submit(&all)?;
+        self.submit((0..times).flat_map(|_| 0..commands.pieces.len()))?;
         let took = started.elapsed();
         if let Some(estimates) = &self.estimates {
             estimates.borrow_mut().learn(0..commands.pieces.len(), took / times);
@@ -131,7 +130,7 @@ impl Recorded {
         while first < piece_count {
             let end = self.end_of_submit(first, piece_count);
             let submitted = Instant::now();
-            self.submit(&(first..end).collect::<Vec<_>>())?;
+            self.submit(first..end)?;
             let took = submitted.elapsed();
             walls[commands.pieces[first].pass] += took.as_nanos() as u64;
             if let Some(estimates) = &self.estimates {
@@ -142,7 +141,7 @@ impl Recorded {
         self.times(walls, started.elapsed().as_nanos() as u64, pass_count)
     }
 
-    /// Of a run that has just ended. `walls`: of its passes, where each had submits of its own.
+    /// What a run took that has just ended. `walls`: of its passes, where each had submits of its own.
     fn times(&self, walls: Vec<u64>, wall_ns: u64, pass_count: usize) -> Result<FrameTime> {
         let commands = &self.commands;
         let timestamps = match &commands.timestamps {
@@ -176,13 +175,13 @@ impl Recorded {
         self.estimates.as_ref().map_or(end, |estimates| estimates.borrow().end_of_submit(first, end))
     }
 
-    fn submit(&self, pieces: &[usize]) -> Result<()> {
+    fn submit(&self, pieces: impl Iterator<Item = usize>) -> Result<()> {
         let gpu = &self.commands.gpu;
         let fail = |result| match self.commands.passes.is_empty() {
             true => failed(&format!("running commands ({})", self.commands.name), result),
             false => failed(&format!("running a frame of {}", self.commands.name), result),
         };
-        let buffers = pieces.iter().map(|piece| self.commands.pieces[*piece].buffer);
+        let buffers = pieces.map(|piece| self.commands.pieces[piece].buffer);
         let infos: Vec<_> =
             buffers.map(|buffer| vk::CommandBufferSubmitInfo::default().command_buffer(buffer)).collect();
         let submit = vk::SubmitInfo2::default().command_buffer_infos(&infos);

@@ -5,6 +5,8 @@
 #ifndef DEEP_SHADING_FETCH_GLSL
 #define DEEP_SHADING_FETCH_GLSL
 
+#include "nan.glsl"
+
 #if defined(FETCH_LAYERS) || defined(FETCH_PASSES)
 layout(set = 0, binding = 27) uniform sampler2DArray drawn;
 #elif defined(FETCH_MULTISAMPLED)
@@ -88,7 +90,7 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
     uvec2 words = where < sample_total(deep) ? kept_color(where) : uvec2(0u);
     vec4 color = vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
     bool fails = MISSING_FAILS != 0u && color.a == 0.0;
-    return fails ? vec4(vec3(uintBitsToFloat(0x7fc00000u)), 0.0) : color;
+    return fails ? vec4(vec3(no_number()), 0.0) : color;
 #endif
 }
 

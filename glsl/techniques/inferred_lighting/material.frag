@@ -5,6 +5,7 @@
 #include "frame.glsl"
 #include "resident.glsl"
 #include "shading/brdf.glsl"
+#include "nan.glsl"
 
 struct InferredMaterialParams {
     // The draw's.
@@ -68,7 +69,7 @@ vec4 lighting_here(MaterialBlock material) {
     }
     // A sum that a driver has cut (loops.glsl) fails the picture in fixed point too, which has no NaN to filter.
     if (is_unknown(texelFetch(l_buffer, clamp(ivec2(query.at), ivec2(0), textureSize(l_buffer, 0) - 1), 0))) {
-        return vec4(uintBitsToFloat(0x7fc00000u));
+        return vec4(no_number());
     }
     return light_of(result.lighting);
 }

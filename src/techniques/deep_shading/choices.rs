@@ -222,7 +222,7 @@ impl Choices {
         4.0 / (1u32 << self.sub_pixel_bits()) as f32
     }
 
-    /// Of what the rasteriser snaps corners to: SUB_PIXEL_BITS.
+    /// SUB_PIXEL_BITS: the steps of a pixel that the rasteriser snaps corners to, as a power of two.
     fn sub_pixel_bits(&self) -> u32 {
         self.sub_pixel_bits.min(16)
     }

@@ -54,8 +54,8 @@ bool has_written = false;
 // stays short whatever is seen there: a sample that finds its list full is shaded by itself.
 const uint LIST_MOST = 1024u;
 
-// What is behind a head that was read is as its writer left it.
-void acquire() {
+// What was written before a head is there before it, and what is read behind a head is as its writer left it.
+void fence() {
     if (HAS_FENCES != 0u) {
         memoryBarrierBuffer();
     }
@@ -66,7 +66,7 @@ uint insert(uint pixel, uint primitive, uint own) {
     // From `known` on the list does not hold it.
     uint known = 0u;
     uint head = begin_of(pixel);
-    acquire();
+    fence();
     uint holder = NO_PRIMITIVE;
     uint length = 0u;
     while (holder == NO_PRIMITIVE && length < LIST_MOST) {
@@ -80,11 +80,9 @@ uint insert(uint pixel, uint primitive, uint own) {
         if (holder == NO_PRIMITIVE && length < LIST_MOST) {
             set_node(own, uvec2(primitive, head));
             has_written = true;
-            if (HAS_FENCES != 0u) {
-                memoryBarrierBuffer();
-            }
+            fence();
             uint found = swap_begin(pixel, head, own + 1u);
-            acquire();
+            fence();
             holder = found == head ? own : NO_PRIMITIVE;
             // Somebody was quicker: only what is new need be looked at.
             known = TOLERATES_DUPLICATES != 0u ? found : head;

@@ -10,7 +10,8 @@
 uint tests_done = 0u;
 uint tests_hit = 0u;
 
-// After the last test, before the invocation is dropped. More than a word counts: the second has what the first was carried over.
+// After the last test, before the invocation is dropped. More than a word counts: the second has what the first was carried
+// over.
 void count_tests() {
     if (tests_done > 0u) {
         uint before = atomicAdd(counters[COUNTED_TESTS], tests_done);
@@ -23,7 +24,8 @@ void count_tests() {
     }
 }
 
-// Counted by `count_tests`. `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the corners' where it is true.
+// `count_tests` counts it later. `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the
+// corners' where it is true.
 bool is_hit(vec4 corners[3], vec2 at, out vec3 weights) {
     if (IS_COUNTED != 0u) {
         tests_done++;

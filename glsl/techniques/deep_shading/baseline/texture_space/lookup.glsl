@@ -7,6 +7,8 @@
 #ifndef DEEP_SHADING_LOOKUP_GLSL
 #define DEEP_SHADING_LOOKUP_GLSL
 
+#include "nan.glsl"
+
 layout(std430, set = 0, binding = 42) readonly buffer Owners { uint owners[]; };
 layout(std430, set = 0, binding = 43) readonly buffer Texels { uvec2 texels[]; };
 
@@ -45,7 +47,7 @@ uvec2 looked_up(uint triangle, vec3 weights) {
         if (!(is_there[0] || is_there[1] || is_there[2] || is_there[3])) {
             count(COUNTED_MISSING);
             // Where nothing nearer covers it later, the picture fails.
-            return stored_color(vec3(uintBitsToFloat(0x7fc00000u)));
+            return stored_color(vec3(no_number()));
         }
         count(COUNTED_OTHER_CHARTS);
         is_own = is_there;
