@@ -6,7 +6,8 @@
 struct BvhNodeBlock {
     // xyz: least corner; w as bits: 0 for an inner node, else the number of triangles.
     vec4 min_count;
-    // xyz: greatest corner; w as bits: the first of two neighbouring children, or the first triangle.
+    // xyz: greatest corner; w as bits: the first of two neighbouring children, or the first triangle. To a walk without a
+    // stack an inner node's is the place after all below it (bvh_walk.glsl).
     vec4 max_first;
 };
 

@@ -1,13 +1,10 @@
-// A ray through the tree. The including shader declares `bvh_nodes[]` and `bvh_triangles[]` (bvh.glsl has their types).
-// Twin: src/bvh/mod.rs, `Bvh::occluded`.
+// A ray through the tree, without a stack. The including shader declares `bvh_nodes[]`, in the order of src/bvh/flat.rs, and
+// `bvh_triangles[]` (bvh.glsl has their types). Twin: src/bvh/mod.rs, `Bvh::occluded`.
 #ifndef BVH_WALK_GLSL
 #define BVH_WALK_GLSL
 
 #include "bvh_tests.glsl"
 #include "loops.glsl"
-
-// Deep enough for any tree that src/bvh/mod.rs accepts.
-const int BVH_STACK = 64;
 
 // Whether anything lies between a surface point and a light `distance` away in the unit direction.
 bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distance) {
@@ -27,21 +24,17 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
     }
     vec3 inverse = 1.0 / mix(direction_ws, vec3(1e-20), equal(direction_ws, vec3(0.0)));
     vec3 met;
-    uint stack[BVH_STACK];
-    int depth = 0;
-    stack[depth++] = 0u;
-    while (depth > 0) {
-        BvhNodeBlock node = bvh_nodes[stack[--depth]];
-        if (box_entry(node, origin, inverse, limit) < 0.0) {
-            continue;
-        }
+    BvhNodeBlock root = bvh_nodes[0];
+    uint end = floatBitsToUint(root.min_count.w) == 0u ? floatBitsToUint(root.max_first.w) : 1u;
+    uint at = 0u;
+    while (at < end) {
+        BvhNodeBlock node = bvh_nodes[at];
+        bool is_entered = box_entry(node, origin, inverse, limit) >= 0.0;
         uint count = floatBitsToUint(node.min_count.w);
+        // Of a leaf its first triangle, of others the place after all below them.
         uint first = floatBitsToUint(node.max_first.w);
-        if (count == 0u) {
-            if (depth + 2 <= BVH_STACK) {
-                stack[depth++] = first;
-                stack[depth++] = first + 1u;
-            }
+        at = count == 0u && !is_entered ? first : at + 1u;
+        if (count == 0u || !is_entered) {
             continue;
         }
         uint triangle = first;
@@ -52,7 +45,7 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
         }
         expect_done(triangle == first + count);
     }
-    expect_done(depth == 0);
+    expect_done(at >= end);
     return false;
 }
 

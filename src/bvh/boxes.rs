@@ -11,8 +11,8 @@ use obvhs::bvh2::builder::{build_bvh2, build_bvh2_from_tris};
 use obvhs::triangle::Triangle;
 use std::time::Duration;
 
-/// Room of a plain walk's stack: bvh_walk.glsl's BVH_STACK.
-pub const STACK: usize = 64;
+/// Room of the host's stack.
+const STACK: usize = 64;
 
 /// Nodes of a tree over at least one triangle, and the triangles in the order of its leaves. `closing`: the same triangles
 /// where they move to, or none; boxes hold both, and so all between.
@@ -43,13 +43,12 @@ pub fn walk(
     mut limit: f32,
     mut visit: impl FnMut(usize, f32) -> Option<f32>,
 ) {
-    let inverse = Vec3::from_array(direction.to_array().map(|side| 1.0 / if side == 0.0 { 1e-20 } else { side }));
     let mut stack = [0u32; STACK];
     let mut depth = 1;
     while depth > 0 {
         depth -= 1;
         let node = &nodes[stack[depth] as usize];
-        if !enters(node, origin, inverse, limit) {
+        if !enters(node, origin, direction, limit) {
             continue;
         }
         let (count, first) = (node.min_count[3].to_bits(), node.max_first[3].to_bits());
@@ -111,7 +110,9 @@ pub(super) fn halved(corners: &[Triangle], closing: &[Triangle]) -> (Vec<BvhNode
     (nodes, order)
 }
 
-fn enters(node: &BvhNodeBlock, origin: Vec3, inverse: Vec3, limit: f32) -> bool {
+/// Whether a ray enters a node's box before `limit`, in the shader's order of operations.
+pub(super) fn enters(node: &BvhNodeBlock, origin: Vec3, direction: Vec3, limit: f32) -> bool {
+    let inverse = Vec3::from_array(direction.to_array().map(|side| 1.0 / if side == 0.0 { 1e-20 } else { side }));
     let [x, y, z, _] = node.min_count;
     let near = (Vec3::new(x, y, z) - origin) * inverse;
     let [x, y, z, _] = node.max_first;

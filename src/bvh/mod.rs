@@ -5,6 +5,7 @@
 //! whose triangles say what a ray must ask of them (TRIANGLE_ bits).
 
 pub mod boxes;
+pub mod flat;
 pub mod nodes;
 
 use crate::error::{Error, Result};
@@ -14,8 +15,6 @@ use crate::scene::{AlphaMode, Draw, Material, Scene};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
 use std::sync::OnceLock;
-
-pub use boxes::STACK;
 
 /// Its tree takes some 16 GiB.
 const MOST_TRIANGLES: u64 = 1 << 26;
@@ -247,14 +246,14 @@ fn intersect(triangle: &BvhTriangleBlock, origin: Vec3, direction: Vec3, limit: 
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::scene::Mesh;
     use glam::{Mat4, Vec3A};
     use proptest::prelude::*;
 
     /// A field of small triangles around the origin.
-    fn field(seed: u32, count: u32) -> Scene {
+    pub fn field(seed: u32, count: u32) -> Scene {
         let number = |index: u32, axis: u32| sobol_burley::sample(index, axis, seed) * 2.0 - 1.0;
         let mut mesh = Mesh::default();
         for triangle in 0..count {

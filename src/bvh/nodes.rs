@@ -193,12 +193,12 @@ struct Groups<'a> {
     below: Vec<u32>,
 }
 
-fn is_leaf(node: &BvhNodeBlock) -> bool {
+pub(super) fn is_leaf(node: &BvhNodeBlock) -> bool {
     node.min_count[3].to_bits() > 0
 }
 
-/// Half of its box's surface.
-fn half_area(node: &BvhNodeBlock) -> f32 {
+/// Half of the surface of a node's box.
+pub(super) fn half_area(node: &BvhNodeBlock) -> f32 {
     let [x, y, z] = [0, 1, 2].map(|axis| node.max_first[axis] - node.min_count[axis]);
     x * y + y * z + z * x
 }

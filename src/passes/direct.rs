@@ -1,6 +1,7 @@
 //! What full shading of punctual lights needs on the device: the list of lights, the tree for shadow rays, the
 //! constants of composite.glsl. Deferred shading and the composite hold one each.
 
+use crate::bvh::flat::flattened;
 use crate::bvh::{Bvh, LazyBvh};
 use crate::error::Result;
 use crate::gpu::Bound;
@@ -218,7 +219,7 @@ impl DirectGpu {
         Ok(Self {
             lights: filled("lights", bytemuck::cast_slice(lights))?,
             light_count: lights.len() as u32,
-            bvh_nodes: filled("bvh.nodes", bytemuck::cast_slice(&tree.nodes))?,
+            bvh_nodes: filled("bvh.nodes", bytemuck::cast_slice(&flattened(&tree.nodes)))?,
             bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
             masks: has_masks.then(|| resources.buffer(&format!("{technique}.cull.masks"))),
         })

@@ -10,8 +10,9 @@ mod host;
 pub mod report;
 
 use super::rounds::{self, Probe, Samples};
-use crate::bvh::nodes::{Nodes, Stack, Walk};
-use crate::bvh::{self, Bvh};
+use crate::bvh::Bvh;
+use crate::bvh::flat::flattened;
+use crate::bvh::nodes::{Nodes, Walk};
 use crate::error::{Error, Result};
 use crate::gpu::commands::{Submits, Traffic};
 use crate::gpu::pipeline::ComputePipeline;
@@ -81,7 +82,7 @@ pub enum WalkKind {
 pub struct Size {
     pub node_count: usize,
     pub node_bytes: u64,
-    /// What `--stack` came to; empty where the driver walks.
+    /// What `--stack` came to; empty where a walk has none, and where the driver walks.
     pub stack: &'static str,
     /// Nodes that a ray has room to let wait.
     pub stack_entries: u32,
@@ -222,10 +223,9 @@ enum Walked {
 
 impl Tree {
     fn plain(gpu: &Arc<Gpu>, bvh: &Bvh, triangles: &Rc<Buffer>) -> Result<Self> {
-        let nodes = filled(gpu, "nodes", &bvh.nodes)?;
+        let nodes = filled(gpu, "nodes", &flattened(&bvh.nodes))?;
         let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &["plain"]), &[("RAY_OFFSET", 0)])?;
-        let (stack, stack_entries) = (Stack::Private.name(), bvh::STACK as u32);
-        let size = Size { node_count: bvh.nodes.len(), node_bytes: nodes.bytes, stack, stack_entries };
+        let size = Size { node_count: bvh.nodes.len(), node_bytes: nodes.bytes, stack: "", stack_entries: 0 };
         Ok(Self { pipeline, nodes: Walked::Nodes(nodes), triangles: triangles.clone(), size })
     }
 
