@@ -233,7 +233,7 @@ pub(crate) fn require_triangle(scene: &Scene, name: &str) -> Result<()> {
 /// are read back.
 ///
 /// Errors: as `Technique::plan`; there is no such stage, or the settings leave it out (exit code 2); the device lacks what the
-/// settings need (3), or binds no buffer of a size that they need (4).
+/// settings need (3), or binds no buffer of a size that they need (4), or no image (2).
 pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String]) -> Result<Plan> {
     fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend)?;
     stages::require_made(technique, inputs, aovs)?;
@@ -245,8 +245,7 @@ pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String
         let whole = name.rsplit_once('.').map_or("", |(whole, _)| whole);
         assert!(plan.read_back(&name) || plan.read_back(whole), "{name} is neither planned nor left out");
     }
-    plan.check(inputs.caps.limits.max_storage_buffer_range_bytes)
-        .map_err(|error| bindable::advise(error, technique, inputs))?;
+    plan.check(&inputs.caps.limits).map_err(|error| bindable::advise(error, technique, inputs))?;
     Ok(plan)
 }
 

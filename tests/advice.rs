@@ -83,6 +83,22 @@ fn a_buffer_that_is_too_long_to_be_bound_is_refused_with_settings_that_have_shor
     assert!(error.to_string().ends_with("a scene with fewer triangles or lights would fit"), "{error}");
 }
 
+/// By the image and the limit that it passes, with a size that fits: without a device, where nothing is made yet.
+#[test]
+fn a_picture_that_cannot_be_drawn_is_refused_when_it_is_planned_with_a_size_that_fits() {
+    let mut narrow = caps();
+    narrow.limits.max_viewport_px = [4096, 8192];
+    for technique in ["interleaved_deferred", "inferred_lighting", "deferred", "forward", "path_traced"] {
+        let error = planned(&job("cornell", technique, &[("size", "8192x64")]), &narrow).map(drop).unwrap_err();
+        let text = error.to_string();
+        assert!(error.exit_code() == 2 && text.starts_with(&format!("{technique}.")), "{text}");
+        assert!(text.contains(" pixels: this device allows 4096 x 8192"), "{text}");
+        assert_eq!(advice(&error), [("size".to_owned(), "4096x32".to_owned())], "{text}");
+        planned(&job("cornell", technique, &[("size", "4096x32")]), &narrow).unwrap();
+        planned(&job("cornell", technique, &[("size", "64x8192")]), &narrow).unwrap();
+    }
+}
+
 /// The budget of `--memory-budget N is enough`.
 fn enough(error: &Error) -> String {
     let text = error.to_string();

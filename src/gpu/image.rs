@@ -1,6 +1,7 @@
 //! An image: handle, view, description, allocation.
 
 use super::access::AccessSet;
+use super::caps::Limits;
 use super::{Berth, Gpu};
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
@@ -62,6 +63,23 @@ impl ImageDescription {
             .samples(vk::SampleCountFlags::from_raw(samples))
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage)
+    }
+
+    /// Errors: a side or the layers of image `name` are beyond the device's limits (exit code 2).
+    pub fn require_within(&self, name: &str, limits: &Limits) -> Result<()> {
+        let drawn = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let is_drawn = self.usage.intersects(drawn);
+        let [width, height] = if is_drawn { limits.most_drawn_px() } else { [limits.max_image_side_px; 2] };
+        let (extent, layers, most_layers) = (self.extent, self.layers(), limits.max_image_layers);
+        if extent.width > width || extent.height > height {
+            return Err(Error::request(format!("{name}: {extent} pixels: this device allows {width} x {height}")));
+        }
+        if layers > most_layers {
+            return Err(Error::request(format!(
+                "{name}: {layers} layers: this device allows {most_layers} in an image"
+            )));
+        }
+        Ok(())
     }
 
     /// The most bytes that the driver lets such an image have, whatever its extent.
@@ -141,17 +159,7 @@ impl Image {
         berth: Berth<'_>,
     ) -> Result<Self> {
         let ImageDescription { extent, format, .. } = description;
-        let limits = &gpu.caps.limits;
-        let drawn = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-        let is_drawn = description.usage.intersects(drawn);
-        let [width, height] = if is_drawn { limits.most_drawn_px() } else { [limits.max_image_side_px; 2] };
-        if extent.width > width || extent.height > height {
-            return Err(Error::request(format!("{name}: {extent} pixels: this device allows {width} x {height}")));
-        }
-        let (layers, limit) = (description.layers(), gpu.caps.limits.max_image_layers);
-        if layers > limit {
-            return Err(Error::request(format!("{name}: {layers} layers: this device allows {limit} in an image")));
-        }
+        description.require_within(name, &gpu.caps.limits)?;
         let info = description.create_info();
         let (bytes, most) = (description.bytes(), description.greatest_bytes(gpu));
         if bytes > most {

@@ -14,6 +14,7 @@ pub use resources::Resources;
 pub use sharing::{Part, PlannedArena, Sharing};
 
 use crate::error::{Error, Result};
+use crate::gpu::caps::Limits;
 use crate::gpu::{Access, ImageDescription};
 use crate::memory::kinds::Use;
 use crate::units::{Bytes, Extent};
@@ -193,23 +194,26 @@ impl Plan {
         self.resources.iter().map(Planned::bytes).sum()
     }
 
-    /// Storage buffers that are longer than one binding may be are refused before anything is made, but those that shaders come to by
-    /// their addresses.
+    /// What a device's limits leave out is refused before anything is made: images that are too large, and storage buffers
+    /// that are longer than one binding may be, but those that shaders come to by their addresses.
     ///
-    /// Errors: exit code 4, naming the resource and the limit; what would fit, the technique knows (`techniques::bindable`).
-    pub fn check(&self, max_storage_buffer_range_bytes: u64) -> Result<()> {
-        for planned in &self.resources {
-            if let Shape::Buffer { bytes, flags, .. } = planned.shape
-                && flags.contains(vk::BufferUsageFlags::STORAGE_BUFFER)
-                && !flags.contains(vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS)
-                && bytes > max_storage_buffer_range_bytes
-            {
-                return Err(Error::memory(format!(
-                    "{} needs {}, and this device binds at most {} at once",
-                    planned.name,
-                    Bytes(bytes),
-                    Bytes(max_storage_buffer_range_bytes)
-                )));
+    /// Errors: exit code 2 (images) or 4, naming the resource and the limit; what would fit, the technique knows
+    /// (`techniques::bindable`).
+    pub fn check(&self, limits: &Limits) -> Result<()> {
+        let most_bytes = limits.max_storage_buffer_range_bytes;
+        for Planned { name, shape, .. } in &self.resources {
+            match shape {
+                Shape::Image(description) => description.require_within(name, limits)?,
+                Shape::Buffer { bytes, flags, .. } => {
+                    let is_bound = flags.contains(vk::BufferUsageFlags::STORAGE_BUFFER)
+                        && !flags.contains(vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS);
+                    if is_bound && *bytes > most_bytes {
+                        let [bytes, most] = [*bytes, most_bytes].map(Bytes);
+                        return Err(Error::memory(format!(
+                            "{name} needs {bytes}, and this device binds at most {most} at once"
+                        )));
+                    }
+                }
             }
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! What a device does not bind at once: refused with what it would bind, which is found by planning it.
+//! What is too large for a device to draw, or to bind at once: refused with what is not, which is found by planning it.
 
 use super::{Inputs, Technique};
 use crate::error::Error;
@@ -9,13 +9,12 @@ use crate::units::Extent;
 /// Sizes that are tried: each half as wide and high as the one before.
 const MOST_HALVINGS: u32 = 14;
 
-/// Adds to `error`, by which the plan of `inputs` was refused, what the device would bind: each setting of
+/// Adds to `error`, by which the plan of `inputs` was refused, what the device would take: each setting of
 /// `Technique::shorter` that is enough by itself, and a picture that is small enough. Where no picture is, the scene is too large.
 pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> Error {
-    let most_bytes = inputs.caps.limits.max_storage_buffer_range_bytes;
     let fits = |inputs: &Inputs<'_>| {
         let is_able = super::fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend).is_ok();
-        is_able && technique.plan(inputs).and_then(|plan| plan.check(most_bytes)).is_ok()
+        is_able && technique.plan(inputs).and_then(|plan| plan.check(&inputs.caps.limits)).is_ok()
     };
     let mut ways: Vec<String> = Vec::new();
     for (key, text) in technique.shorter() {
