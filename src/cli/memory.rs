@@ -13,6 +13,9 @@ use serde_json::{Value, json};
 use std::io::Write;
 use std::path::PathBuf;
 
+/// Said where a table is of bytes that no driver has rounded.
+const UNROUNDED: &str = "nobody has measured how this driver rounds sizes: it takes these bytes, or more\n";
+
 /// The verb with its arguments.
 pub fn command(listed: &Listed) -> Command {
     let command = Command::new("memory")
@@ -23,13 +26,12 @@ pub fn command(listed: &Listed) -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Without a device: arithmetic over the scene and a known driver's rules"),
         )
-        .arg(
-            Arg::new("caps")
-                .long("caps")
-                .value_name("NAME")
-                .requires("plan")
-                .help(format!("The known driver of --plan [default: {}]", known::DEFAULT)),
-        )
+        .arg(Arg::new("caps").long("caps").value_name("NAME|FILE").requires("plan").help(format!(
+            "The driver of --plan: {}, or a file that `devices --json` has printed, of whose devices --device names \
+                     one [default: {}]",
+            known::names().collect::<Vec<_>>().join(", "),
+            known::DEFAULT
+        )))
         .arg(
             Arg::new("aov")
                 .long("aov")
@@ -63,8 +65,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     for mut job in job_args::jobs(matches, argv)? {
         job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
         let study = if matches.get_flag("plan") {
-            let name = matches.get_one::<String>("caps").map_or(known::DEFAULT, String::as_str);
-            study::planned(&job, name, &known::caps(name)?)?
+            let asked = matches.get_one::<String>("caps").map_or(known::DEFAULT, String::as_str);
+            let (name, caps) = known::asked(asked, job.device.as_deref())?;
+            study::planned(&job, &name, &caps)?
         } else {
             study::made(&job)?
         };
@@ -77,7 +80,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
                 format!("beside it {}: {} = {} ({})\n", rival.name, rival.formula, Bytes(rival.bytes), rival.paper)
             })
             .collect();
-        let text = format!("{technique}: {} on {}\n\n{}{beside}", study.scene, study.device, study.table.text());
+        let unrounded = if study.is_unrounded { UNROUNDED } else { "" };
+        let text =
+            format!("{technique}: {} on {}\n{unrounded}\n{}{beside}", study.scene, study.device, study.table.text());
         if let Some(folder) = folder {
             let file = |extension: &str| folder.join(format!("memory-{technique}.{extension}"));
             write_whole(&file("txt"), |out| write!(out, "{text}"))?;
@@ -100,5 +105,13 @@ fn document(technique: &str, study: &Study, rivals: &[Rival]) -> Value {
     let rival = |rival: &Rival| json!({ "name": rival.name, "paper": rival.paper, "formula": rival.formula, "bytes": rival.bytes });
     let rivals: Vec<Value> = rivals.iter().map(rival).collect();
     let memory = study.table.json();
-    json!({ "technique": technique, "scene": study.scene, "device": study.device, "memory": memory, "rivals": rivals })
+    let (scene, device, is_unrounded) = (&study.scene, &study.device, study.is_unrounded);
+    json!({
+        "technique": technique,
+        "scene": scene,
+        "device": device,
+        "unrounded": is_unrounded,
+        "memory": memory,
+        "rivals": rivals,
+    })
 }

@@ -2,6 +2,7 @@
 
 use super::structure::Over;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A device's identity, limits, optional features and memory, without Vulkan types.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -15,9 +16,19 @@ pub struct Caps {
     pub conservative: Option<ConservativeRules>,
     pub heaps: Vec<Heap>,
     pub memory_types: Vec<MemoryType>,
-    /// Of known drivers only; a live device is asked instead.
+    /// Of drivers on which it was measured only; a live device is asked instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<LayoutRules>,
+}
+
+impl Caps {
+    /// How a plan without the device rounds: as was measured, or not at all where nobody has.
+    pub fn rules(&self) -> Cow<'_, LayoutRules> {
+        match &self.layout {
+            Some(measured) => Cow::Borrowed(measured),
+            None => Cow::Owned(LayoutRules::unrounded(self.memory_types.len())),
+        }
+    }
 }
 
 /// What VK_EXT_conservative_rasterization promises on a device.
@@ -63,6 +74,25 @@ pub struct LayoutRules {
     /// None: it has no ray queries, or nobody has measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structures: Option<StructureRules>,
+}
+
+impl LayoutRules {
+    /// No rounding, and any of the memory types: the bytes that texels and elements hold, which no driver goes below.
+    fn unrounded(type_count: usize) -> Self {
+        Self {
+            buffer_size_multiple_bytes: 1,
+            buffer_alignment_bytes: 1,
+            vertex_buffer_alignment_bytes: 1,
+            image_width_multiple_px: 1,
+            image_row_multiple_bytes: 1,
+            image_height_multiple_px: 1,
+            image_size_multiple_bytes: 1,
+            image_alignment_bytes: 1,
+            depth_stencil_texel_bytes: 5,
+            memory_type_bits: u32::MAX.checked_shl(type_count as u32).map_or(u32::MAX, |others| !others),
+            structures: None,
+        }
+    }
 }
 
 /// How large a driver makes acceleration structures, measured on it: a header, inner nodes, one fewer than leaves and at

@@ -195,7 +195,7 @@ pub fn list() -> Result<Vec<Listed>> {
 }
 
 /// The place of a device in the choice without `--device`: GPUs before processors.
-fn preference(identity: &Identity) -> u32 {
+pub(super) fn preference(identity: &Identity) -> u32 {
     match identity.device_type.as_str() {
         "discrete-gpu" => 0,
         "integrated-gpu" => 1,
@@ -230,7 +230,7 @@ fn choose(instance: &ash::Instance, request: &DeviceRequest) -> Result<(vk::Phys
 }
 
 /// Whether `--device` names the device of this index; without, every one is.
-fn is_named(selector: Option<&str>, index: usize, identity: &Identity) -> bool {
+pub(super) fn is_named(selector: Option<&str>, index: usize, identity: &Identity) -> bool {
     let Some(text) = selector else { return true };
     match text.parse::<usize>() {
         Ok(wanted) => wanted == index,

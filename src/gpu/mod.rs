@@ -5,6 +5,7 @@ mod bands;
 pub mod berth;
 pub mod buffer;
 pub mod caps;
+mod caps_file;
 pub mod commands;
 pub mod descriptors;
 pub mod device;

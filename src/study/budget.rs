@@ -1,10 +1,10 @@
 //! Whether a plan fits into `--memory-budget`: its resources placed as a device places them, in its order and under its
 //! strategy. Heaps do not count: those of a known driver are those of the machine that it was measured on.
 
-use super::{Plans, requirements};
+use super::{Driver, Plans};
 use crate::bvh::LazyBvh;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{Caps, upload};
+use crate::gpu::upload;
 use crate::job::Job;
 use crate::memory::kinds::{Kinds, Use};
 use crate::memory::pool::Rules;
@@ -29,12 +29,19 @@ enum Copies {
 }
 
 /// Errors: what is planned does not fit (exit code 4), with how much it takes and a budget that is enough.
-pub fn judge(plans: &Plans, job: &Job, mut scene: Scene, bvh: &LazyBvh, caps: &Caps, budget_bytes: u64) -> Result<()> {
-    let refused = match rehearse(plans, job, caps, budget_bytes, Copies::Scene) {
+pub fn judge(
+    plans: &Plans,
+    job: &Job,
+    mut scene: Scene,
+    bvh: &LazyBvh,
+    driver: Driver<'_>,
+    budget_bytes: u64,
+) -> Result<()> {
+    let refused = match rehearse(plans, job, driver, budget_bytes, Copies::Scene) {
         Err(error) if error.kind() == ErrorKind::Memory => error,
         done => return done.map(drop),
     };
-    let needed_bytes = rehearse(plans, job, caps, u64::MAX, Copies::Scene)?;
+    let needed_bytes = rehearse(plans, job, driver, u64::MAX, Copies::Scene)?;
     let (needed, over) = (Bytes(needed_bytes), Bytes(needed_bytes.saturating_sub(budget_bytes)));
     let refused = refused.note(format!("all of the plan takes {needed} of memory blocks, {over} more than the budget"));
     let mut enough_bytes = needed_bytes.max(budget_bytes).next_multiple_of(MIB);
@@ -44,9 +51,9 @@ pub fn judge(plans: &Plans, job: &Job, mut scene: Scene, bvh: &LazyBvh, caps: &C
         larger.aovs = job.aovs.clone();
         larger.set("memory-budget", &text)?;
         // Textures that a larger budget leaves finer take more.
-        scene = larger.with_texture_limit(scene, caps);
-        let plans = Plans::new(&larger, &scene, bvh, caps)?;
-        if rehearse(&plans, &larger, caps, enough_bytes, Copies::All).is_ok() {
+        scene = larger.with_texture_limit(scene, driver.caps);
+        let plans = Plans::new(&larger, &scene, bvh, driver)?;
+        if rehearse(&plans, &larger, driver, enough_bytes, Copies::All).is_ok() {
             return Err(advised(refused, &text));
         }
         enough_bytes = (enough_bytes + enough_bytes / 8).next_multiple_of(MIB);
@@ -61,8 +68,9 @@ fn advised(refused: Error, enough: &str) -> Error {
 /// Places everything; the greatest sum of memory blocks, bytes.
 ///
 /// Errors: the budget is spent (exit code 4).
-fn rehearse(plans: &Plans, job: &Job, caps: &Caps, budget_bytes: u64, copies: Copies) -> Result<u64> {
+fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64, copies: Copies) -> Result<u64> {
     let strategy = Strategy::from_setting(job.values.text("allocation")).expect("the table holds its words");
+    let Driver { caps, requirements } = driver;
     let mut endless = caps.clone();
     endless.heaps.iter_mut().for_each(|heap| heap.bytes = u64::MAX);
     let kinds = Kinds::new(caps);
@@ -74,7 +82,7 @@ fn rehearse(plans: &Plans, job: &Job, caps: &Caps, budget_bytes: u64, copies: Co
             name,
             group: planned.group,
             bytes: planned.bytes(),
-            requirements: vulkan(requirements(caps).of(shape)),
+            requirements: vulkan(requirements.of(shape)),
             usage: shape.usage(),
             tiling,
         })

@@ -17,6 +17,7 @@ use crate::resident::SceneStats;
 use crate::scene::Scene;
 use crate::session::frame_plan;
 use crate::techniques::Inputs;
+use std::collections::BTreeMap;
 
 /// A table, and what it is of.
 pub struct Study {
@@ -24,34 +25,69 @@ pub struct Study {
     pub device: String,
     pub scene: String,
     pub table: MemoryTable,
+    /// Nobody has measured how the driver rounds sizes, and none are rounded.
+    pub is_unrounded: bool,
     /// Whether what is planned fits into `--memory-budget`; a caller prints first and fails then (exit code 4).
     pub budget: Result<()>,
 }
 
 /// The plan of `job` under `caps`, by arithmetic.
 ///
-/// Errors: impossible settings or a broken scene (exit code 2); caps that do not say how the driver rounds sizes (2).
+/// Errors: impossible settings or a broken scene (exit code 2); a device of these caps lacks what the settings need (3).
 pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     job.require_read()?;
     let scene = job.with_texture_limit(job.load_scene()?, caps);
     let name = scene.name.clone();
-    let bvh = LazyBvh::default();
-    let plans = Plans::new(job, &scene, &bvh, caps)?;
+    let (bvh, rules) = (LazyBvh::default(), caps.rules());
+    let driver = Driver { caps, requirements: Requirements::Rules(&rules) };
+    let plans = Plans::new(job, &scene, &bvh, driver)?;
     let Plans { scene: kept, frame, sharing } = &plans;
-    let table = MemoryTable::new(kept, frame, sharing.clone(), requirements(caps), &Kinds::new(caps), None)?;
+    let table = MemoryTable::new(kept, frame, sharing.clone(), driver.requirements, &Kinds::new(caps), None)?;
     let budget = match job.values.bytes("memory-budget") {
         None => Ok(()),
-        Some(budget_bytes) => budget::judge(&plans, job, scene, &bvh, caps, budget_bytes),
+        Some(budget_bytes) => budget::judge(&plans, job, scene, &bvh, driver, budget_bytes),
     };
-    Ok(Study { device: caps_name.to_owned(), scene: name, table, budget })
+    let is_unrounded = caps.layout.is_none();
+    Ok(Study { device: caps_name.to_owned(), scene: name, table, is_unrounded, budget })
 }
 
-/// Who answers for a known driver.
-fn requirements(caps: &Caps) -> Requirements<'_> {
-    Requirements::Rules(caps.layout.as_ref().expect("known drivers say how they round"))
+/// What settings of `job` come to under `caps` that stand for more than their text, such as `auto`: the host's part of a
+/// frame is done for it.
+///
+/// Errors: as `planned`.
+pub fn resolved(job: &Job, caps: &Caps) -> Result<BTreeMap<&'static str, String>> {
+    let scene = job.with_texture_limit(job.load_scene()?, caps);
+    let (bvh, rules) = (LazyBvh::default(), caps.rules());
+    with_inputs(job, &scene, &bvh, Driver { caps, requirements: Requirements::Rules(&rules) }, |inputs| {
+        frame_plan(job.technique, inputs, &job.aovs)?;
+        Ok(job.technique.prepare(inputs)?.resolved())
+    })
 }
 
-/// What a job needs under a known driver's rules.
+/// A driver that is not there.
+#[derive(Clone, Copy)]
+struct Driver<'a> {
+    caps: &'a Caps,
+    requirements: Requirements<'a>,
+}
+
+/// Calls `then` with what the plan and the host's part of a technique read.
+///
+/// Errors: impossible settings (exit code 2); as `then`.
+fn with_inputs<T>(
+    job: &Job,
+    scene: &Scene,
+    bvh: &LazyBvh,
+    Driver { caps, requirements }: Driver<'_>,
+    then: impl FnOnce(&Inputs<'_>) -> Result<T>,
+) -> Result<T> {
+    let view = View::new(scene, job.values.text("camera"), job.values.extent("size"))?;
+    let lights = LightSet::new(scene, &view, &job.values)?;
+    let stats = SceneStats::of(scene);
+    then(&Inputs { caps, requirements, scene, stats: &stats, bvh, view: &view, lights: &lights, values: &job.values })
+}
+
+/// What a job needs under a driver's rules.
 struct Plans {
     /// Kept with the scene.
     scene: Plan,
@@ -61,16 +97,12 @@ struct Plans {
 
 impl Plans {
     /// Errors: as `planned`.
-    fn new(job: &Job, scene: &Scene, bvh: &LazyBvh, caps: &Caps) -> Result<Self> {
-        let view = View::new(scene, job.values.text("camera"), job.values.extent("size"))?;
-        let lights = LightSet::new(scene, &view, &job.values)?;
-        let stats = SceneStats::of(scene);
-        let requirements = requirements(caps);
-        let inputs =
-            Inputs { caps, requirements, scene, stats: &stats, bvh, view: &view, lights: &lights, values: &job.values };
-        let frame = frame_plan(job.technique, &inputs, &job.aovs)?;
-        let sharing = Sharing::of(&frame, requirements, caps, &job.values);
-        Ok(Self { scene: stats.plan(), frame, sharing })
+    fn new(job: &Job, scene: &Scene, bvh: &LazyBvh, driver: Driver<'_>) -> Result<Self> {
+        with_inputs(job, scene, bvh, driver, |inputs| {
+            let frame = frame_plan(job.technique, inputs, &job.aovs)?;
+            let sharing = Sharing::of(&frame, driver.requirements, driver.caps, &job.values);
+            Ok(Self { scene: inputs.stats.plan(), frame, sharing })
+        })
     }
 }
 
@@ -84,7 +116,7 @@ pub fn made(job: &Job) -> Result<Study> {
     let snapshot = session.gpu.memory.snapshot();
     let table = session.memory_table(&renderer, Some(&snapshot))?;
     let device = session.gpu.caps.identity.name.clone();
-    let study = Study { device, scene: session.scene.name.clone(), table, budget: Ok(()) };
+    let study = Study { device, scene: session.scene.name.clone(), table, is_unrounded: false, budget: Ok(()) };
     let log = session.gpu.validation_log();
     drop((renderer, session));
     judge(log.as_deref())?;
