@@ -65,6 +65,12 @@ impl Kinds {
                 (|kind| !kind.lazily_allocated, "not device-local: the driver allows no other"),
             ],
             Use::Upload => &[
+                // The host's memory before what it sees of the device's, which may be little.
+                (
+                    |kind| kind.host_visible && kind.host_coherent && !kind.device_local && !kind.host_cached,
+                    "host-coherent, write-combined",
+                ),
+                (|kind| kind.host_visible && kind.host_coherent && !kind.device_local, "host-coherent"),
                 (|kind| kind.host_visible && kind.host_coherent && !kind.host_cached, "host-coherent, write-combined"),
                 (|kind| kind.host_visible && kind.host_coherent, "host-coherent"),
             ],
@@ -96,6 +102,7 @@ impl Kinds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::known;
 
     fn kind(device_local: bool, host_visible: bool, host_cached: bool) -> MemoryType {
         let host_coherent = host_visible;
@@ -117,6 +124,25 @@ mod tests {
         // The driver's mask decides first.
         assert_eq!(kinds.choose(Use::Device, 0b110).unwrap().type_index, 1);
         assert_eq!(kinds.choose(Use::Upload, 0b001).unwrap_err().exit_code(), 4);
+    }
+
+    /// What each use gets on devices as they are: no staging lies in what the host sees of a card's memory.
+    #[test]
+    fn real_devices_have_a_type_for_each_use() {
+        for (name, device, upload, frame, readback) in [
+            ("amd-polaris10", 0, 2, 3, 5),
+            ("amd-navi21", 0, 2, 3, 5),
+            ("intel-arc-a770", 0, 1, 2, 1),
+            ("intel-iris-xe", 0, 1, 1, 2),
+            ("nvidia-rtx-2070", 1, 2, 4, 3),
+            ("tiler-roadmap-2022", 1, 1, 1, 2),
+            ("least-1.3", 0, 1, 1, 1),
+        ] {
+            let kinds = Kinds::new(&known::caps(name).unwrap());
+            let chosen = [Use::Device, Use::Upload, Use::Frame, Use::Readback]
+                .map(|usage| kinds.choose(usage, u32::MAX).unwrap().type_index);
+            assert_eq!(chosen, [device, upload, frame, readback], "{name}");
+        }
     }
 
     #[test]
