@@ -7,6 +7,7 @@ mod bench;
 mod bench_rows;
 mod blended;
 mod budget;
+mod caps;
 mod cli;
 mod collapse;
 mod compare;
