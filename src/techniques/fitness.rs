@@ -90,26 +90,12 @@ pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::caps::{ConservativeRules, Formats};
     use crate::gpu::known;
     use crate::techniques::{ALL, find};
 
-    /// A device that has everything, changed.
+    /// A GPU that has everything, changed.
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
-        let mut caps = known::caps(known::DEFAULT).unwrap();
-        caps.features.ray_query = true;
-        caps.conservative = Some(ConservativeRules {
-            overestimation_px: 0.0,
-            most_extra_px: 0.0,
-            extra_step_px: 0.0,
-            draws_degenerate_triangles: true,
-        });
-        caps.formats.float_depth_linear = true;
-        let Formats { float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts, .. } =
-            &mut caps.formats;
-        for counts in [float_color_sample_counts, half_color_sample_counts, float_depth_sample_counts] {
-            *counts = vec![1, 2, 4, 8];
-        }
+        let mut caps = known::caps("amd-navi21").unwrap();
         change(&mut caps);
         caps
     }

@@ -257,28 +257,23 @@ impl Choices {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::caps::ConservativeRules;
     use crate::gpu::known;
     use crate::techniques::deep_shading::settings::SETTINGS;
 
     /// What nobody has seen run is taken where it is asked for by name, and nowhere else.
     #[test]
     fn the_device_s_own_conservative_rasterisation_is_never_taken_by_itself() {
-        let mut caps = known::caps(known::DEFAULT).unwrap();
-        caps.conservative = Some(ConservativeRules {
-            overestimation_px: 0.5,
-            most_extra_px: 0.75,
-            extra_step_px: 0.25,
-            draws_degenerate_triangles: true,
-        });
+        let caps = |name: &str| known::caps(name).unwrap();
         let of = |caps: &Caps, text: &str| {
             let mut values = Values::defaults(SETTINGS);
             values.set(SETTINGS.iter().find(|row| row.key == "conservative").unwrap(), text).unwrap();
             road(&values, caps)
         };
-        assert_eq!(of(&caps, "hardware"), Road::Hardware);
-        assert_eq!(of(&caps, "auto"), Road::Geometry);
-        caps.features.geometry_shader = false;
-        assert_eq!(of(&caps, "auto"), Road::Vertex);
+        for gpu in ["amd-navi21", "intel-arc-a770", "nvidia-rtx-2070"] {
+            assert!(caps(gpu).conservative.is_some(), "{gpu}");
+            assert_eq!(of(&caps(gpu), "hardware"), Road::Hardware);
+            assert_eq!(of(&caps(gpu), "auto"), Road::Geometry);
+        }
+        assert_eq!(of(&caps("tiler-roadmap-2022"), "auto"), Road::Vertex);
     }
 }

@@ -172,7 +172,11 @@ mod tests {
             max_framebuffer_px: [framebuffer; 2],
             ..known.clone()
         };
+        let least = known::caps(known::LEAST).unwrap().limits;
+        let nvidia = known::caps("nvidia-rtx-2070").unwrap().limits;
         for (limits, most) in [
+            (least, 4096),
+            (nvidia, 32_768),
             (limits(16_384, 16_384), 16_384),
             (limits(4096, 32_768), 4096),
             (limits(32_768, 8192), 8192),

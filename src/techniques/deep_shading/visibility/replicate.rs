@@ -49,11 +49,15 @@ mod tests {
         let limits = |vertices, components| Limits {
             max_geometry_vertices: vertices,
             max_geometry_components: components,
-            ..known::caps(known::names().next().unwrap()).unwrap().limits
+            ..known::caps(known::LEAST).unwrap().limits
         };
         let least = limits(256, 1024);
         assert_eq!([most_tuples(&least, 32, false), most_tuples(&least, 32, true)], [16, 8]);
         assert_eq!(most_tuples(&least, 8, false), 8);
         assert_eq!([most_tuples(&limits(256, 1056), 32, true), most_tuples(&limits(47, 4096), 32, true)], [16, 8]);
+        // No GPU gives out fewer.
+        for gpu in ["amd-polaris10", "intel-iris-xe", "nvidia-rtx-2070"] {
+            assert_eq!(most_tuples(&known::caps(gpu).unwrap().limits, 32, true), 8, "{gpu}");
+        }
     }
 }
