@@ -233,13 +233,34 @@ fn clusters_split_the_same() {
 #[test]
 fn culling_changes_no_pixel() {
     let watched = Watched::open("lamps:objects=40,lights=60");
-    let culls: [Changes<'_>; 2] = [&[("cull", "none")], &[("cull", "tiled")]];
+    let culls: [Changes<'_>; 3] = [
+        &[("cull", "none")],
+        &[("cull", "tiled"), ("cull-by", "invocation")],
+        &[("cull", "tiled"), ("cull-by", "workgroup")],
+    ];
     for size in ["320x180", "323x177"] {
         for position in ["half", "unorm16", "depth", "float"] {
             require_one_hash(&watched, "deferred", &[("size", size), ("position", position)], &culls);
         }
         require_one_hash(&watched, "deferred", &[("size", size), ("direct-shadow", "ray")], &culls);
         require_one_hash(&watched, INTERLEAVED, &[("size", size), ("vpls", "32")], &culls);
+    }
+}
+
+/// More lights than a workgroup has threads, tiles at two edges that are cut off, and some without a surface.
+#[test]
+fn an_invocation_and_a_workgroup_list_the_same_lights() {
+    let watched = Watched::open("lamps:objects=40,lights=150");
+    for (technique, tiled) in [("deferred", ("cull", "tiled")), ("inferred_lighting", ("volumes", "tiled"))] {
+        let counted = ["invocation", "workgroup"].map(|by| {
+            let changes = [tiled, ("cull-by", by), ("size", "323x177"), ("light-cutoff", "0.1")];
+            let renderer = watched.render(technique, &changes);
+            assert_eq!(renderer.resolved["cull-by"], by);
+            let counters = renderer.measured_counters().unwrap();
+            ["light_evaluations", "light_evaluations_culled"].map(|name| counters[name])
+        });
+        assert_eq!(counted[0], counted[1], "{technique}");
+        assert!(counted[0].into_iter().all(|count| count > 0.0), "{technique}: {counted:?}");
     }
 }
 

@@ -67,8 +67,9 @@ fn at_the_frame_s_size_it_is_deferred_shading() {
 
 #[test]
 fn every_road_of_the_lights_leaves_the_same_l_buffer() {
-    let roads: [Changes<'_>; 8] = [
+    let roads: [Changes<'_>; 9] = [
         &[("volumes", "tiled")],
+        &[("volumes", "tiled"), ("cull-by", "workgroup")],
         &[("volumes", "tiled"), ("texels", "1"), ("workgroup", "8x8")],
         &[("volumes", "quad")],
         &[("volumes", "scissor")],

@@ -1,5 +1,5 @@
 // Light masks for the tiles of a G-buffer. Pass: src/lights/cull.rs.
-// variants: POSITION=half|unorm16|depth|float
+// variants: POSITION=half|unorm16|depth|float BY=invocation|workgroup
 #version 460
 #include "passes/gbuffer_read.glsl"
 

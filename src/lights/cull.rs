@@ -8,22 +8,61 @@ use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::lights::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Buffer, Commands, Edge, Gpu, Traffic, readback};
+use crate::gpu::{Access, Barrier, Buffer, Caps, Commands, Edge, Gpu, Traffic, readback};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::Plan;
+use crate::settings::Values;
 use crate::units::Extent;
 use std::sync::Arc;
 
 /// Side of a tile: glsl/lights/cull.glsl's TILE_PX.
 const TILE_PX: u32 = 16;
 
+/// Threads of a workgroup: tile_masks.glsl's THREADS.
+const THREADS: u32 = 64;
+
+/// What makes the mask of a tile; the same masks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CullBy {
+    /// Reads the tile's pixels and tries its lights one after the other.
+    Invocation,
+    /// Shares them among its threads.
+    Workgroup,
+}
+
+impl CullBy {
+    /// As `--cull-by` says it; `auto`: an invocation on software drivers, whose barriers cost more than they share out.
+    pub fn new(values: &Values, caps: &Caps) -> Self {
+        match values.text("cull-by") {
+            "invocation" => Self::Invocation,
+            "workgroup" => Self::Workgroup,
+            _ if caps.identity.is_software() => Self::Invocation,
+            _ => Self::Workgroup,
+        }
+    }
+
+    /// The value of the shaders' axis BY, and of the setting.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Invocation => "invocation",
+            Self::Workgroup => "workgroup",
+        }
+    }
+}
+
 /// Bytes of the masks.
 fn mask_bytes(extent: Extent, light_count: u32) -> u64 {
     tile_count(extent) * u64::from(light_count.div_ceil(32)) * 4
 }
 
+/// Tiles side by side, and one above the other.
+fn tiles(extent: Extent) -> [u32; 2] {
+    [extent.width.div_ceil(TILE_PX), extent.height.div_ceil(TILE_PX)]
+}
+
 fn tile_count(extent: Extent) -> u64 {
-    u64::from(extent.width.div_ceil(TILE_PX)) * u64::from(extent.height.div_ceil(TILE_PX))
+    let [x, y] = tiles(extent);
+    u64::from(x) * u64::from(y)
 }
 
 /// Plans the masks, as a resource of `technique`.
@@ -64,12 +103,17 @@ pub struct CullSurface<'a> {
     pub bound: Vec<(&'static str, Bound<'a>)>,
 }
 
-/// Records the pass `TECHNIQUE.cull` with a pipeline of lights/tile_masks.glsl. `frame`: of the surface's extent. `lights`:
-/// the punctual lights, and how many.
+/// A pipeline of lights/tile_masks.glsl.
+pub struct MaskPipeline {
+    pub pipeline: ComputePipeline,
+    pub by: CullBy,
+}
+
+/// Records the pass `TECHNIQUE.cull`. `frame`: of the surface's extent. `lights`: the punctual lights, and how many.
 pub fn record(
     cmd: &mut Commands,
     technique: &str,
-    pipeline: &ComputePipeline,
+    MaskPipeline { pipeline, by }: &MaskPipeline,
     surface: CullSurface<'_>,
     frame: &Buffer,
     lights: (&Buffer, u32),
@@ -77,11 +121,15 @@ pub fn record(
 ) -> Result<()> {
     let CullSurface { extent, texel_bytes, barriers, mut bound } = surface;
     let (lights, light_count) = lights;
+    let threads = match (by, tiles(extent)) {
+        (CullBy::Invocation, [x, y]) => [x * y, 1, 1],
+        (CullBy::Workgroup, [x, y]) => [x * THREADS, y, 1],
+    };
     let traffic = Traffic {
         read_bytes: extent.pixel_count() * texel_bytes
             + tile_count(extent) * u64::from(light_count) * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
         written_bytes: mask_bytes(extent, light_count),
-        invocations: Some(tile_count(extent)),
+        invocations: Some(threads.into_iter().map(u64::from).product()),
     };
     cmd.pass(&format!("{technique}.cull"), traffic, |cmd| {
         cmd.barriers(barriers);
@@ -91,20 +139,20 @@ pub fn record(
             ("Lights", Bound::Buffer(lights)),
             ("LightMasks", Bound::Buffer(masks)),
         ]);
-        let groups = pipeline.groups([tile_count(extent) as u32, 1, 1]);
+        let groups = pipeline.groups(threads);
         cmd.dispatch(pipeline, &[], &bound, groups)
     })
 }
 
 /// Of a G-buffer.
 pub struct Cull {
-    pipeline: ComputePipeline,
+    masks: MaskPipeline,
 }
 
 impl Cull {
-    pub fn new(gpu: &Arc<Gpu>, position: PositionStorage) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[position.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, position: PositionStorage, by: CullBy) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[position.name(), by.name()]);
+        Ok(Self { masks: MaskPipeline { pipeline: ComputePipeline::new(gpu, shader, &[])?, by } })
     }
 
     /// `lights`: the punctual lights, and how many.
@@ -123,6 +171,6 @@ impl Cull {
             barriers: gbuffer.surface_to_sampled(),
             bound: gbuffer.resource.bound_surface(),
         };
-        record(cmd, technique, &self.pipeline, surface, frame, lights, masks)
+        record(cmd, technique, &self.masks, surface, frame, lights, masks)
     }
 }

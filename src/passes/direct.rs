@@ -7,7 +7,8 @@ use crate::error::Result;
 use crate::gpu::Bound;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Buffer, Caps, Gpu, upload};
-use crate::lights::{LightSet, cull};
+use crate::lights::LightSet;
+use crate::lights::cull::{self, CullBy};
 use crate::passes::gbuffer::PositionStorage;
 use crate::passes::texels::{LightLoad, Texels};
 use crate::plan::{Plan, Resources};
@@ -116,6 +117,7 @@ pub struct ShadingSettings {
     pub direct: DirectSettings,
     pub position: PositionStorage,
     pub cull: bool,
+    pub cull_by: CullBy,
     pub workgroup: [u32; 2],
     /// Pixels that a thread works on.
     pub texels: Texels,
@@ -140,6 +142,7 @@ impl ShadingSettings {
             direct: DirectSettings::new(values, lights, scene),
             position,
             cull,
+            cull_by: CullBy::new(values, caps),
             workgroup: values.pair("workgroup"),
             texels: Texels::new(values, caps),
         }

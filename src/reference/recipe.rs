@@ -26,6 +26,7 @@ pub(crate) const NOT_OF_THE_PICTURE: &[&str] = &[
     "texels",
     "geometry",
     "cull",
+    "cull-by",
     "node-width",
     "node-layout",
     "stack",

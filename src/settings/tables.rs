@@ -1,6 +1,6 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
-use super::{Kind, Setting};
+use super::{Condition, Kind, Setting, Unread};
 use crate::report::tonemap::EXPOSURES_EV;
 
 /// Settings that every technique and every picture has.
@@ -251,6 +251,36 @@ pub const DIRECT_SHADOW: Setting = Setting {
     help: "shadow rays to no light, to directional lights, or to every punctual light",
 };
 
+/// Whether shaders count.
+pub const INSTRUMENT: Setting = Setting {
+    key: "instrument",
+    symbol: "",
+    kind: Kind::Choice(&["auto", "on", "off"]),
+    default: "auto",
+    unit: "",
+    paper: "Clarberg 2014, 4.1",
+    help: "what is shaded, listed and missing is counted; auto: but in what is timed (bench, --profile), because threads that \
+           count wait for each other",
+};
+
+/// What makes the lists of tiled culling.
+pub const CULL_BY: Setting = Setting {
+    key: "cull-by",
+    symbol: "",
+    kind: Kind::Choice(&["auto", "invocation", "workgroup"]),
+    default: "auto",
+    unit: "",
+    paper: "",
+    help: "a tile's list of lights is made by one invocation, or by a workgroup that shares its pixels and the lights; auto: \
+           an invocation on software drivers; the same lists",
+};
+
+/// What a G-buffer without lists for tiles leaves unread.
+pub const CULL_CONDITIONS: &[Condition] = &[Condition {
+    key: CULL_BY.key,
+    unread: |values| Unread::unless(values, "cull", &["tiled"], "there are no tiles"),
+}];
+
 /// What two normals of one surface differ by.
 pub const NORMAL_THRESHOLD: Setting = Setting {
     key: "normal-threshold",
@@ -334,6 +364,7 @@ pub const SHADING: &[Setting] = &[
         paper: "",
         help: "of direct light: every light on every pixel, or a list of lights for each tile of 16x16; the same picture",
     },
+    CULL_BY,
     DIRECT_SHADOW,
     TEXELS,
     WORKGROUP,

@@ -1,4 +1,5 @@
 // Light masks for the tiles of the light buffer. Pass: src/techniques/inferred_lighting/cull.rs.
+// variants: BY=invocation|workgroup
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"

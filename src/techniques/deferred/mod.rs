@@ -18,7 +18,7 @@ use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::{Coverage, SceneGpu};
-use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -44,6 +44,10 @@ impl Technique for Deferred {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[SHADING, LIGHT_LISTS]
+    }
+
+    fn conditions(&self) -> &'static [&'static [Condition]] {
+        &[CULL_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -132,10 +136,8 @@ impl Prepared for PreparedDeferred {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        BTreeMap::from([(
-            "texels",
-            self.settings.texels.of_column(self.settings.direct.load(self.lights.len())).to_string(),
-        )])
+        let texels = self.settings.texels.of_column(self.settings.direct.load(self.lights.len()));
+        BTreeMap::from([("cull-by", self.settings.cull_by.name().to_owned()), ("texels", texels.to_string())])
     }
 
     fn light_counts(&self) -> [u32; 2] {
@@ -160,7 +162,7 @@ impl Prepared for PreparedDeferred {
                 settings.position,
                 has_emissive,
             )?,
-            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position)).transpose()?,
+            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, settings.position, settings.cull_by)).transpose()?,
             shade: Shade::new(gpu, settings, has_emissive, direct.masks.is_some(), self.lights.len())?,
             blend: Blend::new(
                 gpu,

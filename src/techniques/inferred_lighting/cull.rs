@@ -5,18 +5,20 @@ use super::NAME;
 use super::geometry::LowGeometry;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::techniques::inferred_lighting::cull::COMP;
+use crate::gpu::shader::techniques::inferred_lighting::cull::COMP_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
-use crate::lights::cull::{self, CullSurface};
+use crate::lights::cull::{self, CullBy, CullSurface, MaskPipeline};
 use std::sync::Arc;
 
 pub struct Cull {
-    pipeline: ComputePipeline,
+    masks: MaskPipeline,
 }
 
 impl Cull {
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, by: CullBy) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[by.name()]);
+        Ok(Self { masks: MaskPipeline { pipeline: ComputePipeline::new(gpu, shader, &[])?, by } })
     }
 
     /// `frame`: the block of the light buffer's extent. `lights`: the punctual lights, and how many.
@@ -34,6 +36,6 @@ impl Cull {
             barriers: vec![geometry.depth_to(Access::ComputeSample)],
             bound: vec![geometry.resource.bound_depth(Access::ComputeSample)],
         };
-        cull::record(cmd, NAME, &self.pipeline, surface, frame, lights, masks)
+        cull::record(cmd, NAME, &self.masks, surface, frame, lights, masks)
     }
 }

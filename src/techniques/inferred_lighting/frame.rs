@@ -144,7 +144,7 @@ impl InferredFrame {
         };
         let material_constants = choices.material_constants();
         Ok(Self {
-            cull: direct.masks.as_ref().map(|_| Cull::new(gpu)).transpose()?,
+            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, choices.shading.cull_by)).transpose()?,
             road,
             geometry: LowGeometry::new(gpu, resources, choices)?,
             geometry_pass: Geometry::new(gpu, scene, low_list, stippled.clone(), depth_range_m, choices, earlier)?,

@@ -239,7 +239,11 @@ impl Prepared for PreparedInferred {
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let shading = &self.choices.shading;
         let texels = shading.texels.of_column(shading.direct.load(self.lights.len()));
-        BTreeMap::from([("light-size", self.choices.light_extent.to_string()), ("texels", texels.to_string())])
+        BTreeMap::from([
+            ("cull-by", shading.cull_by.name().to_owned()),
+            ("light-size", self.choices.light_extent.to_string()),
+            ("texels", texels.to_string()),
+        ])
     }
 
     fn light_counts(&self) -> [u32; 2] {

@@ -3,8 +3,8 @@
 use super::encoding::FIXED_LIMIT;
 use super::layer_names;
 use crate::settings::{
-    BRDF, Condition, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD,
-    Setting, TEXELS, Unread, WORKGROUP,
+    BRDF, CULL_BY, Condition, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS,
+    NORMAL_THRESHOLD, Setting, TEXELS, Unread, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -13,6 +13,7 @@ pub const SETTINGS: &[Setting] = &[
     GEOMETRY,
     DIRECT_SHADOW,
     DEPTH_PREPASS,
+    CULL_BY,
     TEXELS,
     WORKGROUP,
     NORMAL_THRESHOLD,
@@ -214,6 +215,10 @@ pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "stencil-least",
         unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn alike"),
+    },
+    Condition {
+        key: CULL_BY.key,
+        unread: |values| Unread::unless(values, "volumes", &["tiled"], "there are no tiles"),
     },
     Condition {
         key: "fixed-range",

@@ -166,6 +166,7 @@ impl Choices {
         let [i, j] = self.direct_pattern;
         let mut resolved = BTreeMap::from([
             ("direct-pattern", format!("{i}x{j}")),
+            ("cull-by", self.shading.cull_by.name().to_owned()),
             ("sigma", format!("{}", self.kernel.sigma)),
             ("texels", self.list_texels().to_string()),
         ]);

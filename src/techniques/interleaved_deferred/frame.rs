@@ -76,7 +76,7 @@ impl InterleavedFrame {
                 shading.position,
                 has_emissive,
             )?,
-            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position)).transpose()?,
+            cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position, shading.cull_by)).transpose()?,
             roads: Roads::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, choices, has_emissive, direct.masks.is_some(), lit_count)?,

@@ -56,7 +56,7 @@ use crate::passes::{direct, gbuffer};
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::Aov;
 use crate::resident::SceneGpu;
-use crate::settings::{Condition, LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use choices::Choices;
 use filter::Filtered;
 use frame::{FrameLights, InterleavedFrame};
@@ -88,7 +88,7 @@ impl Technique for InterleavedDeferred {
     }
 
     fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS]
+        &[settings::CONDITIONS, CULL_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
