@@ -21,7 +21,7 @@ use crate::report::whole_file::write_whole;
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
-use crate::settings::{COMMON, Setting, Values, earlier_s, exposure_s, readers};
+use crate::settings::{COMMON, INSTRUMENT, Setting, Values, earlier_s, exposure_s, readers};
 use crate::techniques::{Technique, stages};
 use crate::units::Extent;
 use serde_json::{Value, json};
@@ -75,6 +75,17 @@ pub struct Outcome {
 pub(crate) enum Unfinished {
     Kept,
     Dropped,
+}
+
+/// `values` of `technique` for frames that are timed: what `--instrument auto` would count is not.
+pub fn timed(technique: &dyn Technique, values: &Values) -> Values {
+    let mut timed = values.clone();
+    if let Some(setting) = settings_of(technique).iter().find(|setting| setting.key == INSTRUMENT.key)
+        && values.text(INSTRUMENT.key) == "auto"
+    {
+        timed.set(setting, "off").expect("a choice of the setting");
+    }
+    timed
 }
 
 /// Frames measured with `--profile`, after one that warms the pipelines up.
@@ -167,6 +178,8 @@ impl Job {
         unfinished: Unfinished,
     ) -> Result<Outcome> {
         let submits = if self.profile { Submits::PerPass } else { Submits::One };
+        let timed = self.profile.then(|| timed(self.technique, values));
+        let values = timed.as_ref().unwrap_or(values);
         let recording = Recording { has_statistics: self.statistics, ..submits.into() };
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
         let mut settings = settings(session, &renderer, values);

@@ -169,3 +169,26 @@ fn kept_runs_are_read() {
         assert!(text.contains(" rounds"), "{}: {text}", path.display());
     }
 }
+
+/// Threads that count wait for each other; what is looked at and not timed is counted.
+#[test]
+fn what_is_timed_is_counted_only_where_that_is_asked_for() {
+    let program = Program::new();
+    let small = ["cornell", "--technique", "deep_shading", "--size", "33x17", "--spp", "2", "--json", "--quiet"];
+    let frame = ["bench", "frame", "--repeat", "1"];
+    let looked_at = ["render", "-o", "a.png"];
+    let profiled = ["render", "-o", "a.png", "--profile"];
+    for (verb, more, is_counted) in [
+        (&frame[..], &[][..], false),
+        (&frame, &["--instrument", "on"], true),
+        (&profiled, &[], false),
+        (&profiled, &["--instrument", "on"], true),
+        (&looked_at, &[], true),
+        (&looked_at, &["--instrument", "off"], false),
+    ] {
+        let json: Value = serde_json::from_str(&program.run(&[verb, &small, more].concat()).fine().out).unwrap();
+        let is_on = json["settings"]["instrument"] == "on";
+        let has_counters = !json["counters"]["samples_without_colour"].is_null();
+        assert_eq!([is_on, has_counters], [is_counted; 2], "{verb:?} {more:?}: {json:#}");
+    }
+}

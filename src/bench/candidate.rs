@@ -2,7 +2,7 @@
 
 use super::sweep::{Axis, Point, label};
 use crate::error::{Error, Result};
-use crate::job::{Job, settings_of};
+use crate::job::{Job, settings_of, timed};
 use crate::settings::{Setting, Values, readers};
 use crate::techniques::{self, Technique};
 use std::collections::BTreeMap;
@@ -65,7 +65,7 @@ impl Candidate {
                 let (why, stands) = (&unread[key.as_str()], first(key).unwrap_or_default());
                 Err(Error::request(format!("{why}; the row with {key}={stands} stands for it")))
             }
-            _ => Ok(without_unread(job.technique, &values)),
+            _ => Ok(timed(job.technique, &without_unread(job.technique, &values))),
         });
         Self { job, label: label(point), asked, settings, unread, unread_axes, values }
     }

@@ -165,7 +165,7 @@ impl Choices {
             has_addresses: has_lists && values.is_on("address-buffer"),
             has_marks: has_lists && !is_direct && values.text("shaded-triangles") == "listed",
             cache_entries: cache_entries.unwrap_or(samples_of_set),
-            is_counted: values.is_on("instrument"),
+            is_counted: values.text("instrument") != "off",
             is_by_address: false,
             sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
             is_reconstructed: values.is_on("reconstruct")

@@ -80,7 +80,7 @@ use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::{Condition, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
+use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use baseline::Shading;
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
@@ -254,6 +254,8 @@ impl Prepared for PreparedDeep {
         if *shading == Shading::IndirectGbuffer {
             resolved.insert("shading-cache", self.choices.cache_entries.to_string());
         }
+        let instrument = if self.choices.is_counted { "on" } else { "off" };
+        resolved.insert(INSTRUMENT.key, instrument.to_owned());
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
             resolved.insert("layer-from", layer_from.name().to_owned());

@@ -1,7 +1,7 @@
 //! The settings that only this technique reads.
 
 use crate::settings::{
-    APERTURE, BRDF, FOCUS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
+    APERTURE, BRDF, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
 };
 
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
@@ -258,15 +258,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "what is blurred is filtered in layers of depth, as far as its blur allows, in place of the mean of each pixel's own \
                samples; not the paper's filter",
     },
-    Setting {
-        key: "instrument",
-        symbol: "",
-        kind: Kind::Choice(&["on", "off"]),
-        default: "on",
-        unit: "",
-        paper: "Clarberg 2014, 4.1",
-        help: "what is shaded, listed and missing is counted; off for timings",
-    },
+    INSTRUMENT,
     APERTURE,
     FOCUS,
     STEREO,
