@@ -1,5 +1,6 @@
 //! Instance, choice of device, queue, enabled features; and what every other file of this room needs of them.
 
+use super::calibration::Calibration;
 use super::caps::{Caps, Identity};
 use super::{probe, validation};
 use crate::error::{Error, Result};
@@ -11,7 +12,6 @@ use std::sync::{Arc, Mutex};
 /// Vulkan version that this program is written for.
 pub const API: u32 = vk::API_VERSION_1_3;
 
-const PORTABILITY_SUBSET: &CStr = ash::khr::portability_subset::NAME;
 const PORTABILITY_ENUMERATION: &CStr = ash::khr::portability_enumeration::NAME;
 
 /// Replaces a device function by name, or leaves it: how a test stands between this program and the driver.
@@ -50,6 +50,8 @@ pub struct Gpu {
     names: Option<ash::ext::debug_utils::Device>,
     /// None: the device has no ray queries.
     structures: Option<ash::khr::acceleration_structure::Device>,
+    /// None: its clock cannot be read beside the host's.
+    calibration: Option<Calibration>,
     validation: Option<Validation>,
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
@@ -306,17 +308,8 @@ impl Gpu {
             .draw_indirect_count(caps.features.draw_indirect_count);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
-        let mut extensions: Vec<*const c_char> = Vec::new();
-        if caps.features.ray_query {
-            extensions.extend(probe::RAY_QUERY_EXTENSIONS.map(CStr::as_ptr));
-        }
-        if caps.conservative.is_some() {
-            extensions.push(ash::ext::conservative_rasterization::NAME.as_ptr());
-        }
-        // A device that has it wants it enabled.
-        if probe::extensions(&instance, physical).iter().any(|name| PORTABILITY_SUBSET.to_str() == Ok(name.as_str())) {
-            extensions.push(PORTABILITY_SUBSET.as_ptr());
-        }
+        let names = probe::used_extensions(&instance, physical, &caps);
+        let extensions: Vec<*const c_char> = names.iter().map(|name| name.as_ptr()).collect();
         let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&features)
@@ -367,6 +360,7 @@ impl Gpu {
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
         let structures = caps.features.ray_query;
         let structures = structures.then(|| ash::khr::acceleration_structure::Device::new(&instance, &device));
+        let calibration = Calibration::of(&entry, &instance, physical, &device);
         let memory =
             Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
         Ok(Self {
@@ -379,6 +373,7 @@ impl Gpu {
             pipelines,
             names,
             structures,
+            calibration,
             validation,
             instance,
             physical,
@@ -398,6 +393,11 @@ impl Gpu {
     /// Functions of acceleration structures. Panics where the device has no ray queries: their need is checked before.
     pub(super) fn structures(&self) -> &ash::khr::acceleration_structure::Device {
         self.structures.as_ref().expect("a device without ray queries is refused before")
+    }
+
+    /// The device's clock beside the host's; None where the device does not say both at once.
+    pub fn calibration(&self) -> Option<&Calibration> {
+        self.calibration.as_ref()
     }
 
     /// Opens (Some) or closes (None) a labelled section of a command buffer.

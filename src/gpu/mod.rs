@@ -4,6 +4,7 @@ pub mod access;
 mod bands;
 pub mod berth;
 pub mod buffer;
+pub mod calibration;
 pub mod caps;
 mod caps_file;
 pub mod commands;

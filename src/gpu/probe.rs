@@ -27,6 +27,24 @@ pub fn extensions(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Vec
         .collect()
 }
 
+/// Extensions that a device of these caps is opened with.
+pub fn used_extensions(instance: &ash::Instance, physical: vk::PhysicalDevice, caps: &Caps) -> Vec<&'static CStr> {
+    let mut used = Vec::new();
+    if caps.features.ray_query {
+        used.extend(RAY_QUERY_EXTENSIONS);
+    }
+    if caps.conservative.is_some() {
+        used.push(ash::ext::conservative_rasterization::NAME);
+    }
+    // A device that has the first wants it enabled; the second is a second look at its clock.
+    for name in [ash::khr::portability_subset::NAME, ash::ext::calibrated_timestamps::NAME] {
+        if extensions(instance, physical).iter().any(|has| name.to_str() == Ok(has.as_str())) {
+            used.push(name);
+        }
+    }
+    used
+}
+
 fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
     use vk::FormatFeatureFlags as Flags;
     let has = |format, flags| {

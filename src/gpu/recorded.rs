@@ -82,6 +82,15 @@ impl Recorded {
         self.run_pieces(commands.pieces.len(), commands.passes.len())
     }
 
+    /// The device's count at the beginning and the end of each pass of the last whole run, one after the other; None where it wrote
+    /// none.
+    ///
+    /// Errors: they cannot be read (exit code 4).
+    pub fn ticks(&self) -> Result<Option<Vec<u64>>> {
+        let commands = &self.commands;
+        commands.timestamps.as_ref().map(|timestamps| timestamps.ticks(commands.passes.len())).transpose()
+    }
+
     /// How many runs of the frame fit into one submit, by what they took before.
     pub fn runs_of_submit(&self) -> u32 {
         self.estimates.as_ref().map_or(1, |estimates| estimates.borrow().runs_of_submit())

@@ -3,6 +3,7 @@
 //! Which of the two is the figure hangs on the device (`Clock`); the other one is a second column, and what does not fit
 //! together is reported, not hidden.
 
+use super::caps::Limits;
 use super::failure::failed;
 use super::{Caps, Gpu};
 use crate::error::{Error, Result};
@@ -35,10 +36,11 @@ impl Clock {
     }
 }
 
-/// Nanoseconds between two timestamps of which `bits` count, each tick `period_ns` long. The counter may have gone around once.
-fn elapsed_ns([begin, end]: [u64; 2], bits: u32, period_ns: f32) -> u64 {
+/// Nanoseconds between two timestamps of a device with these limits. The counter may have gone around once.
+pub fn elapsed_ns([begin, end]: [u64; 2], limits: &Limits) -> u64 {
+    let bits = limits.timestamp_bits;
     let mask = if bits >= 64 { u64::MAX } else { (1 << bits) - 1 };
-    ((end.wrapping_sub(begin) & mask) as f64 * f64::from(period_ns)) as u64
+    ((end.wrapping_sub(begin) & mask) as f64 * f64::from(limits.timestamp_period_ns)) as u64
 }
 
 /// What one pass took in one frame.
@@ -95,15 +97,21 @@ impl Timestamps {
         unsafe { self.gpu.device.cmd_write_timestamp2(buffer, stage, self.pool, query) };
     }
 
-    /// The times of the first `pass_count` passes, at least one, after the fence of the frame that wrote them.
-    pub fn read_first(&self, pass_count: usize) -> Result<DeviceTimes> {
+    /// The device's count at the beginning and the end of each of the first `pass_count` passes, one after the other, after the
+    /// fence of the frame that wrote them.
+    pub fn ticks(&self, pass_count: usize) -> Result<Vec<u64>> {
         let mut ticks = vec![0u64; 2 * pass_count];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         // SAFETY: the queries were written by the submit whose fence the caller waited for.
         unsafe { self.gpu.device.get_query_pool_results(self.pool, 0, &mut ticks, flags) }
             .map_err(|result| failed("reading timestamps", result))?;
-        let limits = &self.gpu.caps.limits;
-        let elapsed = |begin, end| elapsed_ns([begin, end], limits.timestamp_bits, limits.timestamp_period_ns);
+        Ok(ticks)
+    }
+
+    /// The times of the first `pass_count` passes, at least one, after the fence of the frame that wrote them.
+    pub fn read_first(&self, pass_count: usize) -> Result<DeviceTimes> {
+        let ticks = self.ticks(pass_count)?;
+        let elapsed = |begin, end| elapsed_ns([begin, end], &self.gpu.caps.limits);
         let passes = ticks.chunks_exact(2).map(|pair| elapsed(pair[0], pair[1])).collect();
         Ok(DeviceTimes { passes, all_ns: elapsed(ticks[0], ticks[ticks.len() - 1]) })
     }
@@ -130,11 +138,17 @@ mod tests {
 
     #[test]
     fn a_clock_that_goes_around_goes_on() {
-        assert_eq!(elapsed_ns([100, 350], 64, 2.0), 500);
-        // What stands above the bits that count is noise.
-        assert_eq!(elapsed_ns([0xabc0_0000_0000_0064, 0x0120_0000_0000_015e], 36, 1.0), 250);
-        assert_eq!(elapsed_ns([(1 << 36) - 10, 5], 36, 10.0), 150);
-        assert_eq!(elapsed_ns([u64::MAX - 9, 5], 64, 1.0), 15);
+        let mut limits = known::caps(known::DEFAULT).unwrap().limits;
+        for (ticks, bits, period_ns, expected) in [
+            ([100, 350], 64, 2.0, 500),
+            // What stands above the bits that count is noise.
+            ([0xabc0_0000_0000_0064, 0x0120_0000_0000_015e], 36, 1.0, 250),
+            ([(1 << 36) - 10, 5], 36, 10.0, 150),
+            ([u64::MAX - 9, 5], 64, 1.0, 15),
+        ] {
+            (limits.timestamp_bits, limits.timestamp_period_ns) = (bits, period_ns);
+            assert_eq!(elapsed_ns(ticks, &limits), expected, "{ticks:x?} of {bits} bits");
+        }
     }
 
     #[test]
