@@ -2,6 +2,7 @@
 //! none.
 
 use crate::support::program::Program;
+use crate::support::shading_space::without_shading_space;
 use crate::support::square::{matt, square};
 use crate::support::watched::{Watched, values, watched_device};
 use ash::vk;
@@ -14,66 +15,20 @@ use quincunx::session::{Renderer, Session};
 use quincunx::{scene, techniques};
 use std::ffi::{CStr, c_void};
 use std::mem::transmute;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// The driver's own functions behind those of the tests; what was found once stays, for tests that share a process.
 #[derive(Clone, Copy)]
 struct Own {
-    begin: Option<vk::PFN_vkCmdBeginRendering>,
-    draw: Option<vk::PFN_vkCmdDraw>,
     submit: Option<vk::PFN_vkQueueSubmit2>,
     results: Option<vk::PFN_vkGetQueryPoolResults>,
 }
 
-static OWN: Mutex<Own> = Mutex::new(Own { begin: None, draw: None, submit: None, results: None });
+static OWN: Mutex<Own> = Mutex::new(Own { submit: None, results: None });
 
 fn own() -> Own {
     *OWN.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Whether what is recorded is drawn into nothing: only shading space is.
-static DRAWS_INTO_NOTHING: AtomicBool = AtomicBool::new(false);
-
-unsafe extern "system" fn noted_begin(buffer: vk::CommandBuffer, info: *const vk::RenderingInfo<'_>) {
-    // SAFETY: the caller's own struct.
-    let into_nothing = unsafe { (*info).color_attachment_count == 0 && (*info).p_depth_attachment.is_null() };
-    DRAWS_INTO_NOTHING.store(into_nothing, Ordering::SeqCst);
-    let begin = own().begin.expect("the hook stored it");
-    // SAFETY: the driver's own function with the caller's arguments.
-    unsafe { begin(buffer, info) };
-}
-
-unsafe extern "system" fn draw_into_something(
-    buffer: vk::CommandBuffer,
-    vertices: u32,
-    instances: u32,
-    v: u32,
-    i: u32,
-) {
-    if !DRAWS_INTO_NOTHING.load(Ordering::SeqCst) {
-        let draw = own().draw.expect("the hook stored it");
-        // SAFETY: as above.
-        unsafe { draw(buffer, vertices, instances, v, i) };
-    }
-}
-
-fn without_shading_space(name: &CStr, function: *const c_void) -> *const c_void {
-    let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
-    match name.to_bytes() {
-        b"vkCmdBeginRendering" => {
-            // SAFETY: the pointer is the function of that name.
-            own.begin = Some(unsafe { transmute::<*const c_void, vk::PFN_vkCmdBeginRendering>(function) });
-            noted_begin as vk::PFN_vkCmdBeginRendering as *const c_void
-        }
-        b"vkCmdDraw" => {
-            // SAFETY: as above.
-            own.draw = Some(unsafe { transmute::<*const c_void, vk::PFN_vkCmdDraw>(function) });
-            draw_into_something as vk::PFN_vkCmdDraw as *const c_void
-        }
-        _ => function,
-    }
 }
 
 /// A rasteriser that draws less than what a road needs is found out: by the picture, whatever counts and whatever sums.

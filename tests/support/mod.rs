@@ -10,6 +10,7 @@ pub mod measured;
 pub mod moving;
 pub mod program;
 pub mod seen;
+pub mod shading_space;
 pub mod square;
 pub mod watched;
 
