@@ -420,7 +420,7 @@ pub fn judge(log: Option<&Log>) -> Result<()> {
 }
 
 /// Errors: the folder of an output does not exist (exit code 2); found before a picture is made, not after.
-fn require_folder(path: &Path) -> Result<()> {
+pub(crate) fn require_folder(path: &Path) -> Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

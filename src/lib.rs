@@ -39,6 +39,7 @@
 //! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
 //! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
+//! | [`selftest`] | every road of a device beside a plain twin, as one document |
 //! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
 
 pub mod bench;
@@ -63,6 +64,7 @@ pub mod report;
 pub mod resident;
 pub mod sampling;
 pub mod scene;
+pub mod selftest;
 pub mod sequence;
 pub mod session;
 pub mod settings;

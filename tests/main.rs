@@ -59,6 +59,7 @@ mod rays;
 mod reference;
 mod scene_verbs;
 mod seen;
+mod self_test;
 mod sequence;
 mod shadow_maps;
 mod shadow_volumes;

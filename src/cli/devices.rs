@@ -1,5 +1,6 @@
 //! `quincunx devices`: every device of every driver, what it can do, and what it lacks.
 
+use super::self_test;
 use crate::error::Result;
 use crate::gpu::Need;
 use crate::gpu::device::{self, Listed};
@@ -12,16 +13,20 @@ use std::fmt::Write;
 
 /// The verb with its arguments.
 pub fn command() -> Command {
-    Command::new("devices")
-        .about("List the devices, what each can do and what it lacks")
+    let command = Command::new("devices")
+        .about("List the devices, what each can do and what it lacks; or test one")
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
-        .arg(super::quiet_flag())
+        .arg(super::quiet_flag());
+    self_test::with_args(command)
 }
 
-/// Prints the list.
+/// Prints the list, or tests a device.
 ///
-/// Errors: no loader or no driver (exit code 3).
-pub fn run(matches: &ArgMatches) -> Result<()> {
+/// Errors: no loader or no driver (exit code 3); as `self_test::run`.
+pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
+    if matches.get_flag(self_test::FLAG) {
+        return self_test::run(matches, argv);
+    }
     let listed = device::list()?;
     if matches.get_flag("json") {
         let devices: Vec<_> = listed.iter().map(document).collect();

@@ -12,6 +12,7 @@ mod rays;
 mod reference_args;
 pub mod render;
 pub mod scene;
+mod self_test;
 
 use crate::error::{Error, Result};
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -53,7 +54,7 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("bench", matches)) => bench::run(matches, argv),
         Some(("memory", matches)) => memory::run(matches, argv),
         Some(("scene", matches)) => scene::run(matches),
-        Some(("devices", matches)) => devices::run(matches),
+        Some(("devices", matches)) => devices::run(matches, argv),
         _ => unreachable!("clap requires one of the verbs"),
     }
 }

@@ -50,7 +50,8 @@ fn require_workgroup([x, y]: [u32; 2], caps: &Caps) -> Result<()> {
     .note(format!("--workgroup {fitting_x}x{fitting_y} fits")))
 }
 
-fn unmet(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
+/// What the settings need and a device of these caps lacks. `has_blend`: as `require` has it.
+pub fn unmet(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
     technique.needs(values, caps, has_blend).into_iter().filter(|need| !need.is_met(caps)).collect()
 }
 

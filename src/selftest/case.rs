@@ -1,0 +1,156 @@
+//! What a case is: a picture by one road of the program, and what it is held against. Cases are data (`cases`); nothing here runs.
+
+use super::closed_form::ClosedForm;
+use super::judge::Bounds;
+use crate::error::Result;
+use crate::job::Job;
+use crate::report::picture::Picture;
+use crate::techniques;
+use crate::units::Extent;
+
+/// Settings that differ from their defaults, by key.
+pub type Settings = &'static [(&'static str, &'static str)];
+
+/// Roads to one picture.
+#[derive(Debug)]
+pub struct Group {
+    /// What its roads differ in, in a word or two.
+    pub name: &'static str,
+    pub technique: &'static str,
+    pub place: Place,
+    /// Settings of every road, and of the twin where that is of the same technique.
+    pub common: Settings,
+    pub twin: Twin,
+    pub roads: &'static [Settings],
+    pub must: Must,
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// A built-in scene, as on the command line.
+    Scene(&'static str),
+    /// A scene whose picture a formula knows.
+    Formula(ClosedForm),
+}
+
+impl Place {
+    /// As documents have it.
+    pub fn name(self) -> String {
+        match self {
+            Self::Scene(spec) => spec.to_owned(),
+            Self::Formula(form) => format!("formula:{}", form.name()),
+        }
+    }
+}
+
+/// What roads are held against.
+#[derive(Clone, Copy, Debug)]
+pub enum Twin {
+    /// The same technique by a plain road.
+    Road(Settings),
+    /// Another technique, with all of its settings.
+    Other(&'static str, Settings),
+    /// The formula of the group's place.
+    Formula,
+    /// Nothing: it is a picture of which samples must be missing.
+    Nothing,
+}
+
+/// What must hold between a road's picture and its twin's.
+#[derive(Clone, Copy, Debug)]
+pub enum Must {
+    /// Equal bits on every device: the same shaders on the same numbers.
+    Same { why: &'static str },
+    /// Equal bits on software drivers; within bounds on devices whose compilers may round two shaders otherwise.
+    Equal(Bounds),
+    /// Within bounds on every device: two ways to nearly the same picture.
+    Near(Bounds),
+    /// Some samples have no colour, which shows that their counter counts.
+    LackSamples,
+}
+
+impl Must {
+    /// What a picture may be off by; None: equal bits are asked for, or nothing of the picture.
+    pub fn bounds(&self, is_software: bool) -> Option<Bounds> {
+        match self {
+            Self::Equal(bounds) if !is_software => Some(*bounds),
+            Self::Near(bounds) => Some(*bounds),
+            _ => None,
+        }
+    }
+
+    /// Whether equal bits are asked for.
+    pub fn is_exact(&self, is_software: bool) -> bool {
+        matches!(self, Self::Same { .. }) || (matches!(self, Self::Equal(_)) && is_software)
+    }
+
+    /// Why it is this that must hold.
+    pub fn why(&self) -> &'static str {
+        match self {
+            Self::Same { why } => why,
+            Self::Equal(bounds) | Self::Near(bounds) => bounds.why,
+            Self::LackSamples => {
+                "pixels at rims whose middle no triangle covers are not shaded: what counts them must see some"
+            }
+        }
+    }
+}
+
+/// Side lengths that hold for every case, which names them in `common` where it wants others: odd, so that no workgroup and no
+/// pattern divides them.
+pub const SIZE: (&str, &str) = ("size", "61x37");
+
+/// One road of a group.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    pub group: &'static Group,
+    pub road: Settings,
+}
+
+impl Case {
+    /// Technique, group and what is special about the road: `deep_shading/lists/compaction=off`.
+    pub fn name(&self) -> String {
+        let Group { name, technique, .. } = self.group;
+        let road: Vec<String> = self.road.iter().map(|(key, text)| format!("{key}={text}")).collect();
+        let road = if road.is_empty() { "defaults".to_owned() } else { road.join(",") };
+        format!("{technique}/{name}/{road}")
+    }
+
+    /// Every setting of the road that is not at its default.
+    pub fn settings(&self) -> Vec<(&'static str, &'static str)> {
+        [&[SIZE], self.group.common, self.road].concat()
+    }
+
+    /// Technique and settings of the twin; None where it is no picture of the device.
+    pub fn twin_settings(&self) -> Option<(&'static str, Vec<(&'static str, &'static str)>)> {
+        match self.group.twin {
+            Twin::Road(road) => Some((self.group.technique, [&[SIZE], self.group.common, road].concat())),
+            Twin::Other(technique, settings) => Some((technique, [&[SIZE], settings].concat())),
+            Twin::Formula | Twin::Nothing => None,
+        }
+    }
+
+    /// What the formula of its place says; None where that is a scene.
+    pub fn formula(&self, extent: Extent) -> Option<Picture> {
+        match self.group.place {
+            Place::Formula(form) => Some(form.picture(extent)),
+            Place::Scene(_) => None,
+        }
+    }
+}
+
+/// A request for a picture of these settings; later ones win.
+///
+/// Errors: the technique does not read one, or it is impossible (exit code 2).
+pub fn job(place: Place, technique: &str, settings: &[(&'static str, &'static str)]) -> Result<Job> {
+    let spec = match place {
+        Place::Scene(spec) => spec,
+        Place::Formula(_) => "",
+    };
+    let mut job = Job::new(spec, techniques::find(technique)?);
+    for (key, text) in settings {
+        job.set(key, text)?;
+    }
+    Ok(job)
+}

@@ -1,0 +1,245 @@
+//! Deep shading buffers: every way to find, to list, to shade and to resolve samples, beside shading each of them where it is seen.
+
+use super::super::case::{Group, Must, Place, Settings, Twin};
+use super::super::judge::Bounds;
+use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+
+const NAME: &str = "deep_shading";
+const CORNELL: Place = Place::Scene("cornell");
+const HALL: Place = Place::Scene("hall:triangles=8000");
+const LAMPS: Place = Place::Scene("lamps:objects=12,lights=12");
+const FENCE: Place = Place::Scene("fence:lights=6");
+const FEW: (&str, &str) = ("spp", "2");
+const LENS: (&str, &str) = ("aperture", "0.2");
+const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
+const RAY: (&str, &str) = ("visibility", "ray");
+const ALONE: Twin = Twin::Road(&[("lists", "none")]);
+
+const SAMPLES: Bounds = Bounds {
+    apart: 0.05,
+    rmse: 0.03,
+    flip: 0.02,
+    mean: 0.01,
+    why: "rasterised samples lie on a device's grid in a pixel, others where floats say: those along edges see the other surface",
+};
+const SHARED: Bounds = Bounds {
+    apart: 0.5,
+    rmse: 0.05,
+    flip: 0.1,
+    mean: 0.02,
+    why: "a baseline shades elsewhere on a triangle than a list does, which highlights show",
+};
+
+const LISTS: &[Settings] = &[
+    &[("lists", "linked")],
+    &[("compaction", "off")],
+    &[("zmax", "off")],
+    &[("address-buffer", "off")],
+    &[("shaded-triangles", "all")],
+    &[("compaction", "off"), ("duplicates", "tolerated")],
+    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
+    &[("list-access", "descriptors")],
+    &[("list-access", "addresses")],
+    &[("list-access", "addresses"), ("compaction", "off"), ("address-buffer", "off")],
+    &[("shading", "indirect-gbuffer")],
+    &[("shading", "indirect-gbuffer"), ("shading-cache", "64")],
+];
+
+/// Who makes a triangle as large as the pixels that it touches. The device's own way runs here and where it is asked for by name.
+const CONSERVATIVE: &[Settings] =
+    &[&[("conservative", "geometry")], &[("conservative", "vertex")], &[("conservative", "hardware")]];
+
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "repeat",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS],
+        twin: Twin::Road(&[]),
+        roads: AGAIN,
+        must: SAME,
+    },
+    Group {
+        name: "lists",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS],
+        twin: ALONE,
+        roads: LISTS,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "conservative",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS],
+        twin: ALONE,
+        roads: CONSERVATIVE,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "conservative-sharp",
+        technique: NAME,
+        place: HALL,
+        common: &[FEW],
+        twin: ALONE,
+        roads: CONSERVATIVE,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "conservative-lens",
+        technique: NAME,
+        place: HALL,
+        common: &[FEW, LENS, ("guard-band", "8"), ("shading-scale", "0.5")],
+        twin: ALONE,
+        roads: CONSERVATIVE,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "control",
+        technique: NAME,
+        place: LAMPS,
+        common: &[FEW, LENS],
+        twin: Twin::Nothing,
+        roads: &[&[("conservative", "none")]],
+        must: Must::LackSamples,
+    },
+    Group {
+        name: "moving",
+        technique: NAME,
+        place: FENCE,
+        common: &[FEW, ("camera", "rotor"), ("shutter", "0,0.1")],
+        twin: ALONE,
+        roads: &[
+            &[("conservative", "geometry")],
+            &[("conservative", "vertex")],
+            &[("conservative", "hardware")],
+            &[EVERYTHING[0]],
+        ],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "filtered",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS, ("reconstruct", "on")],
+        twin: ALONE,
+        roads: &[&[], &[("list-access", "addresses")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "foveated",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS, ("shading-warp", "foveated")],
+        twin: ALONE,
+        roads: &[&[("conservative", "geometry")], &[("conservative", "vertex")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "stereo",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, ("stereo", "0.1")],
+        twin: ALONE,
+        roads: &[&[], &[("conservative", "vertex")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "visibility",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS],
+        twin: Twin::Road(&[("visibility", "repeat-frame")]),
+        roads: &[
+            &[("visibility", "repeat-draw"), ("layer-from", "vertex")],
+            &[("visibility", "repeat-draw"), ("layer-from", "geometry")],
+            &[("visibility", "instancing"), ("layer-from", "vertex")],
+            &[("visibility", "instancing"), ("layer-from", "geometry")],
+            &[("visibility", "replicate")],
+        ],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "samples",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS],
+        twin: Twin::Road(&[("visibility", "repeat-frame")]),
+        roads: &[&[STOCHASTIC, ("sample-tests", "layers"), ("polygon-from", "vertex")], &[RAY]],
+        must: Must::Near(SAMPLES),
+    },
+    Group {
+        name: "stochastic",
+        technique: NAME,
+        place: FENCE,
+        common: &[FEW, STOCHASTIC, ("camera", "rotor"), ("shutter", "0,0.1")],
+        twin: Twin::Road(&[("sample-tests", "layers"), ("polygon-from", "vertex"), ("lists", "none")]),
+        roads: &[
+            &[("sample-tests", "layers"), ("polygon-from", "vertex")],
+            &[("sample-tests", "loop"), ("polygon-from", "vertex")],
+            &[("sample-tests", "layers"), ("polygon-from", "geometry")],
+            &[("sample-tests", "loop"), ("polygon-from", "geometry")],
+        ],
+        must: Must::Near(SAMPLES),
+    },
+    Group {
+        name: "ray-lists",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS, RAY],
+        twin: ALONE,
+        roads: &[&[("lists", "linked")], &[("lists", "direct")], &[("lists", "direct"), ("compaction", "off")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "bands",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS],
+        twin: Twin::Road(WHOLE),
+        roads: CUT,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "baselines",
+        technique: NAME,
+        place: LAMPS,
+        common: &[("spp", "4"), LENS, ("brdf", "lambert")],
+        twin: Twin::Road(&[("shading", "deep")]),
+        roads: &[
+            &[("shading", "ssaa")],
+            &[("shading", "msaa"), ("pass-samples", "1")],
+            &[("shading", "msaa"), ("pass-samples", "4")],
+            &[("shading", "texture-space")],
+        ],
+        must: Must::Near(SHARED),
+    },
+    Group {
+        name: "baselines-8",
+        technique: NAME,
+        place: LAMPS,
+        common: &[("spp", "8"), LENS, ("brdf", "lambert")],
+        twin: Twin::Road(&[("shading", "deep")]),
+        roads: &[&[("shading", "msaa"), ("pass-samples", "8")]],
+        must: Must::Near(SHARED),
+    },
+    Group {
+        name: "shadow-maps",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, ("direct-shadow", "map"), ("shadow-map-size", "128"), ("shadow-filter", "gather")],
+        twin: Twin::Road(&[("lists", "none"), ("shadow-casters", "all")]),
+        roads: &[&[], &[("shadow-casters", "all")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "shadow-filter",
+        technique: NAME,
+        place: LAMPS,
+        common: &[FEW, ("direct-shadow", "map"), ("shadow-map-size", "128")],
+        twin: Twin::Road(&[("shadow-filter", "gather")]),
+        roads: &[&[("shadow-filter", "bilinear")], &[("shadow-filter", "nearest")]],
+        must: Must::Near(SHARED),
+    },
+];

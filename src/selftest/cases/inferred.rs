@@ -1,0 +1,171 @@
+//! Inferred lighting: every kind of light volume, of light buffer, of packing and of filter.
+
+use super::super::case::{Group, Must, Place, Twin};
+use super::super::judge::Bounds;
+use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+
+const NAME: &str = "inferred_lighting";
+const FENCE: Place = Place::Scene("fence:lights=6");
+const LAMPS: Place = Place::Scene("lamps:objects=12,lights=12");
+const AT_FRAME_SIZE: (&str, &str) = ("light-size", "61x37");
+
+const HALVES: Bounds = Bounds {
+    apart: 0.01,
+    rmse: 0.002,
+    flip: 0.012,
+    mean: 0.005,
+    why: "light of 16 bits a channel and of 32: half floats that are blended lose a part in a thousand a light",
+};
+const DEFERRED: Bounds = Bounds {
+    apart: 0.005,
+    rmse: 0.001,
+    flip: 0.004,
+    mean: 0.002,
+    why: "a light buffer of the frame's size is deferred shading but for normals and light in 16 bits",
+};
+const SAMPLER: Bounds = Bounds {
+    apart: 0.005,
+    rmse: 0.002,
+    flip: 0.004,
+    mean: 0.002,
+    why: "a sampler blends four texels in steps of the device's own",
+};
+const EDGES: Bounds = Bounds {
+    apart: 0.45,
+    rmse: 0.09,
+    flip: 0.12,
+    mean: 0.03,
+    why: "four or eight places of a pixel instead of one: its edges differ, its surfaces do not",
+};
+const STENCIL_AND_RAYS: Bounds = Bounds {
+    apart: 0.02,
+    rmse: 0.012,
+    flip: 0.015,
+    mean: 0.004,
+    why: "shadow volumes are drawn, and rays are cast: edges of shadows fall into one texel or its neighbour",
+};
+
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "repeat",
+        technique: NAME,
+        place: FENCE,
+        common: &[],
+        twin: Twin::Road(&[]),
+        roads: AGAIN,
+        must: SAME,
+    },
+    Group {
+        name: "volumes",
+        technique: NAME,
+        place: FENCE,
+        common: &[],
+        twin: Twin::Road(&[("volumes", "tiled"), ("texels", "1"), ("depth-prepass", "off"), EVERYTHING[0]]),
+        roads: &[
+            &[("volumes", "tiled")],
+            &[("volumes", "tiled"), ("workgroup", "8x8")],
+            &[("volumes", "quad")],
+            &[("volumes", "scissor")],
+            &[("volumes", "stencil")],
+            &[("volumes", "both")],
+            &[("volumes", "auto"), ("stencil-least", "50")],
+        ],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "stipple",
+        technique: NAME,
+        place: FENCE,
+        common: &[("stipple", "4x4"), ("alpha-filter", "bilinear"), ("extras", "off"), ("packing", "rgba8")],
+        twin: Twin::Road(&[("volumes", "tiled")]),
+        roads: &[&[("volumes", "stencil")], &[("volumes", "scissor")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "volumes-rays",
+        technique: NAME,
+        place: LAMPS,
+        common: &[("direct-shadow", "ray")],
+        twin: Twin::Road(&[("volumes", "tiled")]),
+        roads: &[&[("volumes", "stencil")], &[("volumes", "scissor")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "shadow-volumes",
+        technique: NAME,
+        place: LAMPS,
+        common: &[AT_FRAME_SIZE, ("brdf", "lambert"), ("volumes", "both")],
+        twin: Twin::Road(&[("direct-shadow", "ray")]),
+        roads: &[&[("shadow-volumes", "64"), ("direct-shadow", "none")]],
+        must: Must::Near(STENCIL_AND_RAYS),
+    },
+    Group {
+        name: "prepass",
+        technique: NAME,
+        place: LAMPS,
+        common: &[],
+        twin: Twin::Road(&[("depth-prepass", "off")]),
+        roads: &[&[("depth-prepass", "on")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "bands",
+        technique: NAME,
+        place: LAMPS,
+        common: &[],
+        twin: Twin::Road(WHOLE),
+        roads: CUT,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "l-buffer",
+        technique: NAME,
+        place: LAMPS,
+        common: &[("volumes", "scissor")],
+        twin: Twin::Road(&[("l-buffer", "float")]),
+        roads: &[&[("l-buffer", "half")], &[("l-buffer", "fixed")]],
+        must: Must::Near(HALVES),
+    },
+    Group {
+        name: "packing",
+        technique: NAME,
+        place: LAMPS,
+        common: &[],
+        twin: Twin::Road(&[("packing", "words")]),
+        roads: &[&[("packing", "rgba8")], &[("packing", "fixed")]],
+        must: Must::Near(HALVES),
+    },
+    Group {
+        name: "light-filter",
+        technique: NAME,
+        place: LAMPS,
+        common: &[AT_FRAME_SIZE, ("brdf", "lambert"), ("direct-shadow", "none")],
+        twin: Twin::Other("deferred", &[("brdf", "lambert"), ("position", "depth"), ("direct-shadow", "none")]),
+        roads: &[
+            &[("light-filter", "dsf")],
+            &[("light-filter", "bilinear")],
+            &[("light-filter", "nearest")],
+            &[("light-filter", "bilateral")],
+            &[("light-filter", "discontinuity")],
+        ],
+        must: Must::Near(DEFERRED),
+    },
+    Group {
+        name: "light-fetch",
+        technique: NAME,
+        place: LAMPS,
+        common: &[],
+        twin: Twin::Road(&[("light-fetch", "texels")]),
+        roads: &[&[("light-fetch", "sampler")]],
+        must: Must::Near(SAMPLER),
+    },
+    Group {
+        name: "msaa",
+        technique: NAME,
+        place: LAMPS,
+        common: &[],
+        twin: Twin::Other("forward", &[("supersample", "4")]),
+        roads: &[&[("msaa", "4"), AT_FRAME_SIZE], &[("msaa", "8"), AT_FRAME_SIZE]],
+        must: Must::Near(EDGES),
+    },
+];

@@ -1,0 +1,169 @@
+//! Interleaved deferred shading: every split, storage, form of copy and filter, beside pixels that loop over their own subset.
+
+use super::super::case::{Group, Must, Place, Settings, Twin};
+use super::super::judge::Bounds;
+use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+
+const NAME: &str = "interleaved_deferred";
+const CORNELL: Place = Place::Scene("cornell");
+const HALL: Place = Place::Scene("hall:triangles=8000");
+const FENCE: Place = Place::Scene("fence:lights=6");
+const VPLS: (&str, &str) = ("vpls", "64");
+const UNFILTERED: (&str, &str) = ("filter", "none");
+
+const SPLITS: &[Settings] = &[
+    &[("split", "stencil")],
+    &[("split", "depth")],
+    &[("split", "indirect")],
+    &[("split", "remap")],
+    &[("split", "one-pass"), ("storage", "buffer"), ("copy", "pull")],
+    &[("split", "one-pass"), ("storage", "buffer"), ("copy", "push")],
+    &[("split", "one-pass"), ("storage", "image"), ("copy", "pull")],
+    &[("split", "one-pass"), ("storage", "image"), ("copy", "push")],
+    &[("split", "two-pass"), ("storage", "buffer"), ("copy", "pull")],
+    &[("split", "two-pass"), ("storage", "buffer"), ("copy", "push")],
+    &[("split", "two-pass"), ("storage", "image"), ("copy", "pull")],
+    &[("split", "two-pass"), ("storage", "image"), ("copy", "push")],
+    &[("split", "tile"), ("storage", "buffer")],
+    &[("split", "tile"), ("storage", "image")],
+    &[("split", "layered"), ("copy", "pull")],
+    &[("split", "layered"), ("copy", "push")],
+    &[("split", "fragment"), ("fragment-passes", "1")],
+    &[("split", "fragment"), ("fragment-passes", "2")],
+];
+
+const HALF_TEXELS: Bounds = Bounds {
+    apart: 0.15,
+    rmse: 0.012,
+    flip: 0.05,
+    mean: 0.006,
+    why: "a fetch between two texels is weighed in steps of the device's own, and across discontinuities otherwise",
+};
+const CONVERGED: Bounds = Bounds {
+    apart: 0.25,
+    rmse: 0.015,
+    flip: 0.08,
+    mean: 0.005,
+    why: "each pixel has a subset of the lights, and the filter spreads it: the mean stays, and edges are coarser",
+};
+
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "repeat",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Road(&[]),
+        roads: AGAIN,
+        must: SAME,
+    },
+    Group {
+        name: "split",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, ("pattern", "4x4"), UNFILTERED],
+        twin: Twin::Road(&[("split", "branch"), ("texels", "1"), EVERYTHING[0]]),
+        roads: SPLITS,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "split-textures",
+        technique: NAME,
+        place: HALL,
+        common: &[VPLS, ("pattern", "3x2"), ("cull", "tiled")],
+        twin: Twin::Road(&[("split", "branch")]),
+        roads: &[
+            &[("split", "one-pass")],
+            &[("split", "two-pass"), ("storage", "image"), ("block", "9x4")],
+            &[("split", "tile"), ("block", "12")],
+            &[("split", "stencil")],
+        ],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "one-subset",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Road(&[("split", "none")]),
+        roads: &[
+            &[("pattern", "1x1")],
+            &[("pattern", "1x1"), ("split", "tile")],
+            &[("pattern", "1x1"), ("split", "fragment")],
+            &[("pattern", "1x1"), ("split", "subsample")],
+        ],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "threads",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Road(&[("texels", "1"), ("workgroup", "64x1")]),
+        roads: &[&[("texels", "4")], &[("workgroup", "8x8")], &[("texels", "16"), ("workgroup", "16x8")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "fuse",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Road(&[("fuse", "off")]),
+        roads: &[&[("fuse", "on")], &[("fuse", "on"), ("split", "branch")], &[("fuse", "on"), ("split", "layered")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "filter",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, ("kernel", "9")],
+        twin: Twin::Road(&[("filter", "gauss")]),
+        roads: &[&[("filter", "gauss-fast")]],
+        must: Must::Near(HALF_TEXELS),
+    },
+    Group {
+        name: "all-lights",
+        technique: NAME,
+        place: CORNELL,
+        common: &[("vpls", "256")],
+        twin: Twin::Road(&[("split", "none")]),
+        roads: &[&[]],
+        must: Must::Near(CONVERGED),
+    },
+    Group {
+        name: "position",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, ("split", "branch"), UNFILTERED],
+        twin: Twin::Road(&[("position", "float")]),
+        roads: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
+        must: Must::Near(super::baselines::POSITIONS),
+    },
+    Group {
+        name: "glass",
+        technique: NAME,
+        place: FENCE,
+        common: &[VPLS],
+        twin: Twin::Road(&[("light-lists", "none"), ("split", "branch")]),
+        roads: &[&[], &[("split", "tile")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "bands",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Road(WHOLE),
+        roads: CUT,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "memory",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Road(&[("allocation", "linear")]),
+        roads: &[&[("allocation", "dedicated")], &[("allocation", "tlsf")]],
+        must: SAME,
+    },
+];

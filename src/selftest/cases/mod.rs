@@ -1,0 +1,147 @@
+//! Every case of the self-test, as data: a file a technique, and what all of them share.
+//!
+//! Bounds on other devices are not measured on a GPU: nobody had one. They are what the compilers' liberties come to on lavapipe,
+//! where products and sums were fused and last bits turned at random (RMSE below 1e-4, FLIP below 0.0005, one pixel in 500 along
+//! edges where paths go), with room for an edge that falls otherwise; a row or a tile that is missing, and a hundredth of the light,
+//! stay outside of them. Bounds of two ways to nearly the same picture are some three times the most that lavapipe of Mesa 22.3.6 and
+//! 25.0.7 and SwiftShader are off by.
+
+mod baselines;
+mod deep;
+mod formulas;
+mod inferred;
+mod interleaved;
+mod paths;
+
+use super::case::{Case, Group, Must, Settings};
+use super::judge::Bounds;
+
+/// Two shaders that say the same, on a device whose compiler may round each in its way.
+pub const ROUNDING: Bounds = Bounds {
+    apart: 0.005,
+    rmse: 0.02,
+    flip: 0.005,
+    mean: 0.004,
+    why: "equal where each step is rounded alike; compilers of GPUs fuse and reorder, which moves a few pixels along edges",
+};
+
+/// The same where rays choose what comes next: one that grazes an edge takes all of a path with it.
+pub const PATHS: Bounds = Bounds {
+    apart: 0.03,
+    rmse: 0.1,
+    flip: 0.02,
+    mean: 0.03,
+    why: "equal where each step is rounded alike; a ray that grazes an edge takes its whole path with it, and paths are few",
+};
+
+/// The same shaders on the same numbers: only when and where they run is another.
+const SAME: Must = Must::Same { why: "the same shaders on the same numbers, once more or in other bytes" };
+
+/// Made once more, which finds races, and with bytes that are shared otherwise.
+const AGAIN: &[Settings] = &[&[], &[("alias", "off")], &[("alias", "optimal")]];
+/// A submit for each piece of work, and for as many as there are.
+const CUT: &[Settings] = &[&[("submit-ms", "0.001")], &[("submit-ms", "1000000")]];
+const WHOLE: Settings = &[("submit-ms", "0")];
+const EVERYTHING: Settings = &[("geometry", "all")];
+
+/// All cases in the order in which they run: those of one scene together, where that is possible.
+pub fn all() -> impl Iterator<Item = Case> {
+    let tables: [&'static [Group]; 6] =
+        [formulas::GROUPS, baselines::GROUPS, interleaved::GROUPS, inferred::GROUPS, deep::GROUPS, paths::GROUPS];
+    let groups = tables.into_iter().flatten();
+    groups.flat_map(|group| group.roads.iter().map(move |road| Case { group, road }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::settings_of;
+    use crate::selftest::case::{Place, Twin, job};
+    use crate::settings::Kind;
+    use crate::techniques::ALL;
+    use std::collections::BTreeSet;
+
+    /// No case asks for what cannot be, or for what nothing reads: the picture would be its twin's whatever the device does.
+    #[test]
+    fn every_case_is_possible_and_names_are_its_own() {
+        let mut names = BTreeSet::new();
+        for case in all() {
+            let name = case.name();
+            let made = job(case.group.place, case.group.technique, &case.settings()).unwrap();
+            made.require_read().unwrap_or_else(|error| panic!("{name}: {error}"));
+            if let Some((technique, settings)) = case.twin_settings() {
+                let twin = job(case.group.place, technique, &settings).unwrap();
+                twin.require_read().unwrap_or_else(|error| panic!("{name}: its twin: {error}"));
+            }
+            let size = made.values.extent("size");
+            assert!(size.width <= 64 && size.height <= 64, "{name}: {size}");
+            assert_eq!(
+                matches!(case.group.place, Place::Formula(_)),
+                matches!(case.group.twin, Twin::Formula),
+                "{name}"
+            );
+            assert!(names.insert(name.clone()), "{name} is there twice");
+        }
+        assert!(names.len() > 100, "{}", names.len());
+    }
+
+    /// What a setting chooses between is tried, choice by choice, so that a new road is not forgotten here.
+    #[test]
+    fn every_choice_of_a_road_is_among_the_cases() {
+        // Other pictures by intent, or the same shaders with other numbers.
+        const NO_ROADS: [&str; 26] = [
+            "exposure",
+            "tonemap",
+            "exr",
+            "rig",
+            "sun",
+            "brdf",
+            "light-visibility",
+            "vpl-visibility",
+            "ambient-visibility",
+            "punctual",
+            "transport",
+            "emissive",
+            "direct",
+            "blend-lights",
+            "discontinuity",
+            "shading-texture-size",
+            "assignment",
+            "alpha",
+            "motion-vectors",
+            "texture-level",
+            "direct-shadow",
+            "stereo-eyes",
+            "texels",
+            "shadow-maps",
+            "geometry",
+            "instrument",
+        ];
+        let mut forgotten = Vec::new();
+        for technique in ALL {
+            for setting in settings_of(*technique) {
+                let Kind::Choice(choices) = setting.kind else { continue };
+                if NO_ROADS.contains(&setting.key) {
+                    continue;
+                }
+                for choice in choices.iter().filter(|choice| **choice != "auto") {
+                    let uses = |settings: &[(&str, &str)]| {
+                        let last = settings.iter().rev().find(|(key, _)| *key == setting.key);
+                        last.map_or(setting.default, |(_, text)| *text) == *choice
+                    };
+                    // How memory is kept is the device's, whatever is drawn.
+                    let is_device_s = setting.key == "allocation";
+                    let tries = |case: &Case| is_device_s || case.group.technique == technique.name();
+                    let is_tried = all().filter(tries).any(|case| {
+                        let twin = case.twin_settings().filter(|(name, _)| *name == technique.name());
+                        uses(&case.settings()) || twin.is_some_and(|(_, settings)| uses(&settings))
+                    });
+                    if !is_tried {
+                        forgotten.push(format!("{}: --{} {choice}", technique.name(), setting.key));
+                    }
+                }
+            }
+        }
+        assert_eq!(forgotten, [] as [&str; 0]);
+    }
+}
