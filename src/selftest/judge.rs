@@ -139,11 +139,12 @@ mod tests {
         let width = EXTENT.width as usize;
         let reference = picture();
         let moved = |index: usize, _: [f32; 3]| reference.pixels[index.saturating_sub(1)];
-        let wrong: [(&str, &dyn Fn(usize, [f32; 3]) -> [f32; 3]); 6] = [
+        let wrong: [(&str, &dyn Fn(usize, [f32; 3]) -> [f32; 3]); 7] = [
             ("a black row", &|index, pixel| if index / width == 20 { [0.0; 3] } else { pixel }),
             ("a black tile", &|index, pixel| if index % width < 8 && index / width < 8 { [0.0; 3] } else { pixel }),
             ("a pixel aside", &moved),
             ("a hundredth of the light lost", &|_, pixel| pixel.map(|channel| 0.99 * channel)),
+            ("a two-hundredth lost, which no pixel shows", &|_, pixel| pixel.map(|channel| 0.995 * channel)),
             ("red and blue exchanged", &|_, [red, green, blue]| [blue, green, red]),
             (
                 "one in a pattern of 16 without its subset",
