@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct Rendered {
     pub picture: Picture,
     pub counters: BTreeMap<&'static str, f64>,
-    /// Of the frame, from submit to fence; and by the device's clock, where that is looked at.
+    /// The frame's time from submit to fence; and by the device's clock, where that is looked at.
     pub wall_ns: u64,
     pub device_ns: Option<u64>,
 }
