@@ -1,4 +1,5 @@
-//! `devices --self-test`: the document that people send, and that a device which does something wrong is found out by name.
+//! `devices --self-test`: the document that people send, and that a device which does something wrong is found out by
+//! name.
 
 use crate::support::counted;
 use crate::support::failing::{Call, Failure, failing_device, has_failed};
@@ -35,7 +36,8 @@ fn require_failed(outcome: &Outcome, expected: &[&str]) {
     assert_eq!(document::json(outcome, &[])["failed"], serde_json::json!(expected));
 }
 
-/// Bits and bounds of a formula, a need that is refused, samples that must be there and some that must be missing, and the clocks.
+/// Bits and bounds of a formula, a need that is refused, samples that must be there and some that must be missing, and
+/// the clocks.
 #[test]
 fn the_document_says_what_held_and_what_is_refused() {
     let program = Program::new();
@@ -132,7 +134,8 @@ fn without_dispatches(name: &CStr, function: *const c_void) -> *const c_void {
     }
 }
 
-/// A wrong picture without a word from the driver is found by the formula, and where the same is wrong on both sides of a pair too.
+/// A wrong picture without a word from the driver is found by the formula, and where the same is wrong on both sides of
+/// a pair too.
 #[test]
 fn a_picture_that_is_wrong_in_silence_is_named() {
     let only = ["forward/sun", "deferred/sun", "forward/background", "deferred/background"];

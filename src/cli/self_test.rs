@@ -17,8 +17,8 @@ pub fn with_args(command: Command) -> Command {
     let of_test = |arg: Arg| arg.requires(FLAG);
     command
         .arg(Arg::new(FLAG).long(FLAG).action(ArgAction::SetTrue).help(
-            "Test a device: every technique small, by each road that the device has, beside a plain twin or a formula; and its clock. Exit code 1 \
-             where something does not hold",
+            "Test a device: every technique small, by each road that the device has, beside a plain twin or a formula; \
+             and its clock. Exit code 1 where something does not hold",
         ))
         .arg(of_test(
             Arg::new("device")
@@ -27,12 +27,9 @@ pub fn with_args(command: Command) -> Command {
                 .help("Which device, by name or by its index in the list; default: a GPU before a processor"),
         ))
         .arg(of_test(
-            Arg::new("only")
-                .long("only")
-                .value_name("PART,...")
-                .value_delimiter(',')
-                .action(ArgAction::Append)
-                .help("Cases whose names begin so, or go on so after a slash: deep_shading/conservative, msaa; or clocks"),
+            Arg::new("only").long("only").value_name("PART,...").value_delimiter(',').action(ArgAction::Append).help(
+                "Cases whose names begin so, or go on so after a slash (deep_shading/conservative, msaa), or clocks",
+            ),
         ))
         .arg(of_test(
             Arg::new("validate")
@@ -52,8 +49,8 @@ pub fn with_args(command: Command) -> Command {
 
 /// Tests a device, with a line for each case as it ends.
 ///
-/// Errors: something does not hold (exit code 1); no case has such a name, or the file cannot be written (2); no fitting device (3);
-/// Ctrl-C (130).
+/// Errors: something does not hold (exit code 1); no case has such a name, or the file cannot be written (2); no
+/// fitting device (3); Ctrl-C (130).
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let (is_json, is_quiet) = (matches.get_flag("json"), matches.get_flag("quiet"));
     progress::install(is_quiet);

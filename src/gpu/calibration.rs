@@ -1,12 +1,13 @@
-//! The device's clock read beside the host's, at one moment (VK_EXT_calibrated_timestamps): whether a tick is as long as the
-//! device says shows without a submit between.
+//! The device's clock read beside the host's, at one moment (VK_EXT_calibrated_timestamps): whether a tick is as long
+//! as the device says shows without a submit between.
 
 use super::failure::failed;
 use super::probe;
 use crate::error::Result;
 use ash::vk;
 
-/// The host's clock that counts nanoseconds and is never set; one that the kernel corrects, like `std::time::Instant`, first.
+/// The host's clock that counts nanoseconds and is never set; one that the kernel corrects, like `std::time::Instant`,
+/// first.
 const HOST_CLOCKS: [vk::TimeDomainEXT; 2] =
     [vk::TimeDomainEXT::CLOCK_MONOTONIC, vk::TimeDomainEXT::CLOCK_MONOTONIC_RAW];
 
@@ -27,8 +28,8 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// `device`: opened with `probe::used_extensions`. None: the device has no such extension, or knows no clock of the host that
-    /// counts nanoseconds (on Windows it counts in steps of another length).
+    /// `device`: opened with `probe::used_extensions`. None: the device has no such extension, or knows no clock of the
+    /// host that counts nanoseconds (on Windows it counts in steps of another length).
     pub(super) fn of(
         entry: &ash::Entry,
         instance: &ash::Instance,

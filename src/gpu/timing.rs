@@ -97,8 +97,8 @@ impl Timestamps {
         unsafe { self.gpu.device.cmd_write_timestamp2(buffer, stage, self.pool, query) };
     }
 
-    /// The device's count at the beginning and the end of each of the first `pass_count` passes, one after the other, after the
-    /// fence of the frame that wrote them.
+    /// The device's count at the beginning and the end of each of the first `pass_count` passes, one after the other,
+    /// after the fence of the frame that wrote them.
     pub fn ticks(&self, pass_count: usize) -> Result<Vec<u64>> {
         let mut ticks = vec![0u64; 2 * pass_count];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;

@@ -1,4 +1,5 @@
-//! The device that cases run on, with one scene at a time; a device that is lost is opened again for the case that comes next.
+//! The device that cases run on, with one scene at a time; a device that is lost is opened again for the case that
+//! comes next.
 
 use super::case::{self, Place};
 use crate::error::{Error, ErrorKind, Result};

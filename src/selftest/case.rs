@@ -1,4 +1,5 @@
-//! What a case is: a picture by one road of the program, and what it is held against. Cases are data (`cases`); nothing here runs.
+//! What a case is: a picture by one road of the program, and what it is held against. Cases are data (`cases`); nothing
+//! here runs.
 
 use super::closed_form::ClosedForm;
 use super::judge::Bounds;
@@ -97,8 +98,8 @@ impl Must {
     }
 }
 
-/// Side lengths that hold for every case, which names them in `common` where it wants others: odd, so that no workgroup and no
-/// pattern divides them.
+/// Side lengths that hold for every case, which names them in `common` where it wants others: odd, so that no workgroup
+/// and no pattern divides them.
 pub const SIZE: (&str, &str) = ("size", "61x37");
 
 /// One road of a group.

@@ -1,9 +1,9 @@
-//! The device's clock beside the host's: whether a tick is as long as the device says, whether it goes forward, and whether what it
-//! measures fits into the submits that it was measured in.
+//! The device's clock beside the host's: whether a tick is as long as the device says, whether it goes forward, and
+//! whether what it measures fits into the submits that it was measured in.
 //!
-//! Why this way: a timestamp is written between its submit and its fence, so two submits some time apart bound from both sides what the
-//! device's clock may say of that time, on a busy machine too, and without any extension. Where the device reads both clocks at one
-//! moment (`gpu::calibration`), that is a second, finer look.
+//! Why this way: a timestamp is written between its submit and its fence, so two submits some time apart bound from
+//! both sides what the device's clock may say of that time, on a busy machine too, and without any extension. Where the
+//! device reads both clocks at one moment (`gpu::calibration`), that is a second, finer look.
 
 use super::bed::{Bed, Road};
 use super::case::Place;
@@ -171,7 +171,8 @@ impl Rate {
         let (least, most) = (host_least_ns * (1.0 - RATE_BOUND), host_most_ns * (1.0 + RATE_BOUND));
         let fits = (least - READING_NS..=most + READING_NS).contains(&device_ns);
         (!fits).then(|| {
-            format!("between two submits the device's clock counts {device_ns} ns, the host's {host_least_ns} to {host_most_ns}")
+            let host = format!("{host_least_ns} to {host_most_ns}");
+            format!("between two submits the device's clock counts {device_ns} ns, the host's {host}")
         })
     }
 }

@@ -1,5 +1,5 @@
-//! What the self-test tells: one JSON document to send, and the lines that a person reads. Within a schema number a key is only ever
-//! added.
+//! What the self-test tells: one JSON document to send, and the lines that a person reads. Within a schema number a key
+//! is only ever added.
 
 use super::bed::Refusal;
 use super::case::Twin;

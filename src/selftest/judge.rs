@@ -1,7 +1,8 @@
 //! How far a picture is from its twin, and whether that is too far.
 //!
-//! Why these figures: a compiler that rounds otherwise changes every pixel by nothing that is seen and a few along edges by all that
-//! surfaces differ; so pixels that are apart are counted. Light that is missing everywhere moves the mean, and little else.
+//! Why these figures: a compiler that rounds otherwise changes every pixel by nothing that is seen and a few along
+//! edges by all that surfaces differ; so pixels that are apart are counted. Light that is missing everywhere moves the
+//! mean, and little else.
 
 use super::case::Must;
 use crate::error::Result;
@@ -9,7 +10,8 @@ use crate::metrics;
 use crate::report::picture::Picture;
 use serde::Serialize;
 
-/// Two pixels are apart where a channel differs by more than this, radiance, and by more than `APART_PART` of the brighter one.
+/// Two pixels are apart where a channel differs by more than this, radiance, and by more than `APART_PART` of the
+/// brighter one.
 const APART: f32 = 0.01;
 const APART_PART: f32 = 0.02;
 

@@ -1,5 +1,5 @@
-//! The self-test: every technique small, by every road that a device has, beside a plain twin or a formula; and the clocks. What a GPU
-//! does that no software driver shows is found in its first minutes, and leaves as one document.
+//! The self-test: every technique small, by every road that a device has, beside a plain twin or a formula; and the
+//! clocks. What a GPU does that no software driver shows is found in its first minutes, and leaves as one document.
 //!
 //! [`cases`] has what is tried, as data; [`bed`] runs it, [`judge`] holds pictures side by side, [`document`] tells.
 
@@ -80,8 +80,8 @@ pub struct Outcome {
 
 /// Tries what `request` names; `on_case` sees each case as it ends.
 ///
-/// Errors: no fitting device (exit code 3); no case has such a name (2); Ctrl-C (130). What fails on the device is no error, but a
-/// verdict.
+/// Errors: no fitting device (exit code 3); no case has such a name (2); Ctrl-C (130). What fails on the device is no
+/// error, but a verdict.
 pub fn run(request: &Request, on_case: &mut dyn FnMut(&Tried)) -> Result<Outcome> {
     let started = Instant::now();
     let cases: Vec<Case> = cases::all().filter(|case| request.wants(&case.name())).collect();

@@ -1,5 +1,5 @@
-//! A rasteriser that leaves shading space empty: samples find no colour there, as on a device whose road of conservative rasterisation
-//! leaves pixels out.
+//! A rasteriser that leaves shading space empty: samples find no colour there, as on a device whose road of
+//! conservative rasterisation leaves pixels out.
 
 use ash::vk;
 use std::ffi::{CStr, c_void};

@@ -1,4 +1,5 @@
-//! Forward and deferred shading: culling of lights, the pre-pass, samples a pixel, shadows by map and by ray, and both against paths.
+//! Forward and deferred shading: culling of lights, the pre-pass, samples a pixel, shadows by map and by ray, and both
+//! against paths.
 
 use super::super::case::{Group, Must, Place, Twin};
 use super::super::judge::Bounds;

@@ -1,4 +1,5 @@
-//! Deep shading buffers: every way to find, to list, to shade and to resolve samples, beside shading each of them where it is seen.
+//! Deep shading buffers: every way to find, to list, to shade and to resolve samples, beside shading each of them where
+//! it is seen.
 
 use super::super::case::{Group, Must, Place, Settings, Twin};
 use super::super::judge::Bounds;
@@ -20,7 +21,8 @@ const SAMPLES: Bounds = Bounds {
     rmse: 0.03,
     flip: 0.02,
     mean: 0.01,
-    why: "rasterised samples lie on a device's grid in a pixel, others where floats say: those along edges see the other surface",
+    why: "rasterised samples lie on a device's grid in a pixel, others where floats say: those along edges see the \
+          other surface",
 };
 const SHARED: Bounds = Bounds {
     apart: 0.5,
@@ -45,7 +47,8 @@ const LISTS: &[Settings] = &[
     &[("shading", "indirect-gbuffer"), ("shading-cache", "64")],
 ];
 
-/// Who makes a triangle as large as the pixels that it touches. The device's own way runs here and where it is asked for by name.
+/// Who makes a triangle as large as the pixels that it touches. The device's own way runs here and where it is asked
+/// for by name.
 const CONSERVATIVE: &[Settings] =
     &[&[("conservative", "geometry")], &[("conservative", "vertex")], &[("conservative", "hardware")]];
 

@@ -4,8 +4,8 @@ use super::super::case::{Group, Must, Place, Settings, Twin};
 use super::super::closed_form::{BACKGROUND, ClosedForm};
 use super::super::judge::Bounds;
 
-/// Normals of 16 bits, albedo and light in half floats are off by a few parts in ten thousand, of some 0.5 of radiance; three times
-/// what is seen, with vertices placed to a sixteenth of a pixel too.
+/// Normals of 16 bits, albedo and light in half floats are off by a few parts in ten thousand, of some 0.5 of radiance;
+/// three times what is seen, with vertices placed to a sixteenth of a pixel too.
 const FORMULA: Bounds = Bounds {
     apart: 0.0,
     rmse: 5e-4,

@@ -1,4 +1,5 @@
-//! Interleaved deferred shading: every split, storage, form of copy and filter, beside pixels that loop over their own subset.
+//! Interleaved deferred shading: every split, storage, form of copy and filter, beside pixels that loop over their own
+//! subset.
 
 use super::super::case::{Group, Must, Place, Settings, Twin};
 use super::super::judge::Bounds;

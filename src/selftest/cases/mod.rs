@@ -1,10 +1,10 @@
 //! Every case of the self-test, as data: a file a technique, and what all of them share.
 //!
-//! Bounds on other devices are not measured on a GPU: nobody had one. They are what the compilers' liberties come to on lavapipe,
-//! where products and sums were fused and last bits turned at random (RMSE below 1e-4, FLIP below 0.0005, one pixel in 500 along
-//! edges where paths go), with room for an edge that falls otherwise; a row or a tile that is missing, and a hundredth of the light,
-//! stay outside of them. Bounds of two ways to nearly the same picture are some three times the most that lavapipe of Mesa 22.3.6 and
-//! 25.0.7 and SwiftShader are off by.
+//! Bounds on other devices are not measured on a GPU: nobody had one. They are what the compilers' liberties come to on
+//! lavapipe, where products and sums were fused and last bits turned at random (RMSE below 1e-4, FLIP below 0.0005, one
+//! pixel in 500 along edges where paths go), with room for an edge that falls otherwise; a row or a tile that is
+//! missing, and a hundredth of the light, stay outside of them. Bounds of two ways to nearly the same picture are some
+//! three times the most that lavapipe of Mesa 22.3.6 and 25.0.7 and SwiftShader are off by.
 
 mod baselines;
 mod deep;
@@ -22,7 +22,8 @@ pub const ROUNDING: Bounds = Bounds {
     rmse: 0.02,
     flip: 0.005,
     mean: 0.004,
-    why: "equal where each step is rounded alike; compilers of GPUs fuse and reorder, which moves a few pixels along edges",
+    why: "equal where each step is rounded alike; compilers of GPUs fuse and reorder, which moves a few pixels along \
+          edges",
 };
 
 /// The same where rays choose what comes next: one that grazes an edge takes all of a path with it.
@@ -31,7 +32,8 @@ pub const PATHS: Bounds = Bounds {
     rmse: 0.1,
     flip: 0.02,
     mean: 0.03,
-    why: "equal where each step is rounded alike; a ray that grazes an edge takes its whole path with it, and paths are few",
+    why: "equal where each step is rounded alike; a ray that grazes an edge takes its whole path with it, and paths \
+          are few",
 };
 
 /// The same shaders on the same numbers: only when and where they run is another.
@@ -61,7 +63,8 @@ mod tests {
     use crate::techniques::ALL;
     use std::collections::BTreeSet;
 
-    /// No case asks for what cannot be, or for what nothing reads: the picture would be its twin's whatever the device does.
+    /// No case asks for what cannot be, or for what nothing reads: the picture would be its twin's whatever the device
+    /// does.
     #[test]
     fn every_case_is_possible_and_names_are_its_own() {
         let mut names = BTreeSet::new();

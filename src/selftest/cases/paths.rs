@@ -1,4 +1,5 @@
-//! Path tracing: every way through the tree, rays by the driver's own structures, samples in one submit or each in its own.
+//! Path tracing: every way through the tree, rays by the driver's own structures, samples in one submit or each in its
+//! own.
 
 use super::super::case::{Group, Must, Place, Settings, Twin};
 use super::{AGAIN, CUT, PATHS, SAME, WHOLE};
@@ -8,7 +9,8 @@ const CORNELL: Place = Place::Scene("cornell");
 const HALL: Place = Place::Scene("hall:triangles=8000");
 const FEW: (&str, &str) = ("spp", "4");
 
-/// Beside nodes of two with a private stack, depth first. Some drivers compile each for a quarter of a minute: no more than these.
+/// Beside nodes of two with a private stack, depth first. Some drivers compile each for a quarter of a minute: no more
+/// than these.
 const WALKS: &[Settings] = &[
     &[("node-width", "2"), ("stack", "shared"), ("node-layout", "van-emde-boas")],
     &[("node-width", "2"), ("stack", "short")],
@@ -19,7 +21,8 @@ const WALKS: &[Settings] = &[
 
 const QUERIES: &[Settings] = &[&[("rays", "query")]];
 
-/// Structures that a driver builds hold the same triangles; rays that graze an edge may see its other side, on every driver.
+/// Structures that a driver builds hold the same triangles; rays that graze an edge may see its other side, on every
+/// driver.
 const BY_QUERY: Must = Must::Near(PATHS);
 
 pub const GROUPS: &[Group] = &[
