@@ -17,12 +17,12 @@ const RAY: (&str, &str) = ("visibility", "ray");
 const ALONE: Twin = Twin::Road(&[("lists", "none")]);
 
 const SAMPLES: Bounds = Bounds {
-    apart: 0.05,
-    rmse: 0.03,
-    flip: 0.02,
-    mean: 0.01,
-    why: "rasterised samples lie on a device's grid in a pixel, others where floats say: those along edges see the \
-          other surface",
+    apart: 0.1,
+    rmse: 0.08,
+    flip: 0.06,
+    mean: 0.012,
+    why: "rasterised samples lie on a device's grid in a pixel, which may be as coarse as a sixteenth, others where floats \
+          say: those along edges see the other surface",
 };
 const SHARED: Bounds = Bounds {
     apart: 0.5,
@@ -166,7 +166,7 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "samples",
         technique: NAME,
-        place: CORNELL,
+        place: LAMPS,
         common: &[FEW, LENS],
         twin: Twin::Road(&[("visibility", "repeat-frame")]),
         roads: &[&[STOCHASTIC, ("sample-tests", "layers"), ("polygon-from", "vertex")], &[RAY]],
@@ -184,7 +184,7 @@ pub const GROUPS: &[Group] = &[
             &[("sample-tests", "layers"), ("polygon-from", "geometry")],
             &[("sample-tests", "loop"), ("polygon-from", "geometry")],
         ],
-        must: Must::Near(SAMPLES),
+        must: Must::Near(ROUNDING),
     },
     Group {
         name: "ray-lists",
