@@ -1,7 +1,7 @@
 //! `bench` from outside: rows with their keys, what is skipped, what is resumed. Never how long anything takes.
 
 use crate::support::benched::{bench, lines, read};
-use crate::support::program::Program;
+use crate::support::program::{Program, quincunx};
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -264,12 +264,8 @@ fn ctrl_c_keeps_finished_rows_and_resume_goes_on() {
     let sizes: Vec<String> = (0..32).map(|index| format!("{}x48", 64 + index)).collect();
     let sweep = format!("size={}", sizes.join(","));
     let arguments = bench("shade", &["--sweep", &sweep, "--quiet", "-o", "out"]);
-    let mut child = Command::new(env!("CARGO_BIN_EXE_quincunx"))
-        .current_dir(program.folder.path())
-        .args(&arguments)
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child =
+        quincunx().current_dir(program.folder.path()).args(&arguments).stderr(Stdio::null()).spawn().unwrap();
     let rows = program.folder.path().join("out/rows.jsonl");
     let started = Instant::now();
     while !rows.exists() {

@@ -1,10 +1,10 @@
 //! What is said while something takes long: lines where standard error is no terminal, a bar where it is one.
 
-use crate::support::program::{Program, Ran};
+use crate::support::program::{Program, Ran, quincunx};
 use std::fs::File;
 use std::io::Read;
 use std::os::fd::{AsRawFd, FromRawFd};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 const PATHS: [&str; 6] = ["render", "cornell", "--technique", "path_traced", "--size", "64x64"];
 /// Far enough above the second from which on something is said.
@@ -85,7 +85,7 @@ fn a_terminal_gets_a_bar_with_its_count_and_what_is_left() {
     let size = libc::winsize { ws_row: 24, ws_col: 160, ws_xpixel: 0, ws_ypixel: 0 };
     // SAFETY: a live descriptor of a terminal, and the struct that the request takes.
     assert_eq!(unsafe { libc::ioctl(theirs.as_raw_fd(), libc::TIOCSWINSZ, &raw const size) }, 0);
-    let child = Command::new(env!("CARGO_BIN_EXE_quincunx"))
+    let child = quincunx()
         .current_dir(program.folder.path())
         .env("TERM", "xterm")
         .args(PATHS)

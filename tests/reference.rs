@@ -1,7 +1,7 @@
 //! References: from a file, made, kept, broken; what is judged against them, and what is refused.
 
 use crate::support::placing_steps;
-use crate::support::program::Program;
+use crate::support::program::{self, Program};
 use crate::support::watched::{Changes, Watched, both, values};
 use glam::Vec3;
 use quincunx::job::settings_of;
@@ -16,7 +16,6 @@ use quincunx::units::Extent;
 use serde_json::Value;
 use std::cell::RefCell;
 use std::path::Path;
-use std::process::Command;
 use std::time::Duration;
 
 const SMALL: [&str; 6] = ["render", "cornell", "--size", "32x18", "--vpls", "16"];
@@ -239,7 +238,8 @@ fn two_processes_at_once_leave_one_whole_file() {
     }
     let folder = tempfile::tempdir().unwrap();
     let start = || {
-        let mut command = Command::new(std::env::current_exe().unwrap());
+        // Under a runner the process is that of a dynamic linker, and its file too.
+        let mut command = program::start(std::env::args_os().next().unwrap());
         command.args(["--exact", "reference::two_processes_at_once_leave_one_whole_file"]).env(CHILD, folder.path());
         command.stdout(std::process::Stdio::null()).spawn().unwrap()
     };

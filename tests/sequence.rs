@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::support::gltf_file::{GltfFile, painted_png};
-use crate::support::program::Program;
+use crate::support::program::{Program, quincunx};
 use crate::support::watched::Watched;
 use quincunx::scene::{AnimationChoice, Scene};
 use serde_json::json;
@@ -154,7 +154,7 @@ fn what_cannot_be_is_refused() {
 #[test]
 fn ctrl_c_keeps_finished_frames() {
     let program = moving();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_quincunx"))
+    let mut child = quincunx()
         .current_dir(program.folder.path())
         .args(render(&["--frames", "0..99999", "--quiet", "-o", "a.png", "--report", "r.json"]))
         .stderr(Stdio::null())

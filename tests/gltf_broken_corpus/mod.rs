@@ -10,7 +10,7 @@ mod paths;
 mod structure;
 
 use crate::support::gltf_file::GltfFile;
-use crate::support::program::Program;
+use crate::support::program::{Program, quincunx};
 use std::path::Path;
 use std::time::Duration;
 
@@ -128,7 +128,7 @@ fn run(cases: Vec<Case>) {
 #[test]
 fn an_argument_that_is_not_utf8() {
     use std::os::unix::ffi::OsStrExt;
-    let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
+    let mut command = quincunx();
     let output = command.arg("render").arg(std::ffi::OsStr::from_bytes(b"a\xff.glb")).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let err = String::from_utf8(output.stderr).unwrap();

@@ -1,8 +1,8 @@
 //! The program from outside, with what it took: time on a processor and memory at the peak, as the system counts them.
 
-use super::program::{Program, Ran};
+use super::program::{Program, Ran, quincunx};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::process::{Command, ExitStatus};
+use std::process::ExitStatus;
 use std::time::Duration;
 
 /// A run that never ends is ended by the system after as much time on a processor.
@@ -22,7 +22,7 @@ impl Program {
     #[expect(clippy::zombie_processes, reason = "wait4 waits, and measures")]
     pub fn measure(&self, arguments: &[&str]) -> Measured {
         let (out, err) = (self.path("standard-output"), self.path("standard-error"));
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("quincunx"));
+        let mut command = quincunx();
         command.current_dir(self.folder.path()).args(arguments);
         command.stdout(std::fs::File::create(&out).unwrap()).stderr(std::fs::File::create(&err).unwrap());
         // SAFETY: setrlimit is one of the calls that are allowed between fork and exec.

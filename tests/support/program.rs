@@ -2,8 +2,27 @@
 
 use assert_cmd::Command;
 use serde_json::Value;
+use std::ffi::OsStr;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
+
+/// How a program is started: as it is, or through what QUINCUNX_RUNNER names, with its path as the first argument. The runner must
+/// become that program, whose process is interrupted and measured.
+pub fn start(program: impl AsRef<OsStr>) -> std::process::Command {
+    match std::env::var_os("QUINCUNX_RUNNER") {
+        Some(runner) => {
+            let mut command = std::process::Command::new(runner);
+            command.arg(program);
+            command
+        }
+        None => std::process::Command::new(program),
+    }
+}
+
+/// The program of this package.
+pub fn quincunx() -> std::process::Command {
+    start(env!("CARGO_BIN_EXE_quincunx"))
+}
 
 /// The program in an empty folder.
 pub struct Program {
@@ -34,7 +53,7 @@ impl Program {
     }
 
     pub fn run_with(&self, arguments: &[&str], variables: &[(&str, &str)]) -> Ran {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("quincunx");
+        let mut command = Command::from_std(quincunx());
         command.current_dir(self.folder.path()).args(arguments).envs(variables.iter().copied());
         Ran::of(command)
     }
@@ -43,7 +62,7 @@ impl Program {
     /// progress left out.
     #[cfg(target_os = "linux")]
     pub fn interrupted(&self, arguments: &[&str], is_time: impl Fn() -> bool) -> (Option<i32>, String) {
-        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_quincunx"))
+        let mut child = quincunx()
             .current_dir(self.folder.path())
             .args(arguments)
             .stdout(Stdio::null())
@@ -111,7 +130,10 @@ impl Ran {
     }
 
     /// `said`: on standard error.
+    ///
+    /// A layer that watches a program which does not listen says on standard output what it has found.
     pub fn new(code: i32, out: String, said: &str) -> Self {
+        assert!(!out.contains("Validation Error: ["), "{out}");
         let (progress, err) = without_progress(said);
         Self { code, out, err, progress }
     }
