@@ -8,7 +8,9 @@ mod limits;
 mod link;
 mod memory;
 mod modes;
+mod null;
 mod padding;
+mod statistics;
 mod tables;
 mod types;
 
@@ -22,6 +24,8 @@ macro_rules! function {
         Some(unsafe { std::mem::transmute::<$type, unsafe extern "system" fn()>($pointer) })
     };
 }
+
+use function;
 
 /// What this layer has of the functions of instances and physical devices.
 fn of_instances(name: &[u8]) -> vk::PFN_vkVoidFunction {
@@ -44,6 +48,16 @@ fn of_instances(name: &[u8]) -> vk::PFN_vkVoidFunction {
 
 /// What it has of those of devices.
 fn of_devices(name: &[u8]) -> vk::PFN_vkVoidFunction {
+    if statistics::FILE.is_some()
+        && let Some(watched) = statistics::function(name)
+    {
+        return Some(watched);
+    }
+    if modes::MODES.null
+        && let Some(made) = null::function(name)
+    {
+        return Some(made);
+    }
     match name {
         b"vkGetDeviceProcAddr" => function!(get_device_proc_addr, vk::PFN_vkGetDeviceProcAddr),
         b"vkAllocateMemory" => function!(memory::allocate, vk::PFN_vkAllocateMemory),

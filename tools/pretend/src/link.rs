@@ -1,5 +1,6 @@
 //! The chain of layers: instances and devices are made by the next one (vk_layer.h).
 
+use crate::statistics;
 use crate::tables::{self, DeviceTable, InstanceTable, Known};
 use ash::vk;
 use std::ffi::c_void;
@@ -81,7 +82,12 @@ pub unsafe extern "system" fn create_device(
             return vk::Result::ERROR_INITIALIZATION_FAILED;
         };
         let table = tables::of_physical(physical);
-        let result = (table.next.fp_v1_0().create_device)(physical, info, allocator, device);
+        let (mut names, mut feature) = Default::default();
+        let info = match statistics::FILE.is_some() {
+            true => statistics::with_statistics(&*info, &mut names, &mut feature),
+            false => *info,
+        };
+        let result = (table.next.fp_v1_0().create_device)(physical, &info, allocator, device);
         if result == vk::Result::SUCCESS {
             let handle = *device;
             let next = ash::Device::load_with(

@@ -16,6 +16,8 @@ pub struct Modes {
     pub gpu: bool,
     /// The least limits and features that Vulkan 1.3 lets a device have.
     pub least_limits: bool,
+    /// The driver has no hardware: it compiles, and what it lacks beside that is made up.
+    pub null: bool,
 }
 
 pub static MODES: LazyLock<Modes> = LazyLock::new(|| {
@@ -29,10 +31,15 @@ pub static MODES: LazyLock<Modes> = LazyLock::new(|| {
             "discrete" => modes.discrete = true,
             "gpu" => modes.gpu = true,
             "least-limits" => modes.least_limits = true,
+            "null" => modes.null = true,
             _ => crate::fail(&format!(
-                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu and least-limits"
+                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu, least-limits and null"
             )),
         }
+    }
+    // The others look into memory, which devices without hardware do not fill.
+    if modes.null && text != "null" {
+        crate::fail(&format!("QUINCUNX_PRETEND={text}: null stands alone"));
     }
     modes
 });

@@ -26,6 +26,8 @@ pub struct Known {
     /// Where they are bound, for who shares bytes with whom.
     pub images: HashMap<vk::Image, Bound>,
     pub formats: HashMap<vk::Image, vk::Format>,
+    /// Names that the program gave them.
+    pub modules: HashMap<vk::ShaderModule, String>,
 }
 
 pub struct Memory {

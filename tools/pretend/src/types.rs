@@ -15,10 +15,16 @@ const TYPES: [(Flags, u32); 5] = [
     (Flags::from_raw(Flags::DEVICE_LOCAL.as_raw() | Flags::HOST_VISIBLE.as_raw() | Flags::HOST_COHERENT.as_raw()), 2),
 ];
 /// Images lie where the device alone sees them.
-const OF_IMAGES: u32 = 0b10001;
+pub const OF_IMAGES: u32 = 0b10001;
 
 /// What the device alone sees, and what it shares with the host.
 const BAR_BYTES: u64 = 256 << 20;
+/// What a device without hardware has.
+const NULL_BYTES: u64 = 8 << 30;
+
+fn is_discrete() -> bool {
+    MODES.discrete || MODES.null
+}
 
 pub unsafe extern "system" fn memory_properties(
     physical: vk::PhysicalDevice,
@@ -30,10 +36,10 @@ pub unsafe extern "system" fn memory_properties(
         (table.next.fp_v1_0().get_physical_device_memory_properties)(physical, properties);
         &mut *properties
     };
-    if !MODES.discrete {
+    if !is_discrete() {
         return;
     }
-    let bytes = properties.memory_heaps[0].size;
+    let bytes = if MODES.null { NULL_BYTES } else { properties.memory_heaps[0].size };
     let heap = |size, flags| vk::MemoryHeap { size, flags };
     properties.memory_heap_count = 3;
     properties.memory_heaps[0] = heap(bytes, vk::MemoryHeapFlags::DEVICE_LOCAL);
@@ -53,12 +59,12 @@ pub fn of_driver(kind: u32) -> u32 {
 
 /// Whether the host may map it.
 pub fn is_mappable(kind: u32) -> bool {
-    !MODES.discrete || TYPES[kind as usize].0.contains(Flags::HOST_VISIBLE | Flags::HOST_COHERENT)
+    !is_discrete() || TYPES[kind as usize].0.contains(Flags::HOST_VISIBLE | Flags::HOST_COHERENT)
 }
 
 /// SAFETY: what the next layer has written.
 unsafe fn pretend(requirements: *mut vk::MemoryRequirements, is_image: bool) {
-    if MODES.discrete {
+    if is_discrete() {
         // SAFETY: the caller's.
         unsafe { (*requirements).memory_type_bits = if is_image { OF_IMAGES } else { (1 << TYPES.len()) - 1 } };
     }
