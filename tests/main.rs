@@ -11,6 +11,7 @@ mod caps;
 mod cli;
 mod collapse;
 mod compare;
+mod compilers;
 mod contract;
 mod contract_values;
 mod deep_baselines;
