@@ -229,6 +229,8 @@ fn expected_choice(tried: &Tried, key: &str) -> Option<&'static str> {
         "pass-samples" => "4",
         "list-access" => "descriptors",
         "texels" if !is_software => "1",
+        "cull-by" if is_software => "invocation",
+        "cull-by" => "workgroup",
         _ => return None,
     })
 }
@@ -249,7 +251,16 @@ fn plans_and_choices_are_what_the_caps_allow() {
         }
     }
     // The files differ in what these ask.
-    for key in ["storage", "conservative", "polygon-from", "sample-tests", "shadow-filter", "pass-samples", "texels"] {
+    for key in [
+        "storage",
+        "conservative",
+        "polygon-from",
+        "sample-tests",
+        "shadow-filter",
+        "pass-samples",
+        "texels",
+        "cull-by",
+    ] {
         assert!(seen.get(key).is_some_and(|values| values.len() > 1), "{key}: {seen:?}");
     }
     require_same_bytes(&tried);
@@ -264,8 +275,9 @@ fn require_same_bytes(tried: &[Tried]) {
         let [bytes, bound] = ["planned_bytes", "allocated_bytes"].map(|key| number(&sums[key]));
         assert_eq!(study.is_unrounded, caps.layout.is_none(), "{name}");
         assert!(if study.is_unrounded { bound == bytes } else { bound >= bytes }, "{name}: {case}: {bound} of {bytes}");
-        // How many pixels a thread works on takes no memory.
-        let choices: Vec<_> = resolved.iter().filter(|(key, _)| **key != "texels").collect();
+        // How work is shared out among threads takes no memory.
+        let is_of_threads = |key: &str| ["texels", "cull-by"].contains(&key);
+        let choices: Vec<_> = resolved.iter().filter(|(key, _)| !is_of_threads(key)).collect();
         let key = format!("{case} {choices:?} {}", caps.features.draw_indirect_count);
         let (expected, other) = *asked.entry(key).or_insert((bytes, name));
         assert_eq!(bytes, expected, "{case}: {name} and {other}");
