@@ -1,6 +1,6 @@
 //! Every choice of every setting plans, compiles and records, or is refused by name.
 
-use super::{Null, is_refused};
+use super::{FAMILIES, Null, is_refused};
 use quincunx::job::settings_of;
 use quincunx::settings::{Kind, Setting, Values, readers};
 use quincunx::techniques::{self, Technique};
@@ -33,8 +33,8 @@ fn are_read(technique: &dyn Technique, settings: &[Setting], changes: &[Change])
     changes.iter().all(|(key, _)| readers::unread(conditions(), &values, key).is_none())
 }
 
-/// A choice, and the ways to ask for it: by itself and with one other change, or where nothing reads it so with two; those
-/// in which something reads all of it.
+/// A choice, and the ways to ask for it in which something reads all of it: by itself and with one other change, or,
+/// where there are none, with two.
 struct Asked {
     choice: Change,
     ways: Vec<Vec<Change>>,
@@ -78,13 +78,13 @@ enum Outcome {
     Wrong(String),
 }
 
-fn try_way(null: &Null, family: &str, technique: &str, changes: &[Change]) -> Outcome {
+fn try_way(null: &Null, technique: &str, changes: &[Change]) -> Outcome {
     let flags: Vec<String> = changes.iter().map(|(key, _)| format!("--{key}")).collect();
     let mut words = vec!["--technique", technique];
     for (flag, (_, text)) in flags.iter().zip(changes) {
         words.extend([&flag[..], text]);
     }
-    let ran = null.render(family, &words, &[]);
+    let ran = null.render(&words, &[]);
     match ran.code {
         0 => Outcome::Made,
         2 if is_refused(&ran) => Outcome::Contradicts,
@@ -96,11 +96,11 @@ fn try_way(null: &Null, family: &str, technique: &str, changes: &[Change]) -> Ou
 }
 
 fn compile(family: &str) {
-    let Some(null) = Null::open() else { return };
+    let Some(null) = Null::open(FAMILIES.iter().find(|known| known.name == family).unwrap()) else { return };
     let (mut made, mut lacks, mut wrong) = (0, Vec::new(), Vec::new());
     for technique in techniques::ALL {
         for Asked { choice, ways } in choices(*technique) {
-            let tried = ways.iter().map(|changes| try_way(&null, family, technique.name(), changes));
+            let tried = ways.iter().map(|changes| try_way(&null, technique.name(), changes));
             let outcome = tried.into_iter().find(|outcome| !matches!(outcome, Outcome::Contradicts));
             match outcome {
                 Some(Outcome::Made) => made += 1,
@@ -130,6 +130,11 @@ fn navi21_takes_every_choice_or_refuses_it() {
 #[test]
 fn gfx1201_takes_every_choice_or_refuses_it() {
     compile("gfx1201");
+}
+
+#[test]
+fn tu104_takes_every_choice_or_refuses_it() {
+    compile("tu104");
 }
 
 /// What is compiled above, counted without a device: no choice is left out, and each of them is asked for once.

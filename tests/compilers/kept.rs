@@ -1,8 +1,9 @@
-//! What compilers of GPUs make of the shaders that frames spend their time in, against figures that are kept: registers, scratch, waves.
+//! What compilers of GPUs make of the shaders that frames spend their time in, against figures that are kept:
+//! registers, scratch, waves.
 //!
 //! `assets/compilers/FAMILY.json` keeps them and `docs/compilers.md` shows them; `tools/compilers --bless` writes both.
 
-use super::{FAMILIES, Null, is_refused};
+use super::{FAMILIES, Family, Null, is_refused};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,22 +44,35 @@ const MEASURED: [&str; 27] = [
 /// Of one shader; where several pipelines have it, the worst of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Figures {
-    /// Registers of a lane, and of all lanes of a wave together.
+    /// Registers of a lane.
     vgprs: u64,
+    /// Registers of all lanes of a wave together; 0 where the driver counts none.
     sgprs: u64,
-    /// Workgroup memory.
+    /// Workgroup memory; 0 where the driver does not say.
     lds_bytes: u64,
     /// Private memory of a lane beyond its registers.
     scratch_bytes: u64,
-    /// That a SIMD holds at once, as far as the shader decides it.
+    /// That a SIMD (AMD) or a multiprocessor (NVIDIA) holds at once, as far as the shader decides it.
     waves: u64,
     code_bytes: u64,
+}
+
+/// Waves of a multiprocessor of Turing by a lane's registers: 65,536 for 32 waves at most, given out by 256 a wave
+/// (NVIDIA, CUDA C++ Programming Guide, technical specifications of compute capability 7.5). Workgroup memory is not
+/// counted.
+fn turing_waves(registers: u64) -> u64 {
+    (65_536 / (registers.max(1) * 32).next_multiple_of(256)).min(32)
 }
 
 impl Figures {
     /// Of a line that the layer has written.
     fn of(line: &Value) -> Self {
         let number = |name: &str| line[name].as_u64().unwrap_or_else(|| panic!("no {name}: {line}"));
+        if line.get("Number of GPRs").is_some() {
+            let vgprs = number("Number of GPRs");
+            let (scratch_bytes, code_bytes) = (number("SLM Size"), number("Code Size"));
+            return Self { vgprs, sgprs: 0, lds_bytes: 0, scratch_bytes, waves: turing_waves(vgprs), code_bytes };
+        }
         Self {
             vgprs: number("VGPRs"),
             sgprs: number("SGPRs"),
@@ -115,13 +129,14 @@ impl Kept {
         std::fs::write(file_of(family), text).unwrap();
     }
 
-    fn measure(null: &Null, family: &str) -> Self {
+    fn measure(null: &Null, family: &Family) -> Self {
+        let family = family.name;
         let statistics = null.program.path("statistics.jsonl");
         let _ = std::fs::remove_file(&statistics);
         let mut driver = String::new();
         for command in MEASURED {
             let words: Vec<&str> = ["--technique"].into_iter().chain(command.split(' ')).collect();
-            let ran = null.render(family, &words, &[("QUINCUNX_PRETEND_STATISTICS", &statistics)]);
+            let ran = null.render(&words, &[("QUINCUNX_PRETEND_STATISTICS", &statistics)]);
             if ran.code == 0 {
                 driver = ran.json()["device"]["driver_info"].as_str().unwrap().to_owned();
             } else {
@@ -193,8 +208,9 @@ fn table(families: &[(&str, Kept)]) -> String {
 
 #[test]
 fn no_shader_takes_scratch_or_loses_half_its_waves() {
-    let Some(null) = Null::open() else { return };
-    let measured: Vec<(&str, Kept)> = FAMILIES.iter().map(|family| (*family, Kept::measure(&null, family))).collect();
+    let open = |family| Null::open(family).map(|null| (family.name, Kept::measure(&null, family)));
+    let measured: Option<Vec<(&str, Kept)>> = FAMILIES.iter().map(open).collect();
+    let Some(measured) = measured else { return };
     if std::env::var("BLESS").is_ok_and(|blessed| blessed == "compilers") {
         for (family, kept) in &measured {
             kept.write(family);
@@ -217,10 +233,15 @@ fn no_shader_takes_scratch_or_loses_half_its_waves() {
 
 #[test]
 fn the_page_shows_what_is_kept() {
-    let families: Vec<(&str, Kept)> = FAMILIES.iter().map(|family| (*family, Kept::read(family))).collect();
+    let families: Vec<(&str, Kept)> = FAMILIES.iter().map(|family| (family.name, Kept::read(family.name))).collect();
     let text = std::fs::read_to_string(page()).unwrap();
     let shown = text.split_once(TABLE).map(|(_, rest)| format!("{TABLE}{rest}"));
     assert!(shown.as_deref() == Some(&table(&families)), "tools/compilers --bless writes docs/compilers.md");
+}
+
+#[test]
+fn waves_of_turing_are_those_that_its_registers_hold() {
+    assert_eq!([16, 64, 65, 128, 129, 255].map(turing_waves), [32, 32, 28, 16, 15, 8]);
 }
 
 #[test]
