@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 layout(std430, set = 0, binding = 1) readonly buffer Lights { LightBlock lights[]; };
 layout(std430, set = 0, binding = 4) writeonly buffer LightMasks { uint light_masks[]; };
 
-// Of surface points; least beyond greatest where there are none.
+// Around surface points; least beyond greatest where there are none.
 struct Box {
     vec3 least;
     vec3 greatest;

@@ -16,7 +16,7 @@ pub struct Caps {
     pub conservative: Option<ConservativeRules>,
     pub heaps: Vec<Heap>,
     pub memory_types: Vec<MemoryType>,
-    /// Of drivers on which it was measured only; a live device is asked instead.
+    /// There for drivers on which it was measured only; a live device is asked instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<LayoutRules>,
 }

@@ -41,7 +41,7 @@ const MEASURED: [&str; 27] = [
     "path_traced --spp 1 --rays query",
 ];
 
-/// Of one shader; where several pipelines have it, the worst of them.
+/// One shader's figures; where several pipelines have it, the worst of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Figures {
     /// Registers of a lane.
@@ -65,7 +65,7 @@ fn turing_waves(registers: u64) -> u64 {
 }
 
 impl Figures {
-    /// Of a line that the layer has written.
+    /// What a line says that the layer has written.
     fn of(line: &Value) -> Self {
         let number = |name: &str| line[name].as_u64().unwrap_or_else(|| panic!("no {name}: {line}"));
         if line.get("Number of GPRs").is_some() {

@@ -190,7 +190,8 @@ pub const GROUPS: &[Group] = &[
         twin: Twin::Road(&[("cull", "none"), ("texels", "1"), EVERYTHING[0]]),
         roads: &[
             &[("cull", "none")],
-            &[("cull", "tiled")],
+            &[("cull", "tiled"), ("cull-by", "invocation")],
+            &[("cull", "tiled"), ("cull-by", "workgroup")],
             &[("cull", "tiled"), ("texels", "1"), ("workgroup", "8x8")],
             &[("texels", "4")],
             &[("texels", "32"), ("workgroup", "32x4")],

@@ -62,7 +62,8 @@ pub const GROUPS: &[Group] = &[
         common: &[],
         twin: Twin::Road(&[("volumes", "tiled"), ("texels", "1"), ("depth-prepass", "off"), EVERYTHING[0]]),
         roads: &[
-            &[("volumes", "tiled")],
+            &[("volumes", "tiled"), ("cull-by", "invocation")],
+            &[("volumes", "tiled"), ("cull-by", "workgroup")],
             &[("volumes", "tiled"), ("workgroup", "8x8")],
             &[("volumes", "quad")],
             &[("volumes", "scissor")],

@@ -74,7 +74,8 @@ pub const GROUPS: &[Group] = &[
         common: &[VPLS, ("pattern", "3x2"), ("cull", "tiled")],
         twin: Twin::Road(&[("split", "branch")]),
         roads: &[
-            &[("split", "one-pass")],
+            &[("split", "one-pass"), ("cull-by", "invocation")],
+            &[("split", "one-pass"), ("cull-by", "workgroup")],
             &[("split", "two-pass"), ("storage", "image"), ("block", "9x4")],
             &[("split", "tile"), ("block", "12")],
             &[("split", "stencil")],
