@@ -1,4 +1,6 @@
 //! A Vulkan layer between a program and a driver: it changes what memory holds and what devices say, never what a right program draws.
+//! Two modes change shaders as far as other compilers may, which moves last bits: a right program's picture is the same
+//! to the eye.
 //!
 //! QUINCUNX_PRETEND names the modes, with commas between (modes.rs). What a wrong program does is said on standard error, and ends it.
 
@@ -10,6 +12,8 @@ mod memory;
 mod modes;
 mod null;
 mod padding;
+mod rewrite;
+mod shaders;
 mod statistics;
 mod tables;
 mod types;
@@ -81,6 +85,7 @@ fn of_devices(name: &[u8]) -> vk::PFN_vkVoidFunction {
         b"vkUpdateDescriptorSets" => function!(padding::update_sets, vk::PFN_vkUpdateDescriptorSets),
         b"vkCmdFillBuffer" => function!(padding::fill, vk::PFN_vkCmdFillBuffer),
         b"vkCreateImage" => function!(discard::create_image, vk::PFN_vkCreateImage),
+        b"vkCreateShaderModule" => function!(shaders::create_shader_module, vk::PFN_vkCreateShaderModule),
         b"vkCmdPipelineBarrier2" => function!(discard::barrier, vk::PFN_vkCmdPipelineBarrier2),
         _ => None,
     }

@@ -1,5 +1,6 @@
 //! The chain of layers: instances and devices are made by the next one (vk_layer.h).
 
+use crate::modes::MODES;
 use crate::statistics;
 use crate::tables::{self, DeviceTable, InstanceTable, Known};
 use ash::vk;
@@ -82,10 +83,20 @@ pub unsafe extern "system" fn create_device(
             return vk::Result::ERROR_INITIALIZATION_FAILED;
         };
         let table = tables::of_physical(physical);
+        let mut features = (*info).p_enabled_features.as_ref().copied();
+        if MODES.contract.is_some() {
+            // What the rewritten shaders compute in.
+            let Some(features) = &mut features else {
+                crate::fail("contract: a device without enabled features of Vulkan 1.0, where shaderFloat64 would go");
+            };
+            features.shader_float64 = vk::TRUE;
+        }
+        let p_enabled_features = features.as_ref().map_or(std::ptr::null(), |features| features as *const _);
+        let info = vk::DeviceCreateInfo { p_enabled_features, ..*info };
         let (mut names, mut feature) = Default::default();
         let info = match statistics::FILE.is_some() {
-            true => statistics::with_statistics(&*info, &mut names, &mut feature),
-            false => *info,
+            true => statistics::with_statistics(&info, &mut names, &mut feature),
+            false => info,
         };
         let result = (table.next.fp_v1_0().create_device)(physical, &info, allocator, device);
         if result == vk::Result::SUCCESS {

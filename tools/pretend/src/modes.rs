@@ -18,12 +18,27 @@ pub struct Modes {
     pub least_limits: bool,
     /// The driver has no hardware: it compiles, and what it lacks beside that is made up.
     pub null: bool,
+    /// Products and sums of shaders become one operation where a compiler may do so; by this seed.
+    pub contract: Option<u64>,
+    /// Results of shaders that need not be exact are one unit in the last place off; by this seed.
+    pub last_bit: Option<u64>,
 }
 
 pub static MODES: LazyLock<Modes> = LazyLock::new(|| {
     let mut modes = Modes::default();
     let text = std::env::var("QUINCUNX_PRETEND").unwrap_or_default();
     for word in text.split(',').filter(|word| !word.is_empty()) {
+        if let Some((name, seed)) = word.split_once('=') {
+            let Ok(seed) = seed.parse() else {
+                crate::fail(&format!("QUINCUNX_PRETEND={text}: {word}: a seed is a whole number from 0"));
+            };
+            match name {
+                "contract" => modes.contract = Some(seed),
+                "last-bit" => modes.last_bit = Some(seed),
+                _ => crate::fail(&format!("QUINCUNX_PRETEND={text}: {word}: contract and last-bit alone take a seed")),
+            }
+            continue;
+        }
         match word {
             "poison" => modes.poison = true,
             "discard" => modes.discard = true,
@@ -33,7 +48,8 @@ pub static MODES: LazyLock<Modes> = LazyLock::new(|| {
             "least-limits" => modes.least_limits = true,
             "null" => modes.null = true,
             _ => crate::fail(&format!(
-                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu, least-limits and null"
+                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu, least-limits, \
+                 contract=SEED and last-bit=SEED"
             )),
         }
     }
