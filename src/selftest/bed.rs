@@ -94,17 +94,20 @@ impl Bed {
         Ok(self.gpu.clone().expect("it was opened above"))
     }
 
-    /// Renders a frame; a device that fails is given up.
+    /// Renders a frame; a device that fails is given up. Settings of cases can be: what refuses them as a bad request is a
+    /// limit of the device.
     ///
-    /// Errors: it is nothing that the device lacks (any exit code).
+    /// Errors: NaN, memory, a device that fails (exit codes 1 and 4).
     pub fn render(&mut self, road: Road<'_>) -> Result<Made> {
         let made = self.try_render(road);
         match made {
-            Err(error) if error.kind() == ErrorKind::NoDevice => Ok(Made::Refused(Refusal {
-                of: road.1.to_owned(),
-                needs: error.message().to_owned(),
-                instead: String::new(),
-            })),
+            Err(error) if matches!(error.kind(), ErrorKind::NoDevice | ErrorKind::Request) => {
+                Ok(Made::Refused(Refusal {
+                    of: road.1.to_owned(),
+                    needs: error.message().to_owned(),
+                    instead: String::new(),
+                }))
+            }
             Err(error) if error.kind() == ErrorKind::Device => {
                 self.give_up();
                 Err(error)
