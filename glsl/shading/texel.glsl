@@ -14,7 +14,8 @@ int wrapped(uint wrap, int at, int size) {
     }
     int period = wrap == WRAP_MIRRORED ? 2 * size : size;
     int inside = at - period * int(floor(float(at) / float(period)));
-    // Far out a float is off by one period.
+    // A quotient may be less than the whole number that it is, and far out a float is off: by one period, or by more.
+    inside += inside < 0 ? period : inside >= period ? -period : 0;
     inside = clamp(inside, 0, period - 1);
     return inside >= size ? period - 1 - inside : inside;
 }

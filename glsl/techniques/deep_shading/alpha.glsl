@@ -7,9 +7,10 @@
 #include "techniques/deep_shading/mixed.glsl"
 
 // 0 to 1 without 1, another for each sample, draw and run: layers over each other must not let the same samples pass.
+// A product with a power of two is exact on every device, and the same in each shader that asks; a quotient need not be.
 float alpha_threshold(uvec2 at, uint tuple, uint draw) {
     uint bits = mixed(at.x * 0x9e3779b1u ^ at.y * 0x85ebca77u ^ tuple * 0xc2b2ae3du ^ draw * 0x27d4eb2fu);
-    return float(bits >> 8) / 16777216.0;
+    return float(bits >> 8) * (1.0 / 16777216.0);
 }
 
 bool is_seen(float alpha, uvec2 at, uint tuple) {
