@@ -1,6 +1,7 @@
 //! What blends is lit from lists of its pieces: the picture of every light, of a technique with a G-buffer as of forward.
 
 use crate::support;
+use crate::support::difference::require_same;
 use crate::support::square::{matt, square};
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, Vec4};
@@ -13,7 +14,7 @@ const TECHNIQUES: [&str; 3] = ["deferred", "interleaved_deferred", "forward"];
 fn require_one_picture(watched: &Watched, technique: &str, common: Changes<'_>) -> Vec<[f32; 3]> {
     let listed = watched.picture(technique, common);
     let every = watched.picture(technique, &both(common, &[("light-lists", "none")]));
-    assert_eq!(listed.hash().unwrap(), every.hash().unwrap(), "{technique} with {common:?}");
+    require_same(&watched.session.gpu, &listed, &every, &(technique, common));
     listed.pixels
 }
 

@@ -1,6 +1,8 @@
-//! Roads that must agree bit for bit: a technique at its degenerate setting, culling on and off, one submit and many.
+//! Roads that must agree, bit for bit on software drivers: a technique at its degenerate setting, culling on and off,
+//! one submit and many.
 
 use crate::support;
+use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::memory::Strategy;
@@ -42,7 +44,19 @@ const ROADS_IN_BLOCKS: [Changes<'_>; 7] = [
     &[("split", "fragment"), ("fragment-passes", "2")],
 ];
 
-/// The same picture from every road that must give it.
+/// The same picture from every road that must give it, whose shaders differ; returns the first one's hash.
+#[track_caller]
+fn require_one_picture(watched: &Watched, technique: &str, common: Changes<'_>, variants: &[Changes<'_>]) -> String {
+    let first = watched.picture(technique, &both(common, variants[0]));
+    for variant in &variants[1..] {
+        let found = watched.picture(technique, &both(common, variant));
+        require_same(&watched.session.gpu, &found, &first, &(technique, common, variant));
+    }
+    first.hash().unwrap()
+}
+
+/// The same bits from everything that leaves the shaders as they are.
+#[track_caller]
 fn require_one_hash(watched: &Watched, technique: &str, common: Changes<'_>, variants: &[Changes<'_>]) -> String {
     let mut hashes = BTreeMap::new();
     for variant in variants {
@@ -58,11 +72,12 @@ fn require_every_road_is_branch(size: &str, patterns: &[&str]) {
     let mut seen = Vec::new();
     for pattern in patterns {
         let common = [("vpls", "64"), ("size", size), ("filter", "none"), ("pattern", pattern)];
-        seen.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
+        seen.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
     }
-    // Plain deferred shading of the same lights.
-    let none = [("vpls", "64"), ("size", size), ("split", "none")];
-    assert_eq!(watched.hash(INTERLEAVED, &none), seen[0], "{size}: the pattern of one pixel");
+    // Plain deferred shading of the same lights is the pattern of one pixel.
+    let plain: [Changes<'_>; 2] =
+        [&[("split", "none")], &[("split", "branch"), ("filter", "none"), ("pattern", "1x1")]];
+    assert_eq!(require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", size)], &plain[..]), seen[0]);
     // Hashes that never differ would prove nothing.
     let distinct: std::collections::BTreeSet<_> = seen.iter().collect();
     assert_eq!(distinct.len(), patterns.len(), "{size}: {seen:?}");
@@ -85,7 +100,7 @@ fn every_road_is_branch_behind_every_filter() {
     let mut hashes = Vec::new();
     for filter in ["none", "gauss", "gauss-fast"] {
         let common = [("vpls", "64"), ("size", "161x91"), ("pattern", "4x4"), ("filter", filter)];
-        hashes.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
+        hashes.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
     }
     hashes.sort();
     hashes.dedup();
@@ -101,13 +116,13 @@ fn passes_fused_change_no_pixel() {
     ] {
         for road in ROADS {
             let common = both(&both(&[("vpls", "64")], &filter), road);
-            require_one_hash(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
+            require_one_picture(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
         }
     }
     // What the composite shades beside walking its columns.
     for lit in [&[("cull", "tiled")][..], &[("direct-shadow", "ray")], &[("texels", "1")], &[("size", "7x5")]] {
         let common = both(&[("vpls", "64"), ("size", "97x53")], lit);
-        require_one_hash(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
+        require_one_picture(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
     }
 }
 
@@ -140,7 +155,7 @@ fn blocks_of_any_shape_change_no_pixel() {
     let watched = Watched::open("cornell");
     for (pattern, size) in [("3x2", "161x91"), ("5x7", "97x64")] {
         let common = [("vpls", "64"), ("size", size), ("pattern", pattern)];
-        let branch = watched.hash(INTERLEAVED, &both(&common, &[("split", "branch")]));
+        let branch = watched.picture(INTERLEAVED, &both(&common, &[("split", "branch")]));
         // Rounded to whole patterns; smaller than the pattern; odd sub-blocks; flat, tall, larger than the frame.
         for block in ["1", "7", "40x4", "3x37", "16x16", "200"] {
             for road in ROADS_IN_BLOCKS {
@@ -150,7 +165,7 @@ fn blocks_of_any_shape_change_no_pixel() {
                     continue;
                 }
                 let changes = both(&both(&common, road), &[("block", block)]);
-                assert_eq!(watched.hash(INTERLEAVED, &changes), branch, "{changes:?}");
+                require_same(&watched.session.gpu, &watched.picture(INTERLEAVED, &changes), &branch, &changes);
             }
         }
     }
@@ -164,7 +179,7 @@ fn the_pattern_of_one_pixel_is_plain_deferred_shading() {
     roads.push(vec![("pattern", "1x1"), ("filter", "none")]);
     let roads: Vec<Changes<'_>> = roads.iter().map(|road| &road[..]).collect();
     for size in ["320x180", "321x181"] {
-        require_one_hash(&watched, INTERLEAVED, &[("vpls", "64"), ("size", size)], &roads);
+        require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", size)], &roads);
     }
 }
 
@@ -174,7 +189,7 @@ fn every_way_of_holding_positions_splits_the_same() {
     let mut hashes = Vec::new();
     for position in ["half", "unorm16", "depth", "float"] {
         let common = [("vpls", "64"), ("size", "161x91"), ("pattern", "3x2"), ("position", position)];
-        hashes.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
+        hashes.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
     }
     hashes.sort();
     hashes.dedup();
@@ -192,10 +207,10 @@ fn lights_joined_to_the_subsets_split_the_same() {
             ("pattern", pattern),
             ("direct-shadow", shadow),
         ];
-        require_one_hash(&watched, INTERLEAVED, &common, &ROADS);
+        require_one_picture(&watched, INTERLEAVED, &common, &ROADS);
     }
     let one: [Changes<'_>; 2] = [&[("split", "none")], &[("pattern", "1x1")]];
-    require_one_hash(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "interleaved")], &one);
+    require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "interleaved")], &one);
 }
 
 /// Clusters of sub-buffers share a subset of the punctual lights, on every road.
@@ -212,13 +227,14 @@ fn clusters_split_the_same() {
                 ("pattern", pattern),
                 ("direct-pattern", direct_pattern),
             ];
-            seen.push(require_one_hash(&watched, INTERLEAVED, &common, &ROADS));
+            seen.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
         }
     }
     let distinct: std::collections::BTreeSet<_> = seen.iter().collect();
     assert_eq!(distinct.len(), seen.len(), "a direct pattern that changes nothing: {seen:?}");
     // One pattern for all lights, said or not.
-    let common = [("vpls", "64"), ("size", "161x90"), ("direct", "interleaved"), ("pattern", "8x6")];
+    let own = [("split", "branch"), ("direct", "interleaved"), ("pattern", "8x6")];
+    let common = both(&[("vpls", "64"), ("size", "161x90")], &own);
     let said: [Changes<'_>; 2] = [&[], &[("direct-pattern", "8x6")]];
     assert_eq!(require_one_hash(&watched, INTERLEAVED, &common, &said), seen[3]);
     // What sums every light, or joins none, does not read it: a pattern that does not divide is no contradiction.
@@ -240,10 +256,10 @@ fn culling_changes_no_pixel() {
     ];
     for size in ["320x180", "323x177"] {
         for position in ["half", "unorm16", "depth", "float"] {
-            require_one_hash(&watched, "deferred", &[("size", size), ("position", position)], &culls);
+            require_one_picture(&watched, "deferred", &[("size", size), ("position", position)], &culls);
         }
-        require_one_hash(&watched, "deferred", &[("size", size), ("direct-shadow", "ray")], &culls);
-        require_one_hash(&watched, INTERLEAVED, &[("size", size), ("vpls", "32")], &culls);
+        require_one_picture(&watched, "deferred", &[("size", size), ("direct-shadow", "ray")], &culls);
+        require_one_picture(&watched, INTERLEAVED, &[("size", size), ("vpls", "32")], &culls);
     }
 }
 
@@ -270,10 +286,10 @@ fn culling_changes_no_pixel_of_a_map() {
     let watched = Watched::open(folder.join("maps/kaos.glb").to_str().unwrap());
     let culls: [Changes<'_>; 2] = [&[("cull", "none")], &[("cull", "tiled")]];
     let common = [("size", "323x177"), ("vpls", "32"), ("lights", "40")];
-    require_one_hash(&watched, INTERLEAVED, &common, &culls);
+    require_one_picture(&watched, INTERLEAVED, &common, &culls);
     // One road of each kind.
     let roads = [ROADS[0], ROADS[1], ROADS[3], ROADS[4], ROADS[5], ROADS[12], ROADS[14], ROADS[15], ROADS[18]];
-    require_one_hash(&watched, INTERLEAVED, &common, &roads);
+    require_one_picture(&watched, INTERLEAVED, &common, &roads);
 }
 
 /// The depth buffer holds positions: lists of lights, the road and the filter sample it, and BLEND surfaces test it last.
@@ -281,7 +297,7 @@ fn culling_changes_no_pixel_of_a_map() {
 fn every_road_is_branch_under_blended_surfaces() {
     let watched = Watched::open("hall:triangles=8000");
     let common = [("size", "161x91"), ("vpls", "32"), ("position", "depth"), ("cull", "tiled")];
-    require_one_hash(&watched, INTERLEAVED, &common, &ROADS);
+    require_one_picture(&watched, INTERLEAVED, &common, &ROADS);
     let renderer = watched.render(INTERLEAVED, &common);
     assert!(renderer.counters["blended_draws"] > 0.0);
 }

@@ -2,6 +2,7 @@
 //! colour; multisampling to nearly the same; and what both shade is counted.
 
 use crate::support::boxes::{camera, rectangle};
+use crate::support::difference::require_same;
 use crate::support::difference::rmse;
 use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
@@ -36,7 +37,8 @@ fn supersampled_colours_of_triangles_are_the_lists_to_the_bit() {
     for visibility in ["repeat-frame", "stochastic"] {
         let seen = both(&lens, &[("visibility", visibility)]);
         let supersampled = both(&seen, &[SSAA]);
-        assert_eq!(watched.hash(DEEP, &supersampled), watched.hash(DEEP, &seen), "{visibility}");
+        let [one, other] = [&supersampled, &seen].map(|changes| watched.picture(DEEP, changes));
+        require_same(&watched.session.gpu, &one, &other, &visibility);
         let counted = counters(&watched, &supersampled);
         let deep = counters(&watched, &seen);
         assert_eq!(counted["samples_seen"], deep["samples_seen"], "{visibility}");
@@ -84,8 +86,9 @@ fn one_sample_in_the_middle_has_the_textures_of_the_lists() {
 fn multisampling_of_one_sample_is_supersampling() {
     let watched = Watched::with_scene(rotor());
     let common = [SIZE, ("camera", "rotor"), ("spp", "2"), ("aperture", "0.1"), ("focus", "4")];
-    let supersampled = watched.hash(DEEP, &both(&common, &[SSAA, STOCHASTIC]));
-    assert_eq!(watched.hash(DEEP, &both(&common, &[MSAA, ("pass-samples", "1")])), supersampled);
+    let supersampled = watched.picture(DEEP, &both(&common, &[SSAA, STOCHASTIC]));
+    let multisampled = watched.picture(DEEP, &both(&common, &[MSAA, ("pass-samples", "1")]));
+    require_same(&watched.session.gpu, &multisampled, &supersampled, &common);
 }
 
 /// Panes of one colour that face the camera, so that each has one depth, and one of which moves: nothing of what
@@ -104,10 +107,10 @@ fn multisampled_panes_are_the_lists_to_the_bit() {
     let watched = Watched::with_scene(scene.closing_as(close).unwrap());
     let common = [SIZE, ("aperture", "0.6"), ("focus", "17"), ("spp", "8"), ("accumulate", "2"), ("rig", "none")];
     let deep = watched.render(DEEP, &both(&common, &[STOCHASTIC]));
-    let (hash, seen) = (deep.picture().unwrap().hash().unwrap(), deep.measured_counters().unwrap()["samples_seen"]);
+    let (picture, seen) = (deep.picture().unwrap(), deep.measured_counters().unwrap()["samples_seen"]);
     for pass_samples in ["1", "4"] {
         let multisampled = watched.render(DEEP, &both(&common, &[MSAA, ("pass-samples", pass_samples)]));
-        assert_eq!(multisampled.picture().unwrap().hash().unwrap(), hash, "{pass_samples} samples a pass");
+        require_same(&watched.session.gpu, &multisampled.picture().unwrap(), &picture, &pass_samples);
         assert_eq!(multisampled.measured_counters().unwrap()["samples_seen"], seen, "{pass_samples} samples a pass");
     }
 }

@@ -1,6 +1,7 @@
 //! Rivals of deep shading on its own samples: a compact geometry buffer with a cache before it (Liktor & Dachsbacher 2012) comes
 //! to the oracle's picture, shades what the lists shade while nothing is forgotten, and has the memory that it says.
 
+use crate::support::difference::require_same;
 use crate::support::moving::moving;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
@@ -25,8 +26,8 @@ fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f
 
 #[track_caller]
 fn require_oracle_s(watched: &Watched, common: Changes<'_>) {
-    let oracle = watched.hash(DEEP, &both(common, &[ORACLE]));
-    assert_eq!(watched.hash(DEEP, &both(common, &[INDIRECT])), oracle, "{common:?}");
+    let [oracle, indirect] = [ORACLE, INDIRECT].map(|road| watched.picture(DEEP, &both(common, &[road])));
+    require_same(&watched.session.gpu, &indirect, &oracle, &common);
 }
 
 /// Textures and glass under a lens; what moves, with holes; every kind of visibility that finds its samples in another way;
@@ -68,10 +69,10 @@ fn what_the_cache_keeps_is_shaded_once_and_what_it_forgets_again() {
     let watched = Watched::open("lamps:objects=20,lights=4");
     let common = [SIZE, ("spp", "8"), ("aperture", "0.1")];
     let deep = watched.render(DEEP, &common);
-    let (hash, deep) = (deep.picture().unwrap().hash().unwrap(), deep.measured_counters().unwrap());
+    let (picture, deep) = (deep.picture().unwrap(), deep.measured_counters().unwrap());
     let of = |cache: &str| {
         let frame = watched.render(DEEP, &both(&common, &[INDIRECT, ("shading-cache", cache)]));
-        assert_eq!(frame.picture().unwrap().hash().unwrap(), hash, "{cache} entries");
+        require_same(&watched.session.gpu, &frame.picture().unwrap(), &picture, &(cache, "entries"));
         let counted = frame.measured_counters().unwrap();
         assert_eq!(counted["samples_without_colour"], 0.0, "{cache} entries");
         assert!(!counted.contains_key("lists"), "{counted:?}");
@@ -92,8 +93,7 @@ fn buffers_longer_than_the_device_binds_are_reached_by_their_addresses() {
     let watched = Watched::open("lamps:objects=20,lights=4");
     let common = [("size", "33x19"), ("spp", "4"), ("accumulate", "2"), ("aperture", "0.1")];
     let deep = watched.render(DEEP, &common);
-    let (hash, shaded) =
-        (deep.picture().unwrap().hash().unwrap(), deep.measured_counters().unwrap()["shader_invocations"]);
+    let (picture, shaded) = (deep.picture().unwrap(), deep.measured_counters().unwrap()["shader_invocations"]);
     let [short, long] = ["262144", "67108864"].map(|entries| [INDIRECT, ("shading-cache", entries)]);
     let is_long = watched.session.gpu.caps.limits.max_storage_buffer_range_bytes < 4 << 26;
     let reached = if is_long { "addresses" } else { "descriptors" };
@@ -104,12 +104,12 @@ fn buffers_longer_than_the_device_binds_are_reached_by_their_addresses() {
     ] {
         let frame = watched.render(DEEP, &both(&common, &changes));
         assert_eq!(frame.resolved["list-access"], access, "{changes:?}");
-        assert_eq!(frame.picture().unwrap().hash().unwrap(), hash, "{changes:?}");
+        require_same(&watched.session.gpu, &frame.picture().unwrap(), &picture, &changes);
         assert_eq!(frame.measured_counters().unwrap()["shader_invocations"], shaded, "{changes:?}");
     }
     let forgetful = [INDIRECT, ("list-access", "addresses"), ("shading-cache", "9")];
     let frame = watched.render(DEEP, &both(&common, &forgetful));
-    assert_eq!(frame.picture().unwrap().hash().unwrap(), hash);
+    require_same(&watched.session.gpu, &frame.picture().unwrap(), &picture, &forgetful);
     assert!(frame.measured_counters().unwrap()["shading_samples_forgotten"] > 0.0);
     if is_long {
         let bound = both(&long, &[("list-access", "descriptors")]);

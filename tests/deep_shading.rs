@@ -1,6 +1,7 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
 //! shaded is what is listed, each once; blur comes to what path tracing sees.
 
+use crate::support::difference::require_same;
 use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
@@ -43,13 +44,11 @@ fn conservative(watched: &Watched) -> Vec<&'static str> {
 #[track_caller]
 fn require_one_picture(watched: &Watched, common: Changes<'_>) {
     let common = &both(common, &[("size", "97x55")]);
-    let first = watched.hash(DEEP, &both(common, ROADS[0]));
-    for road in &ROADS[1..] {
-        assert_eq!(watched.hash(DEEP, &both(common, road)), first, "{road:?} with {common:?}");
-    }
-    for road in conservative(watched) {
-        let hash = watched.hash(DEEP, &both(common, &[("conservative", road)]));
-        assert_eq!(hash, first, "--conservative {road} with {common:?}");
+    let first = watched.picture(DEEP, &both(common, ROADS[0]));
+    let of_hulls = conservative(watched).into_iter().map(|road| vec![("conservative", road)]);
+    for road in ROADS[1..].iter().map(|road| road.to_vec()).chain(of_hulls) {
+        let found = watched.picture(DEEP, &both(common, &road));
+        require_same(&watched.session.gpu, &found, &first, &(&road, common));
     }
 }
 
@@ -353,8 +352,8 @@ fn orders(watched: &Watched) -> [Vec<Changes<'static>>; 2] {
     orders
 }
 
-/// A picture's hash, the lists' lengths, and what was counted.
-type Seen = (String, Vec<u32>, BTreeMap<&'static str, f64>);
+/// A picture, the lists' lengths, and what was counted.
+type Seen = (Picture, Vec<u32>, BTreeMap<&'static str, f64>);
 
 fn seen(watched: &Watched, changes: Changes<'_>) -> Seen {
     let renderer = watched.render_stages(DEEP, changes, &["count.lengths"]);
@@ -362,13 +361,14 @@ fn seen(watched: &Watched, changes: Changes<'_>) -> Seen {
     let mut counters = renderer.measured_counters().unwrap();
     // Who is the quicker of two threads writes one node less.
     counters.remove("nodes_written");
-    (renderer.picture().unwrap().hash().unwrap(), lengths, counters)
+    (renderer.picture().unwrap(), lengths, counters)
 }
 
 /// Without the lengths in the message: there are tens of thousands.
 #[track_caller]
-fn require_same(one: &Seen, other: &Seen, changes: Changes<'_>) {
-    assert_eq!((&one.0, &one.2), (&other.0, &other.2), "{changes:?}");
+fn require_same_lists(watched: &Watched, one: &Seen, other: &Seen, changes: Changes<'_>) {
+    require_same(&watched.session.gpu, &one.0, &other.0, &changes);
+    assert_eq!(one.2, other.2, "{changes:?}");
     assert!(one.1 == other.1, "lengths of lists, {changes:?}");
 }
 
@@ -380,15 +380,15 @@ fn require_one_order(watched: &Watched, common: Changes<'_>) {
     let frame = seen(watched, common);
     let [vertex, geometry] = orders(watched);
     for order in vertex {
-        require_same(&seen(watched, &both(common, order)), &frame, &both(common, order));
+        require_same_lists(watched, &seen(watched, &both(common, order)), &frame, &both(common, order));
     }
     let Some(first) = geometry.first().map(|order| seen(watched, &both(common, order))) else { return };
     for order in &geometry[1..] {
-        require_same(&seen(watched, &both(common, order)), &first, &both(common, order));
+        require_same_lists(watched, &seen(watched, &both(common, order)), &first, &both(common, order));
     }
     for order in geometry {
         let alone = both(&both(common, order), &[("lists", "none")]);
-        assert_eq!(watched.hash(DEEP, &alone), first.0, "{order:?} without lists, with {common:?}");
+        require_same(&watched.session.gpu, &watched.picture(DEEP, &alone), &first.0, &(order, "without lists", common));
     }
     let others = first.1.iter().zip(&frame.1).filter(|(one, other)| one != other).count();
     println!("{others} of {} lists are longer or shorter, {common:?}", frame.1.len());
@@ -451,8 +451,8 @@ fn lists_longer_than_the_device_binds_are_reached_by_their_addresses() {
     let access = |changes: Changes<'_>| watched.render(DEEP, changes).resolved["list-access"].clone();
     assert_eq!(access(&wide), if is_long { "addresses" } else { "descriptors" });
     assert_eq!(access(&both(&wide, &[("compaction", "off")])), "descriptors");
-    let short = watched.hash(DEEP, &both(&wide, &[("compaction", "off")]));
-    assert_eq!(watched.hash(DEEP, &wide), short);
-    let of_rays = |lists| watched.hash(DEEP, &both(&wide, &[("visibility", "ray"), ("lists", lists)]));
-    assert_eq!(of_rays("direct"), of_rays("none"));
+    let short = watched.picture(DEEP, &both(&wide, &[("compaction", "off")]));
+    require_same(&watched.session.gpu, &watched.picture(DEEP, &wide), &short, &wide);
+    let of_rays = |lists| watched.picture(DEEP, &both(&wide, &[("visibility", "ray"), ("lists", lists)]));
+    require_same(&watched.session.gpu, &of_rays("direct"), &of_rays("none"), &wide);
 }

@@ -2,6 +2,7 @@
 //! focus is in one place of both pictures and the rest as far apart as similar triangles say, and what both see is shaded once.
 
 use crate::support::boxes::{camera, panel, point_light, rectangle};
+use crate::support::difference::require_same;
 use crate::support::moving::moving;
 use crate::support::placing_steps;
 use crate::support::program::Program;
@@ -30,10 +31,6 @@ fn eyes(watched: &Watched, changes: Changes<'_>) -> [Picture; 2] {
     eyes_of(watched, &watched.render_stages(DEEP, changes, &[RIGHT]))
 }
 
-fn hashes(watched: &Watched, changes: Changes<'_>) -> [String; 2] {
-    eyes(watched, changes).map(|picture| picture.hash().unwrap())
-}
-
 /// The fence's rotor turns by a quarter of a turn, behind glass.
 fn rotor() -> Watched {
     Watched::with_scene(moving("fence:lights=6", [0.0, 0.1]))
@@ -48,12 +45,13 @@ fn layered(watched: &Watched) -> Option<(&'static str, &'static str)> {
 /// The bits that every sample shaded by itself makes, by `roads`.
 #[track_caller]
 fn require_one_pair(watched: &Watched, common: Changes<'_>, roads: &[Changes<'_>]) {
-    let alone = hashes(watched, &both(common, &[("lists", "none")]));
-    assert_ne!(alone[0], alone[1], "{common:?}");
+    let alone = eyes(watched, &both(common, &[("lists", "none")]));
+    assert_ne!(alone[0].pixels, alone[1].pixels, "{common:?}");
     for road in roads {
         let renderer = watched.render_stages(DEEP, &both(common, road), &[RIGHT]);
-        let found = eyes_of(watched, &renderer).map(|picture| picture.hash().unwrap());
-        assert_eq!(found, alone, "{road:?} with {common:?}");
+        for (found, alone) in eyes_of(watched, &renderer).iter().zip(&alone) {
+            require_same(&watched.session.gpu, found, alone, &(road, common));
+        }
         assert_eq!(renderer.measured_counters().unwrap()["samples_without_colour"], 0.0, "{road:?} with {common:?}");
     }
 }
@@ -90,8 +88,9 @@ fn eyes_in_one_place_see_what_one_eye_sees() {
 fn require_one_eye(watched: &Watched, common: Changes<'_>) {
     let one = watched.render(DEEP, common);
     let two = watched.render_stages(DEEP, &both(common, &[("stereo", "1e-30")]), &[RIGHT]);
-    let hash = one.picture().unwrap().hash().unwrap();
-    assert_eq!(eyes_of(watched, &two).map(|picture| picture.hash().unwrap()), [hash.clone(), hash], "{common:?}");
+    for eye in eyes_of(watched, &two) {
+        require_same(&watched.session.gpu, &eye, &one.picture().unwrap(), &common);
+    }
     let [one, two] = [one, two].map(|renderer| renderer.measured_counters().unwrap());
     // What both see is listed once; supersampling knows no lists.
     let shares = if common.contains(&("shading", "ssaa")) { 2.0 } else { 1.0 };

@@ -2,6 +2,7 @@
 //! rasteriser places to a 256th of a layer's pixel and their tests to a float. Lists and strays come to the same bits as
 //! without them.
 
+use crate::support::difference::require_same;
 use crate::support::moving::moving;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has, placing_steps};
@@ -107,11 +108,11 @@ fn require_the_same_bits(kind: (&str, &str), roads: &[Changes<'_>]) {
 
 #[track_caller]
 fn require_one_picture(watched: &Watched, changes: Changes<'_>, roads: &[Changes<'_>]) {
-    let alone = watched.hash(DEEP, &both(changes, &[("lists", "none")]));
+    let alone = watched.picture(DEEP, &both(changes, &[("lists", "none")]));
     let mut listed = None;
     for road in roads {
         let renderer = watched.render(DEEP, &both(changes, road));
-        assert_eq!(renderer.picture().unwrap().hash().unwrap(), alone, "{road:?} with {changes:?}");
+        require_same(&watched.session.gpu, &renderer.picture().unwrap(), &alone, &(road, changes));
         let counters = renderer.measured_counters().unwrap();
         assert_eq!(counters["samples_without_colour"], 0.0, "{road:?} with {changes:?}");
         // The pairs of triangle and shading pixel: the host's lists, made otherwise, have those of the device.

@@ -2,6 +2,7 @@
 //! samples bring edges nearer to what every place of a pixel shows.
 
 use crate::support;
+use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::report::image_file::AovChannels;
@@ -13,11 +14,12 @@ const SIZE: (&str, &str) = ("size", "161x91");
 /// All of `variants` make the picture of the first.
 #[track_caller]
 fn require_one_picture(watched: &Watched, common: Changes<'_>, variants: &[Changes<'_>]) -> String {
-    let first = watched.hash(FORWARD, &both(common, variants[0]));
+    let first = watched.picture(FORWARD, &both(common, variants[0]));
     for variant in &variants[1..] {
-        assert_eq!(watched.hash(FORWARD, &both(common, variant)), first, "{variant:?} with {common:?}");
+        let found = watched.picture(FORWARD, &both(common, variant));
+        require_same(&watched.session.gpu, &found, &first, &(variant, common));
     }
-    first
+    first.hash().unwrap()
 }
 
 /// Part by which two channels differ, the darkest taken for 0.01.

@@ -53,6 +53,8 @@ mod memory;
 mod multisample;
 mod path_traced;
 mod pretend;
+mod pretend_rounding;
+mod pretend_shaders;
 mod progress;
 mod progressive;
 mod ray_query;

@@ -1,10 +1,10 @@
 //! Pictures on a device that behaves as others may (tools/pretend): the same to the bit, or refused by name.
 
+use crate::support::pretending::Layer;
 use crate::support::program::Program;
-use crate::support::skip;
 
 /// A scene and settings; what each mode may change lies in some of them: `auto`, sharing of bytes, discards, lists, host-written buffers.
-const COMMANDS: [&str; 15] = [
+pub const COMMANDS: [&str; 15] = [
     "cornell --technique interleaved_deferred --size 97x53",
     "hall:triangles=8000 --technique interleaved_deferred --size 64x36 --split tile --fuse on",
     "cornell --technique interleaved_deferred --size 64x36 --split stencil",
@@ -29,9 +29,7 @@ const MODES: [(&str, bool); 3] =
 /// One test for all of them: what they are held against is rendered once.
 #[test]
 fn pictures_on_devices_that_are_not_there_are_the_same_or_refused_by_name() {
-    let Ok(layer) = std::env::var("QUINCUNX_PRETEND_LAYER") else {
-        return skip("QUINCUNX_PRETEND_LAYER is not set: tools/test builds the layer of tools/pretend and sets it");
-    };
+    let Some(layer) = Layer::built() else { return };
     let program = Program::new();
     let mut refused = 0;
     for command in COMMANDS {
@@ -39,14 +37,9 @@ fn pictures_on_devices_that_are_not_there_are_the_same_or_refused_by_name() {
         let command = [&["render"], &words[..], &["-o", "a.exr", "--json", "--quiet"]].concat();
         let expected = program.run(&command).fine().json()["image"]["hash"].clone();
         for (modes, may_refuse) in MODES {
-            let pretending = [
-                ("QUINCUNX_PRETEND", modes),
-                ("VK_INSTANCE_LAYERS", "VK_LAYER_QUINCUNX_pretend"),
-                ("VK_LAYER_PATH", layer.as_str()),
-            ];
             // Bytes that several share have no guarded ones behind them.
             let alone: &[&str] = if modes.contains("padding") { &["--alias", "off"] } else { &[] };
-            let ran = program.run_with(&[&command, alone].concat(), &pretending);
+            let ran = program.run_with(&[&command, alone].concat(), &layer.variables(modes));
             if may_refuse && ran.code != 0 {
                 assert!(matches!(ran.code, 2 | 3), "{command:?} under {modes}: {} {}", ran.code, ran.err);
                 let is_named = ["--", " needs ", "(max"].iter().any(|word| ran.err.contains(word));

@@ -8,6 +8,7 @@ pub mod failing;
 pub mod gltf_file;
 pub mod measured;
 pub mod moving;
+pub mod pretending;
 pub mod program;
 pub mod seen;
 pub mod shading_space;

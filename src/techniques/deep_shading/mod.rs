@@ -40,8 +40,9 @@
 //! - two eyes (`--stereo`) share one buffer, which the paper has as future work (section 7; stereo.rs)
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
-//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same bits, and so does
-//! every order of `--visibility`; `--conservative none` alone leaves samples without a colour. Without blur it is `forward --supersample` with samples in other places.
+//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same picture,
+//! to the bit on software drivers, and so does every order of `--visibility`; `--conservative none` alone leaves samples
+//! without a colour. Without blur it is `forward --supersample` with samples in other places.
 
 mod again;
 mod apart;

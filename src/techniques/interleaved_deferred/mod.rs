@@ -22,7 +22,7 @@
 //! - secondary lights are never shadowed (SNSM), as in the paper's section 6.2
 //!
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
-//! every road but `none` and `subsample` gives the same bits as `branch`.
+//! every road but `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
 
 mod aov;
 mod choices;
