@@ -56,7 +56,7 @@ fn the_document_says_what_held_and_what_is_refused() {
     }
     assert!(document["caps"]["limits"]["timestamp_bits"].is_number() && document["quincunx"]["commit"].is_string());
     let cases = document["cases"].as_array().unwrap();
-    assert_eq!(cases.len(), 9, "{document:#}");
+    assert_eq!(cases.len(), 10, "{document:#}");
     for case in cases {
         let name = case["name"].as_str().unwrap();
         let is_refused = case["verdict"] == "refused";
