@@ -43,12 +43,13 @@ pub fn walk(
     mut limit: f32,
     mut visit: impl FnMut(usize, f32) -> Option<f32>,
 ) {
+    let inverse = inverse_of(direction);
     let mut stack = [0u32; STACK];
     let mut depth = 1;
     while depth > 0 {
         depth -= 1;
         let node = &nodes[stack[depth] as usize];
-        if !enters(node, origin, direction, limit) {
+        if !enters(node, origin, inverse, limit) {
             continue;
         }
         let (count, first) = (node.min_count[3].to_bits(), node.max_first[3].to_bits());
@@ -110,9 +111,13 @@ pub(super) fn halved(corners: &[Triangle], closing: &[Triangle]) -> (Vec<BvhNode
     (nodes, order)
 }
 
+/// One by each side of a direction, as the shader has it.
+pub(super) fn inverse_of(direction: Vec3) -> Vec3 {
+    Vec3::from_array(direction.to_array().map(|side| 1.0 / if side == 0.0 { 1e-20 } else { side }))
+}
+
 /// Whether a ray enters a node's box before `limit`, in the shader's order of operations.
-pub(super) fn enters(node: &BvhNodeBlock, origin: Vec3, direction: Vec3, limit: f32) -> bool {
-    let inverse = Vec3::from_array(direction.to_array().map(|side| 1.0 / if side == 0.0 { 1e-20 } else { side }));
+pub(super) fn enters(node: &BvhNodeBlock, origin: Vec3, inverse: Vec3, limit: f32) -> bool {
     let [x, y, z, _] = node.min_count;
     let near = (Vec3::new(x, y, z) - origin) * inverse;
     let [x, y, z, _] = node.max_first;

@@ -48,18 +48,20 @@ mod tests {
 
     /// The shader's walk. Whether a ray meets anything, and the triangles that were tried.
     fn walked(bvh: &Bvh, flat: &[BvhNodeBlock], origin: Vec3, direction: Vec3, limit: f32) -> (bool, usize) {
-        let place_after = |node: &BvhNodeBlock| node.max_first[3].to_bits() as usize;
-        let end = if is_leaf(&flat[0]) { 1 } else { place_after(&flat[0]) };
+        // A leaf's first triangle, or the place after all below.
+        let last_word = |node: &BvhNodeBlock| node.max_first[3].to_bits() as usize;
+        let inverse = boxes::inverse_of(direction);
+        let end = if is_leaf(&flat[0]) { 1 } else { last_word(&flat[0]) };
         let (mut at, mut tried) = (0, 0);
         while at < end {
             let node = &flat[at];
-            let is_entered = boxes::enters(node, origin, direction, limit);
+            let is_entered = boxes::enters(node, origin, inverse, limit);
             if !is_leaf(node) {
-                at = if is_entered { at + 1 } else { place_after(node) };
+                at = if is_entered { at + 1 } else { last_word(node) };
                 continue;
             }
             at += 1;
-            let first = place_after(node);
+            let first = last_word(node);
             for triangle in first..first + if is_entered { node.min_count[3].to_bits() as usize } else { 0 } {
                 tried += 1;
                 if intersect(&bvh.triangles[triangle], origin, direction, limit).is_some() {
