@@ -2,7 +2,6 @@
 //! as the device says shows without a submit between.
 
 use super::failure::failed;
-use super::probe;
 use crate::error::Result;
 use ash::vk;
 
@@ -28,18 +27,14 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// `device`: opened with `probe::used_extensions`. None: the device has no such extension, or knows no clock of the
-    /// host that counts nanoseconds (on Windows it counts in steps of another length).
+    /// `device`: opened with the extension. None: it knows no clock of the host that counts nanoseconds (on Windows that
+    /// counts in steps of another length).
     pub(super) fn of(
         entry: &ash::Entry,
         instance: &ash::Instance,
         physical: vk::PhysicalDevice,
         device: &ash::Device,
     ) -> Option<Self> {
-        let name = ash::ext::calibrated_timestamps::NAME.to_str();
-        if !probe::extensions(instance, physical).iter().any(|has| name == Ok(has.as_str())) {
-            return None;
-        }
         let of_instance = ash::ext::calibrated_timestamps::Instance::new(entry, instance);
         // SAFETY: a live instance and one of its physical devices, which has the extension.
         let domains = unsafe { of_instance.get_physical_device_calibrateable_time_domains(physical) }.ok()?;

@@ -308,8 +308,8 @@ impl Gpu {
             .draw_indirect_count(caps.features.draw_indirect_count);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
-        let names = probe::used_extensions(&instance, physical, &caps);
-        let extensions: Vec<*const c_char> = names.iter().map(|name| name.as_ptr()).collect();
+        let extension_names = probe::used_extensions(&instance, physical, &caps);
+        let extensions: Vec<*const c_char> = extension_names.iter().map(|name| name.as_ptr()).collect();
         let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&features)
@@ -360,7 +360,8 @@ impl Gpu {
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
         let structures = caps.features.ray_query;
         let structures = structures.then(|| ash::khr::acceleration_structure::Device::new(&instance, &device));
-        let calibration = Calibration::of(&entry, &instance, physical, &device);
+        let has_both_clocks = extension_names.contains(&ash::ext::calibrated_timestamps::NAME);
+        let calibration = has_both_clocks.then(|| Calibration::of(&entry, &instance, physical, &device)).flatten();
         let memory =
             Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
         Ok(Self {

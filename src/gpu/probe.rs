@@ -36,12 +36,10 @@ pub fn used_extensions(instance: &ash::Instance, physical: vk::PhysicalDevice, c
     if caps.conservative.is_some() {
         used.push(ash::ext::conservative_rasterization::NAME);
     }
+    let there = extensions(instance, physical);
     // A device that has the first wants it enabled; the second is a second look at its clock.
-    for name in [ash::khr::portability_subset::NAME, ash::ext::calibrated_timestamps::NAME] {
-        if extensions(instance, physical).iter().any(|has| name.to_str() == Ok(has.as_str())) {
-            used.push(name);
-        }
-    }
+    let further = [ash::khr::portability_subset::NAME, ash::ext::calibrated_timestamps::NAME];
+    used.extend(further.into_iter().filter(|name| there.iter().any(|has| name.to_str() == Ok(has.as_str()))));
     used
 }
 
