@@ -124,7 +124,7 @@ pub fn compare(bed: &mut Bed) -> Result<Clocks> {
     clocks.is_monotone = Some(is_monotone);
     if let (Some(begun), Some(ended)) = (begun, ended) {
         let (device_ns, host_ns) =
-            (device_ns([begun.device_ticks, ended.device_ticks]), (ended.host_ns - begun.host_ns) as f64);
+            (device_ns([begun.device_ticks, ended.device_ticks]), ended.host_ns.saturating_sub(begun.host_ns) as f64);
         let deviation_ns = (begun.deviation_ns + ended.deviation_ns) as f64;
         let calibrated = Calibrated { device_ns, host_ns, deviation_ns, ratio: device_ns / host_ns };
         clocks.complaints.extend(calibrated.complaint());
