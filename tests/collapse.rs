@@ -6,32 +6,13 @@ use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
 use quincunx::memory::Strategy;
+use quincunx::selftest::cases::SPLITS;
 use std::collections::BTreeMap;
 
 const INTERLEAVED: &str = "interleaved_deferred";
 
-/// Every road of `--split` that must give the picture of `branch`, in every storage and form of copy that it knows.
-const ROADS: [Changes<'_>; 19] = [
-    &[("split", "branch")],
-    &[("split", "indirect")],
-    &[("split", "remap")],
-    &[("split", "stencil")],
-    &[("split", "depth")],
-    &[("split", "one-pass"), ("storage", "buffer"), ("copy", "pull")],
-    &[("split", "one-pass"), ("storage", "buffer"), ("copy", "push")],
-    &[("split", "one-pass"), ("storage", "image"), ("copy", "pull")],
-    &[("split", "one-pass"), ("storage", "image"), ("copy", "push")],
-    &[("split", "two-pass"), ("storage", "buffer"), ("copy", "pull")],
-    &[("split", "two-pass"), ("storage", "buffer"), ("copy", "push")],
-    &[("split", "two-pass"), ("storage", "image"), ("copy", "pull")],
-    &[("split", "two-pass"), ("storage", "image"), ("copy", "push")],
-    &[("split", "tile"), ("storage", "buffer")],
-    &[("split", "tile"), ("storage", "image")],
-    &[("split", "layered"), ("copy", "pull")],
-    &[("split", "layered"), ("copy", "push")],
-    &[("split", "fragment"), ("fragment-passes", "1")],
-    &[("split", "fragment"), ("fragment-passes", "2")],
-];
+/// Every road that must give the picture of the first one, `branch`.
+const ROADS: [Changes<'_>; 19] = SPLITS;
 
 /// Those that read `--block`.
 const ROADS_IN_BLOCKS: [Changes<'_>; 7] = [

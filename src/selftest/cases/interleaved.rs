@@ -12,11 +12,14 @@ const FENCE: Place = Place::Scene("fence:lights=6");
 const VPLS: (&str, &str) = ("vpls", "64");
 const UNFILTERED: (&str, &str) = ("filter", "none");
 
-const SPLITS: &[Settings] = &[
-    &[("split", "stencil")],
-    &[("split", "depth")],
+/// Every road of `--split` that must give the picture of `branch`, and that one first, in every storage and form of copy
+/// that it knows.
+pub const SPLITS: [Settings; 19] = [
+    &[("split", "branch")],
     &[("split", "indirect")],
     &[("split", "remap")],
+    &[("split", "stencil")],
+    &[("split", "depth")],
     &[("split", "one-pass"), ("storage", "buffer"), ("copy", "pull")],
     &[("split", "one-pass"), ("storage", "buffer"), ("copy", "push")],
     &[("split", "one-pass"), ("storage", "image"), ("copy", "pull")],
@@ -64,7 +67,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[VPLS, ("pattern", "4x4"), UNFILTERED],
         twin: Twin::Road(&[("split", "branch"), ("texels", "1"), EVERYTHING[0]]),
-        roads: SPLITS,
+        roads: &SPLITS,
         must: Must::Equal(ROUNDING),
     },
     Group {

@@ -13,6 +13,8 @@ mod inferred;
 mod interleaved;
 mod paths;
 
+pub use interleaved::SPLITS;
+
 use super::case::{Case, Group, Must, Settings};
 use super::judge::Bounds;
 
