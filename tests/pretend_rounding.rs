@@ -56,8 +56,8 @@ impl Figures {
     }
 }
 
-/// Renders `command` under `modes` and holds the picture to the bounds. Returns whether it has other bits than the
-/// plain one.
+/// Renders `command` under each of `modes` and holds its pictures to the bounds. Returns how many have other bits than
+/// the plain one.
 fn hold(program: &Program, layer: &Layer, command: &str, modes: &[&str]) -> usize {
     let words: Vec<&str> = command.split(' ').collect();
     let render = |variables: &[(&str, &str)]| {

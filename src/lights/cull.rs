@@ -144,7 +144,7 @@ pub fn record(
     })
 }
 
-/// Of a G-buffer.
+/// The pass over a G-buffer.
 pub struct Cull {
     masks: MaskPipeline,
 }
