@@ -16,11 +16,13 @@ impl Layer {
     }
 
     /// What the environment of a program says for it to see the layer in these modes.
-    pub fn variables<'a>(&'a self, modes: &'a str) -> [(&'static str, &'a str); 3] {
+    pub fn variables<'a>(&'a self, modes: &'a str) -> [(&'static str, &'a str); 4] {
         [
             ("QUINCUNX_PRETEND", modes),
             ("VK_INSTANCE_LAYERS", "VK_LAYER_QUINCUNX_pretend"),
             ("VK_LAYER_PATH", self.0.as_str()),
+            // A runner that names folders of its own (tools/test --layers) adds this one.
+            ("VK_ADD_LAYER_PATH", self.0.as_str()),
         ]
     }
 }
