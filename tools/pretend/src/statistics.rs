@@ -69,20 +69,12 @@ unsafe extern "system" fn create_compute(
     pipelines: *mut vk::Pipeline,
 ) -> vk::Result {
     let table = tables::device(device);
-    // SAFETY: the program's structs; the copies live as long as the call. Without a cache every pipeline is compiled.
+    // SAFETY: the program's structs, and its places for as many pipelines; the next layer's function.
     unsafe {
-        let mut infos = std::slice::from_raw_parts(infos, count as usize).to_vec();
-        for info in &mut infos {
-            info.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
-        }
+        let infos = std::slice::from_raw_parts(infos, count as usize);
         let create = table.next.fp_v1_0().create_compute_pipelines;
-        let result = create(device, vk::PipelineCache::null(), count, infos.as_ptr(), allocator, pipelines);
-        if result == vk::Result::SUCCESS {
-            for (index, info) in infos.iter().enumerate() {
-                say(&table, *pipelines.add(index), &[info.stage]);
-            }
-        }
-        result
+        let make = |infos: *const _| create(device, NO_CACHE, count, infos, allocator, pipelines);
+        captured(&table, infos, |info| &mut info.flags, make, |index, info| (*pipelines.add(index), vec![info.stage]))
     }
 }
 
@@ -95,22 +87,47 @@ unsafe extern "system" fn create_graphics(
     pipelines: *mut vk::Pipeline,
 ) -> vk::Result {
     let table = tables::device(device);
-    // SAFETY: as above.
+    // SAFETY: as above, and as many stages as each struct says.
     unsafe {
-        let mut infos = std::slice::from_raw_parts(infos, count as usize).to_vec();
-        for info in &mut infos {
-            info.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
-        }
+        let infos = std::slice::from_raw_parts(infos, count as usize);
         let create = table.next.fp_v1_0().create_graphics_pipelines;
-        let result = create(device, vk::PipelineCache::null(), count, infos.as_ptr(), allocator, pipelines);
-        if result == vk::Result::SUCCESS {
-            for (index, info) in infos.iter().enumerate() {
+        let make = |infos: *const _| create(device, NO_CACHE, count, infos, allocator, pipelines);
+        captured(
+            &table,
+            infos,
+            |info| &mut info.flags,
+            make,
+            |index, info| {
                 let stages = std::slice::from_raw_parts(info.p_stages, info.stage_count as usize);
-                say(&table, *pipelines.add(index), stages);
-            }
-        }
-        result
+                (*pipelines.add(index), stages.to_vec())
+            },
+        )
     }
+}
+
+/// Without a cache every pipeline is compiled.
+const NO_CACHE: vk::PipelineCache = vk::PipelineCache::null();
+
+/// Makes pipelines of copies of `infos` that ask for statistics, and writes these. `made`: the pipeline of an index, and
+/// its stages.
+fn captured<'a, T: Copy>(
+    table: &DeviceTable,
+    infos: &[T],
+    flags: fn(&mut T) -> &mut vk::PipelineCreateFlags,
+    make: impl FnOnce(*const T) -> vk::Result,
+    made: impl Fn(usize, &T) -> (vk::Pipeline, Vec<vk::PipelineShaderStageCreateInfo<'a>>),
+) -> vk::Result {
+    let mut infos = infos.to_vec();
+    infos.iter_mut().for_each(|info| *flags(info) |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR);
+    let result = make(infos.as_ptr());
+    if result == vk::Result::SUCCESS {
+        for (index, info) in infos.iter().enumerate() {
+            let (pipeline, stages) = made(index, info);
+            // SAFETY: just made, with statistics.
+            unsafe { say(table, pipeline, &stages) };
+        }
+    }
+    result
 }
 
 /// A line for each executable of a pipeline: the modules in it, and its statistics by the names that the driver gives them.
