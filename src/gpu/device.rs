@@ -61,10 +61,28 @@ pub struct Gpu {
     _entry: ash::Entry,
 }
 
+/// What the layer says while it lives. To be dropped before the instance.
 struct Validation {
     functions: ash::ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
     log: Arc<validation::Log>,
+}
+
+impl Validation {
+    fn listen(entry: &ash::Entry, instance: &ash::Instance, log: Arc<validation::Log>) -> Result<Self> {
+        let functions = ash::ext::debug_utils::Instance::new(entry, instance);
+        // SAFETY: the log lives in the same struct as the messenger and is dropped after it.
+        let messenger = unsafe { functions.create_debug_utils_messenger(&log.messenger_info(), None) }
+            .map_err(|result| Error::device(format!("creating the validation messenger: {result}")))?;
+        Ok(Self { functions, messenger, log })
+    }
+}
+
+impl Drop for Validation {
+    fn drop(&mut self) {
+        // SAFETY: the instance is alive, and nobody else knows the messenger.
+        unsafe { self.functions.destroy_debug_utils_messenger(self.messenger, None) };
+    }
 }
 
 /// A device that `devices` lists.
@@ -279,6 +297,8 @@ impl Gpu {
         log: Option<Arc<validation::Log>>,
         request: &DeviceRequest,
     ) -> Result<Self> {
+        // First, for what is said while a device is opened.
+        let validation = log.map(|log| Validation::listen(&entry, &instance, log)).transpose()?;
         let (physical, caps) = choose(&instance, request)?;
         let queue_family = probe::queue_family(&instance, physical).expect("`choose` asked for it");
         let priorities = [1.0];
@@ -337,21 +357,6 @@ impl Gpu {
                 )
             };
         }
-        let validation = match log {
-            None => None,
-            Some(log) => {
-                let functions = ash::ext::debug_utils::Instance::new(&entry, &instance);
-                // SAFETY: the log lives in the same struct as the messenger and is dropped after it.
-                match unsafe { functions.create_debug_utils_messenger(&log.messenger_info(), None) } {
-                    Ok(messenger) => Some(Validation { functions, messenger, log }),
-                    Err(result) => {
-                        // SAFETY: nothing made from the device is alive.
-                        unsafe { device.destroy_device(None) };
-                        return Err(Error::device(format!("creating the validation messenger: {result}")));
-                    }
-                }
-            }
-        };
         // SAFETY: the family and index were asked for above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         // SAFETY: the device is alive. Without one, pipelines are only made more slowly: no reason to fail.
@@ -450,9 +455,7 @@ impl Drop for Gpu {
             self.memory.close();
             self.device.destroy_pipeline_cache(self.pipelines, None);
             self.device.destroy_device(None);
-            if let Some(validation) = &self.validation {
-                validation.functions.destroy_debug_utils_messenger(validation.messenger, None);
-            }
+            drop(self.validation.take());
             self.instance.destroy_instance(None);
         }
     }

@@ -24,7 +24,10 @@ pub struct Log {
 }
 
 /// Messages that say nothing about this program: id and reason.
-const ALLOWED: [(&str, &str); 0] = [];
+const ALLOWED: [(&str, &str); 1] = [(
+    "WARNING-GPU-Assisted-Validation",
+    "where the layer's settings ask shaders to check themselves: which features it switches on for that, and which limits it lowers",
+)];
 
 impl Log {
     /// Removes and returns what has been said so far.
