@@ -24,7 +24,7 @@ pub const COMMANDS: [&str; 15] = [
 
 /// Modes together, and whether a device may lack what a command needs and say so.
 const MODES: [(&str, bool); 3] =
-    [("poison,discard,padding", false), ("discrete,gpu,poison", false), ("least-limits", true)];
+    [("poison,discard", false), ("discrete,gpu,poison,padding", false), ("least-limits", true)];
 
 /// One test for all of them: what they are held against is rendered once.
 #[test]

@@ -319,7 +319,12 @@ impl Barrier {
     }
 
     pub(super) fn buffer_barrier(&self, buffer: vk::Buffer) -> vk::BufferMemoryBarrier2<'static> {
+        // Neither hands it to another queue. A family by name says that the contents may go, as an undefined layout does of an
+        // image: buffers have no other word for it, and tools/pretend overwrites them there.
+        let family = if self.discard { 0 } else { vk::QUEUE_FAMILY_IGNORED };
         vk::BufferMemoryBarrier2::default()
+            .src_queue_family_index(family)
+            .dst_queue_family_index(family)
             .src_stage_mask(self.from.stages())
             .src_access_mask(self.from.writes())
             .dst_stage_mask(self.to.stage())

@@ -64,6 +64,8 @@ fn host_can_read(cmd: &Commands, landing: &Buffer) {
         .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
         .dst_stage_mask(vk::PipelineStageFlags2::HOST)
         .dst_access_mask(vk::AccessFlags2::HOST_READ)
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .buffer(landing.handle)
         .size(vk::WHOLE_SIZE)];
     let info = vk::DependencyInfo::default().buffer_memory_barriers(&barrier);

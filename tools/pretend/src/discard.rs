@@ -1,12 +1,20 @@
-//! What a barrier from an undefined layout lets the device drop is overwritten, with what is wrong wherever it is read.
+//! What a barrier lets the device drop is overwritten, with what is wrong wherever it is read: images by their undefined layout,
+//! buffers that take over another's bytes by a queue family that is named (the program's own sign, src/gpu/access.rs; of
+//! all other buffers it is the ignored one).
 
 use crate::modes::MODES;
-use crate::tables;
+use crate::tables::{self, DeviceTable};
 use ash::vk;
 
 /// A depth in the middle of everything, and a stencil that nothing writes.
 const DEPTH: vk::ClearDepthStencilValue = vk::ClearDepthStencilValue { depth: 0.7, stencil: 0xa5 };
 const WORD: u32 = 0xaaaa_aaaa;
+/// NaN, also in its upper half; and not all ones, which say "none" in many a buffer.
+const NAN_WORD: u32 = 0x7fc5_a5a5;
+
+const CLEARING: vk::PipelineStageFlags2 = vk::PipelineStageFlags2::ALL_TRANSFER;
+const WRITING: vk::AccessFlags2 = vk::AccessFlags2::TRANSFER_WRITE;
+const WRITABLE: vk::ImageLayout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
 
 pub unsafe extern "system" fn create_image(
     device: vk::Device,
@@ -56,46 +64,96 @@ pub unsafe extern "system" fn barrier(commands: vk::CommandBuffer, info: *const 
     let next = table.next.fp_v1_3().cmd_pipeline_barrier2;
     // SAFETY: the program's structs; the copies live as long as the calls, which are recorded where the program records.
     unsafe {
-        let images = match (*info).image_memory_barrier_count {
-            0 => &[],
-            count => std::slice::from_raw_parts((*info).p_image_memory_barriers, count as usize),
-        };
-        let is_dropped = |barrier: &&vk::ImageMemoryBarrier2<'_>| barrier.old_layout == vk::ImageLayout::UNDEFINED;
-        if !MODES.discard || !images.iter().any(|barrier| is_dropped(&barrier)) {
+        let images: &[vk::ImageMemoryBarrier2<'_>] =
+            slice((*info).p_image_memory_barriers, (*info).image_memory_barrier_count);
+        let buffers: &[vk::BufferMemoryBarrier2<'_>] =
+            slice((*info).p_buffer_memory_barriers, (*info).buffer_memory_barrier_count);
+        if !MODES.discard || !(images.iter().any(is_dropped_image) || buffers.iter().any(is_dropped_buffer)) {
             return next(commands, info);
         }
-        let writable = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-        let before: Vec<_> = images
-            .iter()
-            .map(|barrier| match is_dropped(&barrier) {
-                true => barrier
-                    .dst_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-                    .dst_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-                    .new_layout(writable),
-                false => *barrier,
-            })
-            .collect();
-        let changed = vk::DependencyInfo { p_image_memory_barriers: before.as_ptr(), ..*info };
+        let (mut images_before, mut buffers_before) = (images.to_vec(), buffers.to_vec());
+        for barrier in images_before.iter_mut().filter(|barrier| is_dropped_image(barrier)) {
+            *barrier = barrier.dst_stage_mask(CLEARING).dst_access_mask(WRITING).new_layout(WRITABLE);
+        }
+        for barrier in buffers_before.iter_mut().filter(|barrier| is_dropped_buffer(barrier)) {
+            *barrier = barrier.dst_stage_mask(CLEARING).dst_access_mask(WRITING);
+        }
+        // Who had the bytes before was another resource: the program's own memory barrier makes its next use wait, and not ours.
+        let before_us = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .dst_stage_mask(CLEARING)
+            .dst_access_mask(WRITING)];
+        next(commands, &vk::DependencyInfo::default().memory_barriers(&before_us));
+        let changed = vk::DependencyInfo {
+            p_image_memory_barriers: images_before.as_ptr(),
+            p_buffer_memory_barriers: buffers_before.as_ptr(),
+            ..*info
+        };
         next(commands, &changed);
-        for barrier in images.iter().filter(is_dropped) {
-            let (image, ranges) = (barrier.image, [barrier.subresource_range]);
+        overwrite(&table, commands, images, buffers);
+        let images_after: Vec<_> = images
+            .iter()
+            .filter(|barrier| is_dropped_image(barrier))
+            .map(|barrier| barrier.src_stage_mask(CLEARING).src_access_mask(WRITING).old_layout(WRITABLE))
+            .collect();
+        let buffers_after: Vec<_> = buffers
+            .iter()
+            .filter(|barrier| is_dropped_buffer(barrier))
+            .map(|barrier| barrier.src_stage_mask(CLEARING).src_access_mask(WRITING))
+            .collect();
+        let after =
+            vk::DependencyInfo::default().image_memory_barriers(&images_after).buffer_memory_barriers(&buffers_after);
+        next(commands, &after);
+    }
+}
+
+/// # Safety
+///
+/// `commands` is recorded outside rendering, and what is dropped may be written.
+unsafe fn overwrite(
+    table: &DeviceTable,
+    commands: vk::CommandBuffer,
+    images: &[vk::ImageMemoryBarrier2<'_>],
+    buffers: &[vk::BufferMemoryBarrier2<'_>],
+) {
+    for barrier in images.iter().filter(|barrier| is_dropped_image(barrier)) {
+        let (image, ranges) = (barrier.image, [barrier.subresource_range]);
+        // SAFETY: the caller's promise.
+        unsafe {
             if barrier.subresource_range.aspect_mask.contains(vk::ImageAspectFlags::COLOR) {
                 let format = table.known().formats.get(&image).copied().unwrap_or_default();
-                table.next.cmd_clear_color_image(commands, image, writable, &wrong_color(format), &ranges);
+                table.next.cmd_clear_color_image(commands, image, WRITABLE, &wrong_color(format), &ranges);
             } else {
-                table.next.cmd_clear_depth_stencil_image(commands, image, writable, &DEPTH, &ranges);
+                table.next.cmd_clear_depth_stencil_image(commands, image, WRITABLE, &DEPTH, &ranges);
             }
         }
-        let after: Vec<_> = images
-            .iter()
-            .filter(is_dropped)
-            .map(|barrier| {
-                barrier
-                    .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-                    .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-                    .old_layout(writable)
-            })
-            .collect();
-        next(commands, &vk::DependencyInfo::default().image_memory_barriers(&after));
+    }
+    for barrier in buffers.iter().filter(|barrier| is_dropped_buffer(barrier)) {
+        let asked_bytes = table.known().buffers.get(&barrier.buffer).map_or(0, |bound| bound.asked_bytes);
+        if asked_bytes >= 4 {
+            // SAFETY: as above.
+            unsafe { table.next.cmd_fill_buffer(commands, barrier.buffer, 0, asked_bytes / 4 * 4, NAN_WORD) };
+        }
+    }
+}
+
+fn is_dropped_image(barrier: &vk::ImageMemoryBarrier2<'_>) -> bool {
+    barrier.old_layout == vk::ImageLayout::UNDEFINED
+}
+
+fn is_dropped_buffer(barrier: &vk::BufferMemoryBarrier2<'_>) -> bool {
+    barrier.src_queue_family_index != vk::QUEUE_FAMILY_IGNORED
+        && barrier.src_queue_family_index == barrier.dst_queue_family_index
+}
+
+/// # Safety
+///
+/// As many as `count`, where that is not 0.
+unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
+    match count {
+        0 => &[],
+        // SAFETY: the caller's promise.
+        count => unsafe { std::slice::from_raw_parts(first, count as usize) },
     }
 }

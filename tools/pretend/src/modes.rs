@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 pub struct Modes {
     /// Memory comes with all bits set, which are NaN.
     pub poison: bool,
-    /// What a barrier from an undefined layout may drop is overwritten.
+    /// What a barrier may drop is overwritten.
     pub discard: bool,
     /// Behind every buffer lie bytes that nobody may write, and that are NaN to who reads them.
     pub padding: bool,

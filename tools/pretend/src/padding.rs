@@ -8,9 +8,11 @@ use ash::vk;
 const TAIL_BYTES: u64 = 4096;
 const TAIL: u8 = 0xff;
 
-/// The same buffer with a tail.
+/// The same buffer with a tail, and open to what overwrites it.
 pub fn padded<'a>(info: &vk::BufferCreateInfo<'a>) -> vk::BufferCreateInfo<'a> {
-    vk::BufferCreateInfo { size: info.size + if MODES.padding { TAIL_BYTES } else { 0 }, ..*info }
+    let usage =
+        info.usage | if MODES.discard { vk::BufferUsageFlags::TRANSFER_DST } else { vk::BufferUsageFlags::empty() };
+    vk::BufferCreateInfo { size: info.size + if MODES.padding { TAIL_BYTES } else { 0 }, usage, ..*info }
 }
 
 pub unsafe extern "system" fn create_buffer(
