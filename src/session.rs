@@ -133,8 +133,16 @@ impl Session {
                 return error;
             }
             let plan = format!("`memory --technique {}` prints the plan", technique.name());
-            resident::advise(error, &self.gpu, &self.scene).note(format!("a smaller --size would need less; {plan}"))
+            let less = self.lessen(technique, values).expect("the same view, lights and plan as above");
+            resident::advise(error, &self.gpu, &self.scene).note(format!("{less}; {plan}"))
         })
+    }
+
+    /// What would need less memory, in words.
+    fn lessen(&self, technique: &dyn Technique, values: &Values) -> Result<String> {
+        let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
+        let lights = LightSet::new(&self.scene, &view, values)?;
+        Ok(bindable::lessen(technique, &self.inputs(&view, &lights, values)))
     }
 
     /// The memory of the scene and of `renderer`. `snapshot`: where their resources lie, while no other renderer has any.

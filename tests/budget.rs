@@ -130,6 +130,20 @@ fn an_error_says_what_was_wanted_what_is_held_and_what_would_help() {
     assert!(!plain.contains("--texture-limit"), "{plain}");
 }
 
+/// Textures of 2048 pixels that shade take 537 MB of a plan for a small picture.
+#[test]
+fn a_setting_that_halves_what_a_frame_takes_is_named() {
+    let _one = begin();
+    let scene = scene::load("cornell", 1).unwrap();
+    let changes = [("shading", "texture-space"), ("size", "64x36")];
+    let refused = render(&within(Strategy::Linear, 64 * MIB), &scene, "deep_shading", &changes);
+    let text = refused.map(drop).expect_err("the budget is small").to_string();
+    assert!(
+        text.contains("\n       --shading-texture-size 1024 or a smaller --size would need less; `memory"),
+        "{text}"
+    );
+}
+
 /// With the limit that an error names, what was refused fits, and the textures shrink by as much as it says; with twice
 /// the limit it would not have fit.
 #[test]

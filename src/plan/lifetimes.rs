@@ -72,6 +72,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::caps::Limits;
     use crate::gpu::{Access, known};
     use crate::memory::alias::Mode;
     use crate::plan::Requirements;
@@ -105,7 +106,8 @@ mod tests {
         let bytes: Vec<u64> = plan.resources.iter().map(|planned| planned.bytes()).collect();
         let caps = known::caps(known::DEFAULT).unwrap();
         let rules = Requirements::Rules(caps.layout.as_ref().unwrap());
-        let peak = |mode| plan.peak(&bytes, 10, &Sharing::new(&plan, rules, 1, mode));
+        let limits = Limits { buffer_image_granularity_bytes: 1, ..caps.limits.clone() };
+        let peak = |mode| plan.peak(&bytes, 10, &Sharing::new(&plan, rules, &limits, mode));
         for mode in [Mode::Greedy, Mode::Optimal] {
             assert_eq!(peak(mode), Peak { bytes: 10 + 100 + 2000 + 4000, pass: "third".to_owned() });
         }
@@ -113,16 +115,21 @@ mod tests {
         assert_eq!(peak(Mode::Off), Peak { bytes: 10 + 100 + 1000 + 2000 + 4000, pass: "first".to_owned() });
     }
 
-    /// Parts that lie a granularity apart may take more together than they share.
+    /// Parts that lie a granularity apart may take more together than they share, and all of them more than a block.
     #[test]
     fn bytes_are_shared_where_that_saves_some() {
         let plan = plan();
         let caps = known::caps(known::DEFAULT).unwrap();
         let rules = Requirements::Rules(caps.layout.as_ref().unwrap());
+        let arenas = |buffer_image_granularity_bytes, max_allocation_bytes| {
+            let limits = Limits { buffer_image_granularity_bytes, max_allocation_bytes, ..caps.limits.clone() };
+            Sharing::new(&plan, rules, &limits, Mode::Greedy).arenas
+        };
         for (granularity_bytes, expected) in [(1, 1), (64, 1), (4096, 1), (131_072, 0)] {
-            let sharing = Sharing::new(&plan, rules, granularity_bytes, Mode::Greedy);
-            assert_eq!(sharing.arenas.len(), expected, "{granularity_bytes}");
+            assert_eq!(arenas(granularity_bytes, u64::MAX).len(), expected, "{granularity_bytes}");
         }
+        let bytes = arenas(1, u64::MAX)[0].bytes;
+        assert_eq!([bytes, bytes - 1].map(|most| arenas(1, most).len()), [1, 0]);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! (`memory::alias`) and what the driver asks for.
 
 use super::{Plan, Requirements};
+use crate::gpu::caps::Limits;
 use crate::gpu::{AccessSet, Caps};
 use crate::memory::alias::{self, Mode, Placement, Span};
 use crate::memory::kinds::Use;
@@ -51,15 +52,16 @@ impl Sharing {
     /// As `--alias` says.
     pub fn of(plan: &Plan, requirements: Requirements<'_>, caps: &Caps, values: &Values) -> Self {
         let mode = Mode::from_setting(values.text("alias")).expect("the settings table has its words");
-        Self::new(plan, requirements, caps.limits.buffer_image_granularity_bytes, mode)
+        Self::new(plan, requirements, &caps.limits, mode)
     }
 
-    /// `granularity_bytes`: bufferImageGranularity, to which every part is aligned, because buffers and images lie side
-    /// by side in an arena.
-    pub fn new(plan: &Plan, requirements: Requirements<'_>, granularity_bytes: u64, mode: Mode) -> Self {
+    /// `limits`: bufferImageGranularity, to which every part is aligned, because buffers and images lie side by side in an
+    /// arena, and how long one block of memory may be.
+    pub fn new(plan: &Plan, requirements: Requirements<'_>, limits: &Limits, mode: Mode) -> Self {
         if mode == Mode::Off {
             return Self::default();
         }
+        let granularity_bytes = limits.buffer_image_granularity_bytes.max(1);
         // Resources of different memory types cannot share.
         let mut by_type: BTreeMap<u32, Vec<(usize, Span)>> = BTreeMap::new();
         for (index, planned) in plan.resources.iter().enumerate() {
@@ -68,15 +70,17 @@ impl Sharing {
             let required = requirements.of(&planned.shape);
             let span = Span {
                 bytes: required.bound_bytes,
-                alignment: required.alignment_bytes.max(granularity_bytes.max(1)),
+                alignment: required.alignment_bytes.max(granularity_bytes),
                 first: lifetime.first,
                 last: lifetime.last,
             };
             by_type.entry(required.memory_type_bits).or_default().push((index, span));
         }
         let arenas = by_type.into_iter().map(|(bits, members)| arena(plan, bits, &members, mode));
-        // A coarse granularity may take more between parts than they share.
-        Self { arenas: arenas.filter(|arena| arena.bytes <= arena.parts_bytes()).collect() }
+        // A coarse granularity may take more between parts than they share, and what no block holds may lie in several.
+        let is_worth_it =
+            |arena: &PlannedArena| arena.bytes <= arena.parts_bytes() && arena.bytes <= limits.max_allocation_bytes;
+        Self { arenas: arenas.filter(is_worth_it).collect() }
     }
 
     /// Name of an arena among those of `technique`.

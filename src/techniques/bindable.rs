@@ -1,9 +1,10 @@
-//! What is too large for a device to draw, or to bind at once: refused with what is not, which is found by planning it.
+//! What is too large for a device to draw, to bind at once or to hold: refused with what is not, which is found by planning it.
 
 use super::{Inputs, Technique};
 use crate::error::Error;
 use crate::frame::View;
 use crate::lights::LightSet;
+use crate::settings::Values;
 use crate::units::Extent;
 
 /// Sizes that are tried: each half as wide and high as the one before.
@@ -16,15 +17,7 @@ pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> E
         let is_able = super::fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend).is_ok();
         is_able && technique.plan(inputs).and_then(|plan| plan.check(&inputs.caps.limits)).is_ok()
     };
-    let mut ways: Vec<String> = Vec::new();
-    for (key, text) in technique.shorter() {
-        let setting = technique.settings().iter().copied().flatten().find(|setting| setting.key == *key);
-        let mut values = inputs.values.clone();
-        values.set(setting.expect("a technique names its own settings"), text).expect("and values that they take");
-        if values != *inputs.values && fits(&Inputs { values: &values, ..*inputs }) {
-            ways.push(format!("--{key} {text}"));
-        }
-    }
+    let mut ways = shortened(technique, inputs.values, |values| fits(&Inputs { values, ..*inputs }));
     let extent = inputs.view.extent;
     let halved =
         (1..=MOST_HALVINGS).map(|times| Extent::new((extent.width >> times).max(1), (extent.height >> times).max(1)));
@@ -34,9 +27,36 @@ pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> E
         fits(&Inputs { view: &view, lights: &lights, ..*inputs })
     });
     ways.extend(smaller.map(|extent| format!("--size {extent}")));
-    error.note(match ways.split_last() {
+    error.note(match joined(&ways) {
         None => "a scene with fewer triangles or lights would fit".to_owned(),
-        Some((only, [])) => format!("{only} would fit"),
-        Some((last, others)) => format!("{} or {last} would fit", others.join(", ")),
+        Some(ways) => format!("{ways} would fit"),
     })
+}
+
+/// What would need less memory than the plan of `inputs`: settings of `Technique::shorter` that halve it, and a smaller picture.
+pub fn lessen(technique: &dyn Technique, inputs: &Inputs<'_>) -> String {
+    let bytes = |values: &Values| technique.plan(&Inputs { values, ..*inputs }).map(|plan| plan.bytes());
+    let now = bytes(inputs.values).unwrap_or_default();
+    let mut ways = shortened(technique, inputs.values, |values| bytes(values).is_ok_and(|bytes| bytes <= now / 2));
+    ways.push("a smaller --size".to_owned());
+    format!("{} would need less", joined(&ways).expect("a smaller picture is one"))
+}
+
+/// Each of `Technique::shorter` that changes `values` to ones that `helps` takes, as on the command line.
+fn shortened(technique: &dyn Technique, values: &Values, helps: impl Fn(&Values) -> bool) -> Vec<String> {
+    let changed = |(key, text): &(&'static str, &str)| {
+        let setting = technique.settings().iter().copied().flatten().find(|setting| setting.key == *key);
+        let mut changed = values.clone();
+        changed.set(setting.expect("a technique names its own settings"), text).expect("and values that they take");
+        (changed != *values && helps(&changed)).then(|| format!("--{key} {text}"))
+    };
+    technique.shorter().iter().filter_map(changed).collect()
+}
+
+/// None of none.
+fn joined(ways: &[String]) -> Option<String> {
+    match ways.split_last()? {
+        (only, []) => Some(only.clone()),
+        (last, others) => Some(format!("{} or {last}", others.join(", "))),
+    }
 }

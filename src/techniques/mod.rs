@@ -95,7 +95,7 @@ pub trait Technique: Sync {
     }
 
     /// Settings with values, each of which has shorter buffers, or none, where others have long ones: what is tried for advice
-    /// where a device does not bind a buffer at once.
+    /// where a device does not bind a buffer at once, or memory is spent.
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
         &[]
     }

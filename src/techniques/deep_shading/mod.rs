@@ -143,7 +143,7 @@ impl Technique for DeepShading {
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
-        &[("list-access", "auto"), ("direct-shadow", "none")]
+        &[("list-access", "auto"), ("direct-shadow", "none"), ("shading-texture-size", "1024")]
     }
 
     fn needs(&self, values: &Values, caps: &Caps, _: bool) -> Vec<Need> {
