@@ -329,10 +329,10 @@ fn more_texels_a_thread_change_no_pixel() {
     for own in
         [&[][..], &[("split", "none")], &[("split", "subsample")], &[("split", "remap"), ("direct", "interleaved")]]
     {
-        require_one_hash(&watched, INTERLEAVED, &both(&interleaved, own), &counts);
+        require_one_picture(&watched, INTERLEAVED, &both(&interleaved, own), &counts);
     }
     for own in [&[][..], &[("cull", "tiled")], &[("direct-shadow", "ray")]] {
-        require_one_hash(&watched, "deferred", &both(&[("size", "161x91")], own), &counts);
+        require_one_picture(&watched, "deferred", &both(&[("size", "161x91")], own), &counts);
     }
 }
 

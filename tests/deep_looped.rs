@@ -1,6 +1,7 @@
-//! Stochastic rasterisation that tests all samples of a pixel in a loop and keeps the nearest by 64-bit atomics sees, to the bit,
-//! what a layer a tuple with depth tests sees, its oracle: alpha, motion, two eyes and surfaces in one place included.
+//! Stochastic rasterisation that tests all samples of a pixel in a loop and keeps the nearest by 64-bit atomics sees (to the bit,
+//! on software drivers) what a layer a tuple with depth tests sees, its oracle: alpha, motion, two eyes and surfaces in one place included.
 
+use crate::support::difference::{require_same, require_same_numbers};
 use crate::support::moving::moving;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
@@ -18,7 +19,8 @@ const LAYERS: (&str, &str) = ("sample-tests", "layers");
 /// Both ways come to the same triangles, pairs, colours and picture.
 #[track_caller]
 fn require_one_picture(watched: &Watched, changes: Changes<'_>) {
-    if !has(&watched.session.gpu.caps, Feature::WideAtomics) {
+    let gpu = &watched.session.gpu;
+    if !has(&gpu.caps, Feature::WideAtomics) {
         return;
     }
     let changes = both(changes, &[STOCHASTIC]);
@@ -28,12 +30,14 @@ fn require_one_picture(watched: &Watched, changes: Changes<'_>) {
         assert_eq!(renderer.resolved["sample-tests"], way.1);
         let counters = renderer.measured_counters().unwrap();
         let pairs = ["listed_digest", "samples_seen", "shader_invocations"].map(|key| counters.get(key).copied());
-        (watched.integers(&renderer, stage), pairs, renderer.picture().unwrap().hash().unwrap())
+        (watched.integers(&renderer, stage), pairs, renderer.picture().unwrap())
     });
     assert!(looped.0.iter().filter(|id| **id != u32::MAX).count() > looped.0.len() / 4, "{changes:?}");
-    let apart = looped.0.iter().zip(&layered.0).filter(|(a, b)| a != b).count();
-    assert_eq!(apart, 0, "{changes:?}: samples see another triangle");
-    assert_eq!((looped.1, looped.2), (layered.1, layered.2), "{changes:?}");
+    require_same_numbers(gpu, &looped.0, &layered.0, &("triangles that samples see", &changes));
+    require_same(gpu, &looped.2, &layered.2, &changes);
+    if gpu.caps.identity.is_software() {
+        assert_eq!(looped.1, layered.1, "{changes:?}");
+    }
 }
 
 /// Sizes that the table of tuples does not divide.

@@ -1,6 +1,7 @@
 //! A driver that ends long loops without a word must not be believed: `Identity::loop_turns`, glsl/loops.glsl.
 
 use crate::support;
+use crate::support::difference::require_same;
 use crate::support::shared_scenes;
 use crate::support::watched::Watched;
 
@@ -29,13 +30,13 @@ fn as_many_pixels_as_a_thread_may_have_turns_for() {
         ("kaos", "deferred", [("direct-shadow", "ray"), ("cull", "none")]),
     ] {
         let watched = Watched::open(folder.join(format!("maps/{map}.glb")).to_str().unwrap());
-        let hash = |texels| {
+        let picture = |texels| {
             let own = [("size", "64x36"), ("texels", texels)];
-            watched.hash(technique, &support::watched::both(&changes, &own))
+            watched.picture(technique, &support::watched::both(&changes, &own))
         };
-        let plain = hash("1");
+        let plain = picture("1");
         for texels in ["auto", "16", "32"] {
-            assert_eq!(hash(texels), plain, "{map}: --texels {texels}");
+            require_same(&watched.session.gpu, &picture(texels), &plain, &(map, texels));
         }
     }
 }

@@ -237,7 +237,7 @@ pub const GEOMETRY: Setting = Setting {
     unit: "",
     paper: "",
     help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
-           plain way to the same bits)",
+           plain way to the same picture)",
 };
 
 /// Which punctual lights cast shadow rays.
@@ -301,7 +301,7 @@ pub const TEXELS: Setting = Setting {
     unit: "px",
     paper: "",
     help: "pixels that a thread shades, compares or filters one after the other at most, reading once what they share; 1 \
-           is the plain way to the same bits; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
+           is the plain way to the same picture; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
            22, 16 on other software drivers, else 1",
 };
 
@@ -315,7 +315,7 @@ pub const LIGHT_LISTS: &[Setting] = &[Setting {
     paper: "Kircher 2009, 5",
     help: "punctual lights of a surface that is shaded where it is drawn (every surface of forward, and what blends): those \
            whose range reaches the box around its object, or around a piece of what blends, or every light (the plain way \
-           to the same bits)",
+           to the same picture)",
 }];
 
 /// Settings of what is drawn with several samples a pixel (`passes::resolve`).

@@ -44,6 +44,16 @@ pub fn require_same(gpu: &Gpu, one: &Picture, other: &Picture, what: &dyn Debug)
     }
 }
 
+/// `require_same` of whole numbers, such as which triangle a sample sees: on devices that round each shader for itself
+/// few may be others.
+#[track_caller]
+pub fn require_same_numbers(gpu: &Gpu, one: &[u32], other: &[u32], what: &dyn Debug) {
+    assert_eq!(one.len(), other.len(), "{what:?}");
+    let apart = one.iter().zip(other).filter(|(a, b)| a != b).count();
+    let most = if gpu.caps.identity.is_software() { 0.0 } else { ROUNDED_PIXELS * other.len() as f64 };
+    assert!(apart as f64 <= most, "{what:?}: {apart} of {} are others", other.len());
+}
+
 /// Whether two pictures differ by no more than rounding; the figures where they do.
 fn rounded(one: &Picture, other: &Picture) -> Result<(), String> {
     assert_eq!(one.extent, other.extent);

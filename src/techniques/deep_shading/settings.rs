@@ -101,7 +101,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.2",
         help: "how --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once over the frame and its \
                fragments test all samples of their pixel, of which 64-bit atomics keep the nearest; or it is drawn into a layer of each \
-               tuple, where a pixel is a sample; the same bits; auto: a loop where the device can",
+               tuple, where a pixel is a sample; the same picture; auto: a loop where the device can",
     },
     Setting {
         key: "spp",
@@ -178,7 +178,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.3",
         help: "linked lists of what is shaded at each pixel of shading space; direct: rays put triangles into them at once, without a \
                SPID a sample (--visibility ray); or none: every sample is shaded where it is seen, at its shading point (the plain \
-               way to the same bits)",
+               way to the same picture)",
     },
     Setting {
         key: "list-access",
