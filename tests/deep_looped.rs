@@ -71,7 +71,7 @@ fn a_loop_sees_what_layers_see_by_both_eyes() {
 }
 
 /// The box twice in one place, the second time with a material of its own, solid or not: by a depth test the first that is drawn is
-/// seen, and draws come by material.
+/// seen, and draws come by material. Which of two different shaders' surfaces, rounding decides where each rounds for itself.
 fn doubled(alpha: AlphaMode, base_color: Vec4) -> Scene {
     let mut scene = scene::load("cornell", 1).unwrap();
     scene.hash = format!("{} twice, {alpha:?}", scene.hash);
@@ -94,7 +94,10 @@ fn of_surfaces_in_one_place_the_first_that_is_drawn_is_seen() {
         (AlphaMode::Mask { cutoff: 0.5 }, vec4(0.1, 0.2, 0.8, 1.0)),
         (AlphaMode::Blend, vec4(0.1, 0.2, 0.8, 0.5)),
     ] {
-        require_one_picture(&Watched::with_scene(doubled(alpha, base_color)), &changes);
+        let watched = Watched::with_scene(doubled(alpha, base_color));
+        if alpha == AlphaMode::Opaque || watched.session.gpu.caps.identity.is_software() {
+            require_one_picture(&watched, &changes);
+        }
     }
 }
 

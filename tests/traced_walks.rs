@@ -1,6 +1,6 @@
 //! Path tracing through every kind of tree and stack: the same picture, in as much memory as the plan says.
 
-use crate::support::difference::require_same;
+use crate::support::difference::require_same_paths;
 use crate::support::shared_scenes;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::scene::{self, AlphaMode};
@@ -26,7 +26,7 @@ const WAYS: [Changes<'_>; 11] = [
 fn require_one_picture(watched: &Watched, changes: Changes<'_>) {
     let expected = watched.picture(NAME, changes);
     for way in WAYS {
-        require_same(&watched.session.gpu, &watched.picture(NAME, &both(changes, way)), &expected, &way);
+        require_same_paths(&watched.session.gpu, &watched.picture(NAME, &both(changes, way)), &expected, &way);
     }
 }
 
