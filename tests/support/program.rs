@@ -106,9 +106,14 @@ impl Program {
     }
 }
 
-/// Whether a process handles SIGINT itself, as the kernel says.
+/// Whether a process is the program, and handles SIGINT itself, as the kernel says: a runner's shell, which it is first,
+/// handles it too.
 #[cfg(target_os = "linux")]
 fn handles_interrupts(id: u32) -> bool {
+    let maps = std::fs::read_to_string(format!("/proc/{id}/maps")).unwrap_or_default();
+    if !maps.contains(env!("CARGO_BIN_EXE_quincunx")) {
+        return false;
+    }
     let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
     let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
     caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 1 != 0)

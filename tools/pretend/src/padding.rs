@@ -170,7 +170,11 @@ pub unsafe extern "system" fn update_sets(
         let known = table.known();
         let mut writes = std::slice::from_raw_parts(writes, write_count as usize).to_vec();
         let mut kept = Vec::new();
-        for write in writes.iter_mut().filter(|write| !write.p_buffer_info.is_null()) {
+        // Of uniform buffers a descriptor may be too long with one.
+        let has_tail = |write: &&mut vk::WriteDescriptorSet<'_>| {
+            write.descriptor_type == vk::DescriptorType::STORAGE_BUFFER && !write.p_buffer_info.is_null()
+        };
+        for write in writes.iter_mut().filter(has_tail) {
             let infos = std::slice::from_raw_parts(write.p_buffer_info, write.descriptor_count as usize);
             let wide = |info: &vk::DescriptorBufferInfo| {
                 let asked = known.buffers.get(&info.buffer).map(|bound| bound.asked_bytes);
