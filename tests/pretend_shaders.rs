@@ -2,6 +2,7 @@
 
 use crate::support;
 use crate::support::pretending::Layer;
+use crate::support::program::start;
 use quincunx::gpu::commands::Submits;
 use quincunx::gpu::pipeline::ComputePipeline;
 use quincunx::gpu::shader::{Binding, BindingKind, Shader, Side, Stage};
@@ -158,7 +159,8 @@ fn fused_sums_and_last_bits_come_out_where_sources_leave_them_free() {
     for seed in 1..=3 {
         let under = |modes: &str| -> Vec<f32> {
             let this = "pretend_shaders::fused_sums_and_last_bits_come_out_where_sources_leave_them_free";
-            let mut command = Command::new(std::env::current_exe().unwrap());
+            // Not `current_exe`, which under a runner may be the C library's loader.
+            let mut command = start(std::env::args_os().next().unwrap());
             command.args(["--exact", this]).env(CHILD, &file).envs(layer.variables(modes));
             let output = command.output().unwrap();
             assert!(output.status.success(), "{modes}: {}", String::from_utf8_lossy(&output.stdout));
