@@ -133,12 +133,17 @@ impl Session {
                 return error;
             }
             let plan = format!("`memory --technique {}` prints the plan", technique.name());
-            let less = self.lessen(technique, values).expect("the same view, lights and plan as above");
-            resident::advise(error, &self.gpu, &self.scene).note(format!("{less}; {plan}"))
+            match self.lessen(technique, values) {
+                Ok(less) => resident::advise(error, &self.gpu, &self.scene).note(format!("{less}; {plan}")),
+                // Such as Ctrl-C in the meantime.
+                Err(other) => other,
+            }
         })
     }
 
     /// What would need less memory, in words.
+    ///
+    /// Errors: as `renderer`, before anything is made.
     fn lessen(&self, technique: &dyn Technique, values: &Values) -> Result<String> {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;

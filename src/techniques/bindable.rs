@@ -27,10 +27,10 @@ pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> E
         fits(&Inputs { view: &view, lights: &lights, ..*inputs })
     });
     ways.extend(smaller.map(|extent| format!("--size {extent}")));
-    error.note(match joined(&ways) {
-        None => "a scene with fewer triangles or lights would fit".to_owned(),
-        Some(ways) => format!("{ways} would fit"),
-    })
+    if ways.is_empty() {
+        return error.note("a scene with fewer triangles or lights would fit");
+    }
+    error.note(format!("{} would fit", joined(&ways)))
 }
 
 /// What would need less memory than the plan of `inputs`: settings of `Technique::shorter` that halve it, and a smaller picture.
@@ -39,7 +39,7 @@ pub fn lessen(technique: &dyn Technique, inputs: &Inputs<'_>) -> String {
     let now = bytes(inputs.values).unwrap_or_default();
     let mut ways = shortened(technique, inputs.values, |values| bytes(values).is_ok_and(|bytes| bytes <= now / 2));
     ways.push("a smaller --size".to_owned());
-    format!("{} would need less", joined(&ways).expect("a smaller picture is one"))
+    format!("{} would need less", joined(&ways))
 }
 
 /// Each of `Technique::shorter` that changes `values` to ones that `helps` takes, as on the command line.
@@ -53,10 +53,9 @@ fn shortened(technique: &dyn Technique, values: &Values, helps: impl Fn(&Values)
     technique.shorter().iter().filter_map(changed).collect()
 }
 
-/// None of none.
-fn joined(ways: &[String]) -> Option<String> {
-    match ways.split_last()? {
-        (only, []) => Some(only.clone()),
-        (last, others) => Some(format!("{} or {last}", others.join(", "))),
+fn joined(ways: &[String]) -> String {
+    match ways.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => ways.concat(),
     }
 }
