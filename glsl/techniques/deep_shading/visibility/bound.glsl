@@ -174,12 +174,16 @@ Bound bound_of(Seen seen[6], TupleBlock tuple, vec2 layer, float around_px) {
     }
     // Loops end at once.
     side_count = is_upright ? 0u : side_count;
+    // By shifting: where two places changed contents, Mesa 22.3.6's lavapipe could read what was kept after it was overwritten.
     for (uint last = 1u; last < side_count; last++) {
-        for (uint at = last; at > 0u && turn_of(sides[at]) < turn_of(sides[at - 1u]); at--) {
-            vec2 side = sides[at];
+        vec2 side = sides[last];
+        float turn = turn_of(side);
+        uint at = last;
+        while (at > 0u && turn < turn_of(sides[at - 1u])) {
             sides[at] = sides[at - 1u];
-            sides[at - 1u] = side;
+            at--;
         }
+        sides[at] = side;
     }
     uint apart = 1u;
     for (uint index = 1u; index < side_count; index++) {
