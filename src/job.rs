@@ -1,11 +1,12 @@
 //! Job: a checked request for one picture; `Job::run` is the whole road on one screen.
 
+use crate::caps::Caps;
 use crate::earlier::{self, Earlier};
 use crate::error::{Error, Result};
 use crate::gpu::commands::{Recording, Submits};
 use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
-use crate::gpu::{Caps, DeviceRequest, Gpu};
+use crate::gpu::{DeviceRequest, Gpu};
 use crate::interrupt;
 use crate::memory::Strategy;
 use crate::memory::ledger::Snapshot;

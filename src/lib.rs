@@ -45,6 +45,7 @@
 
 pub mod bench;
 pub mod bvh;
+pub mod caps;
 pub mod cli;
 pub mod earlier;
 pub mod error;

@@ -1,14 +1,14 @@
 //! Session: the device with the scene in its memory. It makes any number of renderers; A B A B timing holds two.
 
 use crate::bvh::LazyBvh;
+use crate::caps::Caps;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
 use crate::gpu::commands::{RecordedPass, Recording, Submits};
-use crate::gpu::readback;
 use crate::gpu::recorded::{FrameTime, Recorded};
 use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::timing::Clock;
-use crate::gpu::{Access, Buffer, Caps, Commands, DeviceRequest, Gpu, statistics, upload};
+use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, readback, statistics, upload};
 use crate::interrupt;
 use crate::lights::LightSet;
 use crate::memory::kinds::Kinds;

@@ -3,8 +3,8 @@
 //! are the tree's, whatever the choice: a ray meets the same.
 
 use super::Bvh;
+use crate::caps::Limits;
 use crate::error::{Error, Result};
-use crate::gpu::caps::Limits;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhWideBlock};
 use crate::settings::Values;
 use crate::units::Bytes;
@@ -340,7 +340,7 @@ impl<'a> Groups<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
     use proptest::prelude::*;
     use std::collections::BTreeSet;
 

@@ -1,8 +1,8 @@
 //! `quincunx devices`: every device of every driver, what it can do, and what it lacks.
 
 use super::self_test;
+use crate::caps::Need;
 use crate::error::Result;
-use crate::gpu::Need;
 use crate::gpu::device::{self, Listed};
 use crate::techniques;
 use crate::techniques::fitness::{Fitness, fitness};

@@ -2,8 +2,8 @@
 
 use super::job_args;
 use super::listed::Listed;
+use crate::caps::{file, known};
 use crate::error::{Error, Result};
-use crate::gpu::known;
 use crate::report::whole_file::write_whole;
 use crate::study::{self, Study};
 use crate::techniques::Rival;
@@ -66,7 +66,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
         let study = if matches.get_flag("plan") {
             let asked = matches.get_one::<String>("caps").map_or(known::DEFAULT, String::as_str);
-            let (name, caps) = known::asked(asked, job.device.as_deref())?;
+            let (name, caps) = file::asked(asked, job.device.as_deref())?;
             study::planned(&job, &name, &caps)?
         } else {
             study::made(&job)?

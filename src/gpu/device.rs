@@ -1,8 +1,8 @@
 //! Instance, choice of device, queue, enabled features; and what every other file of this room needs of them.
 
 use super::calibration::Calibration;
-use super::caps::{Caps, Identity};
 use super::{probe, validation};
+use crate::caps::{Caps, Identity};
 use crate::error::{Error, Result};
 use crate::memory::{Memory, Strategy};
 use ash::vk;
@@ -214,17 +214,6 @@ pub fn list() -> Result<Vec<Listed>> {
     listed
 }
 
-/// The place of a device in the choice without `--device`: GPUs before processors.
-pub(super) fn preference(identity: &Identity) -> u32 {
-    match identity.device_type.as_str() {
-        "discrete-gpu" => 0,
-        "integrated-gpu" => 1,
-        "virtual-gpu" => 2,
-        "cpu" => 3,
-        _ => 4,
-    }
-}
-
 fn choose(instance: &ash::Instance, request: &DeviceRequest) -> Result<(vk::PhysicalDevice, Caps)> {
     let selector = request.selector.as_deref();
     let said = |physical| {
@@ -237,9 +226,9 @@ fn choose(instance: &ash::Instance, request: &DeviceRequest) -> Result<(vk::Phys
         .enumerate()
         .map(|(index, physical)| (index, physical, said(physical)))
         .collect();
-    let named = |(index, _, caps): &&(usize, _, Caps)| is_named(selector, *index, &caps.identity);
+    let named = |(index, _, caps): &&(usize, _, Caps)| caps.identity.is_named(selector, *index);
     let mut fitting: Vec<_> = all.iter().filter(named).collect();
-    fitting.sort_by_key(|(_, _, caps)| preference(&caps.identity));
+    fitting.sort_by_key(|(_, _, caps)| caps.identity.preference());
     let usable = fitting.iter().find(|(_, physical, caps)| missing(instance, *physical, caps).is_empty());
     if let Some((_, physical, caps)) = usable {
         return Ok((*physical, caps.clone()));
@@ -249,18 +238,9 @@ fn choose(instance: &ash::Instance, request: &DeviceRequest) -> Result<(vk::Phys
     Err(unfit(selector, &lacking))
 }
 
-/// Whether `--device` names the device of this index; without, every one is.
-pub(super) fn is_named(selector: Option<&str>, index: usize, identity: &Identity) -> bool {
-    let Some(text) = selector else { return true };
-    match text.parse::<usize>() {
-        Ok(wanted) => wanted == index,
-        Err(_) => format!("{} {}", identity.name, identity.driver_info).to_lowercase().contains(&text.to_lowercase()),
-    }
-}
-
 /// What is said where no device that `selector` names can be used. `all`: each with what it lacks, by index.
 fn unfit(selector: Option<&str>, all: &[(&Identity, Vec<String>)]) -> Error {
-    let has_named = all.iter().enumerate().any(|(index, (identity, _))| is_named(selector, index, identity));
+    let has_named = all.iter().enumerate().any(|(index, (identity, _))| identity.is_named(selector, index));
     let error = Error::no_device(match selector {
         None => "no device can be used".to_owned(),
         Some(text) if has_named => format!("--device {text}: it cannot be used"),
@@ -493,7 +473,7 @@ mod tests {
             assert_eq!((error.exit_code(), error.to_string()), (3, format!("{first}{list}")));
         }
         for (selector, named) in [("LLVMPIPE", [true, false]), ("22.3", [true, false]), ("1", [false, true])] {
-            let found = [(0, &lava), (1, &swift)].map(|(index, identity)| is_named(Some(selector), index, identity));
+            let found = [(0, &lava), (1, &swift)].map(|(index, identity)| identity.is_named(Some(selector), index));
             assert_eq!(found, named, "{selector}");
         }
     }

@@ -1,8 +1,8 @@
 //! An image: handle, view, description, allocation.
 
 use super::access::AccessSet;
-use super::caps::Limits;
 use super::{Berth, Gpu};
+use crate::caps::Limits;
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use crate::memory::{Allocation, Request, Tiling};

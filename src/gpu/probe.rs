@@ -1,6 +1,6 @@
 //! A physical device's answers, looked up once, as `Caps`.
 
-use super::caps::{Caps, ConservativeRules, Features, Formats, Heap, Identity, Limits, MemoryType};
+use crate::caps::{Caps, ConservativeRules, Features, Formats, Heap, Identity, Limits, MemoryType};
 use ash::vk;
 use std::ffi::CStr;
 

@@ -4,8 +4,9 @@
 //! differences, discarded ones, all pixels of a block of which a triangle touches one, a vertex once for several triangles. So a
 //! count of fragments bounds what their shaders count themselves from above, and is no second copy of it.
 
+use super::Gpu;
 use super::failure::failed;
-use super::{Ability, Caps, Gpu, Need};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::{Error, Result};
 use ash::vk;
 use ash::vk::QueryPipelineStatisticFlags as Flags;
@@ -111,7 +112,7 @@ impl Drop for Statistics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
 
     #[test]
     fn a_device_that_counts_nothing_is_refused_with_the_reason() {

@@ -5,6 +5,7 @@
 //! and the like), makes the buffers that they lie in, and keeps what a build reads until its fence.
 
 use super::{Buffer, Commands, Gpu};
+use crate::caps::StructureRules;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -55,6 +56,14 @@ impl Over {
         match self {
             Self::Triangles { .. } => vk::AccelerationStructureTypeKHR::BOTTOM_LEVEL,
             Self::Instance => vk::AccelerationStructureTypeKHR::TOP_LEVEL,
+        }
+    }
+
+    /// Bytes of a structure over this where a driver goes by `rules`.
+    pub fn bytes(self, rules: &StructureRules) -> u64 {
+        match self {
+            Self::Triangles { count, .. } => rules.over_triangles(count),
+            Self::Instance => rules.over_instance(),
         }
     }
 

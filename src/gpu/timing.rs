@@ -3,9 +3,9 @@
 //! Which of the two is the figure hangs on the device (`Clock`); the other one is a second column, and what does not fit
 //! together is reported, not hidden.
 
-use super::caps::Limits;
+use super::Gpu;
 use super::failure::failed;
-use super::{Caps, Gpu};
+use crate::caps::{Caps, Limits};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -134,7 +134,7 @@ impl Drop for Timestamps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
 
     #[test]
     fn a_clock_that_goes_around_goes_on() {

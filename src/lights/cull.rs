@@ -3,12 +3,12 @@
 //!
 //! Beyond its range a light adds exactly 0, so a mask that leaves it out changes no bit of the picture.
 
+use crate::caps::Caps;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::lights::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Buffer, Caps, Commands, Edge, Gpu, Traffic, readback};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Traffic, readback};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::Plan;
 use crate::settings::Values;

@@ -1,8 +1,7 @@
 //! Which memory type a resource gets, and why: numbers and flags only, testable without a device.
 
+use crate::caps::{Caps, MemoryType};
 use crate::error::{Error, Result};
-use crate::gpu::Caps;
-use crate::gpu::caps::MemoryType;
 use std::fmt;
 
 /// What the memory is for.
@@ -102,7 +101,7 @@ impl Kinds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
 
     fn kind(device_local: bool, host_visible: bool, host_cached: bool) -> MemoryType {
         let host_coherent = host_visible;

@@ -14,8 +14,8 @@ pub mod refusal;
 pub mod rehearsal;
 pub mod suballocate;
 
+use crate::caps::Caps;
 use crate::error::{Error, Result};
-use crate::gpu::Caps;
 use crate::units::Bytes;
 use arena::Arena;
 use ash::vk;

@@ -6,7 +6,7 @@
 use super::ledger::BlockState;
 use super::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
 use super::{Strategy, Tiling};
-use crate::gpu::Caps;
+use crate::caps::Caps;
 
 /// Greatest size of a shared memory block.
 pub const SHARED_BLOCK_BYTES: u64 = 16 << 20;

@@ -13,14 +13,14 @@
 
 use super::mesh;
 use super::shadow_maps::{self, ShadowMaps};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::{BlendParams, LightBlock};
 use crate::gpu::shader::variant;
-use crate::gpu::{Ability, Access, Buffer, Caps, ColorTarget, Commands, Edge, Gpu, Image, Need, Traffic, upload};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, upload};
 use crate::lights::object_lists::{ListChoice, ObjectLights, ObjectLists, PieceLights};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawCall, SceneGpu};

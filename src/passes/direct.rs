@@ -3,10 +3,10 @@
 
 use crate::bvh::flat::flattened;
 use crate::bvh::{Bvh, LazyBvh};
+use crate::caps::Caps;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
-use crate::gpu::{Access, Buffer, Caps, Gpu, upload};
+use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::lights::LightSet;
 use crate::lights::cull::{self, CullBy};
 use crate::passes::gbuffer::PositionStorage;

@@ -11,15 +11,15 @@
 //! filter and no component is spare.
 
 use super::{decode, mesh};
+use crate::caps::{Ability, Need};
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::structs::GBufferParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{
-    Ability, Access, AccessSet, Barrier, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Need, Traffic, readback,
+    Access, AccessSet, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback,
 };
 use crate::plan::{Plan, Resources};
 use crate::report::image_file::{Aov, AovChannels};

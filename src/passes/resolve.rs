@@ -4,8 +4,9 @@
 //! A pass of its own, so that its time is told apart: software drivers copy either way. The mean is of linear light, and
 //! the samples are 32-bit floats, because lavapipe stores halves by cutting their last bits off.
 
+use crate::caps::{Ability, Need};
 use crate::error::Result;
-use crate::gpu::{Ability, Access, ColorTarget, Commands, Edge, Image, Need, Traffic};
+use crate::gpu::{Access, ColorTarget, Commands, Edge, Image, Traffic};
 use crate::settings::Values;
 
 /// Samples a pixel that `--msaa` asks for.

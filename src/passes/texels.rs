@@ -5,8 +5,7 @@
 //! word (`Identity::loop_turns`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as many pixels as its
 //! turns are enough for. Where one pixel is too many, the shader says so itself (glsl/loops.glsl).
 
-use crate::gpu::Caps;
-use crate::gpu::caps::Identity;
+use crate::caps::{Caps, Identity};
 use crate::settings::Values;
 
 /// What `--texels` and the driver allow.

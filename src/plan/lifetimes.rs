@@ -72,8 +72,8 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::caps::Limits;
-    use crate::gpu::{Access, known};
+    use crate::caps::{Limits, known};
+    use crate::gpu::Access;
     use crate::memory::alias::Mode;
     use crate::plan::Requirements;
 

@@ -13,8 +13,8 @@ pub use requirements::{Requirement, Requirements};
 pub use resources::Resources;
 pub use sharing::{Part, PlannedArena, Sharing};
 
+use crate::caps::Limits;
 use crate::error::{Error, Result};
-use crate::gpu::caps::Limits;
 use crate::gpu::{Access, ImageDescription};
 use crate::memory::kinds::Use;
 use crate::units::{Bytes, Extent};

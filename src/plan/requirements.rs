@@ -2,8 +2,8 @@
 //! driver are applied, which stand in its caps (`assets/caps/`).
 
 use super::Shape;
+use crate::caps::LayoutRules;
 use crate::error::{Error, Result};
-use crate::gpu::caps::LayoutRules;
 use crate::gpu::image::texel_bytes;
 use crate::gpu::structure::Over;
 use crate::gpu::{Buffer, Gpu, ImageDescription};
@@ -63,7 +63,7 @@ impl Requirements<'_> {
     pub fn structure_bytes(&self, over: Over) -> Result<u64> {
         match self {
             Self::Device(gpu) => Ok(over.sizes(gpu).structure_bytes),
-            Self::Rules(rules) => rules.structures.as_ref().map(|rules| rules.bytes(over)).ok_or_else(|| {
+            Self::Rules(rules) => rules.structures.as_ref().map(|rules| over.bytes(rules)).ok_or_else(|| {
                 Error::request("--rays query: only its driver tells how large an acceleration structure is")
                     .note("without --plan the device is asked; --rays tree is planned without one")
             }),

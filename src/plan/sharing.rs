@@ -2,8 +2,8 @@
 //! (`memory::alias`) and what the driver asks for.
 
 use super::{Plan, Requirements};
-use crate::gpu::caps::Limits;
-use crate::gpu::{AccessSet, Caps};
+use crate::caps::{Caps, Limits};
+use crate::gpu::AccessSet;
 use crate::memory::alias::{self, Mode, Placement, Span};
 use crate::memory::kinds::Use;
 use crate::settings::Values;

@@ -24,10 +24,11 @@ pub use relief::advise;
 pub use textures::Textures;
 pub use visible::{DrawList, GeometryChoice};
 
+use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
-use crate::gpu::{Access, AccessSet, Buffer, Caps, Gpu, ImageDescription, upload};
+use crate::gpu::{Access, AccessSet, Buffer, Gpu, ImageDescription, upload};
 use crate::plan::{Plan, Resources, Shape, Sharing};
 use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps, object_ids};
 use crate::units::Extent;

@@ -2,11 +2,12 @@
 //! comes next.
 
 use super::case::{self, Place};
+use crate::caps::{Caps, Need};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::commands::Submits;
 use crate::gpu::timing::Clock;
 use crate::gpu::validation::Message;
-use crate::gpu::{Caps, DeviceRequest, Gpu, Need};
+use crate::gpu::{DeviceRequest, Gpu};
 use crate::memory::Strategy;
 use crate::report::picture::Picture;
 use crate::session::{Renderer, Session};

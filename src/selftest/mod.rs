@@ -11,9 +11,10 @@ pub mod closed_form;
 pub mod document;
 pub mod judge;
 
+use crate::caps::Caps;
 use crate::error::{Error, Result};
+use crate::gpu::DeviceRequest;
 use crate::gpu::validation::Message;
-use crate::gpu::{Caps, DeviceRequest};
 use crate::interrupt;
 use crate::progress::Stage;
 use bed::{Bed, Made, Refusal, Rendered};

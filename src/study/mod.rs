@@ -4,9 +4,9 @@
 mod budget;
 
 use crate::bvh::LazyBvh;
+use crate::caps::Caps;
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::Caps;
 use crate::gpu::commands::Submits;
 use crate::job::{Job, judge};
 use crate::lights::LightSet;

@@ -2,8 +2,8 @@
 //! every value of every setting.
 
 use super::Technique;
+use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
-use crate::gpu::{Caps, Need};
 use crate::job::settings_of;
 use crate::settings::{Kind, Values, WORKGROUP};
 
@@ -91,7 +91,7 @@ pub fn fitness(technique: &dyn Technique, caps: &Caps) -> Fitness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
     use crate::techniques::{ALL, find};
 
     /// A GPU that has everything, changed.

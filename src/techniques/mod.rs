@@ -16,9 +16,10 @@ pub mod path_traced;
 pub mod stages;
 
 use crate::bvh::LazyBvh;
+use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::report::image_file::Aov;

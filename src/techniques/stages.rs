@@ -36,7 +36,7 @@ fn listed(begin: &str, stages: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::gpu::known;
+    use crate::caps::known;
     use crate::job::{Job, settings_of};
     use crate::settings::Kind;
     use crate::study;

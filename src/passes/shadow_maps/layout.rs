@@ -2,10 +2,11 @@
 //! is made.
 
 use super::{FORMAT, MapFilter, blocks_name, depth_name, pass};
+use crate::caps::Caps;
 use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::shader::structs::ShadowMapBlock;
-use crate::gpu::{Access, Caps, ImageDescription};
+use crate::gpu::{Access, ImageDescription};
 use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Shape};
 use crate::resident::{GeometryChoice, SceneStats};
@@ -293,7 +294,7 @@ fn face_axes(face: usize) -> [Vec3; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
     use crate::settings::{COMMON, MAPPED_DIRECT_SHADOW, SHADOW_MAPS};
     use proptest::prelude::*;
 

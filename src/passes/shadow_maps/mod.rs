@@ -27,6 +27,7 @@ mod layout;
 pub use layout::MapLayout;
 
 use super::mesh;
+use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -34,7 +35,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::shadow_maps::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::structs::ShadowMapsParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Ability, Access, Barrier, Bound, Buffer, Caps, Commands, Gpu, Image, Layers, Need, Traffic, upload};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Image, Layers, Traffic, upload};
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;

@@ -2,15 +2,14 @@
 
 use super::baseline::Shading;
 use super::middle::Middle;
-use super::reconstruct;
 use super::space::ShadingSpace;
 use super::tuples::Table;
 use super::visibility::layer::LayerFrom;
 use super::visibility::polygon::PolygonFrom;
 use super::visibility::{Visibility, looped};
-use super::{NAME, reach, shade::Road, stereo};
+use super::{NAME, reach, reconstruct, shade::Road, stereo};
+use crate::caps::Caps;
 use crate::error::{Error, Result};
-use crate::gpu::Caps;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::lights::LightSet;
@@ -257,7 +256,7 @@ impl Choices {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
     use crate::techniques::deep_shading::settings::SETTINGS;
 
     /// What nobody has seen run is taken where it is asked for by name, and nowhere else.

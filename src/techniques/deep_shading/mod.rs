@@ -74,9 +74,10 @@ mod tuples;
 mod visibility;
 
 use super::{Frame, Inputs, Prepared, Rival, Technique, light_visibility};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
+use crate::gpu::Gpu;
 use crate::gpu::shader::Shader;
-use crate::gpu::{Ability, Caps, Gpu, Need};
 use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
@@ -89,11 +90,10 @@ use frame::DeepFrame;
 use primitives::Primitives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use visibility::Visibility;
 use visibility::layer::LayerFrom;
-use visibility::looped;
 use visibility::polygon::PolygonFrom;
 use visibility::ray::Traced;
+use visibility::{Visibility, looped};
 
 const NAME: &str = "deep_shading";
 

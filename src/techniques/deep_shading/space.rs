@@ -4,9 +4,9 @@
 use super::settings::LEAST_SCALE;
 use super::stereo;
 use super::tuples::Table;
+use crate::caps::Limits;
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::gpu::caps::Limits;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::settings::Values;
@@ -141,7 +141,7 @@ fn depth_row(view: &View) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
     use crate::settings::Values;
 
     fn space(guard: &str, scale: &str, extent: Extent) -> Result<ShadingSpace> {

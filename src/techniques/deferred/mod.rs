@@ -6,9 +6,10 @@
 pub mod shade;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Access, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::lights::cull::{self, Cull};
 use crate::lights::object_lists::ObjectLists;

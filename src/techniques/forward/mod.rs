@@ -24,9 +24,10 @@ mod plan;
 mod settings;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Ability, Access, Bound, Buffer, Caps, Commands, Gpu, Image, Need, readback, upload};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, readback, upload};
 use crate::lights::LightSet;
 use crate::lights::object_lists::{ListChoice, ObjectLists};
 use crate::passes::accumulate::Accumulate;

@@ -29,9 +29,10 @@ mod stipple;
 mod survivors;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
-use crate::gpu::{Ability, Access, Caps, Gpu, Need};
+use crate::gpu::{Access, Gpu};
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::lights::{LightSet, cull as light_masks};
 use crate::passes::{blend, direct, resolve};

@@ -46,9 +46,10 @@ pub mod subsets;
 pub mod upscale;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Access, AccessSet, Buffer, Caps, Commands, Gpu, Image, Need};
+use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
 use crate::passes::blend::{self, BlendLights};

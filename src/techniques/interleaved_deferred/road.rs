@@ -2,9 +2,9 @@
 
 use super::NAME;
 use super::sub_buffers::{Stage, Storage};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::MappingParams;
-use crate::gpu::{Ability, Caps, Need};
 use crate::settings::Values;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,7 +218,7 @@ impl Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
     use crate::techniques::interleaved_deferred::settings::SETTINGS;
 
     fn storage_on(driver: &str, stores_words: bool, split: &str, storage: &str) -> Result<Storage> {

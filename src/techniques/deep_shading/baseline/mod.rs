@@ -18,12 +18,13 @@ use super::settings::SETTINGS;
 use super::visibility::sample::{Sample, Sets, Stages};
 use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
 use super::{full, stereo};
+use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{
-    Access, Barrier, Bound, Buffer, Caps, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Need, Traffic,
+    Access, Barrier, Bound, Buffer, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Traffic,
 };
 use crate::passes::{mesh, shadow_maps};
 use crate::plan::{Plan, Resources, Shape};

@@ -22,10 +22,10 @@
 use super::super::choices::Choices;
 use super::super::visibility::sample::Stages;
 use super::{mesh, shadow_maps, variant};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::msaa::{FRAG_VARIANTS, VERT};
-use crate::gpu::{Ability, Caps, Need};
 use crate::passes::mesh::Sides;
 use crate::resident::SceneGpu;
 use crate::settings::Values;

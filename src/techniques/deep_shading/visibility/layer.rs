@@ -2,7 +2,7 @@
 //! layer.geom, which passes triangles through.
 
 use super::sample::{self, Repeats, Stages};
-use crate::gpu::Caps;
+use crate::caps::Caps;
 use crate::gpu::shader::techniques::deep_shading::visibility::layer::GEOM_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::passes::mesh;

@@ -2,7 +2,7 @@
 //! in the paper (section 4.2), once for all corners. Shaders: polygon.vert, polygon.geom.
 
 use super::sample::Stages;
-use crate::gpu::Caps;
+use crate::caps::Caps;
 use crate::gpu::shader::techniques::deep_shading::visibility::polygon::{GEOM_VARIANTS, VERT};
 use crate::gpu::shader::variant;
 use crate::passes::mesh::Sides;

@@ -5,7 +5,7 @@
 //! is twice as long, so that a draw call comes again for the next tuples.
 
 use super::sample::{Repeats, Stages};
-use crate::gpu::caps::Limits;
+use crate::caps::Limits;
 use crate::gpu::shader::techniques::deep_shading::visibility::replicate::{GEOM_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::variant;
 use crate::passes::mesh;
@@ -42,7 +42,7 @@ pub(super) fn stages(scene: &SceneGpu, repeats: &Repeats) -> Stages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::known;
+    use crate::caps::known;
 
     #[test]
     fn a_draw_makes_as_many_triangles_as_geometry_shaders_may_give_out() {

@@ -1,6 +1,11 @@
 //! What a device can do, as plain data: looked up once, printed by `devices`, and read by a Plan that needs no device.
 
-use super::structure::Over;
+pub mod file;
+pub mod known;
+pub mod needs;
+
+pub use needs::{Ability, Need};
+
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -106,12 +111,17 @@ pub struct StructureRules {
 }
 
 impl StructureRules {
-    /// Bytes of a structure over this.
-    pub fn bytes(&self, over: Over) -> u64 {
-        let (count, leaf_bytes) = match over {
-            Over::Triangles { count, .. } => (u64::from(count), self.triangle_bytes),
-            Over::Instance => (1, self.instance_bytes),
-        };
+    /// Bytes of a structure over `count` triangles.
+    pub fn over_triangles(&self, count: u32) -> u64 {
+        self.bytes(u64::from(count), self.triangle_bytes)
+    }
+
+    /// Bytes of a structure over one instance of another.
+    pub fn over_instance(&self) -> u64 {
+        self.bytes(1, self.instance_bytes)
+    }
+
+    fn bytes(&self, count: u64, leaf_bytes: u64) -> u64 {
         self.header_bytes + self.inner_bytes * (count.max(2) - 1) + leaf_bytes * count
     }
 }
@@ -129,6 +139,26 @@ pub struct Identity {
 }
 
 impl Identity {
+    /// The place of a device in the choice without `--device`: GPUs before processors.
+    pub fn preference(&self) -> u32 {
+        match self.device_type.as_str() {
+            "discrete-gpu" => 0,
+            "integrated-gpu" => 1,
+            "virtual-gpu" => 2,
+            "cpu" => 3,
+            _ => 4,
+        }
+    }
+
+    /// Whether `--device` names the device of this index; without, every one is.
+    pub fn is_named(&self, selector: Option<&str>, index: usize) -> bool {
+        let Some(text) = selector else { return true };
+        match text.parse::<usize>() {
+            Ok(wanted) => wanted == index,
+            Err(_) => format!("{} {}", self.name, self.driver_info).to_lowercase().contains(&text.to_lowercase()),
+        }
+    }
+
     /// Turns of all loops of one invocation together after which the driver ends them without a word; None where there is
     /// no such end. Seen on lavapipe of Mesa 22.3.6, gone in 25.0.7; what lies between is taken to have it.
     pub fn loop_turns(&self) -> Option<u32> {

@@ -1,8 +1,7 @@
 //! Known drivers as data: `assets/caps/`, one file each. A plan reads them where there is no device.
 
-use super::{Caps, caps_file};
+use super::Caps;
 use crate::error::{Error, Result};
-use std::path::Path;
 
 /// Name and file of each.
 macro_rules! known {
@@ -47,23 +46,10 @@ pub fn caps(name: &str) -> Result<Caps> {
     Ok(serde_json::from_str(text).expect("a test reads every file of assets/caps"))
 }
 
-/// The caps that `--caps` asks for: by a known name, or by the path of a file, of whose devices `selector` names one as
-/// `--device` does. With the name to print.
-///
-/// Errors: there is neither, or the file does not hold such a device (exit code 2).
-pub fn asked(text: &str, selector: Option<&str>) -> Result<(String, Caps)> {
-    let path = Path::new(text);
-    let is_path = path.components().count() > 1 || path.extension().is_some_and(|extension| extension == "json");
-    if names().any(|name| name == text) || !(is_path || path.exists()) {
-        return Ok((text.to_owned(), caps(text)?));
-    }
-    let caps = caps_file::read(path, selector)?;
-    Ok((format!("{} ({})", caps.identity.name, caps.identity.driver_text()), caps))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn every_known_driver_can_be_read_and_software_says_how_it_rounds() {
@@ -113,22 +99,6 @@ mod tests {
         let [older, least] = [older, least].map(|caps| serde_json::to_value(caps.limits).unwrap());
         for key in keys {
             assert_eq!(older[key], least[key], "{key}");
-        }
-    }
-
-    #[test]
-    fn a_name_is_a_known_driver_and_a_path_is_a_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("gpu.json");
-        std::fs::write(&path, serde_json::to_string(&caps("amd-navi21").unwrap()).unwrap()).unwrap();
-        let (name, read) = asked(path.to_str().unwrap(), None).unwrap();
-        assert!(name.contains("NAVI21") && read.identity.device_type == "discrete-gpu", "{name}");
-        assert_eq!(asked("swiftshader", Some("7")).unwrap().0, "swiftshader");
-        for (text, words) in
-            [("voodoo", "no driver of this name"), ("voodoo.json", "No such file"), ("./voodoo", "No such")]
-        {
-            let error = asked(text, None).unwrap_err();
-            assert!(error.exit_code() == 2 && error.to_string().contains(words), "{error}");
         }
     }
 }

@@ -1,10 +1,7 @@
 //! Caps from a file that `quincunx devices --json` has written, on a machine that this one need not have seen. A file
 //! may hold anything: what a plan reckons with is asked of it first, and nothing else is trusted.
 
-use super::Caps;
-use super::caps::{LayoutRules, StructureRules};
-use super::device::{is_named, preference};
-use super::known;
+use super::{Caps, LayoutRules, StructureRules, known};
 use crate::error::{Error, Result};
 use serde_json::Value;
 use std::fs::File;
@@ -24,6 +21,20 @@ const MOST_MULTIPLE: u64 = 1 << 30;
 /// Limits of which less is better, powers of two as Vulkan has them.
 const STEPS: [&str; 3] =
     ["buffer_image_granularity_bytes", "non_coherent_atom_bytes", "min_storage_buffer_offset_bytes"];
+
+/// The caps that `--caps` asks for: by a known name, or by the path of a file, of whose devices `selector` names one as
+/// `--device` does. With the name to print.
+///
+/// Errors: there is neither, or the file does not hold such a device (exit code 2).
+pub fn asked(text: &str, selector: Option<&str>) -> Result<(String, Caps)> {
+    let path = Path::new(text);
+    let is_path = path.components().count() > 1 || path.extension().is_some_and(|extension| extension == "json");
+    if known::names().any(|name| name == text) || !(is_path || path.exists()) {
+        return Ok((text.to_owned(), known::caps(text)?));
+    }
+    let caps = read(path, selector)?;
+    Ok((format!("{} ({})", caps.identity.name, caps.identity.driver_text()), caps))
+}
 
 /// The device in the file at `path` that `selector` names as `--device` does; None: the one that a render would take.
 ///
@@ -63,8 +74,8 @@ fn chosen<'a>(document: &'a Value, selector: Option<&str>) -> Result<&'a Value, 
         })
         .collect::<Result<_, String>>()?;
     let is_usable = |index: usize| devices[index]["missing"].as_array().is_none_or(Vec::is_empty);
-    let fitting = all.iter().filter(|(index, caps, _)| is_named(selector, *index, &caps.identity) && is_usable(*index));
-    let first = fitting.min_by_key(|(_, caps, _)| preference(&caps.identity));
+    let fitting = all.iter().filter(|(index, caps, _)| caps.identity.is_named(selector, *index) && is_usable(*index));
+    let first = fitting.min_by_key(|(_, caps, _)| caps.identity.preference());
     first.map(|(_, _, caps)| *caps).ok_or_else(|| {
         let asked = selector.map_or(String::new(), |selector| format!(" that --device {selector} names"));
         let names: Vec<String> =
@@ -242,6 +253,22 @@ mod tests {
         }
         assert_eq!(read(Path::new("/"), None).unwrap_err().exit_code(), 2);
         assert_eq!(read(Path::new("nowhere.json"), None).unwrap_err().exit_code(), 2);
+    }
+
+    #[test]
+    fn a_name_is_a_known_driver_and_a_path_is_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gpu.json");
+        std::fs::write(&path, serde_json::to_string(&known::caps("amd-navi21").unwrap()).unwrap()).unwrap();
+        let (name, read) = asked(path.to_str().unwrap(), None).unwrap();
+        assert!(name.contains("NAVI21") && read.identity.device_type == "discrete-gpu", "{name}");
+        assert_eq!(asked("swiftshader", Some("7")).unwrap().0, "swiftshader");
+        for (text, words) in
+            [("voodoo", "no driver of this name"), ("voodoo.json", "No such file"), ("./voodoo", "No such")]
+        {
+            let error = asked(text, None).unwrap_err();
+            assert!(error.exit_code() == 2 && error.to_string().contains(words), "{error}");
+        }
     }
 
     /// Where numbers stand in a document.

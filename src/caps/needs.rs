@@ -1,8 +1,7 @@
 //! What a device may lack of what Vulkan 1.3 leaves optional, and the words for it. Who needs something says so as data:
 //! the same list refuses a render and is what `devices` prints.
 
-use super::Caps;
-use super::caps::Formats;
+use super::{Caps, Formats};
 use crate::error::Error;
 
 /// An optional ability of a device.
