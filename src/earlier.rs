@@ -5,8 +5,9 @@
 
 use crate::error::{Error, Result};
 use crate::metrics::noise;
+use crate::picture::image_file::Texts;
+use crate::picture::{Aov, AovChannels, image_file};
 use crate::reference::recipe::NOT_OF_THE_PICTURE;
-use crate::report::image_file::{self, Aov, AovChannels, Texts};
 use crate::report::run;
 use crate::report::run::header::{ESTIMATOR, SAMPLES, SCENE_HASH, SETTINGS, TECHNIQUE, VERSION};
 use crate::scene::Scene;

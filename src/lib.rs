@@ -59,6 +59,7 @@ pub mod lights;
 pub mod memory;
 pub mod metrics;
 pub mod passes;
+pub mod picture;
 pub mod plan;
 pub mod progress;
 pub mod reference;
@@ -74,5 +75,6 @@ pub mod shading;
 pub mod study;
 pub mod techniques;
 pub mod units;
+pub mod whole_file;
 
 pub use error::{Error, ErrorKind, Result};

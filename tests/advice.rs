@@ -2,8 +2,8 @@
 
 use crate::support;
 use crate::support::program::Program;
+use quincunx::caps::{Caps, known};
 use quincunx::error::{Error, Result};
-use quincunx::gpu::{Caps, known};
 use quincunx::job::Job;
 use quincunx::study::{self, Study};
 use quincunx::{techniques, units::Bytes};

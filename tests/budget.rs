@@ -7,7 +7,7 @@ use quincunx::gpu::DeviceRequest;
 use quincunx::gpu::commands::Submits;
 use quincunx::memory::Strategy;
 use quincunx::memory::ledger::Snapshot;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{self, Scene};
 use quincunx::session::Session;
 use quincunx::techniques;

@@ -5,8 +5,8 @@
 
 use crate::support::program::Program;
 use crate::support::skip;
+use quincunx::caps::{Caps, known};
 use quincunx::error::Result;
-use quincunx::gpu::{Caps, known};
 use quincunx::job::Job;
 use quincunx::study::{self, Study};
 use quincunx::techniques::fitness::fitness;

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use quincunx::cli::compare;
 use quincunx::metrics;
-use quincunx::report::image_file::{self, Aov, AovChannels, ExrPrecision, WriteOptions};
-use quincunx::report::picture::Picture;
-use quincunx::report::tonemap::ToneMap;
+use quincunx::picture::image_file::{ExrPrecision, WriteOptions};
+use quincunx::picture::tonemap::ToneMap;
+use quincunx::picture::{Aov, AovChannels, Picture, image_file};
 use quincunx::units::Extent;
 
 /// A smooth picture with light up to 2: more than a PNG shows.

@@ -2,15 +2,14 @@
 //! colour; multisampling to nearly the same; and what both shade is counted.
 
 use crate::support::boxes::{camera, rectangle};
-use crate::support::difference::require_same;
-use crate::support::difference::rmse;
+use crate::support::difference::{require_same, rmse};
 use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has, placing_steps};
 use glam::{Mat4, Vec3};
 use quincunx::gpu::commands::Submits;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{Camera, Material, Projection, Scene};
 use std::collections::BTreeMap;
 

@@ -6,7 +6,7 @@ use crate::support::moving::moving;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
 use glam::{Vec4, vec4};
-use quincunx::gpu::{Caps, known};
+use quincunx::caps::{Caps, known};
 use quincunx::job::Job;
 use quincunx::scene::{self, AlphaMode, Draw, Scene};
 use quincunx::{study, techniques};

@@ -8,7 +8,7 @@ use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
 use quincunx::error::Result;
 use quincunx::metrics;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::Scene;
 use quincunx::session::Renderer;
 use std::collections::BTreeMap;

@@ -9,7 +9,7 @@ use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, vec3};
 use quincunx::gpu::commands::Submits;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{Camera, Material, Projection, Scene};
 use quincunx::session::Renderer;
 use std::collections::BTreeMap;

@@ -4,8 +4,7 @@
 use crate::support;
 use crate::support::program::Program;
 use quincunx::metrics;
-use quincunx::report::image_file;
-use quincunx::report::picture::Picture;
+use quincunx::picture::{Picture, image_file};
 
 /// Drivers round sums otherwise, and place vertices to another part of a pixel (a sixteenth on SwiftShader, a 256th on
 /// lavapipe). Along edges a pixel then falls to the other surface and differs by all that surfaces differ: such pixels

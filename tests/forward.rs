@@ -5,8 +5,7 @@ use crate::support;
 use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
-use quincunx::report::image_file::AovChannels;
-use quincunx::report::picture::Picture;
+use quincunx::picture::{AovChannels, Picture};
 
 const FORWARD: &str = "forward";
 const SIZE: (&str, &str) = ("size", "161x91");

@@ -4,8 +4,7 @@ use crate::support::boxes::{edge, point_light};
 use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use glam::vec3;
-use quincunx::report::image_file::AovChannels;
-use quincunx::report::picture::Picture;
+use quincunx::picture::{AovChannels, Picture};
 use quincunx::scene::{self, AlphaMode, Light, LightKind, Projection, Scene};
 use quincunx::units::Extent;
 

@@ -5,7 +5,7 @@ use crate::support::difference::greatest_part;
 use crate::support::gltf_file::GltfFile;
 use crate::support::watched::{Watched, both};
 use glam::{Vec3, vec3};
-use quincunx::report::image_file::AovChannels;
+use quincunx::picture::AovChannels;
 use quincunx::scene::{AlphaMode, Material, Scene};
 use serde_json::json;
 use std::collections::BTreeSet;

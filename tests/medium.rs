@@ -5,7 +5,7 @@ use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};
 use crate::support::watched::{Watched, both};
 use glam::{DVec3, Vec3, dvec3, vec3};
 use quincunx::gpu::commands::Submits;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{Light, LightKind, Material, Scene};
 use quincunx::shading::medium::Medium;
 

@@ -2,8 +2,9 @@
 
 use crate::support::watched::{require_silence, watched_device};
 use ash::vk;
+use quincunx::caps::known;
 use quincunx::gpu::commands::Submits;
-use quincunx::gpu::{Access, Berth, ColorTarget, Commands, Gpu, Image, ImageDescription, known, readback};
+use quincunx::gpu::{Access, Berth, ColorTarget, Commands, Gpu, Image, ImageDescription, readback};
 use quincunx::plan::{Requirements, Shape};
 use quincunx::units::Extent;
 use std::sync::Arc;

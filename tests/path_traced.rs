@@ -5,7 +5,7 @@ use crate::support::Feature;
 use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, Vec4, vec3};
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{self, AlphaMode, Material, Scene};
 use quincunx::shading::brdf::{self, Brdf, Surface};
 use std::f32::consts::PI;

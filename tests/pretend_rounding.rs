@@ -5,8 +5,7 @@ use crate::pretend;
 use crate::support::pretending::Layer;
 use crate::support::program::Program;
 use quincunx::metrics;
-use quincunx::report::image_file;
-use quincunx::report::picture::Picture;
+use quincunx::picture::{Picture, image_file};
 
 /// Roads to one picture by shaders that differ, and what else has shaders of its own.
 const ROADS: [&str; 19] = [

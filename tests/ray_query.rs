@@ -6,7 +6,7 @@ use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Mat4, Vec3, vec3};
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{AlphaMode, ColorSpace, Image, Material, Sampler, Scene, Texture};
 
 const NAME: &str = "path_traced";

@@ -177,7 +177,7 @@ fn an_automatic_exposure_is_a_number_in_the_report() {
     assert_eq!((&plain["image"]["exposure_ev"], &plain["image"]["hash"]), (&json!(0.0), &auto["image"]["hash"]));
     assert_ne!(bytes("plain.png"), bytes("auto.png"));
     // Stages are no light.
-    let stage = |name: &str| quincunx::report::image_file::read(program.path(name).as_ref()).unwrap();
+    let stage = |name: &str| quincunx::picture::image_file::read(program.path(name).as_ref()).unwrap();
     assert_eq!(stage("auto.depth.reversed.png"), stage("plain.depth.reversed.png"));
     assert_ne!(stage("typed.depth.reversed.png"), stage("plain.depth.reversed.png"));
     // Nor is an EXR exposed.

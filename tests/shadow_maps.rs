@@ -9,7 +9,7 @@ use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, Vec4, vec3};
 use quincunx::gpu::commands::Submits;
 use quincunx::job::Job;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::scene::{AlphaMode, ColorSpace, Image, Light, LightKind, Material, Sampler, Scene, Texture, Wrap};
 use quincunx::techniques;
 

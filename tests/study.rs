@@ -1,8 +1,9 @@
 //! `memory`: what is planned without a device, by a known driver's rules, is what that driver asks for and what is made.
 
 use crate::support;
+use quincunx::caps::{Caps, known};
 use quincunx::gpu::structure::Over;
-use quincunx::gpu::{Caps, DeviceRequest, Gpu, known};
+use quincunx::gpu::{DeviceRequest, Gpu};
 use quincunx::job::Job;
 use quincunx::plan::Requirements;
 use quincunx::{study, techniques};

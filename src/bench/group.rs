@@ -7,7 +7,7 @@ use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::session::Session;
 use crate::settings::Values;
 use std::collections::HashMap;

@@ -6,7 +6,7 @@ use super::what::What;
 use crate::error::{ErrorKind, Result};
 use crate::gpu::commands::Submits;
 use crate::job::Job;
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
 use std::collections::{BTreeMap, HashMap};

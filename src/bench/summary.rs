@@ -7,7 +7,7 @@ use super::table::{MARK, Table};
 use super::what::What;
 use super::{blocks, pareto};
 use crate::error::Result;
-use crate::report::whole_file::write_whole;
+use crate::whole_file::write_whole;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;

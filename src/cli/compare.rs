@@ -10,7 +10,7 @@ use super::gate_args;
 use crate::error::{Error, Result};
 use crate::metrics::gate::{self, Gate};
 use crate::metrics::{self, Comparison, Metrics, Part};
-use crate::report::image_file;
+use crate::picture::image_file;
 use crate::units::Extent;
 
 /// The verb with its arguments.
@@ -185,8 +185,8 @@ impl Seen<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::image_file::{Aov, AovChannels, WriteOptions};
-    use crate::report::picture::Picture;
+    use crate::picture::image_file::WriteOptions;
+    use crate::picture::{Aov, AovChannels, Picture};
 
     /// A folder with `a.exr` (0.5 everywhere) and `b.exr` (0.25 everywhere): the RMSE is 0.25.
     fn folder() -> tempfile::TempDir {

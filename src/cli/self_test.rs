@@ -3,8 +3,8 @@
 use super::progress;
 use crate::error::Result;
 use crate::gpu::DeviceRequest;
-use crate::report::whole_file::write_whole;
 use crate::selftest::{self, Request, document};
+use crate::whole_file::write_whole;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::io::Write;
 use std::path::PathBuf;

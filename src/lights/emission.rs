@@ -1,6 +1,6 @@
 //! How much of a scene its emissive surfaces light: whether they are its lamps, or only glow.
 
-use crate::report::tonemap::{REC709_WEIGHTS, weighted};
+use crate::picture::tonemap::{REC709_WEIGHTS, weighted};
 use crate::scene::{Bounds, Draw, Material, Mesh, Scene, TextureSlot};
 use crate::shading::material::{MeshPoint, emissive_at};
 use glam::{DVec3, Vec3};

@@ -1,6 +1,6 @@
 //! Errors of scene-linear light, where twice the light is twice the number.
 
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 
 /// Keeps relMSE finite on black, and sets how dark a pixel may be before its error stops counting more: radiance 0.1, whose
 /// square this is, as papers on rendering noise choose it (Rousselle et al. 2011).

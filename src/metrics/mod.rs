@@ -17,8 +17,8 @@ pub use part::Part;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::report::picture::Picture;
-use crate::report::tonemap::{Srgb8, ToneMap};
+use crate::picture::Picture;
+use crate::picture::tonemap::{Srgb8, ToneMap};
 use crate::units::Extent;
 
 /// One number of each kind. Under serde an infinite PSNR is null.

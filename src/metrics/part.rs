@@ -1,7 +1,7 @@
 //! The errors of a part of a picture's pixels: what happens on edges is lost in the mean of everything.
 
 use super::{Comparison, flip, linear, percent_over};
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::units::Extent;
 use serde::Serialize;
 

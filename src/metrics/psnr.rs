@@ -1,6 +1,6 @@
 //! Peak signal-to-noise ratio of what a screen shows.
 
-use crate::report::tonemap::Srgb8;
+use crate::picture::tonemap::Srgb8;
 
 /// 10 log10(255^2 / mean squared difference of the codes over pixels and channels), in decibels; infinite where the
 /// pictures are equal. The extents are equal.

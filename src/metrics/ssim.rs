@@ -3,7 +3,7 @@
 //! The paper speaks of grey pictures: luma here is the Rec.709 mix of the 8-bit sRGB codes, not rounded. Windows that reach
 //! past the border are left out, as in the paper's own program and in scikit-image.
 
-use crate::report::tonemap::{REC709_WEIGHTS, Srgb8, weighted};
+use crate::picture::tonemap::{REC709_WEIGHTS, Srgb8, weighted};
 
 /// Side of the window in pixels (section III-C).
 const WINDOW_PX: usize = 11;

@@ -21,8 +21,8 @@ use crate::gpu::shader::variant;
 use crate::gpu::{
     Access, AccessSet, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback,
 };
+use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
-use crate::report::image_file::{Aov, AovChannels};
 use crate::resident::{DrawList, SceneGpu};
 use crate::units::Extent;
 use ash::vk;

@@ -5,8 +5,8 @@
 
 use super::recipe::Recipe;
 use crate::error::{Error, Result};
-use crate::report::image_file::{self, WriteOptions};
-use crate::report::picture::Picture;
+use crate::picture::image_file::WriteOptions;
+use crate::picture::{Picture, image_file};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 

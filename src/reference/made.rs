@@ -5,8 +5,8 @@ use super::recipe::Recipe;
 use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::interrupt;
+use crate::picture::Picture;
 use crate::progress::Stage;
-use crate::report::picture::Picture;
 use crate::session::Session;
 use std::time::Duration;
 

@@ -2,8 +2,8 @@
 
 use crate::frame::View;
 use crate::framing;
-use crate::report::picture::Picture;
-use crate::report::tonemap::srgb_from_linear;
+use crate::picture::Picture;
+use crate::picture::tonemap::srgb_from_linear;
 use crate::scene::{Draw, Mesh, Projection, Scene};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! The levels of a texture, made on the host: the same texels on every driver.
 
 use super::{ColorSpace, Image};
-use crate::report::tonemap::linear_from_srgb;
+use crate::picture::tonemap::linear_from_srgb;
 use std::ops::Range;
 
 /// How many levels a picture of this size has, down to one texel.
@@ -133,7 +133,7 @@ impl Codec {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::tonemap::srgb_from_linear;
+    use crate::picture::tonemap::srgb_from_linear;
 
     fn levels(image: &Image, color_space: ColorSpace) -> Vec<u8> {
         let all = 0..level_count(image.width, image.height);

@@ -9,7 +9,7 @@ use crate::gpu::timing::Clock;
 use crate::gpu::validation::Message;
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::memory::Strategy;
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
 use crate::techniques::{Technique, fitness};

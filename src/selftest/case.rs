@@ -5,7 +5,7 @@ use super::closed_form::ClosedForm;
 use super::judge::Bounds;
 use crate::error::Result;
 use crate::job::Job;
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::techniques;
 use crate::units::Extent;
 

@@ -1,6 +1,6 @@
 //! Pictures that a formula knows: what is held against something that is not this program's shaders.
 
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::scene::{Camera, Draw, Light, LightKind, Material, Mesh, Projection, Scene};
 use crate::units::Extent;
 use glam::{Mat4, Vec2, Vec3, Vec4, vec3};

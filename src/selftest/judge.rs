@@ -7,7 +7,7 @@
 use super::case::Must;
 use crate::error::Result;
 use crate::metrics;
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use serde::Serialize;
 
 /// Two pixels are apart where a channel differs by more than this, radiance, and by more than `APART_PART` of the

@@ -1,7 +1,7 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
 use super::{Condition, Kind, Setting, Unread};
-use crate::report::tonemap::EXPOSURES_EV;
+use crate::picture::tonemap::EXPOSURES_EV;
 
 /// Settings that every technique and every picture has.
 pub const COMMON: &[Setting] = &[

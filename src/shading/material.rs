@@ -1,7 +1,7 @@
 //! A material at one point, on the host: what a light walk reads where its rays land. Finest texture level,
 //! bilinear, or nearest where the sampler magnifies so. Twin of glsl/shading/texel.glsl.
 
-use crate::report::tonemap::linear_from_srgb;
+use crate::picture::tonemap::linear_from_srgb;
 use crate::scene::{AlphaMode, ColorSpace, Image, Material, Mesh, Scene, Texture, TextureSlot, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 

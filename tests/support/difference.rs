@@ -2,7 +2,7 @@
 
 use quincunx::gpu::Gpu;
 use quincunx::metrics;
-use quincunx::report::picture::Picture;
+use quincunx::picture::Picture;
 use quincunx::units::Extent;
 use std::fmt::Debug;
 

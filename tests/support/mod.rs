@@ -15,7 +15,8 @@ pub mod shading_space;
 pub mod square;
 pub mod watched;
 
-use quincunx::gpu::{Caps, DeviceRequest, Gpu, known};
+use quincunx::caps::{Caps, known};
+use quincunx::gpu::{DeviceRequest, Gpu};
 use std::io::Write;
 use std::path::PathBuf;
 

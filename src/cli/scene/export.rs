@@ -2,10 +2,10 @@
 
 use crate::cli;
 use crate::error::{Error, Result};
-use crate::report::whole_file::write_whole;
 use crate::scene::glb;
 use crate::scene::procedural::{self, Made};
 use crate::units::Bytes;
+use crate::whole_file::write_whole;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::io::Write;
 use std::path::PathBuf;

@@ -2,8 +2,8 @@
 //! Rendered High Dynamic Range Images"). Nothing that could be seen at any exposure is cut.
 
 use super::linear_map;
-use crate::report::picture::Picture;
-use crate::report::tonemap::{REC709_WEIGHTS, ToneMap, weighted};
+use crate::picture::Picture;
+use crate::picture::tonemap::{REC709_WEIGHTS, ToneMap, weighted};
 
 /// What scales light before the tone map's fit, which is then the one that the paper uses (Narkowicz 2015).
 const ACES_SCALE: f64 = 0.6;

@@ -1,6 +1,6 @@
 //! The magma colours: dark for 0, pale yellow for 1, evenly apart for the eye and in print.
 
-use crate::report::tonemap::Srgb8;
+use crate::picture::tonemap::Srgb8;
 use crate::units::Extent;
 
 /// sRGB at sixteenths of the way, between which is interpolated: within 3 codes of matplotlib's table of 256 (van der Walt

@@ -12,7 +12,7 @@ mod filter;
 pub mod hdr;
 mod magma;
 
-use crate::report::tonemap::{Srgb8, linear_from_srgb};
+use crate::picture::tonemap::{Srgb8, linear_from_srgb};
 use crate::units::Extent;
 use color::{hunt_lab, hyab, linear_rgb, ycxcz};
 use filter::{FeatureKernels, contrast_sensitive, features};

@@ -6,7 +6,7 @@ use super::survivors::{Lit, Survivors};
 use super::{NAME, motion};
 use crate::error::Result;
 use crate::gpu::{Access, Gpu, readback};
-use crate::report::image_file::{Aov, AovChannels};
+use crate::picture::{Aov, AovChannels};
 use crate::settings::Values;
 use crate::techniques::Frame;
 use crate::units::Extent;

@@ -9,7 +9,7 @@ use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
-use crate::report::image_file::{Aov, AovChannels};
+use crate::picture::{Aov, AovChannels};
 use crate::settings::Values;
 use std::sync::Arc;
 

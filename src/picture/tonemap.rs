@@ -4,7 +4,7 @@
 //! bytes on every machine.
 
 use crate::error::{Error, Result};
-use crate::report::picture::Picture;
+use crate::picture::Picture;
 use crate::units::Extent;
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,11 @@
-//! A picture on the host, and its hash.
+//! A picture on the host and its hash; tone mapping, files, and the stages of a frame beside it.
+
+pub mod aov;
+pub mod image_file;
+pub mod tonemap;
+pub mod visible;
+
+pub use aov::{Aov, AovChannels};
 
 use crate::error::{Error, Result};
 use crate::units::Extent;

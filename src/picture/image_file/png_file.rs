@@ -8,11 +8,11 @@ use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder, ImageError, Limits};
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
-use super::{DECODED_LIMIT, SIDE_LIMIT_PX, require_within_limits, unreadable};
+use super::limits::{DECODED_LIMIT, SIDE_LIMIT_PX, require_within_limits, unreadable};
 use crate::error::Result;
-use crate::report::picture::Picture;
-use crate::report::tonemap::{Srgb8, linear_from_srgb};
-use crate::report::whole_file::write_whole;
+use crate::picture::Picture;
+use crate::picture::tonemap::{Srgb8, linear_from_srgb};
+use crate::whole_file::write_whole;
 
 /// `texts`: by name, chunks before the pixels.
 pub(super) fn write(path: &Path, codes: &Srgb8, texts: &[(String, String)]) -> Result<()> {

@@ -1,8 +1,7 @@
 //! Stages for the eye: an AOV as a picture beside a PNG. The numbers are in an EXR.
 
-use super::image_file::{Aov, AovChannels};
-use super::picture::Picture;
 use super::tonemap::linear_from_srgb;
+use super::{Aov, AovChannels, Picture};
 use crate::units::Extent;
 
 /// sRGB of the lengths of lists: 0, 1 and so on, 7 and more as the last. One is dark blue and two cyan, as in the heat maps of
@@ -57,7 +56,7 @@ fn color_of_length(length: u32) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::tonemap::{Srgb8, ToneMap};
+    use crate::picture::tonemap::{Srgb8, ToneMap};
 
     fn shown(name: &str, channels: AovChannels) -> Vec<[f32; 3]> {
         visible(&Aov { name: name.to_owned(), channels }, Extent::new(3, 1)).pixels

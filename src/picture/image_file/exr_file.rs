@@ -18,11 +18,12 @@ use exr::meta::attribute::{AttributeValue, Chromaticities, SampleType, Text};
 use exr::meta::header::{Header, LayerAttributes};
 use half::f16;
 
-use super::{Aov, AovChannels, DECODED_LIMIT, ExrPrecision, Texts, WriteOptions, require_within_limits, unreadable};
+use super::limits::{DECODED_LIMIT, require_within_limits, unreadable};
+use super::options::{ExrPrecision, Texts, WriteOptions};
 use crate::error::Result;
-use crate::report::picture::Picture;
-use crate::report::whole_file::write_whole;
+use crate::picture::{Aov, AovChannels, Picture};
 use crate::units::{Bytes, Extent};
+use crate::whole_file::write_whole;
 
 /// The picture's channels, in the order of a pixel.
 const RGB: [&str; 3] = ["R", "G", "B"];

@@ -1,74 +1,18 @@
 //! Pictures as files: EXR for the numbers, PNG for the eye. The extension chooses.
 
 mod exr_file;
+mod limits;
+mod options;
 mod png_file;
 
-use std::collections::BTreeMap;
-use std::fmt::Display;
+pub use options::{ExrPrecision, Texts, WriteOptions};
+
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::report::picture::Picture;
-use crate::report::tonemap::{Srgb8, ToneMap};
-use crate::units::{Bytes, Extent};
-
-/// How a picture is written. A PNG heeds `exposure_ev`, `tone_map` and `attributes`, an EXR all but the first two.
-#[derive(Clone, Debug, Default)]
-pub struct WriteOptions<'a> {
-    /// PNG: stops; 0 makes radiance 1 white.
-    pub exposure_ev: f64,
-    /// PNG.
-    pub tone_map: ToneMap,
-    /// EXR: of every channel but the whole-number ones.
-    pub exr_precision: ExrPrecision,
-    /// EXR: layers beside the picture, with different names. A PNG has no room for them: writing one fails.
-    pub aovs: &'a [Aov],
-    /// Text attributes of an EXR, text chunks (iTXt) of a PNG, as (name, text): the technique, the scene's hash. Names are
-    /// different, ASCII, of 1 to 79 bytes, and none of OpenEXR's own.
-    pub attributes: Vec<(String, String)>,
-}
-
-/// The floating-point format of an EXR.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ExrPrecision {
-    /// 32 bits: what is read back equals what was written.
-    #[default]
-    Float,
-    /// 16 bits, rounded to nearest, ties to even. A finite value past 65504, the largest half, becomes 65504.
-    Half,
-}
-
-/// The texts of a header, by name.
-pub type Texts = BTreeMap<String, String>;
-
-/// A layer beside the picture (an arbitrary output variable): `name.R`, `name.G`, `name.B` or `name.Y` in the EXR.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Aov {
-    /// ASCII, without a dot at either end: viewers group channels by what stands before the last dot.
-    pub name: String,
-    pub channels: AovChannels,
-}
-
-/// The numbers of an AOV, row-major, as many as the picture has pixels.
-#[derive(Clone, Debug, PartialEq)]
-pub enum AovChannels {
-    /// Three channels: `name.R`, `name.G`, `name.B`.
-    Rgb(Vec<[f32; 3]>),
-    /// One channel: `name.Y`.
-    Y(Vec<f32>),
-    /// One channel of whole numbers, `name.Y`, 32 bits in either precision.
-    YU32(Vec<u32>),
-}
-
-impl AovChannels {
-    fn pixel_count(&self) -> usize {
-        match self {
-            Self::Rgb(values) => values.len(),
-            Self::Y(values) => values.len(),
-            Self::YU32(values) => values.len(),
-        }
-    }
-}
+use crate::picture::Picture;
+use crate::picture::tonemap::Srgb8;
+use crate::units::Extent;
 
 /// Writes a picture as `path`'s extension says: `.png` (8-bit sRGB) or `.exr` (scene-linear), whole or not at all.
 ///
@@ -161,31 +105,6 @@ impl Format {
     }
 }
 
-/// The largest side of a picture that is read, in pixels: the largest image a Vulkan driver of today makes.
-const SIDE_LIMIT_PX: u32 = 32768;
-
-/// The most bytes that a picture may take when decoded: a header of a few bytes must not claim the machine's memory.
-const DECODED_LIMIT: Bytes = Bytes(2 << 30);
-
-/// What a file's header claims, held against the limits before anything is allocated by it.
-fn require_within_limits(path: &Path, width: u64, height: u64) -> Result<Extent> {
-    let decoded = Bytes(width.saturating_mul(height).saturating_mul(size_of::<[f32; 3]>() as u64));
-    let side_limit = u64::from(SIDE_LIMIT_PX);
-    if width == 0 || height == 0 || width > side_limit || height > side_limit || decoded > DECODED_LIMIT {
-        return Err(unreadable(
-            path,
-            &format!(
-                "{width}x{height}: a side has 1 to {SIDE_LIMIT_PX} pixels, a decoded picture at most {DECODED_LIMIT}"
-            ),
-        ));
-    }
-    Ok(Extent::new(width as u32, height as u32))
-}
-
-fn unreadable(path: &Path, cause: &dyn Display) -> Error {
-    Error::request(format!("cannot read {}: {cause}", path.display()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -222,15 +141,6 @@ mod tests {
             let error = read(&folder.path().join(name)).unwrap_err();
             assert_eq!(error.exit_code(), 2);
             assert!(error.message().contains(name) && error.message().contains(cause), "{error}");
-        }
-    }
-
-    #[test]
-    fn a_header_is_held_against_the_limits() {
-        let path = Path::new("a.png");
-        assert!(require_within_limits(path, 32768, 1).is_ok());
-        for (width, height) in [(0, 4), (32769, 1), (32768, 32768), (u64::MAX, u64::MAX)] {
-            assert!(require_within_limits(path, width, height).is_err(), "{width}x{height}");
         }
     }
 }
