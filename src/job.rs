@@ -21,8 +21,8 @@ use crate::report::run::Report;
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
-use crate::settings::{COMMON, INSTRUMENT, Setting, Values, earlier_s, exposure_s, readers};
-use crate::techniques::{Technique, stages};
+use crate::settings::{Values, earlier_s, exposure_s, readers};
+use crate::techniques::{self, Technique, settings_of, stages, timed};
 use crate::units::Extent;
 use crate::whole_file::write_whole;
 use serde_json::{Value, json};
@@ -78,24 +78,8 @@ pub(crate) enum Unfinished {
     Dropped,
 }
 
-/// `values` of `technique` for frames that are timed: what `--instrument auto` would count is not.
-pub fn timed(technique: &dyn Technique, values: &Values) -> Values {
-    let mut timed = values.clone();
-    if let Some(setting) = settings_of(technique).iter().find(|setting| setting.key == INSTRUMENT.key)
-        && values.text(INSTRUMENT.key) == "auto"
-    {
-        timed.set(setting, "off").expect("a choice of the setting");
-    }
-    timed
-}
-
 /// Frames measured with `--profile`, after one that warms the pipelines up.
 const PROFILE_FRAMES: usize = 3;
-
-/// The settings that `technique` reads, common ones included.
-pub fn settings_of(technique: &dyn Technique) -> Vec<Setting> {
-    COMMON.iter().chain(technique.settings().iter().copied().flatten()).copied().collect()
-}
 
 impl Job {
     /// A request with every setting at its default.
@@ -103,7 +87,7 @@ impl Job {
         Self {
             scene: scene.to_owned(),
             technique,
-            values: Values::defaults(&settings_of(technique)),
+            values: techniques::defaults(technique),
             aovs: Vec::new(),
             output: None,
             report: None,
@@ -126,13 +110,7 @@ impl Job {
     ///
     /// Errors: the technique does not read it, or the value is impossible (exit code 2).
     pub fn set(&mut self, key: &str, value: &str) -> Result<()> {
-        let name = self.technique.name();
-        let settings = settings_of(self.technique);
-        match settings.iter().find(|setting| setting.key == key) {
-            Some(setting) => self.values.set(setting, value).map_err(|error| error.within(name)),
-            None => Err(Error::request(format!("{name}: it does not read --{key}"))
-                .note(format!("`quincunx render --technique {name} --help` lists what it reads"))),
-        }
+        techniques::set(self.technique, &mut self.values, key, value)
     }
 
     /// Args to picture: scene, plan, device, frames, readback, report.

@@ -379,7 +379,7 @@ fn words(help: &str) -> String {
 }
 
 fn keys_of(technique: &dyn Technique) -> BTreeSet<&'static str> {
-    quincunx::job::settings_of(technique).iter().map(|setting| setting.key).collect()
+    quincunx::techniques::settings_of(technique).iter().map(|setting| setting.key).collect()
 }
 
 #[test]
@@ -407,7 +407,7 @@ fn help_lists_the_settings_of_one_technique_and_all_where_it_is_asked_to() {
         assert_eq!(listed(&own), keys_of(*technique), "{name}");
         assert!(own.contains(&format!("Settings of {name}:")), "{own}");
         // With the technique's own choices, and no other's.
-        for setting in quincunx::job::settings_of(*technique) {
+        for setting in quincunx::techniques::settings_of(*technique) {
             let default = format!("[{}] [default: {}]", setting.range(), setting.default);
             assert!(words(&own).contains(&default), "--{}: {default}", setting.key);
         }

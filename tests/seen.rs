@@ -4,11 +4,11 @@ use crate::support;
 use crate::support::gltf_file::GltfFile;
 use crate::support::program::Program;
 use quincunx::frame::View;
-use quincunx::job::settings_of;
 use quincunx::lights::LightSet;
 use quincunx::scene::{self, Scene};
 use quincunx::settings::Values;
 use quincunx::techniques;
+use quincunx::techniques::settings_of;
 use quincunx::units::Extent;
 use serde_json::{Value, json};
 

@@ -2,9 +2,9 @@
 
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
-use quincunx::job::{Job, settings_of};
+use quincunx::job::Job;
 use quincunx::settings::{Values, readers};
-use quincunx::techniques::{self, Technique};
+use quincunx::techniques::{self, Technique, settings_of};
 
 const INTERLEAVED: &str = "interleaved_deferred";
 const SIZE: Changes<'static> = &[("size", "33x17"), ("vpls", "16")];

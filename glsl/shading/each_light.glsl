@@ -5,7 +5,7 @@
 #ifndef SHADING_EACH_LIGHT_GLSL
 #define SHADING_EACH_LIGHT_GLSL
 
-#include "lights/cull.glsl"
+#include "passes/cull.glsl"
 #include "loops.glsl"
 
 // `pixel`: of a frame of this extent, in it.

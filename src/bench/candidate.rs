@@ -2,9 +2,9 @@
 
 use super::sweep::{Axis, Point, label};
 use crate::error::{Error, Result};
-use crate::job::{Job, settings_of, timed};
+use crate::job::Job;
 use crate::settings::{Setting, Values, readers};
-use crate::techniques::{self, Technique};
+use crate::techniques::{self, Technique, settings_of, timed};
 use std::collections::BTreeMap;
 
 /// The key of a sweep that names techniques; no setting has it.

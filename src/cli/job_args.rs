@@ -2,9 +2,9 @@
 
 use super::listed::{self, Listed};
 use crate::error::Result;
-use crate::job::{Job, settings_of};
+use crate::job::Job;
 use crate::settings::{COMMON, Kind, Setting};
-use crate::techniques::{self, Technique};
+use crate::techniques::{self, Technique, settings_of};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 

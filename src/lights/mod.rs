@@ -1,6 +1,5 @@
 //! Which lights there are, and which reach what: the scene's own, scattered ones, the default rig, virtual ones.
 
-pub mod cull;
 pub mod emission;
 pub mod emitters;
 pub mod object_lists;

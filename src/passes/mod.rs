@@ -2,6 +2,7 @@
 
 pub mod accumulate;
 pub mod blend;
+pub mod cull;
 pub mod decode;
 pub mod depth_prepass;
 pub mod direct;

@@ -2,11 +2,10 @@
 
 use crate::error::Result;
 use crate::frame::View;
-use crate::job::{Job, settings_of};
 use crate::lights::LightSet;
 use crate::session::Session;
 use crate::settings::Values;
-use crate::techniques::Technique;
+use crate::techniques::{self, Technique, settings_of};
 use crate::units::Extent;
 use serde_json::{Map, Value, json};
 
@@ -89,35 +88,36 @@ impl Recipe {
     ) -> Result<Self> {
         let view = View::new(&session.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&session.scene, &view, values)?;
-        let mut job = Job::new(&session.scene.name, technique);
+        let mut own = techniques::defaults(technique);
+        let mut set = |key: &str, text: &str| techniques::set(technique, &mut own, key, text);
         let reads = |key: &str| settings_of(technique).iter().any(|setting| setting.key == key);
         for (key, text) in values.iter().filter(|(key, _)| reads(key) && !NOT_OF_THE_PICTURE.contains(key)) {
-            job.set(key, text)?;
+            set(key, text)?;
         }
         let scattered = values.text("lights");
         if !scattered.contains(':') {
             // Which `--lights` there are hangs on the judged seed, not on the reference's.
-            job.set("lights", &format!("{scattered}:{}", values.integer("seed")))?;
+            set("lights", &format!("{scattered}:{}", values.integer("seed")))?;
         }
-        job.set("seed", SEED)?;
+        set("seed", SEED)?;
         for (key, text) in judged.reference_settings(values, &lights)? {
             if reads(key) {
-                job.set(key, &text)?;
+                set(key, &text)?;
             }
         }
         if reads(SAMPLES) {
-            job.set(SAMPLES, &spp.to_string())?;
+            set(SAMPLES, &spp.to_string())?;
         }
-        Self::new(technique, job.values, session)
+        Self::new(technique, own, session)
     }
 
     /// The same with another count of samples.
     ///
     /// Errors: the technique counts none (exit code 2).
     pub fn with_samples(&self, spp: u64) -> Result<Values> {
-        let mut job = Job::new("", self.technique).at(&self.values);
-        job.set(SAMPLES, &spp.to_string())?;
-        Ok(job.values)
+        let mut values = self.values.clone();
+        techniques::set(self.technique, &mut values, SAMPLES, &spp.to_string())?;
+        Ok(values)
     }
 
     /// Samples a pixel; None where the technique counts none, or the settings say `auto`.

@@ -4,8 +4,8 @@
 use super::Technique;
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
-use crate::job::settings_of;
 use crate::settings::{Kind, Values, WORKGROUP};
+use crate::techniques::settings_of;
 
 /// What a technique lacks on a device, and how far its settings go.
 #[derive(Clone, Debug)]

@@ -4,6 +4,7 @@
 //! does the host's part, `Prepared::build` makes pipelines and takes the planned resources, and `Frame::record` writes
 //! the commands of one frame, in the order of the paper's overview figure.
 
+mod all;
 pub mod bindable;
 mod closing;
 pub mod deep_shading;
@@ -15,6 +16,8 @@ pub mod interleaved_deferred;
 pub mod path_traced;
 pub mod stages;
 
+pub use all::{ALL, find};
+
 use crate::bvh::LazyBvh;
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
@@ -25,7 +28,7 @@ use crate::picture::Aov;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::{Coverage, DrawList, GeometryChoice, Raster, SceneGpu, SceneStats};
 use crate::scene::Scene;
-use crate::settings::{Condition, Setting, Values};
+use crate::settings::{COMMON, Condition, INSTRUMENT, Setting, Values};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -234,25 +237,37 @@ pub trait Frame {
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>;
 }
 
-/// Every technique.
-pub const ALL: &[&dyn Technique] = &[
-    &interleaved_deferred::InterleavedDeferred,
-    &inferred_lighting::InferredLighting,
-    &deep_shading::DeepShading,
-    &deferred::Deferred,
-    &forward::Forward,
-    &path_traced::PathTraced,
-];
+/// The settings that `technique` reads, common ones included.
+pub fn settings_of(technique: &dyn Technique) -> Vec<Setting> {
+    COMMON.iter().chain(technique.settings().iter().copied().flatten()).copied().collect()
+}
 
-/// The technique of this name.
+/// The settings that `technique` reads, at their defaults.
+pub fn defaults(technique: &dyn Technique) -> Values {
+    Values::defaults(&settings_of(technique))
+}
+
+/// Changes one of the settings of `technique`.
 ///
-/// Errors: none has it (exit code 2).
-pub fn find(name: &str) -> Result<&'static dyn Technique> {
-    ALL.iter().copied().find(|technique| technique.name() == name).ok_or_else(|| {
-        let names: Vec<&str> = ALL.iter().map(|technique| technique.name()).collect();
-        Error::request(format!("--technique {name}: there is no such technique"))
-            .note(format!("there are {}", names.join(", ")))
-    })
+/// Errors: it does not read this one, or the value is impossible (exit code 2).
+pub fn set(technique: &dyn Technique, values: &mut Values, key: &str, value: &str) -> Result<()> {
+    let name = technique.name();
+    match settings_of(technique).iter().find(|setting| setting.key == key) {
+        Some(setting) => values.set(setting, value).map_err(|error| error.within(name)),
+        None => Err(Error::request(format!("{name}: it does not read --{key}"))
+            .note(format!("`quincunx render --technique {name} --help` lists what it reads"))),
+    }
+}
+
+/// `values` of `technique` for frames that are timed: what `--instrument auto` would count is not.
+pub fn timed(technique: &dyn Technique, values: &Values) -> Values {
+    let mut timed = values.clone();
+    if let Some(setting) = settings_of(technique).iter().find(|setting| setting.key == INSTRUMENT.key)
+        && values.text(INSTRUMENT.key) == "auto"
+    {
+        timed.set(setting, "off").expect("a choice of the setting");
+    }
+    timed
 }
 
 /// Whether path tracing must let the scene's own lights cast shadows to compute what `--direct-shadow` does, and

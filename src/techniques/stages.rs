@@ -37,10 +37,10 @@ fn listed(begin: &str, stages: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use crate::caps::known;
-    use crate::job::{Job, settings_of};
+    use crate::job::Job;
     use crate::settings::Kind;
     use crate::study;
-    use crate::techniques::ALL;
+    use crate::techniques::{ALL, settings_of};
 
     /// Whatever the settings: what they leave out is not planned, and is refused with those that they make; the others are planned.
     #[test]

@@ -1,9 +1,8 @@
 //! Every choice of every setting plans, compiles and records, or is refused by name.
 
 use super::{FAMILIES, Null, is_refused};
-use quincunx::job::settings_of;
 use quincunx::settings::{Kind, Setting, Values, readers};
-use quincunx::techniques::{self, Technique};
+use quincunx::techniques::{self, Technique, settings_of};
 
 /// A setting's key and its value.
 type Change = (&'static str, &'static str);

@@ -3,13 +3,13 @@
 use quincunx::error::Result;
 use quincunx::gpu::commands::{Recording, Submits};
 use quincunx::gpu::{DeviceRequest, Gpu};
-use quincunx::job::settings_of;
 use quincunx::memory::Strategy;
 use quincunx::picture::{AovChannels, Picture};
 use quincunx::scene::{self, Scene};
 use quincunx::session::{Renderer, Session};
 use quincunx::settings::Values;
 use quincunx::techniques;
+use quincunx::techniques::settings_of;
 use std::sync::Arc;
 
 /// Settings that differ from their defaults.

@@ -7,7 +7,7 @@
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 
 #include "techniques/inferred_lighting/surface.glsl"
-#include "lights/tile_masks.glsl"
+#include "passes/tile_masks.glsl"
 
 void main() {
     write_masks();

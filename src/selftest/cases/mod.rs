@@ -59,10 +59,9 @@ pub fn all() -> impl Iterator<Item = Case> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::settings_of;
     use crate::selftest::case::{Place, Twin, job};
     use crate::settings::Kind;
-    use crate::techniques::ALL;
+    use crate::techniques::{ALL, settings_of};
     use std::collections::BTreeSet;
 
     /// No case asks for what cannot be, or for what nothing reads: the picture would be its twin's whatever the device

@@ -8,7 +8,8 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::inferred_lighting::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
-use crate::lights::cull::{self, CullBy, CullSurface, MaskPipeline};
+use crate::passes::cull;
+use crate::passes::cull::{CullBy, CullSurface, MaskPipeline};
 use std::sync::Arc;
 
 pub struct Cull {

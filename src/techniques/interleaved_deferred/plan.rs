@@ -7,10 +7,8 @@ use super::roads;
 use super::shade;
 use crate::error::Result;
 use crate::gpu::Access;
-use crate::lights::cull;
 use crate::lights::object_lists::ObjectLists;
-use crate::passes::direct;
-use crate::passes::{blend, gbuffer};
+use crate::passes::{blend, cull, direct, gbuffer};
 use crate::plan::Plan;
 use crate::techniques::Inputs;
 

@@ -6,7 +6,7 @@
 use libfuzzer_sys::fuzz_target;
 use quincunx::Error;
 use quincunx::bench::sweep;
-use quincunx::job::settings_of;
+use quincunx::techniques::settings_of;
 use quincunx::sequence::Frames;
 use quincunx::settings::{Kind, Setting, Values};
 use quincunx::techniques;

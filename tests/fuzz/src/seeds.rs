@@ -170,7 +170,7 @@ fn rows() -> Vec<Vec<u8>> {
 
 /// Text behind the two bytes that choose what it is for: `arbitrary` takes a last String from the end of the input.
 fn values() -> Vec<Vec<u8>> {
-    let settings = techniques::ALL.iter().flat_map(|technique| quincunx::job::settings_of(*technique));
+    let settings = techniques::ALL.iter().flat_map(|technique| quincunx::techniques::settings_of(*technique));
     let mut texts: Vec<(u8, String)> = settings.map(|setting| (0, setting.default.to_owned())).collect();
     for text in ["64x64", "auto", "0.25", "2%", "1.5GiB", "none", "1,0.5,0", "17", "-1", "nan", "1e308", "1:7"] {
         texts.push((0, text.to_owned()));

@@ -6,7 +6,7 @@
 use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::lights::cull::COMP_VARIANTS;
+use crate::gpu::shader::passes::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Traffic, readback};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
@@ -15,7 +15,7 @@ use crate::settings::Values;
 use crate::units::Extent;
 use std::sync::Arc;
 
-/// Side of a tile: glsl/lights/cull.glsl's TILE_PX.
+/// Side of a tile: glsl/passes/cull.glsl's TILE_PX.
 const TILE_PX: u32 = 16;
 
 /// Threads of a workgroup: tile_masks.glsl's THREADS.

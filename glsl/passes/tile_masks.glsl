@@ -5,7 +5,7 @@
 #ifndef LIGHTS_TILE_MASKS_GLSL
 #define LIGHTS_TILE_MASKS_GLSL
 
-#include "lights/cull.glsl"
+#include "passes/cull.glsl"
 #include "shading/light.glsl"
 
 const uint THREADS = 64u;

@@ -1,4 +1,4 @@
-// Light masks for the tiles of a G-buffer. Pass: src/lights/cull.rs.
+// Light masks for the tiles of a G-buffer. Pass: src/passes/cull.rs.
 // variants: POSITION=half|unorm16|depth|float BY=invocation|workgroup
 #version 460
 #include "passes/gbuffer_read.glsl"
@@ -13,7 +13,7 @@ vec3 position_at(uvec2 pixel) {
     return unpack_position(frame, position_words(pixel), pixel);
 }
 
-#include "lights/tile_masks.glsl"
+#include "passes/tile_masks.glsl"
 
 void main() {
     write_masks();
