@@ -4,8 +4,6 @@
 //! only the technique knows who wrote. Nothing is inferred; debug builds compare the left side with the truth
 //! (`Commands`), and synchronization validation checks the rest.
 
-use super::buffer::Buffer;
-use super::image::Image;
 use ash::vk;
 
 /// One way of touching a resource.
@@ -67,7 +65,7 @@ impl Access {
         Self::ComputeTrace,
     ];
 
-    fn stage(self) -> vk::PipelineStageFlags2 {
+    pub(super) fn stage(self) -> vk::PipelineStageFlags2 {
         use vk::PipelineStageFlags2 as Stage;
         match self {
             Self::ComputeRead | Self::ComputeWrite | Self::ComputeSample | Self::ComputeTrace => Stage::COMPUTE_SHADER,
@@ -84,7 +82,7 @@ impl Access {
         }
     }
 
-    fn access(self) -> vk::AccessFlags2 {
+    pub(super) fn access(self) -> vk::AccessFlags2 {
         use vk::AccessFlags2 as Flags;
         match self {
             Self::ComputeRead => Flags::SHADER_STORAGE_READ | Flags::UNIFORM_READ,
@@ -179,19 +177,19 @@ impl AccessSet {
         Self(self.0 | access.bit())
     }
 
-    fn stages(self) -> vk::PipelineStageFlags2 {
+    pub(super) fn stages(self) -> vk::PipelineStageFlags2 {
         self.iter().fold(vk::PipelineStageFlags2::NONE, |stages, access| stages | access.stage())
     }
 
     /// What must be made available: reads need none.
-    fn writes(self) -> vk::AccessFlags2 {
+    pub(super) fn writes(self) -> vk::AccessFlags2 {
         self.iter()
             .filter(|access| access.writes())
             .fold(vk::AccessFlags2::NONE, |flags, access| flags | access.access())
     }
 
     /// The layout that the last access left; all accesses of a set share one.
-    fn layout(self) -> vk::ImageLayout {
+    pub(super) fn layout(self) -> vk::ImageLayout {
         self.iter().next().map_or(vk::ImageLayout::UNDEFINED, Access::layout)
     }
 }
@@ -207,175 +205,5 @@ impl std::ops::BitOr for Access {
 
     fn bitor(self, other: Self) -> AccessSet {
         AccessSet::from(self).with(other)
-    }
-}
-
-/// A resource, or several, and how it was touched last: the left side of a barrier.
-#[derive(Debug)]
-pub struct Edge<'a, R> {
-    pub resource: &'a R,
-    pub from: AccessSet,
-}
-
-// By hand, because a derived Copy would ask the resource to be Copy.
-impl<R> Clone for Edge<'_, R> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<R> Copy for Edge<'_, R> {}
-
-/// One barrier: a resource, its last accesses, its next one.
-#[derive(Clone, Copy, Debug)]
-pub struct Barrier {
-    pub(super) target: Target,
-    pub(super) from: AccessSet,
-    pub(super) to: Access,
-    /// The contents need not survive.
-    pub(super) discard: bool,
-}
-
-/// What a barrier is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Target {
-    Buffer(vk::Buffer),
-    Image(vk::Image, vk::ImageAspectFlags),
-}
-
-impl Edge<'_, Buffer> {
-    /// The next access: the right side.
-    pub fn to(self, access: Access) -> Barrier {
-        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false }
-    }
-}
-
-impl Edge<'_, Image> {
-    /// The next access: the right side.
-    pub fn to(self, access: Access) -> Barrier {
-        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false }
-    }
-}
-
-impl Buffer {
-    pub fn target(&self) -> Target {
-        Target::Buffer(self.handle)
-    }
-
-    /// States who touched it last.
-    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
-        Edge { resource: self, from: access.into() }
-    }
-
-    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
-    pub fn discard(&self, access: Access) -> Barrier {
-        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
-    }
-}
-
-impl Image {
-    pub fn target(&self) -> Target {
-        Target::Image(self.handle, self.aspect())
-    }
-
-    /// States who touched it last.
-    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
-        Edge { resource: self, from: access.into() }
-    }
-
-    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
-    pub fn discard(&self, access: Access) -> Barrier {
-        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
-    }
-}
-
-impl Barrier {
-    /// Readers that follow readers in the same layout need no barrier.
-    pub(super) fn is_needed(&self) -> bool {
-        if self.discard {
-            return matches!(self.target, Target::Image(..)) || self.takes_over();
-        }
-        let same_layout = match self.target {
-            Target::Buffer(_) => true,
-            Target::Image(..) => self.from.layout() == self.to.layout(),
-        };
-        let known = self.from.contains(self.to.into());
-        self.to.writes() || self.from.iter().any(Access::writes) || !same_layout || !known
-    }
-
-    /// Whether its bytes were another resource's in this frame.
-    pub(super) fn takes_over(&self) -> bool {
-        self.discard && self.from != AccessSet::UNTOUCHED
-    }
-
-    /// What makes the accesses of those who had the bytes before available: a barrier of one resource speaks of its own
-    /// accesses only.
-    pub(super) fn memory_barrier(&self) -> vk::MemoryBarrier2<'static> {
-        vk::MemoryBarrier2::default()
-            .src_stage_mask(self.from.stages())
-            .src_access_mask(self.from.writes())
-            .dst_stage_mask(self.to.stage())
-            .dst_access_mask(self.to.access())
-    }
-
-    pub(super) fn buffer_barrier(&self, buffer: vk::Buffer) -> vk::BufferMemoryBarrier2<'static> {
-        // Neither hands it to another queue. A family by name says that the contents may go, as an undefined layout does of an
-        // image: buffers have no other word for it, and tools/pretend overwrites them there.
-        let family = if self.discard { 0 } else { vk::QUEUE_FAMILY_IGNORED };
-        vk::BufferMemoryBarrier2::default()
-            .src_queue_family_index(family)
-            .dst_queue_family_index(family)
-            .src_stage_mask(self.from.stages())
-            .src_access_mask(self.from.writes())
-            .dst_stage_mask(self.to.stage())
-            .dst_access_mask(self.to.access())
-            .buffer(buffer)
-            .size(vk::WHOLE_SIZE)
-    }
-
-    pub(super) fn image_barrier(
-        &self,
-        image: vk::Image,
-        aspect: vk::ImageAspectFlags,
-    ) -> vk::ImageMemoryBarrier2<'static> {
-        let old_layout = if self.discard { vk::ImageLayout::UNDEFINED } else { self.from.layout() };
-        vk::ImageMemoryBarrier2::default()
-            .src_stage_mask(self.from.stages())
-            .src_access_mask(self.from.writes())
-            .dst_stage_mask(self.to.stage())
-            .dst_access_mask(self.to.access())
-            .old_layout(old_layout)
-            .new_layout(self.to.layout())
-            .image(image)
-            .subresource_range(
-                vk::ImageSubresourceRange::default()
-                    .aspect_mask(aspect)
-                    .level_count(vk::REMAINING_MIP_LEVELS)
-                    .layer_count(vk::REMAINING_ARRAY_LAYERS),
-            )
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_reader_after_a_known_reader_needs_no_barrier_and_a_writer_always_does() {
-        let target = Target::Buffer(vk::Buffer::null());
-        let barrier = |from: AccessSet, to| Barrier { target, from, to, discard: false }.is_needed();
-        assert!(barrier(Access::ComputeWrite.into(), Access::ComputeRead));
-        assert!(!barrier(Access::ComputeRead.into(), Access::ComputeRead));
-        // The write was made visible to compute only: another stage needs its own barrier.
-        assert!(barrier(Access::ComputeRead.into(), Access::GraphicsRead));
-        assert!(!barrier(Access::ComputeRead | Access::GraphicsRead, Access::GraphicsRead));
-        assert!(barrier(Access::ComputeRead.into(), Access::ComputeWrite));
-    }
-
-    #[test]
-    fn an_image_changes_layout_even_between_readers() {
-        let target = Target::Image(vk::Image::null(), vk::ImageAspectFlags::COLOR);
-        let barrier = Barrier { target, from: Access::ComputeRead.into(), to: Access::ComputeSample, discard: false };
-        assert!(barrier.is_needed());
     }
 }

@@ -3,15 +3,16 @@
 //! A frame is one command buffer, or one a pass (`Submits::PerPass`) so that each pass can be timed by the wall clock.
 //! Debug builds keep the truth of who touched what last and hold every barrier's left side against it.
 
-use super::access::{AccessSet, Barrier, Target};
+use super::access::AccessSet;
 use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
-use super::pipeline::{ComputePipeline, GraphicsPipeline, Interface};
-use super::recorded::Recorded;
+use super::pipeline::{ComputePipeline, GraphicsPipeline};
 use super::statistics::Statistics;
 use super::timing::{Clock, Timestamps};
 use super::{Access, Buffer, Gpu, bands};
 use crate::error::{Error, Result};
+use crate::gpu::barrier::{Barrier, Target};
+use crate::gpu::interface::Interface;
 use crate::units::Extent;
 use ash::vk;
 use std::collections::HashMap;
@@ -162,7 +163,7 @@ impl Commands {
         Ok(())
     }
 
-    fn end_buffer(&self) -> Result<()> {
+    pub(super) fn end_buffer(&self) -> Result<()> {
         // SAFETY: begun in `next_piece`.
         unsafe { self.gpu.device.end_command_buffer(self.buffer()) }
             .map_err(|result| Error::device(format!("recording commands: {result}")))
@@ -464,16 +465,6 @@ impl Commands {
         unsafe {
             self.gpu.device.cmd_copy_image_to_buffer(self.buffer(), source.handle, layout, target.handle, &[region]);
         }
-    }
-
-    /// Ends recording.
-    pub fn finish(self) -> Result<Recorded> {
-        self.end_buffer()?;
-        // SAFETY: a live device.
-        let fence = unsafe { self.gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }
-            .map_err(|result| Error::device(format!("creating a fence: {result}")))?;
-        self.gpu.name(fence, &self.name);
-        Ok(Recorded::new(self, fence))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::buffer::Buffer;
 use super::image::Image;
-use super::pipeline::Interface;
+use super::interface::Interface;
 use super::shader::BindingKind;
 use super::{Access, Gpu, Structure};
 use crate::error::{Error, Result};
@@ -135,5 +135,13 @@ impl Drop for Descriptors {
     fn drop(&mut self) {
         // SAFETY: nothing recorded with the sets is running.
         unsafe { self.pools.iter().for_each(|pool| self.gpu.device.destroy_descriptor_pool(*pool, None)) };
+    }
+}
+
+impl Interface {
+    /// Those of `bound` that its shaders have.
+    pub fn own<'a>(&self, bound: &[(&'static str, Bound<'a>)]) -> Vec<(&'static str, Bound<'a>)> {
+        let is_own = |name: &str| self.bindings.iter().any(|binding| binding.name == name);
+        bound.iter().filter(|(name, _)| is_own(name)).copied().collect()
     }
 }

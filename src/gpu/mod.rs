@@ -2,14 +2,17 @@
 
 pub mod access;
 mod bands;
+pub mod barrier;
 pub mod berth;
 pub mod buffer;
+mod build;
 pub mod calibration;
 pub mod commands;
 pub mod descriptors;
 pub mod device;
 pub mod failure;
 pub mod image;
+pub mod interface;
 pub mod pipeline;
 pub mod probe;
 pub mod readback;
@@ -24,7 +27,8 @@ pub mod transfer;
 pub mod upload;
 pub mod validation;
 
-pub use access::{Access, AccessSet, Barrier, Edge, Target};
+pub use access::{Access, AccessSet};
+pub use barrier::{Barrier, Edge, Target};
 pub use berth::Berth;
 pub use buffer::Buffer;
 pub use commands::{Commands, Traffic};

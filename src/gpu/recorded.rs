@@ -9,7 +9,7 @@ use super::commands::{Commands, RecordedPass, Submits};
 use super::failure::failed;
 use super::statistics::PassStatistics;
 use super::timing::{Clock, PassTime};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use ash::vk;
 use std::cell::RefCell;
 use std::time::Instant;
@@ -58,9 +58,21 @@ impl FrameTime {
     }
 }
 
+impl Commands {
+    /// Ends recording.
+    pub fn finish(self) -> Result<Recorded> {
+        self.end_buffer()?;
+        // SAFETY: a live device.
+        let fence = unsafe { self.gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }
+            .map_err(|result| Error::device(format!("creating a fence: {result}")))?;
+        self.gpu.name(fence, &self.name);
+        Ok(Recorded::new(self, fence))
+    }
+}
+
 impl Recorded {
     /// `commands` are ended; the fence is unsignalled and theirs alone.
-    pub(super) fn new(commands: Commands, fence: vk::Fence) -> Self {
+    fn new(commands: Commands, fence: vk::Fence) -> Self {
         let estimates = commands.limit.map(|limit| RefCell::new(Estimates::new(limit, commands.pieces.len())));
         Self { commands, fence, estimates }
     }

@@ -1,17 +1,17 @@
 //! Acceleration structures: what a driver's own ray queries go through. A bottom one holds triangles, a top one holds a
 //! bottom one where it stands, and is what shaders are given.
 //!
-//! They are built once, on the device, by commands recorded here; the caller states the barriers (`Access::StructureWrite`
+//! They are built once, on the device, by commands of build.rs; the caller states the barriers (`Access::StructureWrite`
 //! and the like), makes the buffers that they lie in, and keeps what a build reads until its fence.
 
-use super::{Buffer, Commands, Gpu};
+use super::{Buffer, Gpu};
 use crate::caps::StructureRules;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
 /// Vulkan promises that no device aligns scratch to more (minAccelerationStructureScratchOffsetAlignment).
-const SCRATCH_ALIGNMENT_BYTES: u64 = 256;
+pub(super) const SCRATCH_ALIGNMENT_BYTES: u64 = 256;
 /// Instances begin at a multiple of this; so do triangles that follow one.
 pub const INPUT_ALIGNMENT_BYTES: u64 = 16;
 /// Three corners of three floats.
@@ -67,7 +67,7 @@ impl Over {
         }
     }
 
-    fn count(self) -> u32 {
+    pub(super) fn count(self) -> u32 {
         match self {
             Self::Triangles { count, .. } => count,
             Self::Instance => 1,
@@ -75,7 +75,7 @@ impl Over {
     }
 
     /// `input`: address of the triangles or the instance; sizes do not depend on it.
-    fn geometry(self, input: u64) -> vk::AccelerationStructureGeometryKHR<'static> {
+    pub(super) fn geometry(self, input: u64) -> vk::AccelerationStructureGeometryKHR<'static> {
         let data = vk::DeviceOrHostAddressConstKHR { device_address: input };
         let geometry = vk::AccelerationStructureGeometryKHR::default();
         match self {
@@ -101,7 +101,7 @@ impl Over {
         }
     }
 
-    fn build_info<'a>(
+    pub(super) fn build_info<'a>(
         self,
         geometries: &'a [vk::AccelerationStructureGeometryKHR<'a>],
     ) -> vk::AccelerationStructureBuildGeometryInfoKHR<'a> {
@@ -136,7 +136,7 @@ impl Over {
 pub struct Structure {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::AccelerationStructureKHR,
-    over: Over,
+    pub(super) over: Over,
     /// What barriers are about.
     pub buffer: Buffer,
 }
@@ -181,24 +181,4 @@ impl Drop for Structure {
 pub fn input_start(input: &Buffer) -> u64 {
     let address = input.address();
     address.next_multiple_of(INPUT_ALIGNMENT_BYTES) - address
-}
-
-impl Commands {
-    /// Builds `target` from what lies in `input` from byte `offset` on, with notes in `scratch`, as long as `Over::sizes` says.
-    pub fn build_structure(&mut self, target: &Structure, (input, offset): (&Buffer, u64), scratch: &Buffer) {
-        let gpu = self.gpu().clone();
-        let geometries = [target.over.geometry(input.address() + offset)];
-        let notes = scratch.address().next_multiple_of(SCRATCH_ALIGNMENT_BYTES);
-        let info = target
-            .over
-            .build_info(&geometries)
-            .dst_acceleration_structure(target.handle)
-            .scratch_data(vk::DeviceOrHostAddressKHR { device_address: notes });
-        let ranges = [vk::AccelerationStructureBuildRangeInfoKHR::default().primitive_count(target.over.count())];
-        // SAFETY: the buffer is being recorded, outside rendering; addresses are of live buffers, made for this use and long
-        // enough; the caller stated the barriers.
-        unsafe {
-            gpu.structures().cmd_build_acceleration_structures(self.buffer(), &[info], &[&ranges]);
-        }
-    }
 }
