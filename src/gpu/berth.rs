@@ -2,8 +2,7 @@
 
 use super::access::AccessSet;
 use crate::error::Result;
-use crate::memory::arena::Arena;
-use crate::memory::{Allocation, Memory, Request};
+use crate::memory::{Allocation, Arena, Memory, Request};
 use std::sync::Arc;
 
 /// Where to bind a resource.

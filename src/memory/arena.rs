@@ -5,26 +5,11 @@
 
 use super::ledger::{ArenaEntry, Entry};
 use super::pool::Ask;
-use super::{Allocation, Made, Memory, Request, Source, Tiling};
+use super::{Allocation, Arena, Made, Memory, Request, Source, Tiling};
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use ash::vk;
 use std::sync::Arc;
-
-/// A memory block for parts that share its bytes. It returns when the last part and the last handle are dropped.
-pub struct Arena {
-    memory: Arc<Memory>,
-    entry: u64,
-    ask: Ask,
-    usage: Use,
-    reason: &'static str,
-    made: Made,
-}
-
-// SAFETY: the mapped pointer leads into the arena's own block; it is only handed out with a part, see `Allocation`.
-unsafe impl Send for Arena {}
-// SAFETY: as above.
-unsafe impl Sync for Arena {}
 
 impl Memory {
     /// Makes a memory block of `bytes` (at least 1) for parts whose alignments are at most `alignment` (a power of two),
@@ -113,14 +98,5 @@ impl Arena {
         let mapped = mapped.map(|start| unsafe { start.add(offset as usize) });
         let (memory, source) = (self.memory.clone(), Source::Part { _arena: self.clone() });
         Ok(Allocation { memory, entry, source, handle: *handle, offset, mapped })
-    }
-}
-
-impl Drop for Arena {
-    fn drop(&mut self) {
-        let mut state = self.memory.state();
-        state.ledger.leave_arena(self.entry);
-        state.asks.remove(&self.entry);
-        self.memory.give_back(&mut state, self.made.place.block, self.made.place.offset, self.ask.bytes);
     }
 }

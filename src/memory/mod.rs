@@ -5,73 +5,29 @@
 //! this file makes it real, and the ledger keeps every byte's owner while it lives.
 
 pub mod alias;
-pub mod arena;
+mod arena;
 pub mod block;
 pub mod kinds;
 pub mod ledger;
 pub mod pool;
 pub mod refusal;
 pub mod rehearsal;
+mod request;
 pub mod suballocate;
 
 use crate::caps::Caps;
 use crate::error::{Error, Result};
 use crate::units::Bytes;
-use arena::Arena;
 use ash::vk;
 use block::Block;
 use kinds::{Choice, Kinds, Use};
 use ledger::{Entry, Ledger};
 use pool::{Ask, Misfit, Place, Pool, Rules};
 use refusal::Refusal;
+pub use request::{Request, Strategy, Tiling};
 use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard};
-
-/// How resources come by their memory.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Strategy {
-    /// One memory block for each resource.
-    Dedicated,
-    /// Ranges one after the other in shared memory blocks; a block returns whole, when its last range does.
-    #[default]
-    Linear,
-    /// Ranges in shared memory blocks wherever there is room; what returns is taken again.
-    Tlsf,
-}
-
-impl Strategy {
-    /// `dedicated`, `linear` or `tlsf`; None for any other word.
-    pub fn from_setting(word: &str) -> Option<Self> {
-        match word {
-            "dedicated" => Some(Self::Dedicated),
-            "linear" => Some(Self::Linear),
-            "tlsf" => Some(Self::Tlsf),
-            _ => None,
-        }
-    }
-}
-
-/// Buffers and linear images on one side, optimally tiled images on the other: the two sides share a memory block only
-/// in an arena, where whoever places the parts keeps them bufferImageGranularity apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tiling {
-    Linear,
-    Optimal,
-}
-
-/// What a resource asks for.
-pub struct Request<'a> {
-    /// Full name: `interleaved_deferred.gather.irradiance`.
-    pub name: &'a str,
-    /// Row of the memory table: `scene.textures`.
-    pub group: &'a str,
-    /// Bytes asked for by arithmetic; the driver's requirement may be larger.
-    pub bytes: u64,
-    pub requirements: vk::MemoryRequirements,
-    pub usage: Use,
-    pub tiling: Tiling,
-}
 
 /// A range in a memory block; returns itself when dropped.
 pub struct Allocation {
@@ -97,6 +53,21 @@ enum Source {
 unsafe impl Send for Allocation {}
 // SAFETY: as above; shared references only read.
 unsafe impl Sync for Allocation {}
+
+/// A memory block for parts that share its bytes. It returns when the last part and the last handle are dropped.
+pub struct Arena {
+    memory: Arc<Memory>,
+    entry: u64,
+    ask: Ask,
+    usage: Use,
+    reason: &'static str,
+    made: Made,
+}
+
+// SAFETY: the mapped pointer leads into the arena's own block; it is only handed out with a part, see `Allocation`.
+unsafe impl Send for Arena {}
+// SAFETY: as above.
+unsafe impl Sync for Arena {}
 
 /// Memory blocks, the choice of types, and the ledger of one device.
 pub struct Memory {
@@ -305,5 +276,14 @@ impl Drop for Allocation {
             state.asks.remove(&self.entry);
             self.memory.give_back(&mut state, block, self.offset, bytes);
         }
+    }
+}
+
+impl Drop for Arena {
+    fn drop(&mut self) {
+        let mut state = self.memory.state();
+        state.ledger.leave_arena(self.entry);
+        state.asks.remove(&self.entry);
+        self.memory.give_back(&mut state, self.made.place.block, self.made.place.offset, self.ask.bytes);
     }
 }

@@ -4,7 +4,7 @@ use super::{Part, Plan, Planned, Shape, Sharing};
 use crate::error::Result;
 use crate::gpu::commands::{Heirs, Touched};
 use crate::gpu::{Berth, Buffer, Gpu, Image, Target};
-use crate::memory::arena::Arena;
+use crate::memory::Arena;
 use crate::memory::kinds::Use;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;

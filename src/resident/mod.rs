@@ -8,10 +8,12 @@
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
 mod clusters;
+mod draw_call;
 mod geometry;
 mod material_blocks;
 mod raster;
 mod relief;
+mod stats;
 pub mod structure;
 mod textures;
 pub mod traced;
@@ -24,196 +26,19 @@ pub use relief::advise;
 pub use textures::Textures;
 pub use visible::{DrawList, GeometryChoice};
 
-use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
-use crate::gpu::shader::structs::{DrawBlock, MaterialBlock, PlacementBlock};
-use crate::gpu::{Access, AccessSet, Buffer, Gpu, ImageDescription, upload};
-use crate::plan::{Plan, Resources, Shape, Sharing};
-use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, mipmaps, object_ids};
-use crate::units::Extent;
+use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
+use crate::gpu::{Access, AccessSet, Buffer, Gpu, upload};
+use crate::plan::{Resources, Sharing};
+use crate::scene::{AlphaMode, Draw, Material, Scene, object_ids};
 use ash::vk;
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
+pub use draw_call::{DrawCall, ExtendedAttributes, VertexAttributes};
 use glam::{Mat3, Vec3};
-use std::collections::HashSet;
-use std::ops::Range;
+pub use stats::SceneStats;
 use std::sync::Arc;
 use textures::MaterialSets;
-
-/// What a vertex carries beside its position.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub struct VertexAttributes {
-    pub normal: [f32; 3],
-    /// xyz as `Mesh::tangents` has it; w: the handedness, +1 or -1, times 1 + the id of the vertex's normal group.
-    pub tangent: [f32; 4],
-    pub uv: [f32; 2],
-}
-
-/// What few vertices carry, in a stream of its own.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub struct ExtendedAttributes {
-    pub color: [f32; 4],
-    pub uv_1: [f32; 2],
-}
-
-/// One draw call.
-#[derive(Clone, Copy, Debug)]
-pub struct DrawCall {
-    /// Index into `Scene::draws`, and of the draw's block.
-    pub draw: u32,
-    pub material: u32,
-    pub first_index: u32,
-    pub index_count: u32,
-    /// Those of its mesh, in `SceneGpu::clusters`.
-    pub first_cluster: u32,
-    pub cluster_count: u32,
-    pub vertex_offset: i32,
-    pub alpha: AlphaMode,
-    pub double_sided: bool,
-    /// The transform mirrors: front faces are clockwise.
-    pub mirrored: bool,
-    /// Middle of its box, world space: what BLEND draws are sorted by.
-    pub center_ws: Vec3,
-}
-
-impl DrawCall {
-    /// Its range of `SceneGpu::clusters`.
-    fn clusters(&self) -> Range<usize> {
-        self.first_cluster as usize..(self.first_cluster + self.cluster_count) as usize
-    }
-}
-
-/// Sizes of the scene's resources: all that a plan needs to know of it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SceneStats {
-    pub vertex_count: u64,
-    pub index_count: u64,
-    pub draw_count: u64,
-    pub material_count: u64,
-    /// Extent, within the scene's limit, and format of each distinct image in its colour space.
-    pub textures: Vec<(Extent, vk::Format)>,
-    /// Whether the G-buffer has an image of emission: a drawn material shines, or has something that travels with it.
-    pub has_emissive: bool,
-    /// Whether vertices have the third stream, and textures their placements.
-    pub has_extended: bool,
-    pub has_blend: bool,
-}
-
-fn format_of(color_space: ColorSpace) -> vk::Format {
-    match color_space {
-        ColorSpace::Srgb => vk::Format::R8G8B8A8_SRGB,
-        ColorSpace::Linear => vk::Format::R8G8B8A8_UNORM,
-    }
-}
-
-/// Distinct images in their colour spaces, in the order of their first texture.
-fn distinct_images(scene: &Scene) -> Vec<(usize, ColorSpace)> {
-    let mut seen = HashSet::new();
-    let all = scene.textures.iter().map(|texture| (texture.image, texture.color_space));
-    all.filter(|image| seen.insert(*image)).collect()
-}
-
-/// The first level of an image whose sides are at most `limit_px`; 0: no limit.
-fn limited(image: &crate::scene::Image, limit_px: u32) -> Extent {
-    let (mut width, mut height) = (image.width, image.height);
-    while limit_px > 0 && width.max(height) > limit_px {
-        (width, height) = ((width / 2).max(1), (height / 2).max(1));
-    }
-    Extent::new(width, height)
-}
-
-impl SceneStats {
-    pub fn of(scene: &Scene) -> Self {
-        Self::with_texture_limit(scene, scene.texture_limit_px)
-    }
-
-    /// As if the scene's limit were `limit_px`; 0: none.
-    pub fn with_texture_limit(scene: &Scene, limit_px: u32) -> Self {
-        let drawn = || scene.drawn_materials();
-        let is_extended = |mesh: &Mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty();
-        Self {
-            vertex_count: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
-            index_count: scene.meshes.iter().map(|mesh| mesh.indices.len() as u64).sum(),
-            draw_count: scene.draws.len() as u64,
-            material_count: scene.materials.len() as u64,
-            textures: distinct_images(scene)
-                .into_iter()
-                .map(|(image, color_space)| (limited(&scene.images[image], limit_px), format_of(color_space)))
-                .collect(),
-            has_emissive: drawn().any(|material| material.is_emissive() || material.has_extras()),
-            has_extended: scene.meshes.iter().any(is_extended) || drawn().any(Material::has_placements),
-            has_blend: drawn().any(|material| material.alpha == AlphaMode::Blend),
-        }
-    }
-
-    /// The texture limit that `auto` comes to on a device of `caps`: 0, none, where the scene takes at most three quarters of
-    /// the greatest heap, or of `budget_bytes` where that is less; else the greatest power of two with which it does. 0 too
-    /// where no limit would do.
-    ///
-    /// The last quarter is the frame's and the staging buffers'.
-    pub fn fitting_limit_px(scene: &Scene, caps: &Caps, budget_bytes: Option<u64>) -> u32 {
-        let heap_bytes = caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
-        let room_bytes = heap_bytes.min(budget_bytes.unwrap_or(u64::MAX)) / 4 * 3;
-        let fits = |limit_px: u32| Self::with_texture_limit(scene, limit_px).plan().bytes() <= room_bytes;
-        let side_px = scene.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(1);
-        let powers = 0..=side_px.ilog2();
-        if fits(0) { 0 } else { powers.rev().map(|power| 1 << power).find(|limit_px| fits(*limit_px)).unwrap_or(0) }
-    }
-
-    /// The scene's resources.
-    pub fn plan(&self) -> Plan {
-        let mut plan = self.geometry_plan();
-        self.plan_textures(&mut plan);
-        plan
-    }
-
-    /// Those that a moment of the scene has for itself: all but its textures.
-    fn geometry_plan(&self) -> Plan {
-        use vk::BufferUsageFlags as Flags;
-        let mut plan = Plan::default();
-        let geometry = |bytes: u64, flags: Flags| Shape::Buffer {
-            bytes: bytes.max(16),
-            // deep_shading reads vertices as storage.
-            flags: flags | Flags::STORAGE_BUFFER | Flags::TRANSFER_DST,
-            usage: crate::memory::kinds::Use::Device,
-        };
-        let attributes = size_of::<VertexAttributes>() as u64;
-        plan.push("scene.geometry", "scene.positions", geometry(12 * self.vertex_count, Flags::VERTEX_BUFFER));
-        plan.push("scene.geometry", "scene.attributes", geometry(attributes * self.vertex_count, Flags::VERTEX_BUFFER));
-        if self.has_extended {
-            let bytes = size_of::<ExtendedAttributes>() as u64 * self.vertex_count;
-            plan.push("scene.geometry", "scene.extended", geometry(bytes, Flags::VERTEX_BUFFER));
-            let bytes = (size_of::<PlacementBlock>() * TextureSlot::ALL.len()) as u64 * self.material_count;
-            plan.buffer("scene.materials", "scene.placements", bytes);
-        }
-        plan.push("scene.geometry", "scene.indices", geometry(4 * self.index_count, Flags::INDEX_BUFFER));
-        plan.buffer("scene.geometry", "scene.draws", self.draw_count * size_of::<DrawBlock>() as u64);
-        plan.buffer("scene.materials", "scene.materials", self.material_count * size_of::<MaterialBlock>() as u64);
-        plan
-    }
-
-    fn plan_textures(&self, plan: &mut Plan) {
-        for (index, (extent, format)) in self.textures.iter().enumerate() {
-            plan.push("scene.textures", format!("scene.textures.{index}"), texture_shape(*extent, *format));
-        }
-        let white = texture_shape(Extent::new(1, 1), vk::Format::R8G8B8A8_UNORM);
-        plan.push("scene.textures", "scene.textures.white", white);
-    }
-}
-
-fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
-    Shape::Image(ImageDescription {
-        extent,
-        format,
-        sampled_as: None,
-        level_count: mipmaps::level_count(extent.width, extent.height),
-        layer_count: None,
-        samples: 1,
-        usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
-    })
-}
 
 /// What the EXTENDED variants of shaders read.
 pub struct Extended {
@@ -373,6 +198,10 @@ pub fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Shape;
+    use crate::resident::stats::limited;
+    use crate::resident::stats::texture_shape;
+    use crate::units::Extent;
 
     /// The levels that a limit leaves are the last ones of all: an upload counts them from the end.
     #[test]

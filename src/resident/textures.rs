@@ -3,11 +3,12 @@
 //! Textures stand apart from the rest of the scene because they outlive it: the frames of a sequence move and bend meshes
 //! and show the same pictures.
 
-use super::{SceneStats, distinct_images};
+use super::SceneStats;
 use crate::error::{Error, Result};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, Gpu, Image, upload};
 use crate::plan::{Plan, Resources, Sharing};
+use crate::resident::stats::distinct_images;
 use crate::scene::{self, ColorSpace, Scene, Texture, TextureSlot, Wrap, mipmaps};
 use ash::vk;
 use std::collections::HashMap;

@@ -4,8 +4,8 @@
 //! Each triangle has its own copy of its corners: a ray reads one place instead of three indices and three vertices, which
 //! lavapipe would fetch lane by lane.
 
+use super::material_blocks;
 use super::structure::{self, SceneStructure};
-use super::{limited, material_blocks};
 use crate::bvh::nodes::Nodes;
 use crate::bvh::{Bvh, Source};
 use crate::error::{Error, Result};
@@ -16,6 +16,7 @@ use crate::gpu::shader::structs::{
 use crate::gpu::structure::Over;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Requirements, Resources};
+use crate::resident::stats::limited;
 use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, Wrap, mipmaps};
 use crate::units::Bytes;
 use bytemuck::Zeroable;

@@ -1,7 +1,6 @@
 //! Whether a plan fits into `--memory-budget`: its resources placed as a device places them, in its order and under its
 //! strategy. Heaps do not count: those of a known driver are those of the machine that it was measured on.
 
-use super::{Driver, Plans};
 use crate::bvh::LazyBvh;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::upload;
@@ -12,6 +11,7 @@ use crate::memory::rehearsal::Rehearsal;
 use crate::memory::{Request, Strategy, Tiling};
 use crate::plan::{Plan, Planned, Requirement, Shape};
 use crate::scene::Scene;
+use crate::study::driver::{Driver, Plans};
 use crate::units::Bytes;
 use ash::vk;
 

@@ -2,21 +2,19 @@
 //! from the ledger of a device that holds every resource of a frame.
 
 mod budget;
+mod driver;
 
 use crate::bvh::LazyBvh;
 use crate::caps::Caps;
 use crate::error::Result;
-use crate::frame::View;
 use crate::gpu::commands::Submits;
 use crate::job::{Job, judge};
-use crate::lights::LightSet;
 use crate::memory::kinds::Kinds;
-use crate::plan::{Plan, Requirements, Sharing};
+use crate::plan::Requirements;
 use crate::report::memory::MemoryTable;
-use crate::resident::SceneStats;
-use crate::scene::Scene;
 use crate::session::frame_plan;
-use crate::techniques::Inputs;
+use driver::with_inputs;
+use driver::{Driver, Plans};
 use std::collections::BTreeMap;
 
 /// A table, and what it is of.
@@ -62,48 +60,6 @@ pub fn resolved(job: &Job, caps: &Caps) -> Result<BTreeMap<&'static str, String>
         frame_plan(job.technique, inputs, &job.aovs)?;
         Ok(job.technique.prepare(inputs)?.resolved())
     })
-}
-
-/// A driver that is not there.
-#[derive(Clone, Copy)]
-struct Driver<'a> {
-    caps: &'a Caps,
-    requirements: Requirements<'a>,
-}
-
-/// Calls `then` with what the plan and the host's part of a technique read.
-///
-/// Errors: impossible settings (exit code 2); as `then`.
-fn with_inputs<T>(
-    job: &Job,
-    scene: &Scene,
-    bvh: &LazyBvh,
-    Driver { caps, requirements }: Driver<'_>,
-    then: impl FnOnce(&Inputs<'_>) -> Result<T>,
-) -> Result<T> {
-    let view = View::new(scene, job.values.text("camera"), job.values.extent("size"))?;
-    let lights = LightSet::new(scene, &view, &job.values)?;
-    let stats = SceneStats::of(scene);
-    then(&Inputs { caps, requirements, scene, stats: &stats, bvh, view: &view, lights: &lights, values: &job.values })
-}
-
-/// What a job needs under a driver's rules.
-struct Plans {
-    /// Kept with the scene.
-    scene: Plan,
-    frame: Plan,
-    sharing: Sharing,
-}
-
-impl Plans {
-    /// Errors: as `planned`.
-    fn new(job: &Job, scene: &Scene, bvh: &LazyBvh, driver: Driver<'_>) -> Result<Self> {
-        with_inputs(job, scene, bvh, driver, |inputs| {
-            let frame = frame_plan(job.technique, inputs, &job.aovs)?;
-            let sharing = Sharing::of(&frame, driver.requirements, driver.caps, &job.values);
-            Ok(Self { scene: inputs.stats.plan(), frame, sharing })
-        })
-    }
 }
 
 /// Every resource of `job` made on its device; no frame is rendered.

@@ -7,6 +7,7 @@
 
 pub mod cast;
 mod host;
+mod query;
 pub mod report;
 
 use super::rounds::{self, Probe, Samples};
@@ -29,6 +30,7 @@ use crate::settings::Values;
 use ash::vk;
 use cast::Rays;
 use host::HostWalk;
+pub use query::Query;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -38,25 +40,6 @@ const GROUP: &str = "bench";
 const THREADS: u32 = 64;
 /// bvh_trace.glsl's RAY_SHADOW.
 const RAY_SHADOW: u32 = 1;
-
-/// What is asked of a ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Query {
-    /// Whether anything is in the way.
-    Any,
-    /// Which triangle comes first.
-    Nearest,
-}
-
-impl Query {
-    /// As rows have it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Any => "any",
-            Self::Nearest => "nearest",
-        }
-    }
-}
 
 /// A way of walking in order that is measured.
 pub struct Variant {

@@ -1,7 +1,8 @@
 //! Best fit in a few orders: each span takes the smallest gap between those that are placed and meet it, else the room
 //! above them. The best order wins; a tie goes to the earlier one.
 
-use super::{Span, one_after_the_other, total_bytes};
+use super::Span;
+use crate::memory::alias::span::{one_after_the_other, total_bytes};
 use std::cmp::Reverse;
 
 /// A key for each span, by which it is placed; the least goes first, ties in the order given.

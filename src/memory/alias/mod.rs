@@ -4,24 +4,11 @@
 //! answer (`greedy.rs`), and an exact one by branch and bound (`optimal.rs`). A pass is one moment: a resource whose last
 //! pass is another's first one lives beside it.
 
+pub use span::Span;
+use span::{one_after_the_other, total_bytes};
 mod greedy;
 mod optimal;
-
-/// One transient resource: bytes, alignment (a power of two), first and last pass, inclusive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Span {
-    pub bytes: u64,
-    pub alignment: u64,
-    pub first: usize,
-    pub last: usize,
-}
-
-impl Span {
-    /// Some pass sees both.
-    pub fn meets(&self, other: &Self) -> bool {
-        self.first <= other.last && other.first <= self.last
-    }
-}
+mod span;
 
 /// How hard to look for bytes to share.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,22 +83,6 @@ pub fn predecessors(spans: &[Span], placement: &Placement) -> Vec<Vec<usize>> {
             (0..spans.len()).filter(held_before).collect()
         })
         .collect()
-}
-
-fn one_after_the_other(spans: &[Span]) -> Vec<u64> {
-    let mut end = 0u64;
-    spans
-        .iter()
-        .map(|span| {
-            let offset = end.next_multiple_of(span.alignment);
-            end = offset + span.bytes;
-            offset
-        })
-        .collect()
-}
-
-fn total_bytes(spans: &[Span], offsets: &[u64]) -> u64 {
-    spans.iter().zip(offsets).map(|(span, offset)| offset + span.bytes).max().unwrap_or(0)
 }
 
 fn lower_bound_bytes(spans: &[Span]) -> u64 {

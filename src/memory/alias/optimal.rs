@@ -7,7 +7,8 @@
 //! those is greedy's. All offsets are multiples of the least alignment, so what must come counts rounded up to it, but
 //! for the topmost. Steps are counted, not timed, so the same spans give the same placement on every machine.
 
-use super::{Span, total_bytes};
+use super::Span;
+use crate::memory::alias::span::total_bytes;
 
 /// Steps before the search gives up. Of 120 random frames each (four formats, three resolutions, two to six passes long),
 /// so many are enough to prove all of 10, 15 and 20 spans, 92 % of 25, 78 % of 30 and 67 % of 40.

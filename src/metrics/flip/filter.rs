@@ -1,7 +1,6 @@
 //! FLIP's filters: the contrast sensitivity of the eye, and what finds edges and points. All are sums of products of
 //! one-dimensional kernels, so each runs along rows first and then along columns. Past the border the last pixel goes on.
 
-use super::PIXELS_PER_DEGREE;
 use crate::units::Extent;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -106,6 +105,9 @@ pub fn features(extent: Extent, opponent: &[[f32; 3]], kernels: &FeatureKernels)
     let derivatives = along(extent, false, &rows, &[(1, gauss), (0, edge), (2, gauss), (0, point)]);
     derivatives.into_iter().map(|[dx, dy, dxx, dyy]| [dx.hypot(dy), dxx.hypot(dyy)]).collect()
 }
+
+/// Pixels a degree of a 4K screen of 0.7 m width at 0.7 m distance: the authors' own viewing conditions.
+pub(super) const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
 #[cfg(test)]
 mod tests {

@@ -21,9 +21,6 @@ use std::sync::LazyLock;
 
 pub(super) use magma::magma;
 
-/// Pixels a degree of a 4K screen of 0.7 m width at 0.7 m distance: the authors' own viewing conditions.
-pub(super) const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
-
 /// Exponents of the colour and the feature difference (sections 4.1.3 and 4.2).
 const COLOR_EXPONENT: f32 = 0.7;
 const FEATURE_EXPONENT: f32 = 0.5;

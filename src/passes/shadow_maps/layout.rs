@@ -1,13 +1,13 @@
 //! Which light has which shadow maps, from where each is drawn, and how large all of them are: arithmetic, before anything
 //! is made.
 
-use super::{FORMAT, MapFilter, blocks_name, depth_name, pass};
 use crate::caps::Caps;
 use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::shader::structs::ShadowMapBlock;
 use crate::gpu::{Access, ImageDescription};
 use crate::lights::LightSet;
+use crate::passes::shadow_maps::format::{FORMAT, MapFilter, blocks_name, depth_name, pass};
 use crate::plan::{Plan, Requirements, Shape};
 use crate::resident::{GeometryChoice, SceneStats};
 use crate::scene::{Bounds, Camera, Light, LightKind, Projection, Scene};

@@ -22,12 +22,13 @@
 //! away by a slope's part of it, in the rasteriser, cannot detach a shadow by more than as many texels, however steep the
 //! surface; metres along the ray to the light are added where it is asked, because they mean the same at every distance.
 
+mod format;
 mod layout;
 
 pub use layout::MapLayout;
 
 use super::mesh;
-use crate::caps::{Ability, Caps, Need};
+use crate::caps::{Ability, Need};
 use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -41,44 +42,10 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
 use crate::settings::Values;
 use ash::vk;
+use format::{FORMAT, MapFilter, blocks_name, depth_name, pass};
 use glam::Mat4;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
-
-/// How a map is asked (`--shadow-filter`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum MapFilter {
-    /// One comparison.
-    Nearest,
-    /// Four, filtered by the sampler.
-    Bilinear,
-    /// Four, filtered by the shader.
-    Gather,
-}
-
-impl MapFilter {
-    /// The value of `--shadow-filter`.
-    fn from_setting(text: &str, caps: &Caps) -> Self {
-        match text {
-            "auto" if caps.formats.float_depth_linear => Self::Bilinear,
-            "auto" | "gather" => Self::Gather,
-            "nearest" => Self::Nearest,
-            "bilinear" => Self::Bilinear,
-            other => panic!("--shadow-filter {other} was checked"),
-        }
-    }
-
-    /// As settings name it.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Nearest => "nearest",
-            Self::Bilinear => "bilinear",
-            Self::Gather => "gather",
-        }
-    }
-}
 
 /// The value of the shaders' axis SHADOWS.
 pub fn axis(has_shadow_maps: bool) -> &'static str {
@@ -94,19 +61,6 @@ pub fn needs(values: &Values) -> Option<Need> {
         ability: Ability::FilteredDepth,
         instead,
     })
-}
-
-/// The pass, and what its resources' names begin with.
-fn pass(technique: &str) -> String {
-    format!("{technique}.shadow_maps")
-}
-
-fn depth_name(technique: &str) -> String {
-    format!("{}.depth", pass(technique))
-}
-
-fn blocks_name(technique: &str) -> String {
-    format!("{}.blocks", pass(technique))
 }
 
 /// Where the scene's draws stand, and their vertices: those of the scene, or of another moment of it.
