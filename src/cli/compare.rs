@@ -1,5 +1,8 @@
 //! `quincunx compare`: a picture against its reference, as a table or JSON, with gates for scripts.
 
+use crate::cli::output::print;
+use crate::cli::output::print_text;
+use crate::cli::output::quiet_flag;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +36,7 @@ pub fn command() -> Command {
              geometry.dsf.id.Y=low.exr,high.exr; of one file, in which it is not 0; and the other pixels",
         ))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
-        .arg(super::quiet_flag());
+        .arg(quiet_flag());
     gate_args::with_gate_args(command)
 }
 
@@ -45,9 +48,9 @@ fn path_arg(name: &'static str, value_name: &'static str) -> Arg {
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let output = outcome(matches)?;
     if matches.get_flag("json") {
-        super::print(&output.text)?;
+        print(&output.text)?;
     } else {
-        super::print_text(matches, &output.text)?;
+        print_text(matches, &output.text)?;
     }
     output.gates
 }

@@ -2,6 +2,9 @@
 
 use super::self_test;
 use crate::caps::Need;
+use crate::cli::output::print;
+use crate::cli::output::print_text;
+use crate::cli::output::quiet_flag;
 use crate::error::Result;
 use crate::gpu::device::{self, Listed};
 use crate::techniques;
@@ -16,7 +19,7 @@ pub fn command() -> Command {
     let command = Command::new("devices")
         .about("List the devices, what each can do and what it lacks; or test one")
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
-        .arg(super::quiet_flag());
+        .arg(quiet_flag());
     self_test::with_args(command)
 }
 
@@ -30,13 +33,13 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let listed = device::list()?;
     if matches.get_flag("json") {
         let devices: Vec<_> = listed.iter().map(document).collect();
-        return super::print(&format!("{:#}\n", json!({ "schema": 1, "devices": devices })));
+        return print(&format!("{:#}\n", json!({ "schema": 1, "devices": devices })));
     }
     let mut text = String::new();
     for (index, one) in listed.iter().enumerate() {
         describe(&mut text, index, one).expect("writing to a string");
     }
-    super::print_text(matches, &text)
+    print_text(matches, &text)
 }
 
 /// What `--json` says of a device; no technique where it cannot be used.

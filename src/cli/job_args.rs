@@ -1,15 +1,14 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
 use super::listed::{self, Listed};
+use crate::cli::listed::DEFAULT_TECHNIQUE;
+use crate::cli::output::quiet_flag;
 use crate::error::Result;
 use crate::job::Job;
 use crate::settings::{COMMON, Kind, Setting};
 use crate::techniques::{self, Technique, settings_of};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
-
-/// The technique that a command without --technique runs.
-pub const DEFAULT_TECHNIQUE: &str = "interleaved_deferred";
 
 /// Adds SCENE, --technique, --device, --validate and every setting; help lists those that `listed` reads.
 pub fn with_job_args(listed: &Listed, command: Command) -> Command {
@@ -42,7 +41,7 @@ pub fn with_job_args(listed: &Listed, command: Command) -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Run under the validation layer with synchronization checks; a message fails the command"),
         )
-        .arg(super::quiet_flag())
+        .arg(quiet_flag())
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON on standard output"));
     for Row { setting, heading, is_listed } in rows(listed) {
         command = command.arg(flag(setting).help_heading(heading).hide(!is_listed));

@@ -1,7 +1,6 @@
 //! Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the default
 //! one. The other flags are there all the same, so that a technique can say what it does not read.
 
-use super::job_args::DEFAULT_TECHNIQUE;
 use crate::techniques::{self, Technique};
 
 /// What `--technique` takes beside names, for help alone.
@@ -54,6 +53,9 @@ impl Listed {
         }
     }
 }
+
+/// The technique that a command without --technique runs.
+pub const DEFAULT_TECHNIQUE: &str = "interleaved_deferred";
 
 #[cfg(test)]
 mod tests {

@@ -3,6 +3,8 @@
 use super::job_args;
 use super::listed::Listed;
 use crate::caps::{file, known};
+use crate::cli::output::print;
+use crate::cli::output::print_text;
 use crate::error::{Error, Result};
 use crate::study::{self, Study};
 use crate::techniques::Rival;
@@ -90,13 +92,13 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         }
         if !matches.get_flag("json") {
             let gap = if documents.is_empty() { "" } else { "\n" };
-            super::print_text(matches, &format!("{gap}{text}"))?;
+            print_text(matches, &format!("{gap}{text}"))?;
         }
         budget = budget.and(study.budget);
         documents.push(document);
     }
     if matches.get_flag("json") {
-        super::print(&format!("{:#}\n", json!({ "schema": 1, "techniques": documents })))?;
+        print(&format!("{:#}\n", json!({ "schema": 1, "techniques": documents })))?;
     }
     budget
 }

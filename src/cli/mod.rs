@@ -7,6 +7,7 @@ mod gate_args;
 mod job_args;
 mod listed;
 pub mod memory;
+mod output;
 mod progress;
 mod rays;
 mod reference_args;
@@ -14,10 +15,10 @@ pub mod render;
 pub mod scene;
 mod self_test;
 
-use crate::error::{Error, Result};
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use crate::cli::output::print;
+use crate::error::Result;
+use clap::Command;
 use listed::Listed;
-use std::io::Write;
 
 /// The program with its verbs. `listed`: whose settings help lists.
 fn command(listed: &Listed) -> Command {
@@ -56,28 +57,5 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("scene", matches)) => scene::run(matches),
         Some(("devices", matches)) => devices::run(matches, argv),
         _ => unreachable!("clap requires one of the verbs"),
-    }
-}
-
-/// The flag that every verb has.
-fn quiet_flag() -> Arg {
-    Arg::new("quiet")
-        .long("quiet")
-        .action(ArgAction::SetTrue)
-        .help("Print nothing but errors, and what --json asks for")
-}
-
-/// Prints what is for a person's eyes, unless --quiet.
-fn print_text(matches: &ArgMatches, text: &str) -> Result<()> {
-    if matches.get_flag("quiet") { Ok(()) } else { print(text) }
-}
-
-/// Prints to standard output; a reader that has gone (`| head`) is no failure.
-pub(crate) fn print(text: &str) -> Result<()> {
-    let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        Err(error) => Err(Error::request(format!("cannot write to standard output: {error}"))),
-        Ok(()) => Ok(()),
     }
 }

@@ -3,6 +3,9 @@
 use super::{job_args, progress};
 use crate::bench::rays::{self, Request, Variant, report};
 use crate::bench::sweep::{self, Point};
+use crate::cli::output::print;
+use crate::cli::output::print_text;
+use crate::cli::output::quiet_flag;
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::job::judge;
@@ -34,7 +37,7 @@ pub fn command() -> Command {
         .arg(number("seed", "1", u64::from(u32::MAX)).help("Of the rays and of a built-in scene"))
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("As `quincunx devices` lists them"))
         .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
-        .arg(super::quiet_flag())
+        .arg(quiet_flag())
         .arg(flag("json").help("Print a JSON line a walk on standard output"))
         .arg(
             Arg::new("sweep")
@@ -98,9 +101,9 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     drop(stage);
     let rows = report::rows(&measured, &gpu, &scene, &request);
     if matches.get_flag("json") {
-        super::print(&rows.iter().map(|row| format!("{row}\n")).collect::<String>())?;
+        print(&rows.iter().map(|row| format!("{row}\n")).collect::<String>())?;
     } else {
-        super::print_text(matches, &report::text(&rows))?;
+        print_text(matches, &report::text(&rows))?;
     }
     report::judge(&measured, &request)?;
     let log = gpu.validation_log();

@@ -2,6 +2,8 @@
 
 use super::listed::Listed;
 use super::{job_args, progress, reference_args};
+use crate::cli::output::print;
+use crate::cli::output::print_text;
 use crate::earlier::Earlier;
 use crate::error::{Error, Result};
 use crate::job::Job;
@@ -84,9 +86,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     }
     let outcome = job.run()?;
     if matches.get_flag("json") {
-        super::print(&format!("{:#}\n", outcome.report.json()))?;
+        print(&format!("{:#}\n", outcome.report.json()))?;
     } else {
-        super::print_text(matches, &outcome.report.text())?;
+        print_text(matches, &outcome.report.text())?;
     }
     outcome.gates
 }
@@ -100,10 +102,10 @@ fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> 
         outcome.notes.iter().for_each(|note| say(format!("frame {frame}: note: {note}")));
     })?;
     if matches.get_flag("json") {
-        super::print(&format!("{:#}\n", sequence.json()))?;
+        print(&format!("{:#}\n", sequence.json()))?;
     } else {
         let written = format!("{} of {} frames are written\n", sequence.reports.len(), frames.count());
-        super::print_text(matches, &written)?;
+        print_text(matches, &written)?;
     }
     match sequence.is_interrupted {
         true => Err(Error::interrupted("interrupted; finished frames are valid")),

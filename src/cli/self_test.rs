@@ -1,6 +1,8 @@
 //! `quincunx devices --self-test`: parse, run, print; what is tried and how it is judged is the room `selftest`.
 
 use super::progress;
+use crate::cli::output::print;
+use crate::cli::output::print_text;
 use crate::error::Result;
 use crate::gpu::DeviceRequest;
 use crate::selftest::{self, Request, document};
@@ -70,7 +72,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let mut printed = Ok(());
     let outcome = selftest::run(&request, &mut |tried| {
         if !is_json && printed.is_ok() {
-            printed = super::print_text(matches, &document::line(tried));
+            printed = print_text(matches, &document::line(tried));
         }
     })?;
     printed?;
@@ -79,10 +81,10 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         write_whole(file, |out| writeln!(out, "{document:#}"))?;
     }
     if is_json {
-        super::print(&format!("{document:#}\n"))?;
+        print(&format!("{document:#}\n"))?;
     } else {
         let file = file.map(|file| file.display().to_string());
-        super::print_text(matches, &document::closing_text(&outcome, file.as_deref()))?;
+        print_text(matches, &document::closing_text(&outcome, file.as_deref()))?;
     }
     outcome.verdict()
 }

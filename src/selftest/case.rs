@@ -2,10 +2,10 @@
 //! here runs.
 
 use super::closed_form::ClosedForm;
-use super::judge::Bounds;
 use crate::error::Result;
 use crate::job::Job;
 use crate::picture::Picture;
+pub(super) use crate::selftest::judge::Must;
 use crate::techniques;
 use crate::units::Extent;
 
@@ -56,46 +56,6 @@ pub enum Twin {
     Formula,
     /// Nothing: it is a picture of which samples must be missing.
     Nothing,
-}
-
-/// What must hold between a road's picture and its twin's.
-#[derive(Clone, Copy, Debug)]
-pub enum Must {
-    /// Equal bits on every device: the same shaders on the same numbers.
-    Same { why: &'static str },
-    /// Equal bits on software drivers; within bounds on devices whose compilers may round two shaders otherwise.
-    Equal(Bounds),
-    /// Within bounds on every device: two ways to nearly the same picture.
-    Near(Bounds),
-    /// Some samples have no colour, which shows that their counter counts.
-    LackSamples,
-}
-
-impl Must {
-    /// What a picture may be off by; None: equal bits are asked for, or nothing of the picture.
-    pub fn bounds(&self, is_software: bool) -> Option<Bounds> {
-        match self {
-            Self::Equal(bounds) if !is_software => Some(*bounds),
-            Self::Near(bounds) => Some(*bounds),
-            _ => None,
-        }
-    }
-
-    /// Whether equal bits are asked for.
-    pub fn is_exact(&self, is_software: bool) -> bool {
-        matches!(self, Self::Same { .. }) || (matches!(self, Self::Equal(_)) && is_software)
-    }
-
-    /// Why it is this that must hold.
-    pub fn why(&self) -> &'static str {
-        match self {
-            Self::Same { why } => why,
-            Self::Equal(bounds) | Self::Near(bounds) => bounds.why,
-            Self::LackSamples => {
-                "pixels at rims whose middle no triangle covers are not shaded: what counts them must see some"
-            }
-        }
-    }
 }
 
 /// Side lengths that hold for every case, which names them in `common` where it wants others: odd, so that no workgroup

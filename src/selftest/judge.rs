@@ -4,7 +4,6 @@
 //! edges by all that surfaces differ; so pixels that are apart are counted. Light that is missing everywhere moves the
 //! mean, and little else.
 
-use super::case::Must;
 use crate::error::Result;
 use crate::metrics;
 use crate::picture::Picture;
@@ -92,10 +91,50 @@ fn is_apart(a: f32, b: f32) -> bool {
     (a - b).abs() > APART.max(APART_PART * a.max(b))
 }
 
+/// What must hold between a road's picture and its twin's.
+#[derive(Clone, Copy, Debug)]
+pub enum Must {
+    /// Equal bits on every device: the same shaders on the same numbers.
+    Same { why: &'static str },
+    /// Equal bits on software drivers; within bounds on devices whose compilers may round two shaders otherwise.
+    Equal(Bounds),
+    /// Within bounds on every device: two ways to nearly the same picture.
+    Near(Bounds),
+    /// Some samples have no colour, which shows that their counter counts.
+    LackSamples,
+}
+
+impl Must {
+    /// What a picture may be off by; None: equal bits are asked for, or nothing of the picture.
+    pub fn bounds(&self, is_software: bool) -> Option<Bounds> {
+        match self {
+            Self::Equal(bounds) if !is_software => Some(*bounds),
+            Self::Near(bounds) => Some(*bounds),
+            _ => None,
+        }
+    }
+
+    /// Whether equal bits are asked for.
+    pub fn is_exact(&self, is_software: bool) -> bool {
+        matches!(self, Self::Same { .. }) || (matches!(self, Self::Equal(_)) && is_software)
+    }
+
+    /// Why it is this that must hold.
+    pub fn why(&self) -> &'static str {
+        match self {
+            Self::Same { why } => why,
+            Self::Equal(bounds) | Self::Near(bounds) => bounds.why,
+            Self::LackSamples => {
+                "pixels at rims whose middle no triangle covers are not shaded: what counts them must see some"
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::cases::{PATHS, ROUNDING};
     use super::*;
+    use crate::selftest::cases::bounds::{PATHS, ROUNDING};
     use crate::units::Extent;
 
     /// What becomes of a pixel, by its index.

@@ -1,6 +1,6 @@
 //! `quincunx scene export`: a built-in scene as a .glb.
 
-use crate::cli;
+use crate::cli::output;
 use crate::error::{Error, Result};
 use crate::scene::glb;
 use crate::scene::procedural::{self, Made};
@@ -30,7 +30,7 @@ pub fn command() -> Command {
                 .help("The file, written whole or not at all"),
         )
         .arg(super::seed_argument())
-        .arg(cli::quiet_flag())
+        .arg(output::quiet_flag())
 }
 
 /// Writes the file and prints what it holds.
@@ -50,5 +50,5 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     let bytes = glb::encode(&scene, &motions).map_err(|error| error.within(spec))?;
     write_whole(path, |out| out.write_all(&bytes))?;
     let (bytes, triangles) = (Bytes(bytes.len() as u64), scene.triangle_count());
-    cli::print_text(matches, &format!("{}: {bytes}, {triangles} triangles\n", path.display()))
+    output::print_text(matches, &format!("{}: {bytes}, {triangles} triangles\n", path.display()))
 }

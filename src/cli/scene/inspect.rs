@@ -1,6 +1,6 @@
 //! `quincunx scene inspect`: what a scene holds, and what of it is not drawn as it stands there. No device is needed.
 
-use crate::cli;
+use crate::cli::output;
 use crate::error::Result;
 use crate::scene::gltf::Facts;
 use crate::scene::shell::Shell;
@@ -23,7 +23,7 @@ pub fn command() -> Command {
         )
         .arg(super::seed_argument())
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
-        .arg(cli::quiet_flag())
+        .arg(output::quiet_flag())
 }
 
 /// Prints the inventory.
@@ -33,11 +33,11 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     let spec = matches.get_one::<String>("scene").expect("clap requires it");
     let (scene, facts) = scene::inspect(spec, super::seed(matches))?;
     if matches.get_flag("json") {
-        return cli::print(&format!("{:#}\n", document(&scene, facts.as_ref())));
+        return output::print(&format!("{:#}\n", document(&scene, facts.as_ref())));
     }
     let mut text = String::new();
     describe(&mut text, &scene, facts.as_ref()).expect("writing to a string");
-    cli::print_text(matches, &text)
+    output::print_text(matches, &text)
 }
 
 fn document(scene: &Scene, facts: Option<&Facts>) -> Value {

@@ -1,6 +1,6 @@
 //! `quincunx scene list`: the scenes that the program makes itself.
 
-use crate::cli;
+use crate::cli::output;
 use crate::error::Result;
 use crate::scene::procedural::{self, Choice, Parameter};
 use clap::{ArgMatches, Command};
@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 /// The sub-verb.
 pub fn command() -> Command {
-    Command::new("list").about("List the built-in scenes with their parameters").arg(cli::quiet_flag())
+    Command::new("list").about("List the built-in scenes with their parameters").arg(output::quiet_flag())
 }
 
 /// Prints the list.
@@ -23,5 +23,5 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
                 .expect("writing to a string");
         }
     }
-    cli::print_text(matches, &text)
+    output::print_text(matches, &text)
 }

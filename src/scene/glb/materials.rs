@@ -1,9 +1,9 @@
 //! Materials, textures, samplers and images of a .glb. Images are embedded as PNG, which loses nothing.
 
 use super::binary::Binary;
-use super::scaled;
 use crate::error::{Error, Result};
 use crate::scene::{AlphaMode, Image, Material, Sampler, Scene, TextureSlot, Wrap};
+use glam::Vec3;
 use image::{ExtendedColorType, ImageEncoder};
 use serde_json::{Value, json};
 
@@ -116,4 +116,15 @@ fn material_json(material: &Material) -> Value {
         json["doubleSided"] = json!(true);
     }
     json
+}
+
+/// A colour, each channel 0 to 1, and the power of two that makes `value` of it exactly; 1 where no power is needed.
+pub fn scaled(value: Vec3) -> (Vec3, f32) {
+    let greatest = value.max_element();
+    if greatest <= 1.0 {
+        return (value, 1.0);
+    }
+    // Beyond half of the greatest float there is no power of two above it.
+    let power = greatest.log2().ceil().min(127.0).exp2();
+    (value / power, power)
 }

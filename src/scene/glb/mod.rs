@@ -13,10 +13,11 @@ mod materials;
 use self::binary::Binary;
 use crate::error::{Error, Result};
 use crate::scene::animation::{Curve, Interpolation};
+use crate::scene::glb::materials::scaled;
 use crate::scene::procedural::{Motion, Thing};
 use crate::scene::{Camera, Light, LightKind, Mesh, Projection, Scene};
 use crate::units::Bytes;
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 use serde_json::{Map, Value, json};
 
 const LIGHTS: &str = "KHR_lights_punctual";
@@ -191,17 +192,6 @@ fn world_from_light(light: &Light) -> Mat4 {
     Mat4::from_cols(x.extend(0.0), y.extend(0.0), back.extend(0.0), light.position.extend(1.0))
 }
 
-/// A colour, each channel 0 to 1, and the power of two that makes `value` of it exactly; 1 where no power is needed.
-fn scaled(value: Vec3) -> (Vec3, f32) {
-    let greatest = value.max_element();
-    if greatest <= 1.0 {
-        return (value, 1.0);
-    }
-    // Beyond half of the greatest float there is no power of two above it.
-    let power = greatest.log2().ceil().min(127.0).exp2();
-    (value / power, power)
-}
-
 fn light_json(light: &Light) -> Value {
     let (color, intensity) = scaled(light.intensity);
     let mut json = json!({ "name": light.name, "color": color.to_array(), "intensity": intensity });
@@ -240,6 +230,7 @@ fn camera_json(camera: &Camera) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn light_is_a_colour_times_a_power_of_two_exactly() {

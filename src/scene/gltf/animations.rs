@@ -12,27 +12,10 @@ use super::nodes::Hierarchy;
 use super::{accessors, label, morph};
 use crate::error::{Error, Result};
 use crate::scene::animation::{AnimationChoice, Curve, Interpolation, unit_quaternion};
+use crate::scene::gltf::motion::{Channel, Motion};
 
 /// How many numbers the curves of a file may have together, beside one for each byte of it: 16 MiB of them.
 const FREE_CURVE_NUMBERS: usize = 1 << 22;
-
-/// What a channel moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Motion {
-    Translation,
-    Rotation,
-    Scale,
-    /// Of the morph targets of the node's mesh.
-    Weights,
-}
-
-/// One property of one node over time.
-#[derive(Debug)]
-pub struct Channel {
-    pub node_index: usize,
-    pub motion: Motion,
-    pub curve: Curve,
-}
 
 /// The channels of the animations that `choice` names, no two of them for the same property of the same node.
 ///
@@ -82,7 +65,7 @@ pub fn read(
 }
 
 /// The place of the animation of this name, else of this index.
-fn one(animations: &[json::Animation], name: &str) -> Result<std::ops::Range<usize>> {
+pub(super) fn one(animations: &[json::Animation], name: &str) -> Result<std::ops::Range<usize>> {
     let by_name = animations.iter().position(|animation| animation.name.as_deref() == Some(name));
     match by_name.or_else(|| name.parse().ok()).filter(|index| *index < animations.len()) {
         Some(index) => Ok(index..index + 1),

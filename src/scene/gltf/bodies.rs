@@ -7,7 +7,6 @@ use glam::{Mat3, Mat4, Quat, Vec3};
 use gltf::Document;
 use rayon::prelude::*;
 
-use super::animations::{Channel, Motion};
 use super::buffers::Buffers;
 use super::deform::{self, Deform};
 use super::limits::Allowance;
@@ -16,6 +15,7 @@ use super::primitives::{Piece, Shown};
 use super::skins::Skin;
 use super::{label, morph};
 use crate::error::{Error, Result};
+use crate::scene::gltf::motion::{Channel, Motion};
 use crate::scene::{Draw, Mesh};
 
 /// A short file can have many nodes that all draw one mesh of many primitives; this many draws take 320 MiB.

@@ -1,5 +1,6 @@
 //! What bends one primitive: its morph targets and the joints that take its vertices along.
 
+use crate::scene::gltf::normals;
 use glam::Mat4;
 use gltf::{Document, Semantic};
 
@@ -7,7 +8,6 @@ use super::buffers::Buffers;
 use super::limits::Allowance;
 use super::morph::{self, Target};
 use super::nodes::Hierarchy;
-use super::primitives;
 use super::skins::Influences;
 use super::{label, tangents};
 use crate::error::Result;
@@ -73,7 +73,7 @@ impl Deform {
             influences.apply(&mut mesh, matrices);
         }
         if self.flat {
-            primitives::flatten_normals(&mut mesh);
+            normals::flatten_normals(&mut mesh);
         }
         if mesh.tangents.iter().any(|tangent| tangent.w != 0.0) {
             tangents::normalize(&mut mesh);
@@ -115,7 +115,7 @@ pub fn check_total(document: &Document, hierarchy: &Hierarchy, buffers: &Buffers
         // Targets and influences are read for all vertices, whatever triangles use of them.
         let longest = |primitive: gltf::Primitive<'_>| {
             let vertices = primitive.get(&Semantic::Positions).map_or(0, |accessor| accessor.count());
-            primitives::corners(&primitive).max(vertices)
+            normals::corners(&primitive).max(vertices)
         };
         let corners = mesh.primitives().fold(0usize, |sum, primitive| sum.saturating_add(longest(primitive)));
         // Positions, normals and tangents.

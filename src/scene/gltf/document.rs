@@ -12,6 +12,7 @@ use super::label;
 use super::skins::SETS;
 use super::survey::survey;
 use crate::error::{Error, Result};
+pub(super) use crate::scene::gltf::label::json_error;
 
 /// What is honoured where a file uses it. Quantised vertices need nothing beyond what `accessors` reads anyway.
 const EXTENSIONS: [&str; 8] = [
@@ -58,15 +59,6 @@ pub fn parse(json: &[u8]) -> Result<Parsed> {
         ));
     }
     Ok(Parsed { document, warnings })
-}
-
-/// A message of the parser's, which may quote the file: its beginning, and the place at its end.
-pub fn json_error(error: &serde_json::Error) -> Error {
-    let text = error.to_string();
-    let place = format!(" at line {} column {}", error.line(), error.column());
-    let what = text.strip_suffix(&place).unwrap_or(&text);
-    let refused = Error::request(format!("is not glTF 2.0 JSON: {}{place}", label::shown(what).escape_debug()));
-    if error.is_eof() { refused.note("the file seems cut short") } else { refused }
 }
 
 /// Version 1 files have objects where version 2 has arrays: asking first gives a better answer than the parser's.

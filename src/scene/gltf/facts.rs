@@ -9,7 +9,7 @@ use super::source::Source;
 use super::{accessors, document, images};
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::units::Extent;
+use crate::scene::gltf::images::ImageFacts;
 
 /// The file's own counts and names.
 #[derive(Clone, Debug)]
@@ -28,14 +28,6 @@ pub struct Facts {
     pub skin_count: usize,
     pub images: Vec<ImageFacts>,
     pub animations: Vec<AnimationFacts>,
-}
-
-/// An image of the file, whether or not a material shows it.
-#[derive(Clone, Debug)]
-pub struct ImageFacts {
-    pub name: String,
-    /// As its bytes say; None where they cannot be read: an image that nothing shows may be broken.
-    pub header: Option<(&'static str, Extent)>,
 }
 
 #[derive(Clone, Debug)]

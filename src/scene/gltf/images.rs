@@ -9,7 +9,6 @@ use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 
 use super::buffers::Buffers;
-use super::facts::ImageFacts;
 use super::label;
 use super::source::{Data, Source};
 use crate::error::{Error, Result};
@@ -163,4 +162,12 @@ fn decode(encoded: &Encoded<'_>) -> Result<Image> {
     let pixels = reader.decode().map_err(|error| broken(&error).within(&encoded.label))?.into_rgba8();
     let (width, height) = pixels.dimensions();
     Ok(Image { name: encoded.name.clone(), width, height, rgba8: pixels.into_raw() })
+}
+
+/// An image of the file, whether or not a material shows it.
+#[derive(Clone, Debug)]
+pub struct ImageFacts {
+    pub name: String,
+    /// As its bytes say; None where they cannot be read: an image that nothing shows may be broken.
+    pub header: Option<(&'static str, Extent)>,
 }

@@ -1,5 +1,7 @@
 //! How messages name the elements of a file: by index, and by name where there is one.
 
+use crate::error::Error;
+use crate::scene::gltf::label;
 /// How much of a name is shown: a file may have one of megabytes.
 const SHOWN_CHARS: usize = 80;
 
@@ -39,6 +41,15 @@ pub fn node(document: &gltf::Document, index: usize) -> String {
 /// `1 mesh is`, `2 meshes are`.
 pub fn count(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A message of the parser's, which may quote the file: its beginning, and the place at its end.
+pub fn json_error(error: &serde_json::Error) -> Error {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let what = text.strip_suffix(&place).unwrap_or(&text);
+    let refused = Error::request(format!("is not glTF 2.0 JSON: {}{place}", label::shown(what).escape_debug()));
+    if error.is_eof() { refused.note("the file seems cut short") } else { refused }
 }
 
 #[cfg(test)]

@@ -25,7 +25,9 @@ pub(crate) mod marks;
 mod materials;
 mod model;
 mod morph;
+mod motion;
 mod nodes;
+mod normals;
 mod primitives;
 mod skins;
 mod source;
@@ -34,7 +36,8 @@ mod tangents;
 mod topology;
 mod uri;
 
-pub use self::facts::{AnimationFacts, Facts, ImageFacts, inspect};
+pub use self::facts::{AnimationFacts, Facts, inspect};
+pub use crate::scene::gltf::images::ImageFacts;
 
 use std::path::Path;
 

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use gltf::Document;
 
-use super::animations::{self, Channel};
+use super::animations;
 use super::bodies::{self, Bodies, Shapes};
 use super::buffers::Buffers;
 use super::document::Parsed;
@@ -24,6 +24,7 @@ use super::{cameras, deform, document, images, label, lights, marks, primitives}
 use crate::error::{Error, Result};
 use crate::progress::Stage;
 use crate::scene::animation::AnimationChoice;
+use crate::scene::gltf::motion::Channel;
 use crate::scene::{Bounds, Camera, Facing, Light, Mesh, Scene};
 
 /// Stands in the hash for how a file becomes a scene; a change that alters scenes alters this line.

@@ -6,10 +6,10 @@ use glam::{Mat4, Quat, Vec3, Vec4};
 use gltf::Document;
 use gltf::scene::Transform;
 
-use super::animations::{Channel, Motion};
 use super::label;
 use crate::error::{Error, Result};
 use crate::scene::animation::unit_quaternion;
+use crate::scene::gltf::motion::{Channel, Motion};
 
 /// A node that the scene shows.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! glTF primitives to meshes: attributes read, indices made a triangle list, missing normals and tangents made.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3, Vec4};
 use gltf::{Document, Semantic};
@@ -12,6 +12,7 @@ use super::deform::Deform;
 use super::limits::Allowance;
 use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
+pub(super) use crate::scene::gltf::normals::{corners, flat_normals, normalize_normals};
 use crate::scene::{Material, Mesh, TextureSlot, normal_groups};
 
 /// How many indices the drawn meshes may have together beside one for each byte of the file: 1.4 million triangles,
@@ -134,12 +135,6 @@ fn primitive_label(mesh: &gltf::Mesh<'_>, primitive: &gltf::Primitive<'_>) -> St
     format!("{}, primitive {}", label::element("mesh", mesh.index(), mesh.name()), primitive.index())
 }
 
-/// How many indices a primitive has, or vertices where it has none, by what the file says.
-pub fn corners(primitive: &gltf::Primitive<'_>) -> usize {
-    let corners = primitive.indices().or_else(|| primitive.get(&Semantic::Positions));
-    corners.map_or(0, |accessor| accessor.count())
-}
-
 /// Refuses what would take more memory than any scene here is worth, before anything is read.
 fn check_total(jobs: &[(&gltf::Mesh<'_>, gltf::Primitive<'_>)], buffers: &Buffers<'_>) -> Result<()> {
     let mut indices = Allowance::new("indices", FREE_INDICES, 1, buffers.file_bytes());
@@ -240,48 +235,10 @@ fn read_primitive(
     Ok(Outcome::Piece { piece, left_over_indices: triangles.left_over, repaired_normals, clamped_colors })
 }
 
-/// Unit normal of a triangle; +y where it has no area.
-fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
-    // In 64 bits: fourth powers of edges of any 32-bit length neither vanish nor overflow there.
-    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
-    (b - a).cross(c - a).try_normalize().map_or(Vec3::Y, |normal| normal.as_vec3())
-}
-
-/// glTF 2.0, section 3.7.2.1: without normals a mesh is flat, so its triangles share no vertices.
-fn flat_normals(mesh: &mut Mesh) {
-    topology::unshare_vertices(mesh);
-    flatten_normals(mesh);
-}
-
-/// Gives the vertices of each triangle its normal; triangles share none.
-pub fn flatten_normals(mesh: &mut Mesh) {
-    mesh.normals = (0..mesh.triangle_count()).flat_map(|index| [triangle_normal(mesh.triangle(index)); 3]).collect();
-}
-
-/// Makes normals unit length; those without a length take that of the last triangle at their vertex. Returns how many.
-fn normalize_normals(mesh: &mut Mesh) -> usize {
-    let mut broken = BTreeSet::new();
-    for (vertex, normal) in mesh.normals.iter_mut().enumerate() {
-        match normal.try_normalize() {
-            Some(unit) => *normal = unit,
-            None => {
-                broken.insert(vertex as u32);
-            }
-        }
-    }
-    if !broken.is_empty() {
-        for corner in 0..mesh.indices.len() {
-            if broken.contains(&mesh.indices[corner]) {
-                mesh.normals[mesh.indices[corner] as usize] = triangle_normal(mesh.triangle(corner / 3));
-            }
-        }
-    }
-    broken.len()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::gltf::normals::triangle_normal;
 
     #[test]
     fn normals_are_made_unit_and_repaired_where_they_have_no_length() {

@@ -7,6 +7,7 @@ use super::made::{Motion, Thing};
 use super::patch::{self, Patch};
 use super::pictures::{Sheet, Texel};
 use crate::scene::animation::Curve;
+use crate::scene::procedural::curves::facing;
 use crate::scene::{Camera, ColorSpace, Draw, Image, Light, LightKind, Material, Projection, Sampler, Scene, Texture};
 
 /// Which pictures of a pattern a material uses.
@@ -135,13 +136,6 @@ impl Assembly {
         let looks = curves::looking(&path, &gaze);
         self.motions.push(Motion::along(name, thing, path, Some(looks), curves::DURATION_S));
     }
-}
-
-/// To the right, up and backward of one at `eye` who looks at `target` and keeps y up: unit vectors.
-pub fn facing(eye: DVec3, target: DVec3) -> [DVec3; 3] {
-    let backward = (eye - target).normalize();
-    let right = DVec3::Y.cross(backward).normalize();
-    [right, backward.cross(right), backward]
 }
 
 /// A place: `cosine` and `sine` of a turn around y (from +z toward +x), a scale, then a shift in metres.

@@ -11,11 +11,11 @@
 
 use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
 
-use super::Values;
 use super::assembly::Assembly;
 use super::patch::{Detail, Patch};
 use super::shapes::{Mapping, face};
 use crate::scene::Material;
+use crate::scene::procedural::values::Values;
 
 const WIDTH_CM: f64 = 556.0;
 const HEIGHT_CM: f64 = 548.8;

@@ -4,7 +4,6 @@
 
 use glam::{DVec3, Quat, Vec3};
 
-use super::assembly::facing;
 use crate::scene::animation::{Curve, Interpolation};
 
 /// For how long a built-in scene moves, seconds: 3600 frames at 60 a second (Clarberg & Munkberg 2014, section 6.1).
@@ -65,6 +64,13 @@ pub fn looking(path: &Curve, targets: &Curve) -> Curve {
     };
     let values = times_s.iter().flat_map(rotation).collect();
     curve(Interpolation::Linear, times_s, values, 4)
+}
+
+/// To the right, up and backward of one at `eye` who looks at `target` and keeps y up: unit vectors.
+pub fn facing(eye: DVec3, target: DVec3) -> [DVec3; 3] {
+    let backward = (eye - target).normalize();
+    let right = DVec3::Y.cross(backward).normalize();
+    [right, backward.cross(right), backward]
 }
 
 #[cfg(test)]

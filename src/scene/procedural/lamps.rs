@@ -6,13 +6,13 @@
 
 use glam::{DVec3, Vec3, dvec3, vec3};
 
-use super::Values;
 use super::assembly::{Assembly, Maps, place};
 use super::patch::{Detail, Patch, sin_cos_turns};
 use super::patterns;
 use super::shapes::{Curve, Mapping, Turning, arch, cuboid, face_of, prism, sphere, torus, turned, turned_with};
 use crate::sampling::pcg::Pcg32;
 use crate::scene::Material;
+use crate::scene::procedural::values::Values;
 
 /// Side of the square that an object has for itself.
 const CELL_M: f64 = 1.6;

@@ -19,8 +19,10 @@ mod shapes;
 
 #[cfg(test)]
 mod checks;
+mod values;
 
 use crate::error::{Error, Result};
+use crate::scene::procedural::values::Values;
 use crate::scene::{AnimationChoice, Scene, normal_groups};
 use assembly::Assembly;
 use rayon::prelude::*;
@@ -178,16 +180,6 @@ pub const ALL: &[BuiltIn] = &[
         make: chess::make,
     },
 ];
-
-/// One value for each parameter of a scene, in its order.
-struct Values(Vec<(&'static str, u64)>);
-
-impl Values {
-    fn get(&self, key: &str) -> u64 {
-        let found = self.0.iter().find(|(name, _)| *name == key);
-        found.expect("a scene reads only the parameters that it lists").1
-    }
-}
 
 impl BuiltIn {
     fn values(&self, arguments: Option<&str>) -> Result<Values> {

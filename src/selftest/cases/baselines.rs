@@ -1,9 +1,10 @@
 //! Forward and deferred shading: culling of lights, the pre-pass, samples a pixel, shadows by map and by ray, and both
 //! against paths.
 
-use super::super::case::{Group, Must, Place, Twin};
+use super::super::case::{Group, Place, Twin};
 use super::super::judge::Bounds;
-use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::cases::bounds::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::judge::Must;
 
 const LAMPS: Place = Place::Scene("lamps:objects=12,lights=12");
 const FENCE: Place = Place::Scene("fence:lights=6");

@@ -1,9 +1,10 @@
 //! Deep shading buffers: every way to find, to list, to shade and to resolve samples, beside shading each of them where
 //! it is seen.
 
-use super::super::case::{Group, Must, Place, Settings, Twin};
+use super::super::case::{Group, Place, Settings, Twin};
 use super::super::judge::Bounds;
-use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::cases::bounds::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::judge::Must;
 
 const NAME: &str = "deep_shading";
 const CORNELL: Place = Place::Scene("cornell");

@@ -1,8 +1,9 @@
 //! Closed forms: every technique's picture of a scene that a formula knows.
 
-use super::super::case::{Group, Must, Place, Settings, Twin};
+use super::super::case::{Group, Place, Settings, Twin};
 use super::super::closed_form::{BACKGROUND, ClosedForm};
 use super::super::judge::Bounds;
+use crate::selftest::judge::Must;
 
 /// Normals of 16 bits, albedo and light in half floats are off by a few parts in ten thousand, of some 0.5 of radiance;
 /// three times what is seen, with vertices placed to a sixteenth of a pixel too.

@@ -1,8 +1,9 @@
 //! Inferred lighting: every kind of light volume, of light buffer, of packing and of filter.
 
-use super::super::case::{Group, Must, Place, Twin};
+use super::super::case::{Group, Place, Twin};
 use super::super::judge::Bounds;
-use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::cases::bounds::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::judge::Must;
 
 const NAME: &str = "inferred_lighting";
 const FENCE: Place = Place::Scene("fence:lights=6");

@@ -1,9 +1,10 @@
 //! Interleaved deferred shading: every split, storage, form of copy and filter, beside pixels that loop over their own
 //! subset.
 
-use super::super::case::{Group, Must, Place, Settings, Twin};
+use super::super::case::{Group, Place, Settings, Twin};
 use super::super::judge::Bounds;
-use super::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::cases::bounds::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::judge::Must;
 
 const NAME: &str = "interleaved_deferred";
 const CORNELL: Place = Place::Scene("cornell");

@@ -7,6 +7,7 @@
 //! three times the most that lavapipe of Mesa 22.3.6 and 25.0.7 and SwiftShader are off by.
 
 mod baselines;
+pub(super) mod bounds;
 mod deep;
 mod formulas;
 mod inferred;
@@ -15,38 +16,7 @@ mod paths;
 
 pub use interleaved::SPLITS;
 
-use super::case::{Case, Group, Must, Settings};
-use super::judge::Bounds;
-
-/// Two shaders that say the same, on a device whose compiler may round each in its way.
-pub const ROUNDING: Bounds = Bounds {
-    apart: 0.005,
-    rmse: 0.02,
-    flip: 0.005,
-    mean: 0.004,
-    why: "equal where each step is rounded alike; compilers of GPUs fuse and reorder, which moves a few pixels along \
-          edges",
-};
-
-/// The same where rays choose what comes next: one that grazes an edge takes all of a path with it.
-pub const PATHS: Bounds = Bounds {
-    apart: 0.03,
-    rmse: 0.1,
-    flip: 0.02,
-    mean: 0.03,
-    why: "equal where each step is rounded alike; a ray that grazes an edge takes its whole path with it, and paths \
-          are few",
-};
-
-/// The same shaders on the same numbers: only when and where they run is another.
-const SAME: Must = Must::Same { why: "the same shaders on the same numbers, once more or in other bytes" };
-
-/// Made once more, which finds races, and with bytes that are shared otherwise.
-const AGAIN: &[Settings] = &[&[], &[("alias", "off")], &[("alias", "optimal")]];
-/// A submit for each piece of work, and for as many as there are.
-const CUT: &[Settings] = &[&[("submit-ms", "0.001")], &[("submit-ms", "1000000")]];
-const WHOLE: Settings = &[("submit-ms", "0")];
-const EVERYTHING: Settings = &[("geometry", "all")];
+use super::case::{Case, Group};
 
 /// All cases in the order in which they run: those of one scene together, where that is possible.
 pub fn all() -> impl Iterator<Item = Case> {

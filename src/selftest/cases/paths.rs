@@ -1,8 +1,9 @@
 //! Path tracing: every way through the tree, rays by the driver's own structures, samples in one submit or each in its
 //! own.
 
-use super::super::case::{Group, Must, Place, Settings, Twin};
-use super::{AGAIN, CUT, PATHS, SAME, WHOLE};
+use super::super::case::{Group, Place, Settings, Twin};
+use crate::selftest::cases::bounds::{AGAIN, CUT, PATHS, SAME, WHOLE};
+use crate::selftest::judge::Must;
 
 const NAME: &str = "path_traced";
 const CORNELL: Place = Place::Scene("cornell");

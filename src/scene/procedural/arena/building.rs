@@ -2,11 +2,11 @@
 
 use glam::{DAffine3, DMat3, DVec3, Mat4, dvec2, dvec3};
 
+use super::Piece;
 use super::gothic::{Lancet, course, pane, pierced, rib, surround, to_the_right, tracery};
 use super::materials::Materials;
-use super::{
-    BAY_COUNT, Details, GALLERY_M, HALF_BAY_M, LANTERN_M, LANTERN_RADIUS_M, NICHE_M, Piece, RADIUS_M, VAULT_M, bays,
-    corners,
+use crate::scene::procedural::arena::layout::{
+    BAY_COUNT, Details, GALLERY_M, HALF_BAY_M, LANTERN_M, LANTERN_RADIUS_M, NICHE_M, RADIUS_M, VAULT_M, bays, corners,
 };
 use crate::scene::procedural::assembly::shifted;
 use crate::scene::procedural::patch::{Detail, Patch, Point, moved, sin_cos_turns};

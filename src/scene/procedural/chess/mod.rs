@@ -9,7 +9,6 @@ mod men;
 
 use glam::{DAffine3, DVec3, Mat4, Vec3, dvec2, dvec3, vec3};
 
-use super::Values;
 use super::assembly::{Assembly, Maps};
 use super::curves;
 use super::patch::{Detail, Patch, Point, around_y, placed, sin_cos_turns};
@@ -17,6 +16,7 @@ use super::patterns;
 use super::pieces::{Piece, count, divided, grid};
 use super::shapes::{Curve, Mapping, Turning, face_of, turned};
 use crate::scene::Material;
+use crate::scene::procedural::values::Values;
 use men::Man;
 
 /// With fewer the men would not be round.

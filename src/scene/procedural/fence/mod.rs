@@ -5,32 +5,23 @@
 //! x runs along the fence to the right, z out of the yard toward the street, the ground is y = 0. The fence stands along
 //! z = 5 m as far as the gate and along x = -10 m, a brick wall along z = -6 m.
 
+mod layout;
 mod pieces;
 
-use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
+use glam::{DVec3, dvec3, vec3};
 
 use self::pieces::{Materials, Shapes};
-use super::Values;
 use super::assembly::{Assembly, place, shifted};
 use crate::sampling::pcg::Pcg32;
+use crate::scene::procedural::fence::layout::{
+    AMBER, BLUE, FENCE_M, FIELD_M, HUNG, MINT, NEON, PLATFORM, ROTOR_LAMP, Row, WALL_Z_M, WHITE,
+};
+use crate::scene::procedural::values::Values;
 
-/// Length of one field of the fence, between two posts.
-const FIELD_M: f64 = 2.7;
 /// Where the fence's corner stands, and how many fields go from there to the gate and to the wall.
 const CORNER: DVec3 = dvec3(-10.0, 0.0, 5.0);
 const FRONT_FIELDS: u32 = 5;
 const SIDE_FIELDS: u32 = 4;
-/// Height of the wire; posts are higher.
-const FENCE_M: f64 = 2.3;
-
-const WALL_Z_M: f64 = -6.0;
-
-/// The loading platform before the wall: from its lower left front corner to its upper right back one.
-const PLATFORM: [DVec3; 2] = [dvec3(2.6, 0.0, -3.4), dvec3(9.4, 1.0, WALL_Z_M)];
-
-/// Middle of the rotor, and the lamp above it.
-const ROTOR: DVec3 = dvec3(0.9, 2.95, 1.2);
-const ROTOR_LAMP: DVec3 = dvec3(1.2, 4.25, 1.5);
 
 /// Candela of all small lamps together, however many there are, and of one at most.
 const SMALL_LAMPS_CD: f32 = 420.0;
@@ -38,38 +29,8 @@ const MOST_CD: f32 = 9.0;
 /// Where a small lamp ends.
 const SMALL_RANGE_M: f32 = 3.6;
 
-const AMBER: [Vec3; 2] = [vec3(1.0, 0.62, 0.25), vec3(1.0, 0.76, 0.42)];
-const WHITE: [Vec3; 2] = [vec3(1.0, 0.88, 0.68), vec3(1.0, 0.80, 0.55)];
-const NEON: [Vec3; 2] = [vec3(1.0, 0.22, 0.55), vec3(0.25, 0.75, 1.0)];
-const MINT: [Vec3; 2] = [vec3(0.35, 1.0, 0.6), vec3(0.3, 0.85, 0.9)];
-const BLUE: [Vec3; 2] = [vec3(0.35, 0.5, 1.0), vec3(0.6, 0.45, 1.0)];
-
-/// A row of lamps: along a parabola that hangs between its ends.
-#[derive(Clone, Copy)]
-pub struct Row {
-    pub from: DVec3,
-    pub to: DVec3,
-    sag_m: f64,
-    /// From a light to its bulb, which would else stand in the way of its rays.
-    bulb: DVec3,
-    colors: [Vec3; 2],
-}
-
-/// Where bulbs are: on a cable, on the ground, on a wall or an edge behind their lights.
-pub const HUNG: DVec3 = dvec3(0.0, 0.09, 0.0);
 const STANDING: DVec3 = dvec3(0.0, -0.15, 0.0);
 const BEHIND: DVec3 = dvec3(0.0, 0.0, -0.4);
-
-impl Row {
-    /// `along` 0 to 1.
-    pub fn at(&self, along: f64) -> DVec3 {
-        self.from.lerp(self.to, along) - DVec3::Y * (4.0 * self.sag_m * along * (1.0 - along))
-    }
-
-    fn length_m(&self) -> f64 {
-        self.from.distance(self.to)
-    }
-}
 
 /// The tops of the poles from which cables hang that end neither at the gantry nor at the wall.
 const POLES: [DVec3; 4] = [dvec3(-9.6, 3.6, 3.4), dvec3(-9.6, 3.9, -5.3), dvec3(-10.6, 3.5, 7.6), dvec3(3.5, 3.5, 5.0)];
@@ -169,14 +130,4 @@ fn lamps(assembly: &mut Assembly, shapes: &Shapes, rows: &[Row], count: u32, see
         assembly.point_light(format!("lamp_{index}"), at.as_vec3(), intensity, Some(SMALL_RANGE_M));
         assembly.draw(shapes.bulbs[pieces::bulb_of(rows[row].colors[color])], shifted(at + rows[row].bulb));
     }
-}
-
-/// Where something stands whose own y axis is to run from one place to another, and be `width` times as wide as it is.
-fn between(from: DVec3, to: DVec3, width: f64) -> Mat4 {
-    let up = to - from;
-    let beside = if up.x.abs() < up.length() * 0.9 { DVec3::X } else { DVec3::Z };
-    let x = up.cross(beside).normalize();
-    let z = x.cross(up.normalize());
-    let column = |vector: DVec3, w: f32| vector.as_vec3().extend(w);
-    Mat4::from_cols(column(x * width, 0.0), column(up, 0.0), column(z * width, 0.0), column(from, 1.0))
 }

@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec3, Vec3, dvec2, dvec3, vec3, vec4};
 
-use super::{
+use crate::scene::procedural::assembly::{Assembly, Maps, place, shifted};
+use crate::scene::procedural::fence::layout::{
     AMBER, BLUE, FENCE_M, FIELD_M, HUNG, MINT, NEON, PLATFORM, ROTOR, ROTOR_LAMP, Row, WALL_Z_M, WHITE, between,
 };
-use crate::scene::procedural::assembly::{Assembly, Maps, place, shifted};
 use crate::scene::procedural::patch::{Detail, Patch, Point, sin_cos_turns};
 use crate::scene::procedural::patterns::{self, Masonry};
 use crate::scene::procedural::shapes::{Curve, Mapping, Turning, cuboid, face, face_of, sphere, turned};

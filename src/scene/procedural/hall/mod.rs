@@ -7,6 +7,7 @@
 //! A wanted number of triangles is met as `pieces` has it; what is missing goes into the floor of the nave.
 
 mod furniture;
+mod layout;
 mod materials;
 mod structure;
 mod vaults;
@@ -15,11 +16,11 @@ use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
 
 use self::furniture::Lamps;
 use self::materials::Materials;
-use super::Values;
-use super::assembly::{Assembly, place};
-use super::patch::Detail;
+use super::assembly::Assembly;
 use super::pieces::{Piece, count, divided, grid, joined};
 use super::shapes::{Mapping, face_of};
+use crate::scene::procedural::hall::layout::{Details, LENGTH_M, NAVE_M};
+use crate::scene::procedural::values::Values;
 
 /// With fewer the arches would not be round.
 pub const LEAST_TRIANGLES: u64 = 5000;
@@ -30,19 +31,6 @@ pub const MOST_LAMPS: u64 = Lamps::MOST;
 pub const MOST_DRAWS: u64 = 437;
 /// Pieces that nothing joins: with fewer draws there would be fewer of them.
 pub const LEAST_DRAWS: u64 = 60;
-
-const BAY_M: f64 = 4.0;
-const BAY_COUNT: u32 = 8;
-const LENGTH_M: f64 = BAY_M * BAY_COUNT as f64;
-/// From the middle of the nave to its walls.
-const NAVE_M: f64 = 3.7;
-const WALL_M: f64 = 0.6;
-/// From the middle of the nave to the outer walls: an aisle is as wide as a bay is long, for square groin vaults.
-const OUTER_M: f64 = NAVE_M + WALL_M + BAY_M;
-/// Where the arches of the arcade and the vaults of the aisles begin.
-const SPRINGING_M: f64 = 4.6;
-/// Where the vault of the nave begins.
-const VAULT_M: f64 = 8.2;
 
 /// What a sketch leaves out. The lights of its lamps stay: brightness does not depend on the triangles.
 const ORNAMENTS: [&str; 17] = [
@@ -64,48 +52,6 @@ const ORNAMENTS: [&str; 17] = [
     "blue_urn",
     "veil_rail",
 ];
-
-/// The edge lengths of the hall's parts, for one common scale.
-#[derive(Clone, Copy)]
-struct Details {
-    /// Turned and carved pieces, which are seen closely.
-    fine: Detail,
-    /// Arches and vaults.
-    middle: Detail,
-    /// Flat walls.
-    broad: Detail,
-    /// So few triangles that mouldings and furniture would take them all: they are left out.
-    sketch: bool,
-}
-
-impl Details {
-    fn new(edge_m: f64) -> Self {
-        let detail = |factor: f64| Detail { edge_m: edge_m * factor };
-        Self { fine: detail(0.5), middle: detail(1.0), broad: detail(3.0), sketch: edge_m > 1.5 }
-    }
-}
-
-/// The middles of the bays along z.
-fn bays() -> impl Iterator<Item = f64> {
-    (0..BAY_COUNT).map(|bay| (f64::from(bay) + 0.5) * BAY_M - LENGTH_M * 0.5)
-}
-
-/// Where the columns stand along z: between the bays and at both ends.
-fn column_lines() -> impl Iterator<Item = f64> {
-    (0..=BAY_COUNT).map(|line| f64::from(line) * BAY_M - LENGTH_M * 0.5)
-}
-
-/// Both sides of the hall, for pieces that face +z in their own space: turned toward the middle of the nave, or away.
-fn both_sides(x_m: f64, y_m: f64, inward: bool, along: impl Iterator<Item = f64>) -> Vec<Mat4> {
-    let mut places = Vec::new();
-    for z in along {
-        for side in [-1.0, 1.0] {
-            let sine = if inward { -side } else { side };
-            places.push(place([sine, 0.0], 1.0, dvec3(side * x_m, y_m, z)));
-        }
-    }
-    places
-}
 
 fn nave_floor(material: usize, triangles: u64) -> Piece {
     let width_m = 2.0 * (NAVE_M + 0.05);

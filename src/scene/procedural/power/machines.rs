@@ -2,8 +2,9 @@
 
 use glam::{DAffine3, DMat3, DVec3, dvec2, dvec3};
 
-use super::{BAY_COUNT, BAY_M, Details, FRONT_M, HALF_WIDTH_M, Materials, Piece, at, bays};
+use super::Piece;
 use crate::scene::procedural::patch::{Detail, Patch, Point, around_y, moved, placed, sin_cos_turns};
+use crate::scene::procedural::power::layout::{BAY_COUNT, BAY_M, Details, FRONT_M, HALF_WIDTH_M, Materials, at, bays};
 use crate::scene::procedural::shapes::{Curve, Turning, bar, cuboid, sphere, torus, tube, turned};
 
 /// From y upward to z toward the front.

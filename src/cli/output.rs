@@ -1,0 +1,28 @@
+//! Printing what a verb has to say.
+
+use crate::error::{Error, Result};
+use clap::{Arg, ArgAction, ArgMatches};
+use std::io::Write;
+
+/// The flag that every verb has.
+pub fn quiet_flag() -> Arg {
+    Arg::new("quiet")
+        .long("quiet")
+        .action(ArgAction::SetTrue)
+        .help("Print nothing but errors, and what --json asks for")
+}
+
+/// Prints what is for a person's eyes, unless --quiet.
+pub fn print_text(matches: &ArgMatches, text: &str) -> Result<()> {
+    if matches.get_flag("quiet") { Ok(()) } else { print(text) }
+}
+
+/// Prints to standard output; a reader that has gone (`| head`) is no failure.
+pub(crate) fn print(text: &str) -> Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => Err(Error::request(format!("cannot write to standard output: {error}"))),
+        Ok(()) => Ok(()),
+    }
+}

@@ -1,0 +1,21 @@
+//! What an animation moves: a channel of a file, and what became of it.
+
+use crate::scene::animation::Curve;
+
+/// What a channel moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Motion {
+    Translation,
+    Rotation,
+    Scale,
+    /// Of the morph targets of the node's mesh.
+    Weights,
+}
+
+/// One property of one node over time.
+#[derive(Debug)]
+pub struct Channel {
+    pub node_index: usize,
+    pub motion: Motion,
+    pub curve: Curve,
+}
