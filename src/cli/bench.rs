@@ -1,6 +1,7 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
 use super::listed::Listed;
+use super::output;
 use super::{job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
 use crate::bench::rows_file::{Existing, RowsFile};
@@ -107,7 +108,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
             summary.write(folder)?;
         }
         if !json && !quiet {
-            super::print(&summary.text())?;
+            output::print(&summary.text())?;
         }
     }
     if found.interrupted {
@@ -153,7 +154,7 @@ struct Rounds {
 
 impl Observer for Rounds {
     fn row(&mut self, row: &Value) -> Result<()> {
-        if self.json { super::print(&format!("{row}\n")) } else { Ok(()) }
+        if self.json { output::print(&format!("{row}\n")) } else { Ok(()) }
     }
 
     fn step(&mut self, done: usize, all: usize) {

@@ -15,7 +15,6 @@ pub mod render;
 pub mod scene;
 mod self_test;
 
-use crate::cli::output::print;
 use crate::error::Result;
 use clap::Command;
 use listed::Listed;

@@ -1,18 +1,7 @@
 //! Which way the front faces of a scene look: what a camera that is made up stands before.
 
+use super::mesh::Facing;
 use super::{Draw, Material, Mesh, Scene};
-use glam::DVec3;
-
-/// Areas of triangles by the direction that their fronts look in, world space, square metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Facing {
-    /// Sum of area times unit normal of the single-sided faces: 0 for closed shapes. What is double-sided looks both ways.
-    pub net: DVec3,
-    /// Sum of area times the sizes of the normal's three numbers, of all faces.
-    pub along: DVec3,
-    /// Area of all faces.
-    pub area: f64,
-}
 
 impl Facing {
     /// The faces of everything that is drawn.
@@ -44,6 +33,7 @@ impl Facing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use glam::{Mat4, Vec3};
 
     fn plane(double_sided: bool, world_from_object: Mat4) -> Scene {

@@ -150,3 +150,14 @@ impl Bounds {
         if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
     }
 }
+
+/// Areas of triangles by the direction that their fronts look in, world space, square metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Facing {
+    /// Sum of area times unit normal of the single-sided faces: 0 for closed shapes. What is double-sided looks both ways.
+    pub net: DVec3,
+    /// Sum of area times the sizes of the normal's three numbers, of all faces.
+    pub along: DVec3,
+    /// Area of all faces.
+    pub area: f64,
+}

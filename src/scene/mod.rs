@@ -28,10 +28,9 @@ use std::sync::Arc;
 
 pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
-pub use facing::Facing;
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, TextureSlot};
-pub use mesh::{Bounds, Draw, Mesh, Node};
+pub use mesh::{Bounds, Draw, Facing, Mesh, Node};
 pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 
 /// Everything that a technique may draw.

@@ -1,5 +1,6 @@
 //! `quincunx scene export`: a built-in scene as a .glb.
 
+use super::seed::{seed, seed_argument};
 use crate::cli::output;
 use crate::error::{Error, Result};
 use crate::scene::glb;
@@ -29,7 +30,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("The file, written whole or not at all"),
         )
-        .arg(super::seed_argument())
+        .arg(seed_argument())
         .arg(output::quiet_flag())
 }
 
@@ -42,7 +43,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb")) {
         return Err(Error::request(format!("-o {}: scenes are written as .glb", path.display())));
     }
-    let Made { scene, motions } = procedural::open(spec, super::seed(matches)).unwrap_or_else(|| {
+    let Made { scene, motions } = procedural::open(spec, seed(matches)).unwrap_or_else(|| {
         let names: Vec<&str> = procedural::ALL.iter().map(|built_in| built_in.name).collect();
         Err(Error::request(format!("scene {spec}: there is no built-in scene of that name"))
             .note(format!("built-in scenes: {}", names.join(", "))))

@@ -1,5 +1,6 @@
 //! `quincunx scene inspect`: what a scene holds, and what of it is not drawn as it stands there. No device is needed.
 
+use super::seed::{seed, seed_argument};
 use crate::cli::output;
 use crate::error::Result;
 use crate::scene::gltf::Facts;
@@ -21,7 +22,7 @@ pub fn command() -> Command {
                 .required(true)
                 .help("A .gltf or .glb file, or a built-in scene with its parameters"),
         )
-        .arg(super::seed_argument())
+        .arg(seed_argument())
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
         .arg(output::quiet_flag())
 }
@@ -31,7 +32,7 @@ pub fn command() -> Command {
 /// Errors: no such scene, or a broken file (exit code 2), as `render` refuses it.
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let spec = matches.get_one::<String>("scene").expect("clap requires it");
-    let (scene, facts) = scene::inspect(spec, super::seed(matches))?;
+    let (scene, facts) = scene::inspect(spec, seed(matches))?;
     if matches.get_flag("json") {
         return output::print(&format!("{:#}\n", document(&scene, facts.as_ref())));
     }

@@ -3,9 +3,10 @@
 mod export;
 mod inspect;
 mod list;
+mod seed;
 
 use crate::error::Result;
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command};
 
 /// The verb with its arguments.
 pub fn command() -> Command {
@@ -24,18 +25,4 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
         Some(("export", matches)) => export::run(matches),
         _ => unreachable!("clap requires one of them"),
     }
-}
-
-/// The seed of a built-in scene, as `render` has it.
-fn seed_argument() -> Arg {
-    Arg::new("seed")
-        .long("seed")
-        .value_name("N")
-        .value_parser(value_parser!(u32))
-        .default_value("1")
-        .help("Seeds what a built-in scene scatters")
-}
-
-fn seed(matches: &ArgMatches) -> u64 {
-    u64::from(*matches.get_one::<u32>("seed").expect("it has a default"))
 }

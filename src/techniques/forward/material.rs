@@ -6,8 +6,8 @@
 //! Draws come backwards, so that the same picture is made with and without a pre-pass (depth_prepass.rs), where pixels have
 //! one sample.
 
-use super::{Choices, NAME, Targets};
 use crate::error::Result;
+use crate::gpu::Image;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MaterialParams;
 use crate::gpu::shader::techniques::forward::material::FRAG_VARIANTS;
@@ -18,6 +18,8 @@ use crate::passes::shadow_maps::{self, ShadowMaps};
 use crate::passes::{depth_prepass, mesh};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, DrawList, SceneGpu};
+use crate::techniques::forward::choices::Choices;
+use crate::techniques::forward::resources::NAME;
 use ash::vk;
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -133,4 +135,12 @@ impl Material {
         });
         Ok(())
     }
+}
+
+/// What is drawn into.
+pub struct Targets {
+    pub(super) depth: Image,
+    pub(super) drawn: Image,
+    /// Where pixels have several samples.
+    pub(super) resolved: Option<Image>,
 }

@@ -19,99 +19,41 @@
 //! Why this way: a list is found by the draw's push constants. An index of the object in the fragment shader would be one
 //! more thing to interpolate for every technique that shares the vertex stage.
 
+mod choices;
 pub mod material;
 mod plan;
+mod resources;
 mod settings;
 
 use super::{Frame, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, readback, upload};
 use crate::lights::LightSet;
-use crate::lights::object_lists::{ListChoice, ObjectLists};
+use crate::lights::object_lists::ObjectLists;
 use crate::passes::accumulate::Accumulate;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
 use crate::passes::depth_prepass::{self, DepthPrepass};
-use crate::passes::direct::{self, DirectGpu, DirectSettings};
+use crate::passes::direct::DirectGpu;
 use crate::passes::resolve;
 use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
-use crate::resident::{Coverage, DrawList, SceneGpu};
+use crate::resident::{DrawList, SceneGpu};
 use crate::settings::{Condition, LIGHT_LISTS, MULTISAMPLE, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
-use crate::units::Bytes;
+use crate::techniques::forward::choices::Choices;
+use crate::techniques::forward::material::Targets;
+use crate::techniques::forward::resources::NAME;
 use glam::Vec2;
 use material::Material;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-const NAME: &str = "forward";
 const DEPTH_STAGE: &str = "depth.reversed";
 
 pub struct Forward;
-
-/// What the settings come to.
-pub struct Choices {
-    direct: DirectSettings,
-    lists: ListChoice,
-    /// Lights in a uniform buffer.
-    is_uniform: bool,
-    has_prepass: bool,
-    /// Samples a pixel.
-    samples: u32,
-    /// Runs of a picture along each side of a pixel.
-    runs_per_side: u32,
-    /// With `--direct-shadow map`, where there are lights.
-    maps: Option<MapLayout>,
-}
-
-impl Choices {
-    /// Errors: more lights than a uniform buffer holds (exit code 2); shadow maps that do not fit (`MapLayout::new`).
-    fn new(inputs: &Inputs<'_>) -> Result<Self> {
-        let values = inputs.values;
-        let (count, range) = (inputs.lights.lights.len(), inputs.caps.limits.max_uniform_buffer_range_bytes);
-        let fits = count <= plan::UNIFORM_LIGHT_COUNT && plan::UNIFORM_BYTES <= range;
-        if values.text("light-buffer") == "uniform" && !fits {
-            let (most, device) = (plan::UNIFORM_LIGHT_COUNT, &inputs.caps.identity.name);
-            let why = format!(
-                "--light-buffer uniform: {count} lights: it holds {most}, where a device binds {} ({device} binds {})",
-                Bytes(plan::UNIFORM_BYTES),
-                Bytes(range)
-            );
-            return Err(Error::request(why).within(NAME).note("--light-buffer storage holds all of them"));
-        }
-        Ok(Self {
-            is_uniform: fits && values.text("light-buffer") != "storage",
-            direct: DirectSettings::new(values, inputs.lights, inputs.scene),
-            lists: ListChoice::from_setting(values.text("light-lists")),
-            has_prepass: values.is_on("depth-prepass"),
-            samples: resolve::samples(values),
-            runs_per_side: values.integer("supersample") as u32,
-            maps: MapLayout::new(values, inputs.lights, inputs.scene, inputs.stats, inputs.caps, inputs.requirements)
-                .map_err(|error| error.within(NAME))?,
-        })
-    }
-
-    /// The lights as shaders read them, and the lists of all objects.
-    fn lists(&self, inputs: &Inputs<'_>) -> Result<(Vec<LightBlock>, ObjectLists)> {
-        let lights = direct::light_blocks(inputs.lights, inputs.values);
-        let most_bytes = inputs.caps.limits.max_storage_buffer_range_bytes;
-        let lists = ObjectLists::new(inputs.scene, &lights, self.lists, most_bytes)?;
-        Ok((lights, lists))
-    }
-
-    /// The constants of all shaders that light.
-    fn light_constants(&self) -> Vec<(&'static str, u32)> {
-        let maps = self.maps.iter().flat_map(MapLayout::constants);
-        self.direct.light_constants().into_iter().chain(maps).collect()
-    }
-
-    fn coverage(&self) -> Coverage {
-        if self.samples * self.runs_per_side > 1 { Coverage::Anywhere } else { Coverage::Middle }
-    }
-}
 
 impl Technique for Forward {
     fn name(&self) -> &'static str {
@@ -227,12 +169,12 @@ impl Prepared for PreparedForward {
         let Self { choices, lights, lists, .. } = *self;
         let Choices { samples, runs_per_side, has_prepass, .. } = choices;
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
-        let list_buffer = resources.buffer(plan::LISTS);
+        let list_buffer = resources.buffer(resources::LISTS);
         upload::buffer(gpu, &list_buffer, bytemuck::cast_slice(&lists.entries), Access::GraphicsRead)?;
         let uniform_lights = match choices.is_uniform {
             false => None,
             true => {
-                let buffer = resources.buffer(plan::UNIFORM);
+                let buffer = resources.buffer(resources::UNIFORM);
                 upload::buffer(gpu, &buffer, bytemuck::cast_slice(&lights), Access::GraphicsRead)?;
                 Some(buffer)
             }
@@ -252,25 +194,17 @@ impl Prepared for PreparedForward {
             blend: Blend::new(gpu, scene, inputs.view, blend::all_lights(0.0), &constants, &target)?,
             accumulate: if runs_per_side > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             targets: Targets {
-                depth: resources.image(plan::DEPTH),
-                drawn: resources.image(plan::DRAWN),
-                resolved: (samples > 1).then(|| resources.image(plan::RESOLVED)),
+                depth: resources.image(resources::DEPTH),
+                drawn: resources.image(resources::DRAWN),
+                resolved: (samples > 1).then(|| resources.image(resources::RESOLVED)),
             },
             direct: DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?,
             lists: list_buffer,
             uniform_lights,
-            vpls: resources.buffer(plan::VPLS),
+            vpls: resources.buffer(resources::VPLS),
             runs_per_side,
         }))
     }
-}
-
-/// What is drawn into.
-pub struct Targets {
-    depth: Image,
-    drawn: Image,
-    /// Where pixels have several samples.
-    resolved: Option<Image>,
 }
 
 struct ForwardFrame {

@@ -1,29 +1,17 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
-use super::{Choices, NAME};
 use crate::error::Result;
 use crate::gpu::Access;
-use crate::gpu::shader::structs::LightBlock;
 use crate::lights::object_lists::ObjectLists;
 use crate::memory::kinds::Use;
 use crate::passes::{accumulate, blend, depth_prepass, direct, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Shape};
 use crate::techniques::Inputs;
+use crate::techniques::forward::choices::Choices;
+pub(super) use crate::techniques::forward::resources::{
+    DEPTH, DRAWN, LISTS, NAME, RESOLVED, UNIFORM, UNIFORM_BYTES, VPLS,
+};
 use ash::vk::{BufferUsageFlags, ImageUsageFlags as Usage};
-
-pub const DEPTH: &str = "forward.depth.reversed";
-/// The lights once more, where the material pass reads them as uniforms.
-pub const UNIFORM: &str = "forward.lights.uniform";
-/// material.frag's UNIFORM_LIGHT_COUNT.
-pub const UNIFORM_LIGHT_COUNT: usize = 1024;
-pub const UNIFORM_BYTES: u64 = (UNIFORM_LIGHT_COUNT * size_of::<LightBlock>()) as u64;
-pub const LISTS: &str = "forward.lights.lists";
-/// No virtual lights: what blended surfaces bind in their place.
-pub const VPLS: &str = "forward.vpls";
-/// What the material pass and blended surfaces draw into.
-pub const DRAWN: &str = "forward.material.color";
-/// The mean of its samples.
-pub const RESOLVED: &str = "forward.resolve.color";
 
 /// Resources and passes of a frame.
 pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Result<Plan> {

@@ -1,15 +1,21 @@
-//! The buffers of the paper's figure 2, read back after a frame. They have the light buffer's size: a pixel of the frame
+//! A frame as it is recorded and what it leaves: counters, and the buffers of the paper's figure 2, read back. They have
+//! the light buffer's size: a pixel of the frame
 //! shows the texel that it lies in.
 
-use super::frame::InferredFrame;
+use super::frame::{InferredFrame, Packed, Road};
+use super::light;
+use super::light::store::Store;
+use super::motion;
 use super::survivors::{Lit, Survivors};
-use super::{NAME, motion};
 use crate::error::Result;
-use crate::gpu::{Access, Gpu, readback};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::picture::{Aov, AovChannels};
+use crate::resident::SceneGpu;
 use crate::settings::Values;
 use crate::techniques::Frame;
+use crate::techniques::inferred_lighting::resources::NAME;
 use crate::units::Extent;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 const MOTION: &str = "geometry.motion";
@@ -122,4 +128,71 @@ fn spread<T: Copy>(frame: &InferredFrame, texels: &[T]) -> Vec<T> {
             texels[y * low.width as usize + x]
         })
         .collect()
+}
+
+impl Frame for InferredFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let geometry = &self.geometry;
+        self.geometry_pass.record(cmd, &self.light_frame, scene, geometry)?;
+        let mut written = Access::DepthWrite;
+        if let (Some(cull), Some(masks)) = (&self.cull, &self.lights.masks) {
+            let lights = (&self.lights.lights, self.lights.light_count);
+            cull.record(cmd, geometry.from(written), &self.light_frame, lights, masks)?;
+            written = Access::ComputeSample;
+        }
+        let from = geometry.from(written);
+        match &self.road {
+            Road::Tiled(tiled) => tiled.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
+            Road::Drawn { volumes, packed } => {
+                let target = packed.as_ref().map_or(&self.l_buffer, |packed| &packed.sums);
+                volumes.record(cmd, &self.light_frame, &self.lights, from, target)?;
+                if let Some(Packed { pack, sums }) = packed.as_deref() {
+                    pack.record(cmd, &self.light_frame, sums, &self.l_buffer)?;
+                }
+            }
+        }
+        let last = light::last_access(self.in_halves);
+        self.material.record(cmd, frame, scene, geometry, self.l_buffer.from(last), self.lit_access())
+    }
+
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        BTreeMap::from([
+            ("triangles_drawn", self.geometry_pass.triangles_drawn() as f64),
+            ("stipple_layers_used", self.shares.layers_used as f64),
+            ("stipple_layers_shared", self.shares.layers_shared as f64),
+            ("stipple_draws_sharing", self.shares.draws_sharing as f64),
+        ])
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.material.color, Access::ColorWrite)
+    }
+
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        let mut counters = self.material.counters(gpu)?;
+        if let Some(survivors) = &self.survivors {
+            let Lit { layers, draws, unlit_draws } = lit(self, gpu, survivors)?;
+            counters.insert("stipple_layers_lit", layers as f64);
+            counters.insert("stipple_draws_lit", draws as f64);
+            counters.insert("stipple_draws_unlit", unlit_draws as f64);
+        }
+        if let Store::Fixed { .. } = self.store {
+            counters.insert("light_texels_cut", cut_texels(self, gpu)? as f64);
+        }
+        match &self.road {
+            Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
+            Road::Drawn { volumes, .. } => {
+                let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
+                let evaluated = volumes.evaluations();
+                counters.insert("lights_counted_into_stencil", volumes.counted_lights() as f64);
+                counters.insert("light_evaluations", evaluated as f64);
+                counters.insert("light_evaluations_culled", (all - evaluated) as f64);
+            }
+        }
+        Ok(counters)
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        read(self, gpu, name)
+    }
 }

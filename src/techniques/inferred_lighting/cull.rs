@@ -1,7 +1,6 @@
 //! Cull: a list of lights for each tile of the light buffer, for `--volumes tiled`. Shader: cull.comp.
 //! reads  geometry.depth, the lights      writes  cull.masks  buffer, one bit a light, tiles in row order
 
-use super::NAME;
 use super::geometry::LowGeometry;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
@@ -10,6 +9,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::cull;
 use crate::passes::cull::{CullBy, CullSurface, MaskPipeline};
+use crate::techniques::inferred_lighting::resources::NAME;
 use std::sync::Arc;
 
 pub struct Cull {

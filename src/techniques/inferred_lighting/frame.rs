@@ -12,23 +12,21 @@ use super::light::{self, Volumes};
 use super::material::{FilterSettings, Material};
 use super::motion::Earlier;
 use super::stipple::{self, Shares};
-use super::survivors::{Lit, Survivors};
-use super::{NAME, aov, light_frame};
+use super::survivors::Survivors;
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image, upload};
+use crate::gpu::{Access, Buffer, Gpu, Image, upload};
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::blend;
 use crate::passes::direct::DirectGpu;
-use crate::picture::Aov;
 use crate::plan::{PICTURE_FORMAT, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
-use crate::techniques::{Frame, Inputs};
-use std::collections::BTreeMap;
+use crate::techniques::Inputs;
+use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
 use std::sync::Arc;
 
 /// How lights reach the L-buffer.
-enum Road {
+pub(super) enum Road {
     Tiled(Tiled),
     /// Without `packed` blended into the L-buffer itself.
     Drawn {
@@ -38,26 +36,26 @@ enum Road {
 }
 
 /// Float sums on their way to the L-buffer.
-struct Packed {
-    pack: Pack,
-    sums: Image,
+pub(super) struct Packed {
+    pub(super) pack: Pack,
+    pub(super) sums: Image,
 }
 
 pub struct InferredFrame {
-    geometry_pass: Geometry,
-    cull: Option<Cull>,
-    road: Road,
-    material: Material,
+    pub(super) geometry_pass: Geometry,
+    pub(super) cull: Option<Cull>,
+    pub(super) road: Road,
+    pub(super) material: Material,
     pub(super) geometry: LowGeometry,
     pub(super) l_buffer: Image,
     pub(super) depth_range_m: [f32; 2],
-    lights: DirectGpu,
+    pub(super) lights: DirectGpu,
     /// The frame's block at the light buffer's extent.
-    light_frame: Buffer,
-    shares: Shares,
+    pub(super) light_frame: Buffer,
+    pub(super) shares: Shares,
     /// Where the scene has BLEND draws that are stippled.
-    survivors: Option<Survivors>,
-    in_halves: bool,
+    pub(super) survivors: Option<Survivors>,
+    pub(super) in_halves: bool,
     filter: LightFilter,
     pub(super) store: Store,
     pub(super) packing: Packing,
@@ -165,79 +163,12 @@ impl InferredFrame {
 
 impl InferredFrame {
     /// How the light pass left what it read.
-    fn lit_access(&self) -> Access {
+    pub(super) fn lit_access(&self) -> Access {
         if matches!(self.road, Road::Tiled(_)) { Access::ComputeSample } else { Access::FragmentSample }
     }
 
     /// Who read the normals last.
     pub(super) fn normal_access(&self) -> Access {
         if self.filter.reads_normals() { Access::FragmentSample } else { self.lit_access() }
-    }
-}
-
-impl Frame for InferredFrame {
-    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
-        let geometry = &self.geometry;
-        self.geometry_pass.record(cmd, &self.light_frame, scene, geometry)?;
-        let mut written = Access::DepthWrite;
-        if let (Some(cull), Some(masks)) = (&self.cull, &self.lights.masks) {
-            let lights = (&self.lights.lights, self.lights.light_count);
-            cull.record(cmd, geometry.from(written), &self.light_frame, lights, masks)?;
-            written = Access::ComputeSample;
-        }
-        let from = geometry.from(written);
-        match &self.road {
-            Road::Tiled(tiled) => tiled.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
-            Road::Drawn { volumes, packed } => {
-                let target = packed.as_ref().map_or(&self.l_buffer, |packed| &packed.sums);
-                volumes.record(cmd, &self.light_frame, &self.lights, from, target)?;
-                if let Some(Packed { pack, sums }) = packed.as_deref() {
-                    pack.record(cmd, &self.light_frame, sums, &self.l_buffer)?;
-                }
-            }
-        }
-        let last = light::last_access(self.in_halves);
-        self.material.record(cmd, frame, scene, geometry, self.l_buffer.from(last), self.lit_access())
-    }
-
-    fn drawn(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([
-            ("triangles_drawn", self.geometry_pass.triangles_drawn() as f64),
-            ("stipple_layers_used", self.shares.layers_used as f64),
-            ("stipple_layers_shared", self.shares.layers_shared as f64),
-            ("stipple_draws_sharing", self.shares.draws_sharing as f64),
-        ])
-    }
-
-    fn picture(&self) -> (&Image, Access) {
-        (&self.material.color, Access::ColorWrite)
-    }
-
-    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
-        let mut counters = self.material.counters(gpu)?;
-        if let Some(survivors) = &self.survivors {
-            let Lit { layers, draws, unlit_draws } = aov::lit(self, gpu, survivors)?;
-            counters.insert("stipple_layers_lit", layers as f64);
-            counters.insert("stipple_draws_lit", draws as f64);
-            counters.insert("stipple_draws_unlit", unlit_draws as f64);
-        }
-        if let Store::Fixed { .. } = self.store {
-            counters.insert("light_texels_cut", aov::cut_texels(self, gpu)? as f64);
-        }
-        match &self.road {
-            Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
-            Road::Drawn { volumes, .. } => {
-                let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
-                let evaluated = volumes.evaluations();
-                counters.insert("lights_counted_into_stencil", volumes.counted_lights() as f64);
-                counters.insert("light_evaluations", evaluated as f64);
-                counters.insert("light_evaluations_culled", (all - evaluated) as f64);
-            }
-        }
-        Ok(counters)
-    }
-
-    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        aov::read(self, gpu, name)
     }
 }

@@ -11,7 +11,6 @@
 //!
 //! BLEND surfaces are drawn last, each into its own texels of the stipple.
 
-use super::NAME;
 use super::choices::Choices;
 use super::encoding::Packing;
 use super::motion::{self, Earlier};
@@ -26,6 +25,7 @@ use crate::gpu::{Access, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gp
 use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::inferred_lighting::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::Zeroable;

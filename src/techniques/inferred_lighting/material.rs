@@ -5,7 +5,6 @@
 //!         material.depth       image, 4 B a sample, reversed; with --depth-prepass the pass before this one writes it
 //!         material.rejections  buffer: fragments, solid and BLEND, that none of the four samples belonged to
 
-use super::NAME;
 use super::choices::{Choices, LightFilter};
 use super::geometry::LowGeometry;
 use super::light;
@@ -20,6 +19,7 @@ use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::{mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::inferred_lighting::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
 use bytemuck::Zeroable;

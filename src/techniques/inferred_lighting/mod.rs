@@ -15,6 +15,7 @@
 //! BLEND surfaces, with `--brdf lambert` (tests/inferred.rs has the bound).
 
 mod aov;
+mod assignment;
 mod choices;
 mod cull;
 pub mod encoding;
@@ -24,6 +25,7 @@ mod layer_names;
 mod light;
 mod material;
 mod motion;
+mod resources;
 mod settings;
 mod stipple;
 mod survivors;
@@ -39,6 +41,7 @@ use crate::passes::{blend, cull as light_masks, direct, resolve};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{Condition, MOTION_CONDITIONS, MULTISAMPLE, Setting, Values};
+use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
 use choices::Choices;
 use encoding::Loss;
 use frame::InferredFrame;
@@ -46,13 +49,6 @@ use light::{Volumes, shadow_volumes};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
-
-const NAME: &str = "inferred_lighting";
-
-/// Full name of the frame's block at the light buffer's extent.
-fn light_frame() -> String {
-    format!("{NAME}.light.frame")
-}
 
 pub struct InferredLighting;
 

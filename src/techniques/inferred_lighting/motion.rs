@@ -6,7 +6,6 @@
 //! Vertices have their own earlier places, so that skins and morph targets have vectors too. What stands still under a camera
 //! that does has exactly 0.
 
-use super::NAME;
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::shader::structs::EarlierCameraBlock;
@@ -17,6 +16,7 @@ use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
 use crate::resident::{SceneGpu, SceneStats};
 use crate::techniques::Inputs;
+use crate::techniques::inferred_lighting::resources::NAME;
 use glam::Vec2;
 use half::f16;
 use std::sync::Arc;

@@ -5,40 +5,13 @@
 //! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
 //! a greedy colouring, nearest first, of the graph of draws whose boxes overlap on screen.
 
+pub(super) use super::assignment::{Assignment, layer_count};
 use super::choices::Choices;
 use crate::frame::View;
 use crate::resident::DrawCall;
 use crate::scene::{Bounds, Scene};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::BTreeSet;
-
-/// How layers are given out (`--assignment`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Assignment {
-    /// As the user says; the rest by turns, in the order of the file.
-    Static,
-    /// By turns, from the nearest on.
-    Depth,
-    /// Overlapping draws get different ones, nearest first.
-    Overlap,
-}
-
-impl Assignment {
-    /// The value of `--assignment`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "static" => Self::Static,
-            "depth" => Self::Depth,
-            "overlap" => Self::Overlap,
-            other => panic!("--assignment {other} was checked"),
-        }
-    }
-}
-
-/// Layers of a stipple of `side` texels a side that BLEND draws can have.
-pub fn layer_count(side: u32) -> u32 {
-    side * side - 1
-}
 
 /// A BLEND draw and its layer.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +36,7 @@ pub struct Shares {
 
 /// A rectangle of the screen, in parts of it from -1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Footprint {
+pub(super) struct Footprint {
     low: Vec2,
     high: Vec2,
 }
@@ -136,7 +109,7 @@ pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choice
 
 /// A layer, 1 to `count`, for each footprint, farthest first. `places`: of `Assignment::Static`, in the file, with the layer
 /// that the user says.
-fn layers(
+pub(super) fn layers(
     footprints: &[Option<Footprint>],
     places: &[(u32, Option<u32>)],
     count: u32,
@@ -177,7 +150,7 @@ fn layers(
     layers
 }
 
-fn overlap(a: Option<Footprint>, b: Option<Footprint>) -> bool {
+pub(super) fn overlap(a: Option<Footprint>, b: Option<Footprint>) -> bool {
     matches!((a, b), (Some(a), Some(b)) if a.overlaps(&b))
 }
 

@@ -1,6 +1,5 @@
 //! The stages of the paper's figure 3, and what `--split subsample` interpolates, read back after a frame.
 
-use super::NAME;
 use super::choices::{Choices, Filter};
 use super::frame::InterleavedFrame;
 use super::road::Road;
@@ -11,6 +10,7 @@ use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
 use crate::picture::{Aov, AovChannels};
 use crate::settings::Values;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 const SPLIT: &str = "split.normal";

@@ -1,6 +1,5 @@
 //! What the settings come to, and what is refused because it cannot be made.
 
-use super::NAME;
 use super::mapping::mapping;
 use super::road::{Copier, Copies, Form, MaskKind, Road};
 use super::sub_buffers::Storage;
@@ -14,6 +13,7 @@ use crate::passes::filter::{Kernel, StopBits};
 use crate::passes::gbuffer::PositionStorage;
 use crate::settings::Values;
 use crate::techniques::Inputs;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::units::Bytes;
 use std::collections::BTreeMap;
 

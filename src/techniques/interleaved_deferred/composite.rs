@@ -1,18 +1,17 @@
 //! Composite: albedo times filtered irradiance, direct light, emission (Segovia 2006, section 4.5). Shader: composite.comp.
 //! reads  the G-buffer, the irradiance, the punctual lights      writes  composite.color  image, RGBA32F, frame extent
 
-use super::NAME;
 use super::choices::Choices;
 use super::filter::Filtered;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::CompositeParams;
 use crate::gpu::shader::techniques::interleaved_deferred::composite::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, emissive_name};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct Composite {

@@ -8,17 +8,16 @@
 //! horizontal edge is flagged and finds its neighbours along x flagged too, so that it is not filtered at all; with
 //! `--discontinuity any` the filter reads the bits as the paper's flag.
 
-use super::NAME;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::{DiscontinuityParams, MappingParams};
 use crate::gpu::shader::techniques::interleaved_deferred::discontinuity::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::{self, GBuffer, PositionStorage};
 use crate::plan::Plan;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// Full name of the flags.

@@ -2,7 +2,6 @@
 //! directions in a pass of their own, or, with `--fuse on`, the rows here and the columns in the composite.
 //! reads  the G-buffer, irradiance in frame order      writes  discontinuity.flags, filter.rows or filter.irradiance
 
-use super::NAME;
 use super::choices::{Choices, Filter};
 use super::discontinuity::{self, Discontinuity};
 use crate::error::Result;
@@ -13,6 +12,7 @@ use crate::passes::filter::gauss_fast::GaussFast;
 use crate::passes::gbuffer::GBuffer;
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
 

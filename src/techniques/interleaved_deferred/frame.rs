@@ -1,6 +1,5 @@
 //! Interleaved deferred shading on the device: its passes and its resources. `mod.rs` records them.
 
-use super::NAME;
 use super::choices::Choices;
 use super::composite::Composite;
 use super::filter::FilterStage;
@@ -17,6 +16,7 @@ use crate::passes::gbuffer::{GBuffer, GBufferPass};
 use crate::plan::Resources;
 use crate::resident::{Coverage, SceneGpu};
 use crate::techniques::Inputs;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// What lights a frame.

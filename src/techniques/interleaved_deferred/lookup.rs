@@ -1,11 +1,11 @@
 //! Look-up textures: for each texel that a fragment program writes, where it comes from (Segovia 2006, sections 3.2 and
 //! 4.2). Made once on the host from the mapping; R16G16_UINT, 4 B a texel.
 
-use super::NAME;
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, Bound, Gpu, Image, upload};
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;

@@ -2,7 +2,6 @@
 //! fullscreen.vert, mask.frag.
 //! writes  mask.stencil  image, 5 B a pixel, with a driver's padding 8 (depth unused), or mask.depth  image, 4 B a pixel
 
-use super::NAME;
 use super::road::MaskKind;
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline, StencilUse};
@@ -12,6 +11,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Commands, Gpu, Image, Traffic};
 use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
 

@@ -36,6 +36,7 @@ pub mod mapping;
 pub mod mask;
 mod plan;
 pub mod rendered;
+mod resources;
 pub mod road;
 mod roads;
 pub mod settings;
@@ -58,6 +59,7 @@ use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::Choices;
 use filter::Filtered;
 use frame::{FrameLights, InterleavedFrame};
@@ -66,8 +68,6 @@ use shade::SubsetLights;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
-
-const NAME: &str = "interleaved_deferred";
 
 pub struct InterleavedDeferred;
 

@@ -1,6 +1,5 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
-use super::NAME;
 use super::choices::Choices;
 use super::filter;
 use super::roads;
@@ -11,6 +10,7 @@ use crate::lights::object_lists::ObjectLists;
 use crate::passes::{blend, cull, direct, gbuffer};
 use crate::plan::Plan;
 use crate::techniques::Inputs;
+use crate::techniques::interleaved_deferred::resources::NAME;
 
 /// Full name of a resource of this technique.
 fn full(what: &str) -> String {

@@ -4,11 +4,11 @@
 //! fragmentStoresAndAtomics; a colour attachment and vkCmdCopyImageToBuffer with the buffer's row pitch work everywhere,
 //! for 8 B a pixel more memory and one more copy.
 
-use super::NAME;
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Buffer, ColorTarget, Commands, Image};
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use ash::vk;
 
 /// Format of the image.

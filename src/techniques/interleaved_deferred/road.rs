@@ -1,11 +1,11 @@
 //! The roads of `--split`: how the pixels of one light subset come together. Segovia 2006, sections 3.1 to 3.3.
 
-use super::NAME;
 use super::sub_buffers::{Stage, Storage};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::MappingParams;
 use crate::settings::Values;
+use crate::techniques::interleaved_deferred::resources::NAME;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Road {

@@ -1,6 +1,5 @@
 //! The road of a frame on the device: from the G-buffer to irradiance in frame order.
 
-use super::NAME;
 use super::choices::Choices;
 use super::gather::{self, Gather};
 use super::mask::{self, Mask};
@@ -20,6 +19,7 @@ use crate::gpu::{Access, AccessSet, Buffer, Commands, Edge, Gpu};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// How pixels meet their lights.

@@ -4,12 +4,12 @@
 //! A copy states how it writes and reads by its `Stage`: compute shaders store, fragment programs draw; what lies in
 //! images is read through a sampler that never filters.
 
-use super::NAME;
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Edge, Gpu, Image, ImageDescription, readback};
 use crate::plan::{Plan, Resources, Shape};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;

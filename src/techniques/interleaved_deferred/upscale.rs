@@ -1,13 +1,12 @@
 //! Upscale: sub-sampled irradiance back to the frame, bilinear (Segovia 2006, section 5.4). Shader: upscale.comp.
 //! reads  shade.irradiance  buffer, a texel a pattern      writes  gather.irradiance  buffer, frame order, 8 B a pixel
 
-use super::NAME;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::ShadingSettings;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct Upscale {

@@ -38,6 +38,7 @@
 //! what `interleaved_deferred --split none` comes to with ever more virtual point lights.
 
 mod airlight;
+mod resources;
 pub mod sample;
 pub mod settings;
 
@@ -60,18 +61,13 @@ use crate::resident::traced::{Layout, Rays, Reads, TexelLevels};
 use crate::scene::{AlphaMode, Light, Material};
 use crate::settings::{Condition, LENS_CONDITIONS, Setting, TREE, Values};
 use crate::shading::brdf::Brdf;
+use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use sample::{Choices, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-const NAME: &str = "path_traced";
-/// The finished picture.
-const COLOR: &str = "path_traced.color";
-/// What is summed from run to run.
-const SUMS: &str = "path_traced.sums";
 
 /// Rays start this part of the scene's diagonal off their surface: a hundred times what floats place points off by.
 const RAY_OFFSET: f32 = 1e-5;

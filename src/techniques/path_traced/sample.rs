@@ -3,7 +3,6 @@
 //! from run to run, and path_traced.color  image, RGBA32F, frame extent: the mean so far
 
 use super::airlight::Air;
-use super::{COLOR, NAME, SUMS};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::Nodes;
 use crate::error::Result;
@@ -16,6 +15,7 @@ use crate::plan::Resources;
 use crate::progress::Stage;
 use crate::resident::traced::{Layout, TracedGpu};
 use crate::techniques::Inputs;
+use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use bytemuck::bytes_of;
 use std::sync::Arc;
 

@@ -2,7 +2,6 @@
 
 use glam::{DAffine3, DMat3, DVec3, Mat4, dvec2, dvec3};
 
-use super::Piece;
 use super::gothic::{Lancet, course, pane, pierced, rib, surround, to_the_right, tracery};
 use super::materials::Materials;
 use crate::scene::procedural::arena::layout::{
@@ -10,6 +9,7 @@ use crate::scene::procedural::arena::layout::{
 };
 use crate::scene::procedural::assembly::shifted;
 use crate::scene::procedural::patch::{Detail, Patch, Point, moved, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::shapes::{Curve, Mapping, Turning, WallExtent, cuboid, face, torus, turned, turned_with};
 
 /// From the wall of the round to that of a niche: thickness of the wall between.

@@ -3,13 +3,13 @@
 
 use glam::{DAffine3, DMat3, DVec3, Mat4, dvec2, dvec3};
 
-use super::Piece;
 use super::materials::Materials;
 use crate::scene::procedural::arena::layout::{
     Details, GALLERY_M, NICHE_M, RADIUS_M, SPHERE, STAGE_M, bays, corners, round,
 };
 use crate::scene::procedural::assembly::shifted;
 use crate::scene::procedural::patch::{Patch, Point, around_y, moved, placed, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::shapes::{Curve, Turning, bar, cuboid, prism, sphere, torus, turned, turned_with};
 
 /// Height of the flames on the piers.

@@ -2,13 +2,13 @@
 
 use glam::{DAffine3, DVec3, Mat4, dvec2, dvec3};
 
-use super::Piece;
 use super::materials::Materials;
 use crate::scene::procedural::assembly::shifted;
 use crate::scene::procedural::hall::layout::{
     Details, LENGTH_M, NAVE_M, OUTER_M, SPRINGING_M, VAULT_M, WALL_M, bays, both_sides, column_lines,
 };
 use crate::scene::procedural::patch::{Detail, Patch, Point, moved, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::shapes::{Curve, Turning, cuboid, prism, sphere, torus, turned, turned_with};
 
 /// The middle of the dais on the floor of the nave.

@@ -2,13 +2,13 @@
 
 use glam::{DAffine3, DVec3, dvec3};
 
-use super::Piece;
 use super::materials::Materials;
 use crate::scene::procedural::assembly::{place, shifted};
 use crate::scene::procedural::hall::layout::{
     BAY_M, Details, LENGTH_M, NAVE_M, OUTER_M, SPRINGING_M, VAULT_M, WALL_M, bays, both_sides, column_lines,
 };
 use crate::scene::procedural::patch::{Detail, Patch, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::shapes::{
     Curve, Mapping, Opening, Turning, WallExtent, arch, cuboid, face, moulding, pane, pierced_face, reveal, turned,
     turned_with,

@@ -2,13 +2,13 @@
 
 use glam::{DAffine3, DVec3, dvec2, dvec3};
 
-use super::Piece;
 use super::materials::Materials;
 use crate::scene::procedural::assembly::shifted;
 use crate::scene::procedural::hall::layout::{
     BAY_M, Details, NAVE_M, OUTER_M, SPRINGING_M, VAULT_M, bays, column_lines,
 };
 use crate::scene::procedural::patch::{Detail, Patch, Point, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::shapes::{Curve, Turning, arch, sphere, turned_with};
 
 /// Everything overhead.

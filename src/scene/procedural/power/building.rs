@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DMat3, DVec3, Mat4, dvec2, dvec3};
 
-use super::Piece;
 use crate::scene::procedural::assembly::place;
 use crate::scene::procedural::patch::{Detail, Patch, Point, moved, placed, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::power::layout::{
     BACK_M, BAY_M, Details, EAVES_M, FRONT_M, HALF_WIDTH_M, Materials, at, bays,
 };

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3, dvec2, dvec3};
 
-use super::Piece;
 use crate::scene::procedural::patch::{Detail, Patch, Point, around_y, moved, placed, sin_cos_turns};
+use crate::scene::procedural::pieces::Piece;
 use crate::scene::procedural::power::layout::{BAY_COUNT, BAY_M, Details, FRONT_M, HALF_WIDTH_M, Materials, at, bays};
 use crate::scene::procedural::shapes::{Curve, Turning, bar, cuboid, sphere, torus, tube, turned};
 

@@ -16,9 +16,9 @@ pub mod store;
 pub mod tiled;
 pub mod volumes;
 
-use super::NAME;
 use crate::gpu::Access;
 use crate::plan::Plan;
+use crate::techniques::inferred_lighting::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
 use store::Store;

@@ -1,11 +1,11 @@
 //! Pack: float sums to the L-buffer's 16 bits a channel, each rounded once. Shader: pack.comp.
 //! reads  light.sums      writes  light.l_buffer
 
-use super::super::NAME;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic};
+use crate::techniques::inferred_lighting::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
 

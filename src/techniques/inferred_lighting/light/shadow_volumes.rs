@@ -12,7 +12,6 @@
 //! volumes are moved away from the eye, so that a lit surface is in front of its own cap: by shadow_volumes.vert's AWAY of
 //! the distance, and by a part of what a pixel's step changes depth by, because corners are rounded to parts of pixels too.
 
-use super::super::NAME;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline, StencilUse, VertexBuffer};
 use crate::gpu::shader::techniques::inferred_lighting::light::shadow_volumes::VERT;
@@ -21,6 +20,7 @@ use crate::lights::shadow_casters::{CastingLight, ShadowCasters};
 use crate::memory::kinds::Use;
 use crate::passes::direct::{DirectGpu, DirectShadow};
 use crate::plan::{Plan, Resources, Shape};
+use crate::techniques::inferred_lighting::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
 

@@ -1,7 +1,6 @@
 //! Light, tiled: one dispatch, each thread sums the lights of its tile's list up. Shader: tiled.comp.
 //! reads  geometry.normal, geometry.depth, geometry.extras, cull.masks      writes  light.l_buffer
 
-use super::super::NAME;
 use super::super::geometry::{LowGeometry, extras_name};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
@@ -9,6 +8,7 @@ use crate::gpu::shader::techniques::inferred_lighting::light::tiled::COMP_VARIAN
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
+use crate::techniques::inferred_lighting::resources::NAME;
 use std::sync::Arc;
 
 pub struct Tiled {

@@ -9,7 +9,6 @@
 //! A light that casts shadow volumes (shadow_volumes.rs) has the stencil for these alone: of `--volumes` it keeps the
 //! rectangle.
 
-use super::super::NAME;
 use super::super::geometry::{LowGeometry, extras_name};
 use super::Volumes;
 use super::reach::{self, Rectangle};
@@ -25,6 +24,7 @@ use crate::lights::shadow_casters::{CastingLight, ShadowCasters};
 use crate::passes::direct::DirectGpu;
 use crate::passes::fullscreen;
 use crate::plan::Resources;
+use crate::techniques::inferred_lighting::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
 use glam::Vec3;

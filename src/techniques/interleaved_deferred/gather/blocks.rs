@@ -1,17 +1,17 @@
 //! Block gathering, the second pass of two: Segovia 2006, section 3.4. Shader: blocks.comp.
 //! reads  gather.blocks.irradiance  block layout      writes  gather.irradiance  buffer, frame order, 8 B a pixel
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::road::{Copies, Form};
 use super::super::sub_buffers::Texels;
-use super::to_frame;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::gather::blocks::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu};
+use crate::techniques::interleaved_deferred::gather::traffic::to_frame;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct GatherBlocks {

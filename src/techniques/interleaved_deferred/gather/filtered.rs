@@ -2,7 +2,6 @@
 //! sections 3.4 and 4.5. Shader: filtered.comp.
 //! reads  shade.irradiance  sub-buffers, discontinuity.flags      writes  filter.rows  buffer, frame order, 8 B a pixel
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::road::Copies;
 use super::super::sub_buffers::{Stage, Texels};
@@ -13,6 +12,7 @@ use crate::gpu::shader::techniques::interleaved_deferred::gather::filtered::COMP
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::filter::Kernel;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct GatherFiltered {

@@ -3,7 +3,6 @@
 //! reads   shade.irradiance  image, gather.lookup (one pass), gather.lookup_translate and gather.lookup_blocks (two)
 //! writes  gather.irradiance  buffer, frame order, by way of gather.drawn; between two passes gather.blocks.irradiance
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::lookup::{self, Lookup};
 use super::super::rendered::{self, Rendered};
@@ -16,6 +15,7 @@ use crate::gpu::shader::techniques::interleaved_deferred::gather::fragment::FRAG
 use crate::gpu::{Access, Buffer, ColorTarget, Commands, Edge, Gpu, Traffic};
 use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// Plans the look-up textures that `by` needs, and the image that is drawn last.

@@ -6,9 +6,9 @@ pub mod filtered;
 pub mod fragment;
 pub mod one_pass;
 pub mod tile;
+mod traffic;
 pub mod translate;
 
-use super::NAME;
 use super::choices::Choices;
 use super::discontinuity;
 use super::rendered::Rendered;
@@ -16,8 +16,9 @@ use super::road::{Copier, Copies};
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use blocks::GatherBlocks;
 use filtered::GatherFiltered;
 use fragment::{FragmentGather, FragmentGatherBlocks};
@@ -120,21 +121,5 @@ impl Gather {
             }
         }
         Ok(Access::ComputeWrite)
-    }
-}
-
-/// Bytes of a pass from `source_texels` to `target_texels`.
-fn moved(source_texels: u64, target_texels: u64, threads: [u32; 3]) -> Traffic {
-    let invocations = Some(threads.iter().map(|side| u64::from(*side)).product());
-    Traffic { read_bytes: source_texels * 8, written_bytes: target_texels * 8, invocations }
-}
-
-/// Bytes of a pass that ends in frame order: what is pulled comes with the padding of the rows, what is pushed reads
-/// the padding of sub-buffers and leaves it.
-fn to_frame(mapping: &MappingParams, pulls: bool, threads: [u32; 3]) -> Traffic {
-    if pulls {
-        moved(mapping.frame_texel_count(), mapping.frame_texel_count(), threads)
-    } else {
-        moved(mapping.texel_count(), mapping.extent().pixel_count(), threads)
     }
 }

@@ -1,17 +1,17 @@
 //! Gather in one pass: Segovia 2006, section 3.4 without its blocks. Shader: one_pass.comp.
 //! reads  shade.irradiance  sub-buffers      writes  gather.irradiance  buffer, frame order, 8 B a pixel
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::road::{Copies, Form};
 use super::super::sub_buffers::Texels;
-use super::to_frame;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::gather::one_pass::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu};
+use crate::techniques::interleaved_deferred::gather::traffic::to_frame;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct GatherOnePass {

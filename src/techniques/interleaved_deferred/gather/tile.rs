@@ -2,18 +2,18 @@
 //! reads   shade.irradiance  sub-buffers
 //! writes  gather.irradiance  buffer, frame order, 8 B a pixel      holds  a block of it in workgroup memory
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::road::Copies;
 use super::super::split::tile::constants;
 use super::super::sub_buffers::Texels;
-use super::to_frame;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::gather::tile::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu};
+use crate::techniques::interleaved_deferred::gather::traffic::to_frame;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct GatherTile {

@@ -1,17 +1,17 @@
 //! Block translation back, the first pass of two: Segovia 2006, section 3.4. Shader: translate.comp.
 //! reads  shade.irradiance  sub-buffers      writes  gather.blocks.irradiance  block layout, 8 B a texel
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::road::{Copies, Form};
 use super::super::sub_buffers::Texels;
-use super::moved;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::gather::translate::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Commands, Edge, Gpu};
+use crate::techniques::interleaved_deferred::gather::traffic::moved;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct GatherTranslate {

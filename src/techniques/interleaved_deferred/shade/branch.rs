@@ -1,7 +1,6 @@
 //! One pass over the un-split G-buffer, each pixel with its own subset. Segovia 2006, section 3.1. Shader: branch.comp.
 //! reads  the G-buffer, the lights      writes  the irradiance  buffer, frame order, 8 B a pixel
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::ShadeGpu;
 use crate::error::Result;
@@ -11,6 +10,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct ShadeBranch {

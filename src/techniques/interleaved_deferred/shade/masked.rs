@@ -3,7 +3,6 @@
 //! reads   the G-buffer, the lights, mask.stencil or mask.depth
 //! writes  shade.irradiance  buffer, frame order, 8 B a pixel, by way of shade.drawn
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::mask::Mask;
 use super::super::rendered::{self, Rendered};
@@ -18,6 +17,7 @@ use crate::passes::direct::DirectGpu;
 use crate::passes::fullscreen;
 use crate::passes::gbuffer::GBuffer;
 use crate::plan::Resources;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
 

@@ -7,16 +7,15 @@ pub mod strided;
 pub mod sub_buffers;
 pub mod subsample;
 
-use super::NAME;
 use super::choices::Choices;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
-use crate::gpu::{Access, Buffer, Gpu, upload};
+use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::passes::direct::DirectGpu;
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// The lights of all subsets, on the host.

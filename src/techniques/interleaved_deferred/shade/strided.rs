@@ -5,7 +5,6 @@
 //! remap` once for all, with workgroups numbered so that each shades one subset; at a pattern of 1x1 it is plain deferred
 //! shading of all lights (`--split none`).
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::{Listed, ShadeGpu};
 use crate::error::Result;
@@ -15,6 +14,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// How many subsets a dispatch shades.

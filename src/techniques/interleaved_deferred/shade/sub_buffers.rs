@@ -1,7 +1,6 @@
 //! Each sub-buffer with its own lights: neighbouring threads walk one list. Shader: sub_buffers.comp.
 //! reads  split.position, split.normal, the lights      writes  shade.irradiance  sub-buffers, 8 B a texel
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::sub_buffers::{Stage, Storage, Surface, Texels};
 use super::{Listed, ShadeGpu};
@@ -10,6 +9,7 @@ use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers::CO
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::DirectGpu;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct ShadeSubBuffers {

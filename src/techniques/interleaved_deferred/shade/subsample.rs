@@ -1,7 +1,6 @@
 //! Sub-sampling: all lights at the middle pixel of each pattern. Segovia 2006, section 5.4. Shader: subsample.comp.
 //! reads  the G-buffer, the lights      writes  shade.irradiance  buffer, a texel a pattern, 8 B each
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::{Listed, ShadeGpu};
 use crate::error::Result;
@@ -10,6 +9,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct ShadeSubsample {

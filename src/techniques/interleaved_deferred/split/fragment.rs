@@ -3,7 +3,6 @@
 //! reads   gbuffer.position, gbuffer.normal, split.lookup (one pass), split.lookup_blocks and split.lookup_translate (two)
 //! writes  split.position, split.normal  images; between two passes split.blocks.position, split.blocks.normal
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::lookup::{self, Lookup};
 use super::super::road::Copier;
@@ -17,6 +16,7 @@ use crate::gpu::{Access, Barrier, Bound, ColorTarget, Commands, Edge, Gpu, Traff
 use crate::passes::fullscreen;
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 /// Plans the look-up textures that `by` needs.

@@ -3,20 +3,20 @@
 
 pub mod blocks;
 pub mod fragment;
+mod from_frame;
 pub mod one_pass;
 pub mod tile;
 pub mod translate;
 
-use super::NAME;
 use super::choices::Choices;
 use super::road::{Copier, Copies};
 use super::sub_buffers::Surface;
 use crate::error::Result;
-use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
-use crate::gpu::{Access, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Commands, Edge, Gpu};
 use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::{Plan, Resources};
+use crate::techniques::interleaved_deferred::resources::NAME;
 use blocks::SplitBlocks;
 use fragment::{FragmentSplit, FragmentSplitBlocks};
 use one_pass::SplitOnePass;
@@ -92,49 +92,4 @@ impl Split {
             Self::TwoFragmentPasses(copy) => copy.record(cmd, mapping, gbuffer, split),
         }
     }
-}
-
-/// Bytes of a copy by a compute shader, padding included: the frame's nearest pixel is read for it.
-fn copied(mapping: &MappingParams, texel_bytes: u64, invocations: u64) -> Traffic {
-    let bytes = mapping.texel_count() * texel_bytes;
-    Traffic { read_bytes: bytes, written_bytes: bytes, invocations: Some(invocations) }
-}
-
-/// A compute shader from the G-buffer, dispatched.
-struct FromFrame<'a> {
-    /// Without the technique.
-    pass: &'a str,
-    pipeline: &'a ComputePipeline,
-    groups: [u32; 3],
-    /// Those that do work.
-    invocations: u64,
-}
-
-impl<'a> FromFrame<'a> {
-    /// One thread for each place of `threads`.
-    fn over(pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
-        Self { pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
-    }
-
-    fn record(
-        &self,
-        cmd: &mut Commands,
-        mapping: &MappingParams,
-        gbuffer: Edge<'_, GBuffer>,
-        target: &Surface,
-    ) -> Result<()> {
-        let traffic = copied(mapping, gbuffer.resource.surface_bytes(), self.invocations);
-        cmd.pass(&format!("{NAME}.{}", self.pass), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to_sampled());
-            cmd.barriers(target.discard(Access::ComputeWrite));
-            let mut bound = gbuffer.resource.bound_surface();
-            bound.extend(target.target());
-            cmd.dispatch(self.pipeline, bytemuck::bytes_of(mapping), &bound, self.groups)
-        })
-    }
-}
-
-/// How many threads there are.
-fn product(threads: [u32; 3]) -> u64 {
-    threads.iter().map(|side| u64::from(*side)).product()
 }

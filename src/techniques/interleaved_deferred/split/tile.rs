@@ -5,7 +5,6 @@
 use super::super::choices::Choices;
 use super::super::road::Copies;
 use super::super::sub_buffers::Surface;
-use super::{FromFrame, product};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
@@ -13,6 +12,7 @@ use crate::gpu::shader::techniques::interleaved_deferred::split::tile::COMP_VARI
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
 use crate::passes::gbuffer::GBuffer;
+use crate::techniques::interleaved_deferred::split::from_frame::{FromFrame, product};
 use std::sync::Arc;
 
 pub struct SplitTile {

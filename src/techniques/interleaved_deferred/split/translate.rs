@@ -1,17 +1,17 @@
 //! Block translation, the second pass of two: Segovia 2006, section 3.3. Shader: translate.comp.
 //! reads   split.blocks.position, split.blocks.normal      writes  split.position, split.normal
 
-use super::super::NAME;
 use super::super::choices::Choices;
 use super::super::road::{Copies, Form};
 use super::super::sub_buffers::Surface;
-use super::{copied, product};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::translate::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Commands, Edge, Gpu};
+use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::interleaved_deferred::split::from_frame::{copied, product};
 use std::sync::Arc;
 
 pub struct SplitTranslate {

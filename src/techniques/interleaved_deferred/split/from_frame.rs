@@ -1,0 +1,54 @@
+//! Where splitting reads: the frame, or another order of sub-buffers.
+
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::MappingParams;
+use crate::gpu::{Access, Commands, Edge, Traffic};
+use crate::passes::gbuffer::GBuffer;
+use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::interleaved_deferred::sub_buffers::Surface;
+
+/// Bytes of a copy by a compute shader, padding included: the frame's nearest pixel is read for it.
+pub fn copied(mapping: &MappingParams, texel_bytes: u64, invocations: u64) -> Traffic {
+    let bytes = mapping.texel_count() * texel_bytes;
+    Traffic { read_bytes: bytes, written_bytes: bytes, invocations: Some(invocations) }
+}
+
+/// A compute shader from the G-buffer, dispatched.
+pub struct FromFrame<'a> {
+    /// Without the technique.
+    pub(super) pass: &'a str,
+    pub(super) pipeline: &'a ComputePipeline,
+    pub(super) groups: [u32; 3],
+    /// Those that do work.
+    pub(super) invocations: u64,
+}
+
+impl<'a> FromFrame<'a> {
+    /// One thread for each place of `threads`.
+    pub(super) fn over(pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
+        Self { pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
+    }
+
+    pub(super) fn record(
+        &self,
+        cmd: &mut Commands,
+        mapping: &MappingParams,
+        gbuffer: Edge<'_, GBuffer>,
+        target: &Surface,
+    ) -> Result<()> {
+        let traffic = copied(mapping, gbuffer.resource.surface_bytes(), self.invocations);
+        cmd.pass(&format!("{NAME}.{}", self.pass), traffic, |cmd| {
+            cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(target.discard(Access::ComputeWrite));
+            let mut bound = gbuffer.resource.bound_surface();
+            bound.extend(target.target());
+            cmd.dispatch(self.pipeline, bytemuck::bytes_of(mapping), &bound, self.groups)
+        })
+    }
+}
+
+/// How many threads there are.
+pub fn product(threads: [u32; 3]) -> u64 {
+    threads.iter().map(|side| u64::from(*side)).product()
+}
