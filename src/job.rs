@@ -17,7 +17,7 @@ use crate::picture::{Aov, Picture};
 use crate::reference::Asked;
 use crate::report;
 use crate::report::notes;
-use crate::report::run::Report;
+use crate::report::run::{Passes, Report};
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
@@ -316,10 +316,16 @@ impl Job {
         extent: Extent,
     ) -> Result<Report> {
         let mut report = Report::new(self.technique, &self.command, &session.gpu);
-        report.scene(session, renderer);
+        report.scene(&session.scene, &renderer.view, &renderer.lights);
         report.settings(settings);
         report.aovs(aovs, extent);
-        report.times(renderer, times, self.profile);
+        let passes = Passes {
+            host: &renderer.host_passes,
+            once: &renderer.once_passes,
+            each_frame: renderer.passes(),
+            clock: renderer.clock(),
+        };
+        report.times(&passes, times, self.profile);
         let table = session.memory_table(renderer, Some(memory))?;
         report.memory(&table.touched_as(&renderer.touched_bytes()?));
         report.counters(&renderer.measured_counters()?);

@@ -2,13 +2,16 @@
 //! section 2; within a schema number a key is only ever added.
 
 use crate::error::Result;
+use crate::frame::View;
 use crate::gpu::Gpu;
+use crate::gpu::commands::RecordedPass;
 use crate::gpu::recorded::FrameTime;
 use crate::gpu::timing::Clock;
+use crate::lights::LightSet;
 use crate::metrics::{self, Metrics};
 use crate::picture::{Aov, AovChannels, Picture};
 use crate::report::memory::MemoryTable;
-use crate::session::{Renderer, Session};
+use crate::scene::Scene;
 use crate::settings::Values;
 use crate::techniques::Technique;
 use crate::units::{Bytes, Extent};
@@ -34,6 +37,17 @@ const SCHEMA: u32 = 1;
 const DISAGREEMENT: f64 = 0.1;
 /// Shorter passes are not judged: the submit itself takes tens of microseconds.
 const JUDGED_FROM_MS: f64 = 1.0;
+
+/// The passes of a picture, in the order in which they ran.
+pub struct Passes<'a> {
+    /// On the host, before all frames: names and nanoseconds.
+    pub host: &'a [(String, u64)],
+    /// On the device, before all frames: names and nanoseconds.
+    pub once: &'a [(String, u64)],
+    pub each_frame: &'a [RecordedPass],
+    /// Which of the two clocks is the figure.
+    pub clock: Clock,
+}
 
 /// A JSON document in the making, and the text that a person reads.
 pub struct Report {
@@ -105,25 +119,25 @@ impl Report {
         Self { document, is_software: gpu.caps.identity.is_software() }
     }
 
-    pub fn scene(&mut self, session: &Session, renderer: &Renderer) {
-        let scene = &session.scene;
+    /// What was drawn: `scene` as `view` shows it, under `lights`.
+    pub fn scene(&mut self, scene: &Scene, view: &View, lights: &LightSet) {
         let mut entry = json!({
             "name": scene.name,
             "hash": scene.hash,
             "triangles": scene.triangle_count(),
             "draws": scene.draws.len(),
-            "lights": renderer.lights.lights.len(),
+            "lights": lights.lights.len(),
             "materials": scene.materials.len(),
-            "camera": renderer.view.camera.name,
+            "camera": view.camera.name,
         });
-        if renderer.lights.has_rig {
+        if lights.has_rig {
             entry["rig"] = json!("default");
         }
-        if renderer.view.made_up {
+        if view.made_up {
             entry["camera"] = json!("framing");
         }
         let mut warnings = scene.warnings.clone();
-        if let Some(part) = renderer.lights.faint_part {
+        if let Some(part) = lights.faint_part {
             warnings.push(format!(
                 "its emissive surfaces let {:.0} % of it be seen, less than half: the default rig is added; --rig none leaves \
                  it to them",
@@ -131,7 +145,7 @@ impl Report {
             ));
         }
         // Some glow counts as light: who sees a dark picture should know why.
-        if renderer.lights.is_emissive_alone {
+        if lights.is_emissive_alone {
             warnings.push("only its emissive surfaces light it; --rig always adds the default rig".to_owned());
         }
         if !warnings.is_empty() {
@@ -202,16 +216,16 @@ impl Report {
 
     /// A row for each pass, with its times where frames were submitted pass by pass and what the device counted where it was
     /// asked to; and the frame's time.
-    pub fn times(&mut self, renderer: &Renderer, frames: &[FrameTime], profile: bool) {
+    pub fn times(&mut self, passes: &Passes<'_>, frames: &[FrameTime], profile: bool) {
         let once = |passes: &[(String, u64)], place: &str| -> Vec<Value> {
             let row = |(name, ns): &(String, u64)| json!({ "name": name, "where": place, "ms": spread(&[milliseconds(*ns)]) });
             passes.iter().map(row).collect()
         };
-        let mut rows = once(&renderer.host_passes, "host, once");
-        rows.extend(once(&renderer.once_passes, "device, once"));
-        let clock = renderer.clock();
+        let mut rows = once(passes.host, "host, once");
+        rows.extend(once(passes.once, "device, once"));
+        let clock = passes.clock;
         let mut warnings = Vec::new();
-        for (index, pass) in renderer.passes().iter().enumerate() {
+        for (index, pass) in passes.each_frame.iter().enumerate() {
             let walls: Vec<f64> =
                 frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(milliseconds).collect();
             let stamps: Vec<f64> =

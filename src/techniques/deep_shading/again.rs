@@ -4,11 +4,9 @@
 //! reads  the scene, visibility.spids, visibility.depth
 
 use super::choices::Choices;
-use super::constants_of;
 use super::gate::Gate;
-use super::plan::DEPTH_FORMAT;
 use super::primitives::Primitives;
-use super::visibility::{self, Samples, Visibility, sample};
+use super::visibility;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
@@ -16,13 +14,18 @@ use crate::gpu::{Access, AccessSet, Bound, Commands, Gpu};
 use crate::passes::mesh;
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::resources::DEPTH_FORMAT;
+use crate::techniques::deep_shading::visibility::draw;
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
 pub struct Again {
     pipeline: GraphicsPipeline,
-    stages: sample::Stages,
+    stages: draw::Stages,
     gate: Option<Gate>,
     visibility: Visibility,
     /// One, and how many of them.
@@ -46,7 +49,7 @@ impl Again {
         fragment: &'static Shader,
     ) -> Result<Self> {
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
-        let stages = visibility::stages(scene, choices, &repeats);
+        let stages = visibility::stages::stages(scene, choices, &repeats);
         let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
         let pipeline = GraphicsPipeline::new(
             gpu,
@@ -114,11 +117,11 @@ impl Again {
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
             if let Some(gate) = &self.gate {
                 let drawn = (&self.pipeline, self.stages.sides);
-                sample::draw_by(cmd, drawn, scene, primitives, &scene.calls, repeats, |call| {
+                draw::draw_by(cmd, drawn, scene, primitives, &scene.calls, repeats, |call| {
                     gate.draw(cmd, call.draw);
                 });
             } else {
-                sample::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
+                draw::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
             }
             cmd.end_rendering();
         });

@@ -1,7 +1,6 @@
 //! Visibility first, then what it has seen is shaded: figure 3, from samples to their colours, and what counts the lists after
 //! the resolve.
 
-use super::baseline::Shading;
 use super::brute::Brute;
 use super::choices::Choices;
 use super::count::Count;
@@ -15,12 +14,16 @@ use super::primitives::Primitives;
 use super::resolve::Shaded;
 use super::scene::DeepScene;
 use super::shade::Shade;
+use super::visibility;
+use super::visibility::Drawer;
 use super::visibility::ray::{Rays, Sets, Traced};
-use super::visibility::{self, Drawer, Drawn, Samples, Visibility};
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -197,7 +200,7 @@ impl Apart {
                 let left = (samples, deep.maps_barrier(Access::DepthWrite, Access::ComputeSample));
                 indirect.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
                 let samples = (samples, samples.written | Access::FragmentSample);
-                return Ok(Shaded::Pointed { samples, pointers: &indirect.pointers, colors: &self.colors });
+                return Ok(Shaded::Pointed { samples, pointers: &indirect.entries.pointers, colors: &self.colors });
             }
         };
         let lists = self.listed.as_ref().map(|listed| &listed.lists);

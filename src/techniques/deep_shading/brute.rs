@@ -5,10 +5,8 @@
 
 use super::again::{self, Again};
 use super::choices::Choices;
-use super::full;
 use super::lists::Lists;
 use super::primitives::Primitives;
-use super::visibility::Samples;
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::brute::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
@@ -16,6 +14,8 @@ use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, Traff
 use crate::passes::{mesh, shadow_maps};
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
 use std::sync::Arc;
 

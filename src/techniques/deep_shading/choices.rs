@@ -1,15 +1,11 @@
 //! What the settings come to.
 
-use super::baseline::Shading;
 use super::middle::Middle;
 use super::space::ShadingSpace;
 use super::tuples::Table;
-use super::visibility::layer::LayerFrom;
-use super::visibility::polygon::PolygonFrom;
-use super::visibility::{Visibility, looped};
-use super::{NAME, reach, reconstruct, shade::Road, stereo};
 use crate::caps::Caps;
 use crate::error::{Error, Result};
+use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::lights::LightSet;
@@ -18,6 +14,19 @@ use crate::passes::shadow_maps::MapLayout;
 use crate::resident::GeometryChoice;
 use crate::settings::Values;
 use crate::techniques::Inputs;
+use crate::techniques::deep_shading::contradictions::require_both;
+use crate::techniques::deep_shading::contradictions::require_spids;
+use crate::techniques::deep_shading::contradictions::{require_direct, require_straight};
+use crate::techniques::deep_shading::modes::conservative::Road;
+use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
+use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
+use crate::techniques::deep_shading::modes::sample_tests::is_looped;
+use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::resources;
+use crate::techniques::deep_shading::resources::NAME;
+use crate::techniques::deep_shading::resources::NEAREST_BYTES;
+use crate::techniques::deep_shading::resources::{BEGIN_BYTES, COLOR_BYTES, LINEAR_COUNT, NODE_BYTES, ROW_ID_BYTES};
 use crate::units::Extent;
 
 pub struct Choices {
@@ -66,21 +75,6 @@ pub struct Choices {
     pub maps: Option<MapLayout>,
 }
 
-/// Errors: `--lists direct` without rays, or without the addresses that stand for SPIDs (exit code 2).
-fn require_direct(values: &Values) -> Result<()> {
-    let refused =
-        |why: &str, advice: &str| Err(Error::request(format!("--lists direct: {why}")).within(NAME).note(advice));
-    match values.text("lists") {
-        "direct" if values.text("visibility") != "ray" => {
-            refused("only rays know a sample's triangle at once", "--visibility ray has them")
-        }
-        "direct" if !values.is_on("address-buffer") => {
-            refused("without SPIDs a sample needs its address", "--address-buffer on gives it one")
-        }
-        _ => Ok(()),
-    }
-}
-
 /// `--conservative`, `auto` resolved.
 pub fn road(values: &Values, caps: &Caps) -> Road {
     match values.text("conservative") {
@@ -92,18 +86,6 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
         _ if caps.features.geometry_shader => Road::Geometry,
         _ => Road::Vertex,
     }
-}
-
-/// Errors: the device draws triangles itself that shading space has bent (exit code 2).
-fn require_straight(values: &Values) -> Result<()> {
-    let road = values.text("conservative");
-    if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
-        let why = "in a foveated shading space triangles are not straight";
-        return Err(Error::request(format!("--conservative {road}: {why}"))
-            .within(NAME)
-            .note("--conservative geometry and vertex draw what holds them"));
-    }
-    Ok(())
 }
 
 impl Choices {
@@ -123,8 +105,8 @@ impl Choices {
         let is_direct = has_lists && values.text("lists") == "direct";
         require_direct(values)?;
         require_straight(values)?;
-        reconstruct::require_spids(values)?;
-        stereo::require_both(values)?;
+        require_spids(values)?;
+        require_both(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let lens = if values.number("aperture").max(values.number("stereo")) > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
@@ -149,7 +131,7 @@ impl Choices {
             layer_from: LayerFrom::of(values, inputs.caps),
             polygon_from: PolygonFrom::of(values, inputs.caps),
             is_looped: matches!(shading, Shading::Deep | Shading::IndirectGbuffer)
-                && looped::is_looped(values, inputs.caps, visibility, samples_of_set * looped::NEAREST_BYTES),
+                && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
             has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
             table,
             run_count: values.integer("accumulate") as u32,
@@ -174,7 +156,7 @@ impl Choices {
             road: road(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         };
-        choices.is_by_address = reach::is_by_address(&choices, inputs);
+        choices.is_by_address = is_by_address(&choices, inputs);
         Ok(choices)
     }
 
@@ -251,6 +233,58 @@ impl Choices {
         ]);
         constants
     }
+}
+
+/// The technique's constants that one of these shaders has.
+pub fn constants_of(choices: &Choices, shaders: &[Option<&Shader>]) -> Vec<(&'static str, u32)> {
+    let has = |name: &str| {
+        let mut shaders = shaders.iter().flatten();
+        shaders.any(|shader| shader.constants.iter().any(|constant| constant.name == name))
+    };
+    choices.constants().into_iter().filter(|(name, _)| has(name)).collect()
+}
+
+/// Entries of the longest buffer that has as many a pixel of shading space.
+pub fn space_entries(choices: &Choices) -> u64 {
+    let a_pixel = match (choices.has_lists, choices.is_compacted) {
+        (false, _) => 0,
+        (true, false) => 1,
+        (true, true) => LINEAR_COUNT,
+    };
+    choices.space.extent.pixel_count() * a_pixel
+}
+
+/// Of a sample in the longest buffer that has an entry a sample; 0 where what is shaded has none.
+pub fn sample_bytes(choices: &Choices) -> u64 {
+    match choices.shading {
+        Shading::Deep => NODE_BYTES.max(COLOR_BYTES).max(resources::SAMPLE_BYTES),
+        Shading::IndirectGbuffer => resources::ENTRY_BYTES,
+        Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
+    }
+}
+
+/// The longest buffer.
+pub fn longest_bytes(choices: &Choices, frame: Extent) -> u64 {
+    let others = match choices.shading {
+        Shading::Deep => space_entries(choices) * BEGIN_BYTES.max(ROW_ID_BYTES),
+        Shading::IndirectGbuffer => choices.cache_entries * resources::CACHE_BYTES,
+        Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
+    };
+    others.max(choices.samples_of(frame) * sample_bytes(choices))
+}
+
+/// `--list-access`, `auto` resolved: whether addresses are taken.
+pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
+    match inputs.values.text("list-access") {
+        "descriptors" => false,
+        "addresses" => true,
+        _ => longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes,
+    }
+}
+
+/// What it is called in the report.
+pub fn list_access_name(is_by_address: bool) -> &'static str {
+    if is_by_address { "addresses" } else { "descriptors" }
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 //! writes  count.lengths  buffer, 4 B a pixel of shading space; the counters
 
 use super::choices::Choices;
-use super::full;
 use super::lists::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
@@ -11,6 +10,8 @@ use crate::gpu::shader::techniques::deep_shading::count::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::plan::Resources;
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -25,8 +26,8 @@ impl Count {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         let lists = if choices.is_compacted { "compact" } else { "linked" };
         let shader = variant(COMP_VARIANTS, &[lists]);
-        let pipeline = ComputePipeline::new(gpu, shader, &super::constants_of(choices, &[Some(shader)]))?;
-        let lengths = resources.buffer(&full(super::plan::LENGTHS));
+        let pipeline = ComputePipeline::new(gpu, shader, &constants_of(choices, &[Some(shader)]))?;
+        let lengths = resources.buffer(&full(super::resources::LENGTHS));
         Ok(Self { pipeline, lengths, space: choices.space.extent })
     }
 

@@ -1,12 +1,11 @@
 //! A frame of deep shading on the device: the passes in the order of figure 3, or those of a baseline.
 
 use super::apart::Apart;
+use super::baseline::Baseline;
 use super::baseline::texture_space::atlases::Atlases;
-use super::baseline::{Baseline, Shading};
 use super::choices::Choices;
 use super::counters::Counted;
 use super::indirect;
-use super::plan::{COLOR, COUNTERS, LENGTHS, SPIDS};
 use super::primitives::{self, Primitives};
 use super::reach::Reach;
 use super::reconstruct::Reconstruct;
@@ -14,14 +13,16 @@ use super::resolve::{Resolve, Shaded};
 use super::scene::DeepScene;
 use super::stereo::{self, RightEye};
 use super::visibility::ray::Traced;
-use super::visibility::{Drawn, Samples, Visibility};
-use super::{NAME, full};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::passes::accumulate::Accumulate;
 use crate::picture::{Aov, AovChannels};
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, SPIDS, full};
+use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
 use crate::techniques::{Frame, Inputs};
 use std::collections::BTreeMap;
 use std::sync::Arc;

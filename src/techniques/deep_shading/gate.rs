@@ -2,14 +2,13 @@
 //! blur. Whether there are any is their draw count.
 //! reads  count.counters, strays.draws      writes  strays.count
 
-use super::full;
-use super::plan::COUNTERS;
-use super::visibility::sample::{Repeats, Stages};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, upload};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::resources::{COUNTERS, full};
+use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
 use ash::vk;
 use std::sync::Arc;
 

@@ -49,13 +49,16 @@ mod apart;
 mod baseline;
 mod brute;
 mod choices;
+mod contradictions;
 mod count;
 mod counters;
+mod eyes;
 mod frame;
 mod gate;
 mod indirect;
 mod lists;
 mod middle;
+mod modes;
 mod passes;
 mod plan;
 mod primitives;
@@ -63,6 +66,7 @@ mod ranges;
 mod reach;
 mod reconstruct;
 mod resolve;
+mod resources;
 mod rivals;
 mod scene;
 mod settings;
@@ -77,39 +81,26 @@ use super::{Frame, Inputs, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::Gpu;
-use crate::gpu::shader::Shader;
 use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
+use crate::techniques::deep_shading::choices::list_access_name;
+use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
+use crate::techniques::deep_shading::modes::shading::CONDITIONS;
+use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::Shading;
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
 use frame::DeepFrame;
+use modes::layer_from::LayerFrom;
+use modes::polygon_from::PolygonFrom;
 use primitives::Primitives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use visibility::layer::LayerFrom;
-use visibility::polygon::PolygonFrom;
+use visibility::Visibility;
 use visibility::ray::Traced;
-use visibility::{Visibility, looped};
-
-const NAME: &str = "deep_shading";
-
-/// The technique's constants that one of these shaders has.
-fn constants_of(choices: &Choices, shaders: &[Option<&Shader>]) -> Vec<(&'static str, u32)> {
-    let has = |name: &str| {
-        let mut shaders = shaders.iter().flatten();
-        shaders.any(|shader| shader.constants.iter().any(|constant| constant.name == name))
-    };
-    choices.constants().into_iter().filter(|(name, _)| has(name)).collect()
-}
-
-/// The full name of a pass or a resource.
-fn full(what: &str) -> String {
-    format!("{NAME}.{what}")
-}
 
 pub struct DeepShading;
 
@@ -131,7 +122,7 @@ impl Technique for DeepShading {
     }
 
     fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[baseline::CONDITIONS, SHADOW_MAP_CONDITIONS, LENS_CONDITIONS]
+        &[CONDITIONS, SHADOW_MAP_CONDITIONS, LENS_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -265,13 +256,13 @@ impl Prepared for PreparedDeep {
             resolved.insert("polygon-from", self.choices.polygon_from.name().to_owned());
         }
         if *visibility == Visibility::Stochastic && matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
-            resolved.insert("sample-tests", looped::name(self.choices.is_looped).to_owned());
+            resolved.insert("sample-tests", sample_tests_name(self.choices.is_looped).to_owned());
         }
         if !self.choices.has_marks {
             resolved.insert("shaded-triangles", "all".to_owned());
         }
         if matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
-            resolved.insert("list-access", reach::name(self.choices.is_by_address).to_owned());
+            resolved.insert("list-access", list_access_name(self.choices.is_by_address).to_owned());
         }
         if let Some(lens) = lens {
             resolved.insert("focus", format!("{}", lens.focus));

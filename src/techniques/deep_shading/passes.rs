@@ -1,14 +1,15 @@
 //! The passes of a frame in order, up to the resolve and what counts after it, and what each touches.
 
-use super::baseline::Shading;
 use super::choices::Choices;
-use super::plan::{
-    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, MARKS, NODES, SHADING_DEPTHS, SPIDS, ZMAX,
-};
 use super::visibility::looped;
-use super::{NAME, full, gate, indirect, reconstruct, stereo};
+use super::{gate, indirect, reconstruct, stereo};
 use crate::gpu::Access;
 use crate::plan::Plan;
+use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::resources::{
+    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, MARKS, NAME, NODES, SHADING_DEPTHS, SPIDS,
+    ZMAX, full,
+};
 
 type Touches = Vec<(String, Access)>;
 

@@ -1,13 +1,14 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them (Clarberg & Munkberg 2014, section 6, lists the
 //! groups; the checklist's O1 to O3 are their bytes).
 
-use super::baseline::{self, Shading, texture_space};
+use super::baseline;
+use super::baseline::texture_space;
 use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
 use super::tuples::Table;
-use super::visibility::{Visibility, looped, ray};
-use super::{NAME, full, gate, indirect, passes, reach, reconstruct, stereo};
+use super::visibility::{looped, ray};
+use super::{gate, indirect, passes, reach, reconstruct, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -16,37 +17,14 @@ use crate::passes::{accumulate, direct as lights};
 use crate::plan::{Plan, Shape};
 use crate::resident::VertexAttributes;
 use crate::techniques::Inputs;
-use crate::units::Extent;
+use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+pub(super) use crate::techniques::deep_shading::resources::{
+    ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR, COLOR_BYTES, COLORS, COUNTERS, DEPTH, DEPTH_FORMAT, LENGTHS,
+    LINEAR, LINEAR_COUNT, MARKS, NAME, NODE_BYTES, NODES, ROW_ID_BYTES, SHADING_DEPTH_FORMAT, SHADING_DEPTHS,
+    SPID_FORMAT, SPIDS, ZMAX, full, stored,
+};
 use ash::vk::{BufferUsageFlags, Format, ImageUsageFlags as Usage};
-
-pub const SPIDS: &str = "visibility.spids";
-pub const DEPTH: &str = "visibility.depth";
-/// Depth at shading points, s_z.
-pub const SHADING_DEPTHS: &str = "visibility.shading_depths";
-pub const BEGINS: &str = "lists.begins";
-pub const NODES: &str = "lists.nodes";
-pub const COLORS: &str = "shade.colors";
-pub const LINEAR: &str = "lists.linear";
-pub const ADDRESSES: &str = "lists.addresses";
-pub const ZMAX: &str = "lists.zmax";
-pub const MARKS: &str = "lists.marks";
-pub const LENGTHS: &str = "count.lengths";
-pub const COUNTERS: &str = "count.counters";
-pub const COLOR: &str = "resolve.color";
-
-pub const SPID_FORMAT: Format = Format::R32G32_UINT;
-pub const DEPTH_FORMAT: Format = Format::D32_SFLOAT;
-pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
-
-/// The paper's M.
-pub const LINEAR_COUNT: u64 = 16;
-/// Of a list's pointer.
-pub const BEGIN_BYTES: u64 = 4;
-/// Of a row's id, a node (id, next), a colour (RGBA16F), an address.
-pub const ROW_ID_BYTES: u64 = 4;
-pub const NODE_BYTES: u64 = 8;
-pub const COLOR_BYTES: u64 = 8;
-pub const ADDRESS_BYTES: u64 = 4;
 
 /// Resources and passes of a frame.
 ///
@@ -97,11 +75,6 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     }
     stereo::plan_pass(&mut plan, choices);
     Ok(plan)
-}
-
-/// A picture that is not the last one.
-pub fn stored(plan: &mut Plan, name: &str, frame: Extent) {
-    plan.image("color", full(name), frame, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
 }
 
 /// An image of a layer a tuple.

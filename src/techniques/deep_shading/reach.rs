@@ -2,63 +2,24 @@
 //! keeps, a compact geometry buffer. Through descriptors, which a device lets reach so far (maxStorageBufferRange) and the
 //! validation layers follow, or by the buffers' addresses, however long they are. Shaders' half: reach.glsl.
 
-use super::baseline::Shading;
 use super::choices::Choices;
-use super::plan::{
-    ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LENGTHS, LINEAR, LINEAR_COUNT, NODE_BYTES, NODES,
-    ROW_ID_BYTES, ZMAX,
-};
-use super::{NAME, full, indirect, reconstruct};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::ReachBlock;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
-use crate::units::{Bytes, Extent};
+pub(super) use crate::techniques::deep_shading::choices::{longest_bytes, sample_bytes, space_entries};
+use crate::techniques::deep_shading::resources;
+use crate::techniques::deep_shading::resources::{
+    ADDRESSES, BEGIN_BYTES, BEGINS, COLORS, LENGTHS, LINEAR, NAME, NODES, ROW_ID_BYTES, ZMAX, full,
+};
+use crate::units::Bytes;
 use bytemuck::Zeroable;
 use std::sync::Arc;
 
 /// Entries of a buffer. An address of a sample, and a pointer to one more than its index, have a bit beside them; and SPIR-V
 /// reads what a buffer is indexed by as a signed number.
 const MOST_ENTRIES: u64 = (1 << 31) - 1;
-
-/// Entries of the longest buffer that has as many a pixel of shading space.
-fn space_entries(choices: &Choices) -> u64 {
-    let a_pixel = match (choices.has_lists, choices.is_compacted) {
-        (false, _) => 0,
-        (true, false) => 1,
-        (true, true) => LINEAR_COUNT,
-    };
-    choices.space.extent.pixel_count() * a_pixel
-}
-
-/// Of a sample in the longest buffer that has an entry a sample; 0 where what is shaded has none.
-fn sample_bytes(choices: &Choices) -> u64 {
-    match choices.shading {
-        Shading::Deep => NODE_BYTES.max(COLOR_BYTES).max(reconstruct::SAMPLE_BYTES),
-        Shading::IndirectGbuffer => indirect::ENTRY_BYTES,
-        Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
-    }
-}
-
-/// The longest buffer.
-fn longest_bytes(choices: &Choices, frame: Extent) -> u64 {
-    let others = match choices.shading {
-        Shading::Deep => space_entries(choices) * BEGIN_BYTES.max(ROW_ID_BYTES),
-        Shading::IndirectGbuffer => choices.cache_entries * indirect::CACHE_BYTES,
-        Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
-    };
-    others.max(choices.samples_of(frame) * sample_bytes(choices))
-}
-
-/// `--list-access`, `auto` resolved: whether addresses are taken.
-pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
-    match inputs.values.text("list-access") {
-        "descriptors" => false,
-        "addresses" => true,
-        _ => longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes,
-    }
-}
 
 /// Errors: descriptors do not reach, or the device has no memory block as long as a buffer (exit code 4); indices of 32 bits do
 /// not reach (exit code 2); each with what does.
@@ -116,8 +77,8 @@ pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
 }
 
 /// The buffers, by their names in the plan, and where in `block` shaders find the address of each.
-fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]); 15] {
-    let [places, normals, base_colors, radiances] = indirect::ENTRIES.map(|(name, _)| name);
+pub(super) fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]); 15] {
+    let [places, normals, base_colors, radiances] = resources::ENTRIES.map(|(name, _)| name);
     [
         (BEGINS, &mut block.begins),
         (NODES, &mut block.nodes),
@@ -126,20 +87,15 @@ fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]); 15] {
         (ADDRESSES, &mut block.addresses),
         (ZMAX, &mut block.zmax),
         (LENGTHS, &mut block.lengths),
-        (indirect::POINTERS, &mut block.pointers),
-        (indirect::CACHE, &mut block.cache),
+        (resources::POINTERS, &mut block.pointers),
+        (resources::CACHE, &mut block.cache),
         (places, &mut block.entry_places),
         (normals, &mut block.entry_normals),
         (base_colors, &mut block.entry_base_colors),
         (radiances, &mut block.entry_radiances),
-        (reconstruct::SAMPLE_COLORS, &mut block.sample_colors),
-        (reconstruct::SAMPLE_VECTORS, &mut block.sample_vectors),
+        (resources::SAMPLE_COLORS, &mut block.sample_colors),
+        (resources::SAMPLE_VECTORS, &mut block.sample_vectors),
     ]
-}
-
-/// What it is called in the report.
-pub fn name(is_by_address: bool) -> &'static str {
-    if is_by_address { "addresses" } else { "descriptors" }
 }
 
 /// After those buffers.

@@ -3,17 +3,19 @@
 //! reads  visibility.spids, shade.colors, lists.addresses or the lists; baseline.colors
 //! writes  resolve.color  image, RGBA32F; stereo.right, the same of the right one of two eyes
 
-use super::baseline::{Baseline, Shading};
+use super::baseline::Baseline;
 use super::choices::Choices;
-use super::full;
 use super::lists::Lists;
-use super::visibility::Samples;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::ResolveParams;
 use crate::gpu::shader::techniques::deep_shading::resolve::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Gpu, Image, Traffic};
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use std::sync::Arc;
 
 /// Samples whose colours are there.
@@ -141,7 +143,7 @@ pub struct Resolve {
 impl Resolve {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[fetch(choices)]);
-        let constants = super::constants_of(choices, &[Some(shader)]);
+        let constants = constants_of(choices, &[Some(shader)]);
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 

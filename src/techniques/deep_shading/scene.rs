@@ -2,7 +2,6 @@
 //! middle, the cameras and the tuples.
 
 use super::choices::Choices;
-use super::{NAME, full, stereo};
 use crate::error::Result;
 use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, upload};
 use crate::passes::direct::{self, DirectGpu};
@@ -11,6 +10,8 @@ use crate::plan::Resources;
 use crate::resident::{Geometry, SceneGpu, draw_blocks};
 use crate::scene::Scene;
 use crate::techniques::Inputs;
+use crate::techniques::deep_shading::eyes::seen_from;
+use crate::techniques::deep_shading::resources::{NAME, full};
 use std::sync::Arc;
 
 /// Buffers beside the resident ones.
@@ -63,7 +64,7 @@ impl DeepScene {
         let background = inputs.values.color("background");
         let open = inputs.view.block(&bounds, background, inputs.lights.ambient, lights.len() as u32, 0);
         let middle = moved.map_or(open, |moved| moved.frame(inputs, &open));
-        let middle = stereo::seen_from(middle, choices.lens);
+        let middle = seen_from(middle, choices.lens);
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?;
         let seed = inputs.values.integer("seed") as u32;

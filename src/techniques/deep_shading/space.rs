@@ -2,7 +2,6 @@
 //! (Clarberg & Munkberg 2014, sections 3 and 6).
 
 use super::settings::LEAST_SCALE;
-use super::stereo;
 use super::tuples::Table;
 use crate::caps::Limits;
 use crate::error::{Error, Result};
@@ -10,6 +9,7 @@ use crate::frame::View;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::settings::Values;
+use crate::techniques::deep_shading::eyes::clip_from;
 use crate::units::Extent;
 use glam::{Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -107,7 +107,7 @@ impl ShadingSpace {
         let row_length = |matrix: &Mat4, row: usize| matrix.row(row).truncate().length();
         let radius = lens.map_or(0.0, |lens| lens.reach());
         let from_middle = |clip: Mat4, depth: Vec4| {
-            lens.map_or(clip, |lens| stereo::clip_from(clip, depth, row_length(&open_clip, 0), lens)).to_cols_array_2d()
+            lens.map_or(clip, |lens| clip_from(clip, depth, row_length(&open_clip, 0), lens)).to_cols_array_2d()
         };
         DeepBlock {
             open_clip_from_world: from_middle(open_clip, open_depth),

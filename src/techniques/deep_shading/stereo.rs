@@ -9,18 +9,13 @@
 //! writes  stereo.right  image, RGBA32F, frame extent: the right eye's picture, a stage; the left one's is the frame's
 
 use super::choices::Choices;
-use super::plan::{COLOR, stored};
-use super::{NAME, full};
-use crate::error::{Error, Result};
-use crate::gpu::shader::structs::FrameBlock;
+use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
-use crate::lens::Lens;
 use crate::passes::accumulate::{self, Accumulate};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
-use crate::settings::Values;
+use crate::techniques::deep_shading::resources::{COLOR, full, stored};
 use crate::units::Extent;
-use glam::{Mat4, Vec4};
 use std::sync::Arc;
 
 pub const RIGHT: &str = "stereo.right";
@@ -28,44 +23,6 @@ pub const RIGHT: &str = "stereo.right";
 /// What the passes over the right eye's pictures of runs are named after.
 fn right_eye() -> String {
     full("stereo")
-}
-
-/// Errors: both eyes, and what knows of one (exit code 2).
-pub fn require_both(values: &Values) -> Result<()> {
-    if values.number("stereo") == 0.0 || values.text("stereo-eyes") != "both" {
-        return Ok(());
-    }
-    let why = match values.text("shading") {
-        "msaa" => "--shading msaa: it draws a pixel's samples at once, which are one eye's",
-        _ if values.is_on("reconstruct") => "--reconstruct on: it filters what one eye sees",
-        _ => return Ok(()),
-    };
-    Err(Error::request(format!("--stereo {} with {why}", values.text("stereo")))
-        .within(NAME)
-        .note("--stereo-eyes left and --stereo-eyes right have the picture of one eye each"))
-}
-
-/// Clip space from world space as the middle of what sees has it. `clip`: the camera's; `depth`: what a point is multiplied with
-/// for its distance before the camera; `metre`: by how much clip space's x grows a metre to the right.
-pub fn clip_from(clip: Mat4, depth: Vec4, metre: f32, lens: Lens) -> Mat4 {
-    // As visibility/seen.glsl moves what a place on the lens sees.
-    let mut rows = clip.transpose();
-    rows.x_axis += lens.middle() * metre * (depth / lens.focus - Vec4::W);
-    rows.transpose()
-}
-
-/// The eye of `frame`, which is the camera's, in the middle of what sees.
-pub fn seen_from(frame: FrameBlock, lens: Option<Lens>) -> FrameBlock {
-    let Some(lens) = lens else { return frame };
-    let [eye, right, forward] = [frame.eye_ws, frame.right_ws, frame.forward_ws].map(Vec4::from);
-    // Rays that are parallel lean towards the same place in the plane in focus.
-    let is_perspective = eye.w > 0.0;
-    let leaning = (forward - right * (lens.middle() / lens.focus)).normalize();
-    FrameBlock {
-        eye_ws: (eye + right * lens.middle()).to_array(),
-        forward_ws: if is_perspective { frame.forward_ws } else { leaning.to_array() },
-        ..frame
-    }
 }
 
 /// The right eye's picture, of a run and of all.

@@ -1,9 +1,8 @@
 //! Bytes that a frame touches of buffers that are as long as the worst case (Clarberg & Munkberg 2014, sections 3 and 6: "about
 //! 25 MB" of the deep shading buffer at 1.5 executions a pixel). Pointers to lists are cleared, so they are touched whole.
 
-use super::full;
-use super::plan::{
-    ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ROW_ID_BYTES,
+use crate::techniques::deep_shading::resources::{
+    ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ROW_ID_BYTES, full,
 };
 use std::collections::BTreeMap;
 

@@ -13,175 +13,46 @@ pub mod ssaa;
 pub mod texture_space;
 
 use super::choices::Choices;
-use super::plan::{COUNTERS, DEPTH_FORMAT};
-use super::settings::SETTINGS;
-use super::visibility::sample::{Sample, Sets, Stages};
-use super::visibility::{self, Drawn, Visibility, begin_counters, repeat_frame};
-use super::{full, stereo};
-use crate::caps::{Caps, Need};
-use crate::error::{Error, Result};
+use super::stereo;
+use super::visibility;
+use super::visibility::repeat_frame;
+use super::visibility::sample::{Sample, Sets};
+use crate::caps::Need;
+use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
-use crate::gpu::shader::{Shader, variant};
+use crate::gpu::shader::Shader;
 use crate::gpu::{
     Access, Barrier, Bound, Buffer, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Traffic,
 };
-use crate::passes::{mesh, shadow_maps};
+use crate::passes::mesh;
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{DrawList, SceneGpu};
-use crate::settings::{Condition, Unread, Values, readers};
+use crate::settings::Values;
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::modes::pass_samples;
+pub(super) use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::resources;
+use crate::techniques::deep_shading::resources::{COUNTERS, DEPTH_FORMAT, full};
+use crate::techniques::deep_shading::visibility::draw::Stages;
+use crate::techniques::deep_shading::visibility::samples::{Drawn, begin_counters};
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use texture_space::TextureSpace;
 use texture_space::atlases::Atlases;
-use texture_space::pool::PoolSize;
 
 const COLORS: &str = "baseline.colors";
 const DEPTH: &str = "baseline.depth";
 const COLOR_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
-/// Settings that not everything that is shaded reads.
-pub const CONDITIONS: &[Condition] = &[
-    Condition { key: "guard-band", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
-    Condition {
-        key: "shading-scale",
-        unread: |values| {
-            Unread::unless(
-                values,
-                "shading",
-                &["deep", "indirect-gbuffer", "texture-space"],
-                "it shades no pixels of shading space",
-            )
-        },
-    },
-    Condition { key: "shading-warp", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
-    Condition { key: "warp-falloff", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
-    Condition { key: "lists", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition {
-        key: "list-access",
-        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples' colours are in images"),
-    },
-    Condition { key: "duplicates", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "compaction", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "zmax", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "address-buffer", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "conservative", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "shaded-triangles", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition {
-        key: "layer-from",
-        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples are drawn layer by layer"),
-    },
-    Condition {
-        key: "polygon-from",
-        unread: |values| {
-            Unread::unless(
-                values,
-                "shading",
-                &["deep", "indirect-gbuffer", "ssaa", "texture-space"],
-                "its triangles come from vertex shaders",
-            )
-        },
-    },
-    Condition {
-        key: "sample-tests",
-        unread: |values| {
-            Unread::unless(
-                values,
-                "shading",
-                OF_SPACE,
-                "samples are drawn and coloured layer by layer, or as many at a time as an image has",
-            )
-        },
-    },
-    Condition {
-        key: "pass-samples",
-        unread: |values| Unread::unless(values, "shading", &["msaa"], "samples are drawn one at a time"),
-    },
-    Condition {
-        key: "shading-cache",
-        unread: |values| Unread::unless(values, "shading", &["indirect-gbuffer"], "it has no cache"),
-    },
-    Condition {
-        key: "shading-textures",
-        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
-    },
-    Condition {
-        key: "shading-texture-size",
-        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
-    },
-];
-const OF_SPACE: &[&str] = &["deep", "indirect-gbuffer"];
-const NO_SPACE: &str = "it has no shading space";
-const NO_LISTS: &str = "it has no lists";
-
 /// What `values` need of a device, whatever is shaded.
 pub fn needs(values: &Values) -> Option<Need> {
-    msaa::needs(values)
-}
-
-/// What is shaded (`--shading`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shading {
-    /// What the lists have.
-    Deep,
-    /// What samples point to in a compact geometry buffer.
-    IndirectGbuffer,
-    /// Every sample that is drawn.
-    Ssaa,
-    /// A pixel's samples that see a triangle, once.
-    Msaa {
-        /// Samples a pixel that are drawn at once.
-        pass_samples: u32,
-    },
-    /// Texels of each draw's texture.
-    TextureSpace(PoolSize),
+    pass_samples::needs(values)
 }
 
 impl Shading {
-    /// The value of `--shading`, with `spp` samples a pixel.
-    ///
-    /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
-    pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
-        let text = values.text("shading");
-        readers::require_read(CONDITIONS, SETTINGS, values)?;
-        Ok(match text {
-            "deep" => Self::Deep,
-            "indirect-gbuffer" => Self::IndirectGbuffer,
-            "ssaa" => Self::Ssaa,
-            "texture-space" => Self::TextureSpace(PoolSize::of(values)),
-            "msaa" => Self::Msaa { pass_samples: msaa::pass_samples(values, caps, spp)? },
-            other => panic!("--shading {other} was checked"),
-        })
-    }
-
-    /// How samples find what they see.
-    ///
-    /// Errors: what is drawn sample by sample has no such kind (exit code 2).
-    pub fn visibility(self, values: &Values) -> Result<Visibility> {
-        let visibility = Visibility::of(values);
-        let goes_with_all = matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic);
-        match self {
-            Self::Deep | Self::IndirectGbuffer => Ok(visibility),
-            Self::Msaa { .. } if goes_with_all => Ok(Visibility::Stochastic),
-            _ if goes_with_all => Ok(visibility),
-            Self::Msaa { .. } | Self::Ssaa | Self::TextureSpace(_) => {
-                let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
-                let (why, advice) = match self {
-                    Self::Msaa { .. } => ("a shader tests its samples", "--visibility stochastic does"),
-                    _ => (
-                        "samples are drawn and coloured layer by layer",
-                        "--visibility repeat-frame and stochastic do so",
-                    ),
-                };
-                Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}"))
-                    .within(super::NAME)
-                    .note(advice))
-            }
-        }
-    }
-
     /// The pass that draws.
     fn pass(self) -> &'static str {
         match self {
@@ -189,19 +60,6 @@ impl Shading {
             Self::Msaa { .. } => "baseline.msaa",
             Self::TextureSpace(_) => "baseline.texture_space",
             Self::Deep | Self::IndirectGbuffer => unreachable!("visibility is a pass of its own"),
-        }
-    }
-
-    /// The logarithm to 2 of a texture's side; 0: there are none.
-    pub fn texture_side_bits(self) -> u32 {
-        if let Self::TextureSpace(size) = self { size.side_px.ilog2() } else { 0 }
-    }
-
-    /// Samples a pixel of what is drawn into.
-    pub fn pass_samples(self) -> u32 {
-        match self {
-            Self::Msaa { pass_samples } => pass_samples,
-            Self::Deep | Self::IndirectGbuffer | Self::Ssaa | Self::TextureSpace(_) => 1,
         }
     }
 }
@@ -227,7 +85,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
 pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];
-    drawn.extend(choices.maps.iter().filter_map(|maps| maps.read(super::NAME)));
+    drawn.extend(choices.maps.iter().filter_map(|maps| maps.read(resources::NAME)));
     if let Shading::TextureSpace(size) = choices.shading {
         drawn.extend(size.touches());
     }
@@ -259,9 +117,9 @@ impl Baseline {
         let (stages, fragment): (_, fn(&SceneGpu, &Choices, &str) -> &'static Shader) = match choices.shading {
             Shading::Msaa { .. } => (msaa::stages(), msaa::fragment),
             Shading::TextureSpace(_) => {
-                (visibility::stages(scene, choices, &repeat_frame::repeats(0)), texture_space::apply::fragment)
+                (visibility::stages::stages(scene, choices, &repeat_frame::repeats(0)), texture_space::apply::fragment)
             }
-            _ => (visibility::stages(scene, choices, &repeat_frame::repeats(0)), ssaa::fragment),
+            _ => (visibility::stages::stages(scene, choices, &repeat_frame::repeats(0)), ssaa::fragment),
         };
         let textures = match (choices.shading, atlases) {
             (Shading::TextureSpace(size), Some(atlases)) => {
@@ -367,7 +225,7 @@ fn pipeline(
     stages: &Stages,
     fragment: &'static Shader,
 ) -> Result<GraphicsPipeline> {
-    let constants = super::constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
+    let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
     GraphicsPipeline::new(
         gpu,
         &GraphicsDescription {

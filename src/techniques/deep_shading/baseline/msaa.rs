@@ -20,45 +20,12 @@
 //! Equal to `--shading ssaa --visibility stochastic` with `--pass-samples 1`.
 
 use super::super::choices::Choices;
-use super::super::visibility::sample::Stages;
-use super::{mesh, shadow_maps, variant};
-use crate::caps::{Ability, Caps, Need};
-use crate::error::{Error, Result};
-use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::msaa::{FRAG_VARIANTS, VERT};
+use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::Sides;
+use crate::passes::{mesh, shadow_maps};
 use crate::resident::SceneGpu;
-use crate::settings::Values;
-
-/// More than one sample a pixel, most first.
-const MULTIPLE: [(u32, Ability); 2] = [(8, Ability::EightSamples), (4, Ability::FourSamples)];
-
-/// Samples a pixel of a pass (`--pass-samples`); auto: as many as the device has and `spp` is a multiple of.
-///
-/// Errors: `spp` is no multiple of them (exit code 2).
-pub(super) fn pass_samples(values: &Values, caps: &Caps, spp: u32) -> Result<u32> {
-    let Some(samples) = values.integer_or_auto("pass-samples") else {
-        let fits = |(samples, ability): &&(u32, Ability)| spp.is_multiple_of(*samples) && ability.is_there(caps);
-        return Ok(MULTIPLE.iter().find(fits).map_or(1, |(samples, _)| *samples));
-    };
-    let samples = samples as u32;
-    if spp.is_multiple_of(samples) {
-        return Ok(samples);
-    }
-    Err(Error::request(format!("--pass-samples {samples}: --spp {spp} is no multiple of it"))
-        .note(format!("--spp {} works, and --pass-samples 1 always", spp.next_multiple_of(samples))))
-}
-
-/// What `--pass-samples` needs of a device; of other kinds of `--shading` nothing, which refuse it.
-pub(super) fn needs(values: &Values) -> Option<Need> {
-    let asked = values.text("pass-samples");
-    if values.text("shading") != "msaa" {
-        return None;
-    }
-    let (_, ability) = MULTIPLE.into_iter().find(|(samples, _)| asked == samples.to_string())?;
-    let instead = "--pass-samples auto takes as many as there are";
-    Some(Need { of: format!("--pass-samples {asked}"), ability, instead })
-}
+use crate::techniques::deep_shading::visibility::draw::Stages;
 
 pub(super) fn stages() -> Stages {
     // The shader tells sides apart: what is drawn has none.

@@ -5,10 +5,11 @@
 //! their depth is tested.
 
 use super::super::choices::Choices;
-use super::{Visibility, mesh, shadow_maps, variant};
-use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::ssaa::FRAG_VARIANTS;
+use crate::gpu::shader::{Shader, variant};
+use crate::passes::{mesh, shadow_maps};
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
 
 /// `alpha`: the value of the shader's axis.
 pub(super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {

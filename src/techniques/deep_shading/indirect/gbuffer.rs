@@ -5,10 +5,8 @@
 
 use super::super::again::{self, Again};
 use super::super::choices::Choices;
-use super::super::full;
 use super::super::primitives::Primitives;
-use super::super::visibility::Samples;
-use super::Indirect;
+use super::entries::Entries;
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::indirect::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
@@ -16,6 +14,8 @@ use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::mesh;
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -41,24 +41,24 @@ impl Gbuffer {
         (scene, list, primitives): (&SceneGpu, &DrawList, &Primitives),
         bound: &[(&'static str, Bound<'_>)],
         samples: &Samples,
-        indirect: &Indirect,
+        entries: &Entries,
         counters: &Buffer,
     ) -> Result<()> {
         let traffic = Traffic {
             read_bytes: self.0.read_bytes(cmd.gpu(), scene, list, Some(samples)),
             // Entries are counted after the frame.
-            written_bytes: indirect.pointers.bytes,
+            written_bytes: entries.pointers.bytes,
             invocations: None,
         };
         cmd.pass(&full("indirect.gbuffer"), traffic, |cmd| {
-            let cleared = [&indirect.pointers, &indirect.cache];
+            let cleared = [&entries.pointers, &entries.cache];
             cmd.barriers(cleared.map(|buffer| buffer.discard(Access::TransferWrite)));
             cleared.iter().for_each(|buffer| cmd.clear(buffer));
             cmd.barriers(cleared.map(|buffer| buffer.from(Access::TransferWrite).to(Access::FragmentWrite)));
-            cmd.barriers(indirect.entries.iter().map(|buffer| buffer.discard(Access::FragmentWrite)));
+            cmd.barriers(entries.entries.iter().map(|buffer| buffer.discard(Access::FragmentWrite)));
             cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
             let mut bound = bound.to_vec();
-            bound.extend(indirect.bound());
+            bound.extend(entries.bound());
             bound.push(("Counters", Bound::Buffer(counters)));
             let samples = Some((samples, AccessSet::from(samples.written)));
             self.0.record(cmd, scene, list, primitives, samples, bound)

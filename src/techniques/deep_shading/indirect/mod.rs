@@ -17,39 +17,29 @@
 //! - an entry has floats, 64 bytes, so that its colour has the bits of the lists'
 //! - samples that shading space has no place for have entries of their own
 
+mod entries;
 pub mod gbuffer;
 pub mod shade;
 
 use super::choices::Choices;
 use super::counters::Counted;
-use super::plan::{COLOR_BYTES, COLORS, COUNTERS, DEPTH, SPIDS};
 use super::primitives::Primitives;
-use super::visibility::Samples;
-use super::{NAME, full, stereo};
+use super::stereo;
 use crate::error::Result;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
+pub(super) use crate::techniques::deep_shading::resources::{
+    CACHE, CACHE_BYTES, COLOR_BYTES, COLORS, COUNTERS, DEPTH, ENTRIES, ENTRY_BYTES, NAME, POINTER_BYTES, POINTERS,
+    SPIDS, full,
+};
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
+use entries::Entries;
 use gbuffer::Gbuffer;
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-pub const POINTERS: &str = "indirect.pointers";
-pub const CACHE: &str = "indirect.cache";
-/// Buffers of the entries, as entries.glsl names them in order.
-pub const ENTRIES: [(&str, &str); 4] = [
-    ("indirect.places", "EntryPlaces"),
-    ("indirect.normals", "EntryNormals"),
-    ("indirect.base_colors", "EntryBaseColors"),
-    ("indirect.radiances", "EntryRadiances"),
-];
-
-/// Of an entry in one of its buffers, a pointer, a word of the cache.
-pub const ENTRY_BYTES: u64 = 16;
-const POINTER_BYTES: u64 = 4;
-pub const CACHE_BYTES: u64 = 4;
 
 /// Pointers, cache, entries, and their colours, for `samples`.
 pub fn plan(plan: &mut Plan, choices: &Choices, samples: u64) {
@@ -94,10 +84,7 @@ pub fn touched_bytes(counted: &Counted) -> BTreeMap<String, u64> {
 
 /// Samples' way from what they see to colours, by a compact geometry buffer.
 pub struct Indirect {
-    /// 4 B a sample: pointers.glsl says what.
-    pub pointers: Buffer,
-    cache: Buffer,
-    entries: [Buffer; 4],
+    pub entries: Entries,
     gbuffer: Gbuffer,
     shade: Shade,
 }
@@ -114,20 +101,14 @@ impl Indirect {
         Ok(Self {
             gbuffer: Gbuffer::new(gpu, scene, resources, choices, frame)?,
             shade: Shade::new(gpu, choices, frame)?,
-            pointers: resources.buffer(&full(POINTERS)),
-            cache: resources.buffer(&full(CACHE)),
-            entries: ENTRIES.map(|(name, _)| resources.buffer(&full(name))),
+            entries: Entries::new(resources),
         })
     }
 
     /// All but the colours.
     pub fn buffers(&self) -> impl Iterator<Item = &Buffer> {
-        self.entries.iter().chain([&self.pointers, &self.cache])
-    }
-
-    fn bound(&self) -> impl Iterator<Item = (&'static str, Bound<'_>)> {
-        let entries = ENTRIES.iter().zip(&self.entries).map(|((_, name), buffer)| (*name, Bound::Buffer(buffer)));
-        entries.chain([("Pointers", Bound::Buffer(&self.pointers)), ("Cache", Bound::Buffer(&self.cache))])
+        let Entries { pointers, cache, entries } = &self.entries;
+        entries.iter().chain([pointers, cache])
     }
 
     /// After visibility. `maps`: what shading from shadow maps waits for.
@@ -143,7 +124,7 @@ impl Indirect {
         colors: &Buffer,
         counters: &Buffer,
     ) -> Result<()> {
-        self.gbuffer.record(cmd, (scene, list, primitives), bound, samples, self, counters)?;
-        self.shade.record(cmd, bound, self, maps, colors, counters)
+        self.gbuffer.record(cmd, (scene, list, primitives), bound, samples, &self.entries, counters)?;
+        self.shade.record(cmd, bound, &self.entries, maps, colors, counters)
     }
 }

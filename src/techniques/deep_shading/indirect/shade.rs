@@ -3,14 +3,15 @@
 //! writes  shade.colors  buffer, 8 B an entry: RGBA16F
 
 use super::super::choices::Choices;
-use super::super::{constants_of, full};
-use super::Indirect;
+use super::entries::Entries;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::indirect::shade::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::shadow_maps;
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -36,7 +37,7 @@ impl Shade {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        indirect: &Indirect,
+        entries: &Entries,
         maps: Option<Barrier>,
         colors: &Buffer,
         counters: &Buffer,
@@ -45,12 +46,12 @@ impl Shade {
         let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
         cmd.pass(&full("indirect.shade"), traffic, |cmd| {
             cmd.barriers(maps);
-            let entries = indirect.entries.iter();
-            cmd.barriers(entries.map(|buffer| buffer.from(Access::FragmentWrite).to(Access::ComputeRead)));
+            let buffers = entries.entries.iter();
+            cmd.barriers(buffers.map(|buffer| buffer.from(Access::FragmentWrite).to(Access::ComputeRead)));
             cmd.barriers([colors.discard(Access::ComputeWrite)]);
             cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();
-            bound.extend(indirect.bound());
+            bound.extend(entries.bound());
             bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
             let groups = self.pipeline.groups(self.threads);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)

@@ -2,13 +2,14 @@
 //! reads  visibility.spids, the lists      writes  lists.addresses
 
 use super::super::choices::Choices;
-use super::super::visibility::Samples;
-use super::super::{constants_of, full};
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::address::COMP;
 use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use std::sync::Arc;
 
 pub struct Address {

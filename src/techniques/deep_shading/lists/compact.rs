@@ -3,12 +3,13 @@
 //! reads and writes  lists.begins, lists.nodes      writes  lists.linear; begins alphas of colours at 0
 
 use super::super::choices::Choices;
-use super::super::{constants_of, full};
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::compact::COMP;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
 use std::sync::Arc;
 

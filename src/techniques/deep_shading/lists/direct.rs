@@ -4,14 +4,13 @@
 //! writes  lists.begins, lists.nodes, lists.linear, lists.zmax, lists.addresses; begins alphas of colours at 0
 
 use super::super::choices::Choices;
-use super::super::full;
-use super::super::plan::{ADDRESSES, BEGINS, LINEAR, LINEAR_COUNT, NODES, ZMAX};
 use super::super::visibility::ray::trace::{Hits, NONE, Spid};
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Traffic};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
+use crate::techniques::deep_shading::resources::{ADDRESSES, BEGINS, LINEAR, LINEAR_COUNT, NODES, ZMAX, full};
 use crate::units::Extent;
 use ash::vk::BufferUsageFlags;
 use rayon::prelude::*;

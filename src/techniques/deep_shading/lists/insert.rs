@@ -3,14 +3,14 @@
 //! writes  lists.begins, lists.nodes, lists.zmax, lists.marks, and addresses as they are without compaction; begins alphas of colours at 0
 
 use super::super::choices::Choices;
-use super::super::full;
-use super::super::visibility::Samples;
 use super::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::insert::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use std::sync::Arc;
 
 pub struct Insert {

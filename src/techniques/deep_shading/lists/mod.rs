@@ -9,10 +9,9 @@ pub mod direct;
 pub mod insert;
 
 use super::choices::Choices;
-use super::full;
-use super::plan::{ADDRESSES, BEGINS, COLORS, LINEAR, MARKS, NODES, ZMAX};
 use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands};
 use crate::plan::Resources;
+use crate::techniques::deep_shading::resources::{ADDRESSES, BEGINS, COLORS, LINEAR, MARKS, NODES, ZMAX, full};
 
 /// The deep shading buffer: lists, and the colours of what they name.
 pub struct Lists {

@@ -2,12 +2,13 @@
 //! reads   reconstruct.samples.colors, reconstruct.samples.vectors, reconstruct.layers.tiles, resolve.color
 //! writes  reconstruct.filter.color   image, RGBA32F, frame extent
 
-use super::super::{constants_of, full};
-use super::{Choices, Reconstructed};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::filter::COMP;
 use crate::gpu::{Access, Bound, Commands, Edge, Gpu, Image, Traffic};
+use crate::techniques::deep_shading::choices::{Choices, constants_of};
+use crate::techniques::deep_shading::reconstruct::reconstructed::Reconstructed;
+use crate::techniques::deep_shading::resources::full;
 use std::sync::Arc;
 
 pub const PASS: &str = "reconstruct.filter";

@@ -2,12 +2,13 @@
 //! reads   reconstruct.samples.colors, reconstruct.samples.vectors
 //! writes  reconstruct.layers.tiles   buffer, 96 B a tile of 16x16 pixels
 
-use super::super::{constants_of, full};
-use super::{Choices, Reconstructed};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::layers::COMP;
 use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use crate::techniques::deep_shading::choices::{Choices, constants_of};
+use crate::techniques::deep_shading::reconstruct::reconstructed::Reconstructed;
+use crate::techniques::deep_shading::resources::full;
 use std::sync::Arc;
 
 pub const PASS: &str = "reconstruct.layers";

@@ -14,20 +14,23 @@
 //! whose layers are sharp has the bits of the resolve. Filters end after 16 pixels: blur with a radius over 32 pixels, or a way
 //! of over 56, keeps noise.
 
-mod filter;
-mod layers;
-mod samples;
+pub(super) mod filter;
+pub(super) mod layers;
+mod reconstructed;
+pub(super) mod samples;
 
 use super::choices::Choices;
 use super::primitives::Primitives;
+use super::ranges;
 use super::resolve::{Shaded, fetch};
-use super::{full, ranges};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::shader::structs::TileBlock;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::Values;
+use crate::techniques::deep_shading::reconstruct::reconstructed::{RANGES, Reconstructed};
+use crate::techniques::deep_shading::resources::full;
+pub(super) use crate::techniques::deep_shading::resources::{SAMPLE_BYTES, SAMPLE_COLORS, SAMPLE_VECTORS};
 use crate::units::Extent;
 use filter::Filter;
 use layers::Layers;
@@ -35,35 +38,10 @@ use samples::Gather;
 use std::sync::Arc;
 
 pub const COLOR: &str = "reconstruct.filter.color";
-pub const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
-pub const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
-const RANGES: &str = "reconstruct.samples.draws";
 const TILES: &str = "reconstruct.layers.tiles";
-
-/// Of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; two of motion, and a depth.
-pub const SAMPLE_BYTES: u64 = 8;
 
 /// TILE_PX of blur.glsl.
 const TILE_PX: u32 = 16;
-
-/// Errors: samples have no SPIDs, from which their blur is found (exit code 2).
-pub fn require_spids(values: &Values) -> Result<()> {
-    let refused = |setting: &str, instead: &str| {
-        let kind = values.text(setting);
-        let why =
-            format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
-        Err(Error::request(why).within(super::NAME).note(format!("--{setting} {instead} keeps them")))
-    };
-    match (values.is_on("reconstruct"), values.text("shading"), values.text("lists")) {
-        (false, ..) => Ok(()),
-        (true, "deep", "direct") => refused("lists", "linked"),
-        (true, "deep", _) => Ok(()),
-        (true, shading, _) => {
-            let why = format!("--reconstruct on with --shading {shading}: it filters what the lists' samples see");
-            Err(Error::request(why).within(super::NAME).note("--shading deep has them"))
-        }
-    }
-}
 
 /// Tiles across and down.
 fn tiles(frame: Extent) -> [u32; 2] {
@@ -89,27 +67,6 @@ pub fn plan_passes(plan: &mut Plan, shaded: Vec<(String, Access)>, resolved: &st
     let pictures = [(full(resolved), Access::ComputeRead), (full(COLOR), Access::ComputeWrite)];
     let filtered = both(Access::ComputeRead).into_iter().chain([tiles(Access::ComputeRead)]).chain(pictures);
     plan.pass(full(filter::PASS), filtered);
-}
-
-/// One entry a sample of the frame, and one a tile.
-struct Reconstructed {
-    colors: Buffer,
-    vectors: Buffer,
-    tiles: Buffer,
-}
-
-impl Reconstructed {
-    fn bound(&self) -> [(&'static str, Bound<'_>); 3] {
-        [
-            ("SampleColors", Bound::Buffer(&self.colors)),
-            ("SampleVectors", Bound::Buffer(&self.vectors)),
-            ("Tiles", Bound::Buffer(&self.tiles)),
-        ]
-    }
-
-    fn sample_bytes(&self) -> u64 {
-        self.colors.bytes + self.vectors.bytes
-    }
 }
 
 pub struct Reconstruct {

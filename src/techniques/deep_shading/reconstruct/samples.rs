@@ -6,9 +6,8 @@
 //! Differs from the paper: visibility leaves no motion vectors; a SPID and a tuple say what they are, whoever found the SPID.
 
 use super::super::primitives::Primitives;
+use super::super::ranges;
 use super::super::resolve::Shaded;
-use super::super::{full, ranges};
-use super::{Choices, RANGES, Reconstructed};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::samples::COMP_VARIANTS;
@@ -16,6 +15,10 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::choices::Choices;
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::reconstruct::reconstructed::{RANGES, Reconstructed};
+use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -39,7 +42,7 @@ impl Gather {
         fetch: &str,
     ) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[fetch]);
-        let constants = super::super::constants_of(choices, &[Some(shader)]);
+        let constants = constants_of(choices, &[Some(shader)]);
         let mut calls = scene.calls.clone();
         // As ids count them.
         calls.sort_by_key(|call| call.draw);

@@ -1,9 +1,9 @@
 //! Triangles as they are, which the device draws conservatively (VK_EXT_conservative_rasterization), or as any others: what
 //! conservative rasterisation is for, and costs (Clarberg & Munkberg 2014, table 2). Shader: corner.vert.
 
-use super::Stages;
 use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT_VARIANTS;
 use crate::gpu::shader::variant;
+use crate::techniques::deep_shading::shade::stages::Stages;
 
 /// `marks`: the value of the shader's axis.
 pub(super) fn stages(is_conservative: bool, marks: &str) -> Stages {

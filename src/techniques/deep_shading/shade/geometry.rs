@@ -1,8 +1,8 @@
 //! Hulls from a geometry shader (Clarberg & Munkberg 2014, section 4.4). Shaders: corner.vert, geometry.geom, hull.glsl.
 
-use super::Stages;
 use crate::gpu::shader::techniques::deep_shading::shade::{corner::VERT_VARIANTS, geometry::GEOM_VARIANTS};
 use crate::gpu::shader::variant;
+use crate::techniques::deep_shading::shade::stages::Stages;
 
 /// `marks`: the value of the geometry shader's axis; corners are made of all triangles.
 pub(super) fn stages(marks: &str) -> Stages {

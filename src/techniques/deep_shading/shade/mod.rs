@@ -5,56 +5,29 @@
 
 pub mod corner;
 pub mod geometry;
+pub(super) mod stages;
 pub mod vertex;
 
 use super::choices::Choices;
-use super::full;
 use super::lists::Lists;
 use super::primitives::Primitives;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
-use crate::gpu::shader::{Shader, variant};
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::passes::mesh::{self, Sides};
 use crate::passes::shadow_maps;
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::deep_shading::choices::constants_of;
+pub(super) use crate::techniques::deep_shading::modes::conservative::Road;
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::shade::stages::Stages;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
-/// How every pixel that a triangle touches is drawn (`--conservative`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
-    /// By the device.
-    Hardware,
-    /// Its hull from a geometry shader.
-    Geometry,
-    /// Its hull from vertex shaders.
-    Vertex,
-    /// Only what it covers the middle of: samples at its rim find no colour.
-    Plain,
-}
-
-/// What a road draws with.
-struct Stages {
-    vertex: &'static Shader,
-    geometry: Option<&'static Shader>,
-    is_conservative: bool,
-    /// Vertices of a triangle.
-    vertex_count: u32,
-}
-
 impl Road {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Hardware => "hardware",
-            Self::Geometry => "geometry",
-            Self::Vertex => "vertex",
-            Self::Plain => "none",
-        }
-    }
-
     fn stages(self, marks: &str) -> Stages {
         match self {
             Self::Hardware => corner::stages(true, marks),
@@ -79,7 +52,7 @@ impl Shade {
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
-        let constants = super::constants_of(choices, &shaders);
+        let constants = constants_of(choices, &shaders);
         let pipeline = GraphicsPipeline::new(
             gpu,
             &GraphicsDescription {

@@ -1,9 +1,9 @@
 //! Hulls from vertex shaders, each of which makes the hull for itself: for devices without geometry shaders.
 //! Shaders: vertex.vert, hull.glsl, ../hull.glsl.
 
-use super::Stages;
 use crate::gpu::shader::techniques::deep_shading::shade::vertex::VERT_VARIANTS;
 use crate::gpu::shader::variant;
+use crate::techniques::deep_shading::shade::stages::Stages;
 
 /// HULL_VERTICES of hull.glsl.
 pub const HULL_VERTICES: u32 = 18;

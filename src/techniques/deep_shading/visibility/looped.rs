@@ -12,11 +12,10 @@
 use super::super::choices::Choices;
 use super::super::primitives::Primitives;
 use super::super::tuples::Table;
-use super::super::{NAME, constants_of, full};
-use super::sample::{Repeats, Sample};
+use super::sample::Sample;
 use super::spids::Spids;
-use super::{Drawn, Samples, Visibility, stochastic};
-use crate::caps::{Ability, Caps, Limits};
+use super::stochastic;
+use crate::caps::Limits;
 use crate::error::{Error, Result};
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::looped::FRAG_VARIANTS;
@@ -25,28 +24,13 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
 use crate::passes::{fullscreen, mesh};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::Values;
+use crate::techniques::deep_shading::choices::constants_of;
+pub(super) use crate::techniques::deep_shading::resources::{NAME, NEAREST_BYTES, full};
+use crate::techniques::deep_shading::visibility::draw::Repeats;
+use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
 use std::sync::Arc;
 
 const NEAREST: &str = "visibility.nearest";
-/// nearest.glsl's words.
-pub const NEAREST_BYTES: u64 = 8;
-
-/// Whether samples are tested in a loop: `--sample-tests`, `auto` resolved. `bytes`: of the buffer that this takes.
-pub fn is_looped(values: &Values, caps: &Caps, visibility: Visibility, bytes: u64) -> bool {
-    let can = || Ability::WideAtomics.is_there(caps) && bytes <= caps.limits.max_storage_buffer_range_bytes;
-    visibility == Visibility::Stochastic
-        && match values.text("sample-tests") {
-            "loop" => true,
-            "layers" => false,
-            _ => can(),
-        }
-}
-
-/// What it is called in the report.
-pub fn name(is_looped: bool) -> &'static str {
-    if is_looped { "loop" } else { "layers" }
-}
 
 /// Errors: the device does not bind the buffer (exit code 4).
 pub fn require_fitting(samples: u64, limits: &Limits) -> Result<()> {

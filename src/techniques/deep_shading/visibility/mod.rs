@@ -7,6 +7,7 @@
 //! `ray` asks the host. `stochastic` draws a polygon around each triangle's blur, whose samples a shader tests: as `repeat-frame` does
 //! layer by layer, or once for all samples (looped.rs), with neither images of depth nor of several samples.
 
+pub(super) mod draw;
 pub mod instancing;
 pub mod layer;
 pub mod looped;
@@ -16,174 +17,24 @@ pub mod repeat_draw;
 pub mod repeat_frame;
 pub mod replicate;
 pub mod sample;
-mod spids;
+pub(super) mod samples;
+pub(super) mod spids;
+pub(super) mod stages;
 pub mod stochastic;
 
 use super::choices::Choices;
-use super::plan::{DEPTH, SHADING_DEPTHS, SPIDS};
 use super::primitives::Primitives;
-use super::tuples::Table;
-use super::{NAME, full};
-use crate::caps::Limits;
 use crate::error::Result;
-use crate::gpu::sampler::Sampler;
-use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Layers, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Layers, Traffic};
 use crate::passes::mesh;
 use crate::plan::Resources;
-use crate::resident::{DrawList, SceneGpu};
-use crate::settings::Values;
-use crate::units::Extent;
-use ash::vk;
+use crate::resident::SceneGpu;
+pub(super) use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::resources::NAME;
+use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples, begin_counters};
 use looped::Looped;
-use sample::{Repeats, Sample, Stages};
+use sample::Sample;
 use std::sync::Arc;
-
-/// What triangles are drawn as, and in which order tuples and draws come (`--visibility`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Visibility {
-    RepeatFrame,
-    RepeatDraw,
-    Instancing,
-    Replicate,
-    Stochastic,
-    Ray,
-}
-
-impl Visibility {
-    pub fn of(values: &Values) -> Self {
-        match values.text("visibility") {
-            "repeat-draw" => Self::RepeatDraw,
-            "instancing" => Self::Instancing,
-            "replicate" => Self::Replicate,
-            "stochastic" => Self::Stochastic,
-            "ray" => Self::Ray,
-            _ => Self::RepeatFrame,
-        }
-    }
-
-    /// All layers are drawn into at once.
-    pub fn is_layered(self) -> bool {
-        matches!(self, Self::RepeatDraw | Self::Instancing | Self::Replicate)
-    }
-
-    /// Whatever draws the samples' triangles again draws polygons around them, and finds the samples by what they see.
-    pub fn has_polygons(self) -> bool {
-        matches!(self, Self::Stochastic | Self::Ray)
-    }
-
-    /// How samples come into their layers.
-    pub fn writes(self) -> Access {
-        if self == Self::Ray { Access::TransferWrite } else { Access::ColorWrite }
-    }
-
-    /// Someone must say the layer, and may be chosen.
-    pub fn has_layer_from(self) -> bool {
-        matches!(self, Self::RepeatDraw | Self::Instancing)
-    }
-
-    /// How each draw call comes to its tuples; where layers are drawn one by one, those of the first.
-    pub fn repeats(self, scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
-        match self {
-            Self::RepeatFrame | Self::Stochastic | Self::Ray => repeat_frame::repeats(0),
-            Self::RepeatDraw => repeat_draw::repeats(tuple_count),
-            Self::Instancing => instancing::repeats(tuple_count),
-            Self::Replicate => replicate::repeats(scene, limits, tuple_count),
-        }
-    }
-
-    /// How often the vertices of a draw call are fetched.
-    pub fn round_count(self, repeats: &Repeats, layer_count: u32) -> u32 {
-        if self.is_layered() { repeats.round_count() } else { layer_count }
-    }
-
-    /// Tells `draw` the layers to open, one after the other or all together, and how calls repeat in them.
-    pub fn for_layers(self, repeats: &Repeats, layer_count: u32, mut draw: impl FnMut(Layers, &Repeats)) {
-        if self.is_layered() {
-            draw(Layers::All(layer_count), repeats);
-        } else {
-            (0..layer_count).for_each(|tuple| draw(Layers::One(tuple), &repeat_frame::repeats(tuple)));
-        }
-    }
-}
-
-/// Before fragments: whatever draws the samples' triangles again needs the same stages, as drivers may round otherwise after a
-/// geometry shader. `repeats`: of the same visibility.
-pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages {
-    match choices.visibility {
-        Visibility::RepeatFrame => Stages::sharp(sample::vertex_shader(scene, repeats, "none"), None),
-        Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
-        Visibility::Replicate => replicate::stages(scene, repeats),
-        Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices, "layer"),
-    }
-}
-
-/// One entry a sample.
-pub struct Samples {
-    pub spids: Image,
-    /// Of rasterised ones.
-    pub depth: Option<Image>,
-    /// How SPIDs and depths at shading points were written.
-    pub written: Access,
-    /// With `--zmax on`.
-    shading_depths: Option<Image>,
-    /// Texels are fetched: it only has to be there.
-    nearest: Sampler,
-}
-
-impl Samples {
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
-        Ok(Self {
-            spids: resources.image(&full(SPIDS)),
-            depth: choices.has_depth().then(|| resources.image(&full(DEPTH))),
-            written: choices.visibility.writes(),
-            shading_depths: choices.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
-            nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
-        })
-    }
-
-    pub fn sampled<'a>(&'a self, image: &'a Image, access: Access) -> Bound<'a> {
-        Bound::Sampled(image, self.nearest.handle, access)
-    }
-
-    pub fn shading_depths(&self) -> Option<&Image> {
-        self.shading_depths.as_ref()
-    }
-
-    fn bytes(&self) -> u64 {
-        let images = [Some(&self.spids), self.depth.as_ref(), self.shading_depths.as_ref()];
-        images.into_iter().flatten().map(|image| image.description.bytes()).sum()
-    }
-
-    fn colors(&self) -> impl Iterator<Item = &Image> {
-        std::iter::once(&self.spids).chain(self.shading_depths())
-    }
-
-    /// Opens rendering into `layers`, and clears them.
-    fn begin(&self, cmd: &mut Commands, layers: Layers) {
-        // No triangle; and the depth of nothing, which no list hears of.
-        let cleared = Some(vk::ClearColorValue { uint32: [u32::MAX; 4] });
-        let targets: Vec<_> = self.colors().map(|image| ColorTarget::new(image, cleared)).collect();
-        let depth = self.depth.as_ref().map(|depth| (depth, Some(0.0), Access::DepthWrite));
-        cmd.begin_layers(self.spids.description.extent, layers, &targets, depth);
-    }
-}
-
-/// What is drawn, and where.
-#[derive(Clone, Copy)]
-pub struct Drawn<'a> {
-    pub scene: &'a SceneGpu,
-    pub list: &'a DrawList,
-    pub primitives: &'a Primitives,
-    pub table: &'a Table,
-    pub frame: Extent,
-}
-
-/// Sets the counters of a frame to 0, for shaders of fragments to count on.
-pub fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
-    cmd.barriers([counters.discard(Access::TransferWrite)]);
-    cmd.clear(counters);
-    cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
-}
 
 /// Who draws triangles.
 pub enum Drawer {

@@ -4,12 +4,12 @@
 //! Geometry shaders give out so much and no more: the paper's 32 tuples of 32 bytes a vertex fit, but what samples need here
 //! is twice as long, so that a draw call comes again for the next tuples.
 
-use super::sample::{Repeats, Stages};
 use crate::caps::Limits;
 use crate::gpu::shader::techniques::deep_shading::visibility::replicate::{GEOM_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::variant;
 use crate::passes::mesh;
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
 
 /// Components of a vertex that replicate.geom gives out: place 4, layer 1, place in shading space 4, triangle 1, weights 3,
 /// coordinates 2, tuple 1; then colour 4 and second coordinates 2.

@@ -3,10 +3,8 @@
 //! writes  visibility.spids and, with `--zmax on`, visibility.shading_depths, as visibility/mod.rs has them
 
 use super::super::choices::Choices;
-use super::super::plan::{SHADING_DEPTH_FORMAT, SPID_FORMAT};
 use super::super::primitives::Primitives;
-use super::super::{constants_of, full, ranges};
-use super::{Drawn, Samples};
+use super::super::ranges;
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::spids::FRAG_VARIANTS;
@@ -15,6 +13,9 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Layers};
 use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::resources::{SHADING_DEPTH_FORMAT, SPID_FORMAT, full};
+use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
 use std::sync::Arc;
 
 const RANGES: &str = "visibility.draws";

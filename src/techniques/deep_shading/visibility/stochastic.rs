@@ -9,11 +9,12 @@
 //! the very same samples; polygons' sides touch the hull of the blur instead of walking around it.
 
 use super::super::choices::Choices;
-use super::polygon::{self, PolygonFrom};
-use super::sample::Stages;
+use super::polygon;
 use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::Sides;
+use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
+use crate::techniques::deep_shading::visibility::draw::Stages;
 
 /// BOUND_MOST_SIDES and BOUND_STILL_SIDES of bound.glsl.
 const MOST_SIDES: u32 = 12;

@@ -1,10 +1,10 @@
 //! The host's part: the atlas of every mesh that is drawn, as shaders read it. What has none is refused.
 
-use super::super::super::NAME;
 use crate::error::{Error, Result};
 use crate::resident::groups_of;
 use crate::scene::atlas::{Atlas, Flaw};
 use crate::scene::{Mesh, Scene, procedural};
+use crate::techniques::deep_shading::resources::NAME;
 use glam::Vec2;
 use rayon::prelude::*;
 

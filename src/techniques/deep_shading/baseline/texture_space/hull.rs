@@ -2,9 +2,7 @@
 //! reads   the scene, texture_space.atlas, texture_space.charts
 
 use super::super::super::choices::Choices;
-use super::super::super::constants_of;
 use super::super::super::shade::vertex::HULL_VERTICES;
-use super::super::super::visibility::Drawn;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
@@ -12,6 +10,8 @@ use crate::gpu::shader::techniques::deep_shading::baseline::texture_space::hull:
 use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
 use crate::resident::{DrawList, SceneGpu};
+use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::visibility::samples::Drawn;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;

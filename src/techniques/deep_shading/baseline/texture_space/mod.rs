@@ -26,15 +26,15 @@ pub mod pool;
 pub mod shade;
 
 use super::super::choices::Choices;
-use super::super::full;
-use super::super::visibility::Drawn;
 use super::super::visibility::sample::{Sample, Sets};
-use super::mesh;
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
+use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::Inputs;
+use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::visibility::samples::Drawn;
 use ash::vk;
 use atlases::Atlases;
 use hull::Hulls;

@@ -4,49 +4,36 @@
 //! texture_space.owners.N     buffer, 4 B a texel: atlas.glsl says of what; ours, not the paper's
 //! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument off` 16 B that nobody reads
 
-use super::super::super::{NAME, full};
 use crate::error::{Error, Result};
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, readback};
 use crate::plan::{Plan, Resources};
-use crate::settings::Values;
 use crate::techniques::Inputs;
+pub(super) use crate::techniques::deep_shading::modes::pool_size::PoolSize;
+use crate::techniques::deep_shading::resources::{NAME, full};
 use crate::units::Bytes;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const TEXEL_BYTES: u64 = 8;
-const OWNER_BYTES: u64 = 4;
+pub(super) const TEXEL_BYTES: u64 = 8;
+pub(super) const OWNER_BYTES: u64 = 4;
 
-/// How many textures (`--shading-textures`), and how large (`--shading-texture-size`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PoolSize {
-    pub count: u32,
-    /// Texels of a side of the finest level: a power of two.
-    pub side_px: u32,
-}
-
-fn texels(side_px: u32) -> u64 {
+pub(super) fn texels(side_px: u32) -> u64 {
     (0..=side_px.ilog2()).map(|level| u64::from(side_px >> level).pow(2)).sum()
 }
 
-fn texture(index: u32) -> String {
+pub(super) fn texture(index: u32) -> String {
     full(&format!("texture_space.textures.{index}"))
 }
 
-fn owners(index: u32) -> String {
+pub(super) fn owners(index: u32) -> String {
     full(&format!("texture_space.owners.{index}"))
 }
 
-fn touched(index: u32) -> String {
+pub(super) fn touched(index: u32) -> String {
     full(&format!("texture_space.touched.{index}"))
 }
 
 impl PoolSize {
-    pub fn of(values: &Values) -> Self {
-        let side_px = values.text("shading-texture-size").parse().expect("it is one of a list");
-        Self { count: values.integer("shading-textures") as u32, side_px }
-    }
-
     /// Errors: the device binds no buffer as long as a texture (exit code 4, and which fits).
     pub fn require_fitting(self, inputs: &Inputs<'_>) -> Result<()> {
         let limits = &inputs.caps.limits;

@@ -10,16 +10,15 @@ mod tree;
 
 use super::super::choices::Choices;
 use super::super::lists::direct::HostLists;
-use super::super::plan::LINEAR_COUNT;
 use super::super::primitives::Primitives;
-use super::super::{NAME, full};
-use super::{Samples, begin_counters};
 use crate::error::{Error, Result};
 use crate::gpu::{Access, Buffer, Commands, Image, Traffic};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
 use crate::progress::Stage;
 use crate::techniques::Inputs;
+use crate::techniques::deep_shading::resources::{LINEAR_COUNT, NAME, full};
+use crate::techniques::deep_shading::visibility::samples::{Samples, begin_counters};
 use crate::units::Bytes;
 use ash::vk::BufferUsageFlags;
 use std::cell::RefCell;

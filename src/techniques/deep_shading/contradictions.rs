@@ -1,0 +1,66 @@
+//! Settings that cannot be together.
+
+use crate::error::{Error, Result};
+use crate::settings::Values;
+use crate::techniques::deep_shading::resources::NAME;
+
+/// Errors: both eyes, and what knows of one (exit code 2).
+pub fn require_both(values: &Values) -> Result<()> {
+    if values.number("stereo") == 0.0 || values.text("stereo-eyes") != "both" {
+        return Ok(());
+    }
+    let why = match values.text("shading") {
+        "msaa" => "--shading msaa: it draws a pixel's samples at once, which are one eye's",
+        _ if values.is_on("reconstruct") => "--reconstruct on: it filters what one eye sees",
+        _ => return Ok(()),
+    };
+    Err(Error::request(format!("--stereo {} with {why}", values.text("stereo")))
+        .within(NAME)
+        .note("--stereo-eyes left and --stereo-eyes right have the picture of one eye each"))
+}
+
+/// Errors: samples have no SPIDs, from which their blur is found (exit code 2).
+pub fn require_spids(values: &Values) -> Result<()> {
+    let refused = |setting: &str, instead: &str| {
+        let kind = values.text(setting);
+        let why =
+            format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
+        Err(Error::request(why).within(NAME).note(format!("--{setting} {instead} keeps them")))
+    };
+    match (values.is_on("reconstruct"), values.text("shading"), values.text("lists")) {
+        (false, ..) => Ok(()),
+        (true, "deep", "direct") => refused("lists", "linked"),
+        (true, "deep", _) => Ok(()),
+        (true, shading, _) => {
+            let why = format!("--reconstruct on with --shading {shading}: it filters what the lists' samples see");
+            Err(Error::request(why).within(NAME).note("--shading deep has them"))
+        }
+    }
+}
+
+/// Errors: `--lists direct` without rays, or without the addresses that stand for SPIDs (exit code 2).
+pub fn require_direct(values: &Values) -> Result<()> {
+    let refused =
+        |why: &str, advice: &str| Err(Error::request(format!("--lists direct: {why}")).within(NAME).note(advice));
+    match values.text("lists") {
+        "direct" if values.text("visibility") != "ray" => {
+            refused("only rays know a sample's triangle at once", "--visibility ray has them")
+        }
+        "direct" if !values.is_on("address-buffer") => {
+            refused("without SPIDs a sample needs its address", "--address-buffer on gives it one")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Errors: the device draws triangles itself that shading space has bent (exit code 2).
+pub fn require_straight(values: &Values) -> Result<()> {
+    let road = values.text("conservative");
+    if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
+        let why = "in a foveated shading space triangles are not straight";
+        return Err(Error::request(format!("--conservative {road}: {why}"))
+            .within(NAME)
+            .note("--conservative geometry and vertex draw what holds them"));
+    }
+    Ok(())
+}

@@ -1,0 +1,28 @@
+//! Where both eyes see from: the middle between them, and its lens.
+
+use crate::gpu::shader::structs::FrameBlock;
+use crate::lens::Lens;
+use glam::{Mat4, Vec4};
+
+/// Clip space from world space as the middle of what sees has it. `clip`: the camera's; `depth`: what a point is multiplied with
+/// for its distance before the camera; `metre`: by how much clip space's x grows a metre to the right.
+pub fn clip_from(clip: Mat4, depth: Vec4, metre: f32, lens: Lens) -> Mat4 {
+    // As visibility/seen.glsl moves what a place on the lens sees.
+    let mut rows = clip.transpose();
+    rows.x_axis += lens.middle() * metre * (depth / lens.focus - Vec4::W);
+    rows.transpose()
+}
+
+/// The eye of `frame`, which is the camera's, in the middle of what sees.
+pub fn seen_from(frame: FrameBlock, lens: Option<Lens>) -> FrameBlock {
+    let Some(lens) = lens else { return frame };
+    let [eye, right, forward] = [frame.eye_ws, frame.right_ws, frame.forward_ws].map(Vec4::from);
+    // Rays that are parallel lean towards the same place in the plane in focus.
+    let is_perspective = eye.w > 0.0;
+    let leaning = (forward - right * (lens.middle() / lens.focus)).normalize();
+    FrameBlock {
+        eye_ws: (eye + right * lens.middle()).to_array(),
+        forward_ws: if is_perspective { frame.forward_ws } else { leaning.to_array() },
+        ..frame
+    }
+}

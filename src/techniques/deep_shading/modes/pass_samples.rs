@@ -1,0 +1,35 @@
+//! Samples a pixel that are drawn at once (`--pass-samples`).
+
+use crate::caps::{Ability, Caps, Need};
+use crate::error::{Error, Result};
+use crate::settings::Values;
+
+/// More than one sample a pixel, most first.
+pub const MULTIPLE: [(u32, Ability); 2] = [(8, Ability::EightSamples), (4, Ability::FourSamples)];
+
+/// Samples a pixel of a pass (`--pass-samples`); auto: as many as the device has and `spp` is a multiple of.
+///
+/// Errors: `spp` is no multiple of them (exit code 2).
+pub fn pass_samples(values: &Values, caps: &Caps, spp: u32) -> Result<u32> {
+    let Some(samples) = values.integer_or_auto("pass-samples") else {
+        let fits = |(samples, ability): &&(u32, Ability)| spp.is_multiple_of(*samples) && ability.is_there(caps);
+        return Ok(MULTIPLE.iter().find(fits).map_or(1, |(samples, _)| *samples));
+    };
+    let samples = samples as u32;
+    if spp.is_multiple_of(samples) {
+        return Ok(samples);
+    }
+    Err(Error::request(format!("--pass-samples {samples}: --spp {spp} is no multiple of it"))
+        .note(format!("--spp {} works, and --pass-samples 1 always", spp.next_multiple_of(samples))))
+}
+
+/// What `--pass-samples` needs of a device; of other kinds of `--shading` nothing, which refuse it.
+pub fn needs(values: &Values) -> Option<Need> {
+    let asked = values.text("pass-samples");
+    if values.text("shading") != "msaa" {
+        return None;
+    }
+    let (_, ability) = MULTIPLE.into_iter().find(|(samples, _)| asked == samples.to_string())?;
+    let instead = "--pass-samples auto takes as many as there are";
+    Some(Need { of: format!("--pass-samples {asked}"), ability, instead })
+}

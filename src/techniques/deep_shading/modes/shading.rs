@@ -1,0 +1,162 @@
+//! What is shaded (`--shading`), and which settings go with it.
+
+use crate::caps::Caps;
+use crate::error::{Error, Result};
+use crate::settings::{Condition, Unread, Values, readers};
+use crate::techniques::deep_shading::modes::pass_samples;
+use crate::techniques::deep_shading::modes::pool_size::PoolSize;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::resources::NAME;
+use crate::techniques::deep_shading::settings::SETTINGS;
+
+/// Settings that not everything that is shaded reads.
+pub const CONDITIONS: &[Condition] = &[
+    Condition { key: "guard-band", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition {
+        key: "shading-scale",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                &["deep", "indirect-gbuffer", "texture-space"],
+                "it shades no pixels of shading space",
+            )
+        },
+    },
+    Condition { key: "shading-warp", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition { key: "warp-falloff", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition { key: "lists", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition {
+        key: "list-access",
+        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples' colours are in images"),
+    },
+    Condition { key: "duplicates", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "compaction", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "zmax", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "address-buffer", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "conservative", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "shaded-triangles", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition {
+        key: "layer-from",
+        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples are drawn layer by layer"),
+    },
+    Condition {
+        key: "polygon-from",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                &["deep", "indirect-gbuffer", "ssaa", "texture-space"],
+                "its triangles come from vertex shaders",
+            )
+        },
+    },
+    Condition {
+        key: "sample-tests",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                OF_SPACE,
+                "samples are drawn and coloured layer by layer, or as many at a time as an image has",
+            )
+        },
+    },
+    Condition {
+        key: "pass-samples",
+        unread: |values| Unread::unless(values, "shading", &["msaa"], "samples are drawn one at a time"),
+    },
+    Condition {
+        key: "shading-cache",
+        unread: |values| Unread::unless(values, "shading", &["indirect-gbuffer"], "it has no cache"),
+    },
+    Condition {
+        key: "shading-textures",
+        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
+    },
+    Condition {
+        key: "shading-texture-size",
+        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
+    },
+];
+
+pub const OF_SPACE: &[&str] = &["deep", "indirect-gbuffer"];
+
+pub const NO_SPACE: &str = "it has no shading space";
+
+pub const NO_LISTS: &str = "it has no lists";
+
+/// What is shaded (`--shading`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// What the lists have.
+    Deep,
+    /// What samples point to in a compact geometry buffer.
+    IndirectGbuffer,
+    /// Every sample that is drawn.
+    Ssaa,
+    /// A pixel's samples that see a triangle, once.
+    Msaa {
+        /// Samples a pixel that are drawn at once.
+        pass_samples: u32,
+    },
+    /// Texels of each draw's texture.
+    TextureSpace(PoolSize),
+}
+
+impl Shading {
+    /// The value of `--shading`, with `spp` samples a pixel.
+    ///
+    /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
+    pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
+        let text = values.text("shading");
+        readers::require_read(CONDITIONS, SETTINGS, values)?;
+        Ok(match text {
+            "deep" => Self::Deep,
+            "indirect-gbuffer" => Self::IndirectGbuffer,
+            "ssaa" => Self::Ssaa,
+            "texture-space" => Self::TextureSpace(PoolSize::of(values)),
+            "msaa" => Self::Msaa { pass_samples: pass_samples::pass_samples(values, caps, spp)? },
+            other => panic!("--shading {other} was checked"),
+        })
+    }
+
+    /// How samples find what they see.
+    ///
+    /// Errors: what is drawn sample by sample has no such kind (exit code 2).
+    pub fn visibility(self, values: &Values) -> Result<Visibility> {
+        let visibility = Visibility::of(values);
+        let goes_with_all = matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic);
+        match self {
+            Self::Deep | Self::IndirectGbuffer => Ok(visibility),
+            Self::Msaa { .. } if goes_with_all => Ok(Visibility::Stochastic),
+            _ if goes_with_all => Ok(visibility),
+            Self::Msaa { .. } | Self::Ssaa | Self::TextureSpace(_) => {
+                let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
+                let (why, advice) = match self {
+                    Self::Msaa { .. } => ("a shader tests its samples", "--visibility stochastic does"),
+                    _ => (
+                        "samples are drawn and coloured layer by layer",
+                        "--visibility repeat-frame and stochastic do so",
+                    ),
+                };
+                Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}"))
+                    .within(NAME)
+                    .note(advice))
+            }
+        }
+    }
+
+    /// The logarithm to 2 of a texture's side; 0: there are none.
+    pub fn texture_side_bits(self) -> u32 {
+        if let Self::TextureSpace(size) = self { size.side_px.ilog2() } else { 0 }
+    }
+
+    /// Samples a pixel of what is drawn into.
+    pub fn pass_samples(self) -> u32 {
+        match self {
+            Self::Msaa { pass_samples } => pass_samples,
+            Self::Deep | Self::IndirectGbuffer | Self::Ssaa | Self::TextureSpace(_) => 1,
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! What shading space is drawn with.
+
+use crate::gpu::shader::Shader;
+
+/// What a road draws with.
+pub struct Stages {
+    pub(super) vertex: &'static Shader,
+    pub(super) geometry: Option<&'static Shader>,
+    pub(super) is_conservative: bool,
+    /// Vertices of a triangle.
+    pub(super) vertex_count: u32,
+}

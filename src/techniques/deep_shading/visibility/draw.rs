@@ -1,0 +1,88 @@
+//! Drawing the triangles of samples: by which stages, and how often.
+
+use crate::gpu::Commands;
+use crate::gpu::pipeline::GraphicsPipeline;
+use crate::gpu::shader::techniques::deep_shading::visibility::sample::VERT_VARIANTS;
+use crate::gpu::shader::{Shader, variant};
+use crate::passes::mesh::{self, Sides};
+use crate::resident::{DrawCall, SceneGpu};
+use crate::techniques::deep_shading::primitives::{self, Primitives};
+use std::ops::Range;
+
+/// How each draw call comes to its tuples.
+pub struct Repeats {
+    /// The call comes again for every `step`th of them, and is told it.
+    pub tuples: Range<u32>,
+    pub step: u32,
+    /// Of each of these. More than one: an instance is a tuple.
+    pub instance_count: u32,
+}
+
+impl Repeats {
+    /// How often a vertex is fetched.
+    pub fn round_count(&self) -> u32 {
+        (self.tuples.len() as u32).div_ceil(self.step) * self.instance_count
+    }
+}
+
+/// What triangles are drawn with.
+pub struct Stages {
+    pub vertex: &'static Shader,
+    pub geometry: Option<&'static Shader>,
+    pub sides: Sides,
+    /// Vertices of a triangle.
+    pub vertex_count: u32,
+}
+
+impl Stages {
+    /// Of triangles as one tuple sees them.
+    pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
+        Self { vertex, geometry, sides: Sides::AsDrawn, vertex_count: 3 }
+    }
+
+    /// How many vertices a call has, and the first.
+    pub fn vertices(&self, call: &DrawCall) -> [u32; 2] {
+        [call.index_count, call.first_index].map(|indices| indices / 3 * self.vertex_count)
+    }
+}
+
+/// The vertex stage for `scene`. `layer`: a value of its axis LAYER.
+pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str) -> &'static Shader {
+    let tuple = if repeats.instance_count > 1 { "instance" } else { "pushed" };
+    variant(VERT_VARIANTS, &[mesh::vertex_name(scene), tuple, layer])
+}
+
+/// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
+pub fn draw<'a>(
+    cmd: &Commands,
+    (pipeline, stages): (&GraphicsPipeline, &Stages),
+    scene: &SceneGpu,
+    primitives: &Primitives,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+    repeats: &Repeats,
+) {
+    draw_by(cmd, (pipeline, stages.sides), scene, primitives, calls, repeats, |call| {
+        let [count, first] = stages.vertices(call);
+        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
+    });
+}
+
+/// The same for whom draws the vertices of a call itself: `draw`, for each of its repeats.
+pub fn draw_by<'a>(
+    cmd: &Commands,
+    (pipeline, sides): (&GraphicsPipeline, Sides),
+    scene: &SceneGpu,
+    primitives: &Primitives,
+    calls: impl IntoIterator<Item = &'a DrawCall>,
+    repeats: &Repeats,
+    mut draw: impl FnMut(&DrawCall),
+) {
+    mesh::for_each(cmd, pipeline, scene, sides, calls, |call| {
+        let params = primitives.params(scene, call);
+        for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {
+            cmd.push(&pipeline.interface, bytemuck::bytes_of(&primitives::of_tuple(params, tuple)));
+            draw(call);
+        }
+    });
+}

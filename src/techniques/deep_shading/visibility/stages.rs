@@ -1,0 +1,51 @@
+//! Before fragments: the stages of each kind of visibility, and how its calls repeat.
+
+use crate::caps::Limits;
+use crate::gpu::Layers;
+use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::choices::Choices;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::visibility::draw;
+use crate::techniques::deep_shading::visibility::instancing;
+use crate::techniques::deep_shading::visibility::repeat_draw;
+use crate::techniques::deep_shading::visibility::repeat_frame;
+use crate::techniques::deep_shading::visibility::replicate;
+use crate::techniques::deep_shading::visibility::sample::{Repeats, Stages};
+use crate::techniques::deep_shading::visibility::stochastic;
+
+impl Visibility {
+    /// How each draw call comes to its tuples; where layers are drawn one by one, those of the first.
+    pub fn repeats(self, scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
+        match self {
+            Self::RepeatFrame | Self::Stochastic | Self::Ray => repeat_frame::repeats(0),
+            Self::RepeatDraw => repeat_draw::repeats(tuple_count),
+            Self::Instancing => instancing::repeats(tuple_count),
+            Self::Replicate => replicate::repeats(scene, limits, tuple_count),
+        }
+    }
+
+    /// How often the vertices of a draw call are fetched.
+    pub fn round_count(self, repeats: &Repeats, layer_count: u32) -> u32 {
+        if self.is_layered() { repeats.round_count() } else { layer_count }
+    }
+
+    /// Tells `draw` the layers to open, one after the other or all together, and how calls repeat in them.
+    pub fn for_layers(self, repeats: &Repeats, layer_count: u32, mut draw: impl FnMut(Layers, &Repeats)) {
+        if self.is_layered() {
+            draw(Layers::All(layer_count), repeats);
+        } else {
+            (0..layer_count).for_each(|tuple| draw(Layers::One(tuple), &repeat_frame::repeats(tuple)));
+        }
+    }
+}
+
+/// Before fragments: whatever draws the samples' triangles again needs the same stages, as drivers may round otherwise after a
+/// geometry shader. `repeats`: of the same visibility.
+pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages {
+    match choices.visibility {
+        Visibility::RepeatFrame => Stages::sharp(draw::vertex_shader(scene, repeats, "none"), None),
+        Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
+        Visibility::Replicate => replicate::stages(scene, repeats),
+        Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices, "layer"),
+    }
+}
