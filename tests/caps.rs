@@ -371,7 +371,7 @@ fn a_device_can_be_planned_for_by_what_it_says_of_itself() {
     let plan = ["memory", SCENE, "--technique", "deferred", "--size", "64x36", "--plan"];
     let from = |more: &[&str]| program.run(&[&plan[..], more].concat()).fine();
     let own = from(&["--caps", "devices.json", "--device", "0"]);
-    assert!(own.out.contains("nobody has measured how this driver rounds"), "{}", own.out);
+    assert!(own.out.contains("how this driver rounds sizes has not been measured"), "{}", own.out);
     assert!(!from(&[]).out.contains("nobody has measured"));
     let json = from(&["--caps", "devices.json", "--device", "0", "--json"]).json();
     let identity = &devices.json()["devices"][0]["caps"]["identity"];

@@ -12,7 +12,7 @@ pub fn with_gate_args(command: Command) -> Command {
         Arg::new(name).long(name).value_name("METRIC=VALUE").action(ArgAction::Append).help(help)
     };
     let threshold = Arg::new("threshold").long("threshold").value_name("T").allow_negative_numbers(true).help(format!(
-        "The HDR-FLIP, 0 to 1, above which a pixel counts in over_threshold [default: {DEFAULT_THRESHOLD}]"
+        "HDR-FLIP error, 0 to 1, above which a pixel counts in over_threshold [default: {DEFAULT_THRESHOLD}]"
     ));
     command
         .arg(gate(

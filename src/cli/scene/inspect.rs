@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// The sub-verb with its arguments.
 pub fn command() -> Command {
     Command::new("inspect")
-        .about("Say what a scene holds, and what of it is left out or approximated")
+        .about("Print what a scene holds, and what of it is left out or approximated")
         .arg(
             Arg::new("scene")
                 .value_name("SCENE")
