@@ -72,7 +72,7 @@ impl Earlier {
         if let Some(index) = pixels.iter().position(|pixel| !is_mean(pixel, count as f32)) {
             let (x, y) = (index as u32 % extent.width, index as u32 / extent.width);
             return Err(earlier.refused(&format!(
-                "pixel ({x}, {y}) is {:?}, which {count} samples with the sums {:?} do not come to",
+                "pixel ({x}, {y}) is {:?}, which {count} samples with the sums {:?} cannot give",
                 &pixels[index][..3],
                 &pixels[index][3..]
             )));
@@ -134,7 +134,7 @@ impl Earlier {
     fn settings(&self) -> Result<Value> {
         let text = self.text(SETTINGS)?;
         let settings = serde_json::from_str(text).ok().filter(Value::is_object);
-        settings.ok_or_else(|| self.refused(&format!("{SETTINGS} is no JSON object: {}", quoted(text))))
+        settings.ok_or_else(|| self.refused(&format!("{SETTINGS} is not a JSON object: {}", quoted(text))))
     }
 
     fn require_text(&self, name: &str, ours: &str) -> Result<()> {
@@ -148,7 +148,7 @@ impl Earlier {
     fn text(&self, name: &str) -> Result<&str> {
         let text = self.texts.get(name).map(String::as_str);
         text.ok_or_else(|| {
-            self.refused(&format!("there is no {name} in its header; a picture that can be gone on with has it"))
+            self.refused(&format!("there is no {name} in its header; a picture that can be continued has it"))
         })
     }
 

@@ -1,4 +1,4 @@
-//! Job: a checked request for one picture; `Job::run` is the whole road on one screen.
+//! Job: a checked request for one picture; `Job::run` is the whole path from arguments to report on one screen.
 
 use crate::earlier::{self, Earlier};
 use crate::error::{Error, Result};
@@ -129,7 +129,7 @@ impl Job {
         let settings = settings_of(self.technique);
         match settings.iter().find(|setting| setting.key == key) {
             Some(setting) => self.values.set(setting, value).map_err(|error| error.within(name)),
-            None => Err(Error::request(format!("{name}: it does not read --{key}"))
+            None => Err(Error::request(format!("{name} does not read --{key}"))
                 .note(format!("`quincunx render --technique {name} --help` lists what it reads"))),
         }
     }

@@ -1,15 +1,15 @@
 //! Progress: what may take long says that it has begun, how far it is, and that it has ended.
 //!
-//! Why this way: like Ctrl-C (src/interrupt.rs), who looks on is a matter of the process, and not of a picture, so that no
-//! importer and no tree hands an observer down. The binary installs one; a library's process has none, and nothing is said.
+//! Why this way: like Ctrl-C (src/interrupt.rs), the observer belongs to the process, not to a picture, so that
+//! importers and tree builders need not pass one down. The binary installs one; without one nothing is printed.
 
 use std::fmt::Display;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Who looks on. Stages lie inside each other: the last that began is the first that ends.
+/// An observer of progress. Stages are nested: the last that began is the first that ends.
 pub trait Progress: Send + Sync {
-    /// A stage begins. `unit`: what is counted in it, in the plural; empty where nothing is.
+    /// A stage begins. `unit`: what is counted in it, in the plural; empty where nothing is counted.
     fn begins(&self, name: &str, unit: &'static str);
 
     /// `done` of `all` units of the innermost stage are done.

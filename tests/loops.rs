@@ -16,7 +16,7 @@ fn a_sum_that_the_driver_ends_early_is_no_picture() {
         Some(turns) => {
             let error = picture.unwrap_err();
             assert_eq!(error.exit_code(), 1, "{error}");
-            assert!(error.to_string().contains(&format!("after {turns} turns")), "{error}");
+            assert!(error.to_string().contains(&format!("after {turns} iterations")), "{error}");
         }
     }
 }

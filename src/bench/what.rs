@@ -90,7 +90,7 @@ impl What {
                 format!("--fuse on: {technique} has no passes of the {} alone", self.name())
             }
             (Self::Split, Some(split), ..) => format!("--split {split} makes no copy"),
-            (Self::Gather, Some(split), ..) => format!("--split {split} makes no copy, and gathers none"),
+            (Self::Gather, Some(split), ..) => format!("--split {split} makes no copy, and gathers nothing"),
             (Self::Filter, .., Some("none")) => "--filter none filters nothing".to_owned(),
             (Self::Filter, Some(split), Some(pattern), _) => {
                 format!("--split {split} --pattern {pattern} is not interleaved: nothing is filtered")

@@ -112,7 +112,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         }
     }
     if found.interrupted {
-        let way_out = if folder.is_some() { "--resume goes on" } else { "with -o DIR, --resume could go on" };
+        let way_out = if folder.is_some() { "--resume continues" } else { "with -o DIR, --resume could continue" };
         return Err(Error::interrupted("interrupted; finished rows are valid").note(way_out));
     }
     found.gates

@@ -264,9 +264,9 @@ mod tests {
         for (argument, cause) in [
             ("mse=1", "there is no metric mse"),
             ("rmse", "it has no ="),
-            ("rmse=small", "small is no number"),
-            ("rmse=nan", "nan is no number"),
-            ("rmse=", " is no number"),
+            ("rmse=small", "small is not a number"),
+            ("rmse=nan", "nan is not a number"),
+            ("rmse=", " is not a number"),
         ] {
             let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--max", argument]).err().unwrap();
             assert_eq!(error.exit_code(), 2);

@@ -36,7 +36,7 @@ pub fn gates(matches: &ArgMatches) -> Result<Vec<Gate>> {
         .collect()
 }
 
-/// Errors: it is no number from 0 to 1 (exit code 2).
+/// Errors: it is not a number from 0 to 1 (exit code 2).
 pub fn threshold(matches: &ArgMatches) -> Result<f64> {
     let Some(text) = matches.get_one::<String>("threshold") else { return Ok(DEFAULT_THRESHOLD) };
     text.parse().ok().filter(|threshold| (0.0..=1.0).contains(threshold)).ok_or_else(|| {

@@ -63,7 +63,7 @@ impl Progress for Lines {
     }
 }
 
-/// Of a stage that has ended.
+/// Line for a stage that has ended.
 fn line(ended: &Shown) -> String {
     let count = match ended.pace.all {
         0 => String::new(),

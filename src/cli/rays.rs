@@ -1,4 +1,4 @@
-//! `quincunx bench rays`: what the walks of the tree do on a device, beside the host.
+//! `quincunx bench rays`: times of the walks of the tree on a device, beside the host.
 
 use super::{job_args, progress};
 use crate::bench::rays::{self, Request, Variant, report};

@@ -150,7 +150,7 @@ impl Access {
 pub struct AccessSet(u32);
 
 impl AccessSet {
-    /// Not touched in this frame. A frame begins after the fence of the one before it, so nothing is waited for.
+    /// Not touched in this frame. A frame begins after the fence of the one before it, so there is nothing to wait for.
     pub const UNTOUCHED: Self = Self(0);
 
     pub fn iter(self) -> impl Iterator<Item = Access> {
@@ -236,7 +236,7 @@ pub struct Barrier {
     pub(super) discard: bool,
 }
 
-/// What a barrier is about.
+/// The resource that a barrier covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     Buffer(vk::Buffer),
@@ -262,12 +262,12 @@ impl Buffer {
         Target::Buffer(self.handle)
     }
 
-    /// States who touched it last.
+    /// Names the access that touched it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
+    /// First touch of the frame, old contents not needed; it waits for the resource that had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
         Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
     }
@@ -278,12 +278,12 @@ impl Image {
         Target::Image(self.handle, self.aspect())
     }
 
-    /// States who touched it last.
+    /// Names the access that touched it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
+    /// First touch of the frame, old contents not needed; it waits for the resource that had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
         Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
     }
@@ -308,8 +308,8 @@ impl Barrier {
         self.discard && self.from != AccessSet::UNTOUCHED
     }
 
-    /// What makes the accesses of those who had the bytes before available: a barrier of one resource speaks of its own
-    /// accesses only.
+    /// Barriers that make the accesses of the bytes' earlier owners available: a barrier of one resource speaks of its
+    /// own accesses only.
     pub(super) fn memory_barrier(&self) -> vk::MemoryBarrier2<'static> {
         vk::MemoryBarrier2::default()
             .src_stage_mask(self.from.stages())

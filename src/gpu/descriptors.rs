@@ -17,7 +17,7 @@ pub enum Bound<'a> {
     Storage(&'a Image),
     /// Through a sampler, layout as `access` has it.
     Sampled(&'a Image, vk::Sampler, Access),
-    /// What rays go through.
+    /// The acceleration structure that rays are traced through.
     Structure(&'a Structure),
 }
 

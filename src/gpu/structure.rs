@@ -33,7 +33,7 @@ pub const SCRATCH: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
     vk::BufferUsageFlags::STORAGE_BUFFER.as_raw() | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS.as_raw(),
 );
 
-/// What a structure is over.
+/// Geometry or instances that a structure is built over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
     /// Triangles, `TRIANGLE_BYTES` each. `is_opaque`: a ray may stop at any of them without asking the shader.
@@ -128,7 +128,7 @@ pub struct Structure {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::AccelerationStructureKHR,
     over: Over,
-    /// What barriers are about.
+    /// The buffer that barriers name.
     pub buffer: Buffer,
 }
 

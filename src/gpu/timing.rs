@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// Whose clock a time is.
+/// The clock of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The host's, from a submit to its fence. Lavapipe writes a dispatch's time into the draw before it when both stand in

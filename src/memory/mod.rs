@@ -53,14 +53,14 @@ impl Strategy {
 }
 
 /// Buffers and linear images on one side, optimally tiled images on the other: the two sides share a memory block only
-/// in an arena, where whoever places the parts keeps them bufferImageGranularity apart.
+/// in an arena, where the caller that places the parts keeps them bufferImageGranularity apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tiling {
     Linear,
     Optimal,
 }
 
-/// What a resource asks for.
+/// A resource's request for memory.
 pub struct Request<'a> {
     /// Full name: `interleaved_deferred.gather.irradiance`.
     pub name: &'a str,
@@ -86,9 +86,9 @@ pub struct Allocation {
 
 /// Whose range it is.
 enum Source {
-    /// Its own.
+    /// A range of its own.
     Range { block: u32, bytes: u64 },
-    /// The arena's, which stays as long as any of its parts.
+    /// A part of an arena, which stays as long as any of its parts.
     Part { _arena: Arc<Arena> },
 }
 
@@ -148,7 +148,7 @@ impl Memory {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// What these requirements come to in numbers, with the memory type that the use gets.
+    /// These requirements in numbers, with the memory type that the use gets.
     ///
     /// Errors: no memory type fits (exit code 4).
     pub fn ask(&self, requirements: &vk::MemoryRequirements, usage: Use, tiling: Tiling) -> Result<Ask> {
@@ -252,7 +252,7 @@ fn allocating(ask: &Ask, name: &str, usage: Use) -> String {
     format!("allocating {name} ({}, {usage}, type {})", Bytes(ask.bytes), ask.type_index)
 }
 
-/// What the heap of this memory type holds, and for whom.
+/// What the heap of this memory type holds, and for which resources.
 fn held(ledger: &Ledger, pool: &Pool, type_index: u32) -> String {
     let groups = ledger.greatest_groups(3, |other| pool.share_a_heap(other, type_index));
     if groups.is_empty() {
@@ -273,7 +273,7 @@ fn refuse(state: &mut State, ask: &Ask, name: &str, usage: Use, misfit: Misfit) 
     refused(&state.ledger, &state.pool, ask, name, usage, misfit)
 }
 
-/// Why a resource goes nowhere, and who holds what.
+/// The error for a resource that fits nowhere, with what holds how many bytes.
 fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misfit: Misfit) -> Error {
     let what = allocating(ask, name, usage);
     match misfit {
@@ -281,7 +281,8 @@ fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misf
             Error::memory(format!("{what}: the device makes memory blocks of at most {}", Bytes(most_bytes)))
         }
         Misfit::TooMany { most } => Error::memory(format!(
-            "{what}: the device makes at most {most} memory blocks (maxMemoryAllocationCount), and as many are there"
+            "{what}: the device makes at most {most} memory blocks (maxMemoryAllocationCount), and that many \
+             exist already"
         ))
         .note("--allocation linear and tlsf put several resources into one"),
         Misfit::Spent { limit_bytes, held_bytes, is_budget } => {

@@ -70,7 +70,7 @@ mod tests {
         assert!(relative_error(&[[f32::NAN, 0.0, 0.0, f32::NAN]], 16).is_nan());
     }
 
-    /// Of independent samples it is the error that their means have.
+    /// The estimate for independent samples is the error that their means have.
     #[test]
     fn independent_samples_are_as_far_off_as_they_say() {
         let mut random = Pcg32::new(5, 0);

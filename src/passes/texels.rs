@@ -47,7 +47,7 @@ const IDLE_WALK_TURNS: u64 = 3;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LightLoad {
     pub light_count: u64,
-    /// Those that cast shadow rays.
+    /// Number of those that cast shadow rays.
     pub casting_count: u64,
 }
 

@@ -65,7 +65,7 @@ pub struct DrawCall {
     pub material: u32,
     pub first_index: u32,
     pub index_count: u32,
-    /// Those of its mesh, in `SceneGpu::clusters`.
+    /// First cluster of its mesh in `SceneGpu::clusters`.
     pub first_cluster: u32,
     pub cluster_count: u32,
     pub vertex_offset: i32,
@@ -128,7 +128,7 @@ impl SceneStats {
         Self::with_texture_limit(scene, scene.texture_limit_px)
     }
 
-    /// As if the scene's limit were `limit_px`; 0: none.
+    /// The numbers of `scene` as if its limit were `limit_px`; 0: none.
     pub fn with_texture_limit(scene: &Scene, limit_px: u32) -> Self {
         let drawn = || scene.drawn_materials();
         let is_extended = |mesh: &Mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty();
@@ -147,9 +147,9 @@ impl SceneStats {
         }
     }
 
-    /// The texture limit that `auto` comes to on a device of `caps`: 0, none, where the scene takes at most three quarters of
-    /// the greatest heap, or of `budget_bytes` where that is less; else the greatest power of two with which it does. 0 too
-    /// where no limit would do.
+    /// The texture limit that `auto` means on a device of `caps`: 0, none, where the scene takes at most three quarters
+    /// of the greatest heap, or of `budget_bytes` where that is less; else the greatest power of two with which it
+    /// does. 0 too where no limit would do.
     ///
     /// The last quarter is the frame's and the staging buffers'.
     pub fn fitting_limit_px(scene: &Scene, caps: &Caps, budget_bytes: Option<u64>) -> u32 {
@@ -168,7 +168,7 @@ impl SceneStats {
         plan
     }
 
-    /// Those that a moment of the scene has for itself: all but its textures.
+    /// Plan of the resources of one moment of the scene: all except its textures.
     fn geometry_plan(&self) -> Plan {
         use vk::BufferUsageFlags as Flags;
         let mut plan = Plan::default();
@@ -218,7 +218,7 @@ fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
 pub struct Extended {
     /// The third vertex stream.
     pub attributes: Buffer,
-    /// Of each material's textures.
+    /// Placements of each material's textures.
     pub placements: Buffer,
 }
 
@@ -235,7 +235,7 @@ pub struct SceneGpu {
     pub material_blocks: Vec<MaterialBlock>,
     /// Sorted so that state changes least; BLEND draws last.
     pub calls: Vec<DrawCall>,
-    /// Of all meshes, one after the other, as `indices` holds them.
+    /// Clusters of all meshes, one mesh after the other, in the order of `indices`.
     pub clusters: Vec<Cluster>,
     /// What `indices` holds, for tests of single triangles on the host.
     pub host_indices: Vec<u32>,
@@ -311,7 +311,7 @@ impl SceneGpu {
         })
     }
 
-    /// For a scene that shows the same pictures.
+    /// The textures, for a scene that shows the same pictures.
     pub fn textures(&self) -> Arc<Textures> {
         self.textures.clone()
     }

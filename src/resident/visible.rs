@@ -135,7 +135,7 @@ struct Lens<'a> {
     magnitude_from_object: DMat4,
     world_from_object: DMat4,
     eye_ws: DVec3,
-    /// Of an orthographic camera: it has no eye.
+    /// Direction of view of an orthographic camera, which has no eye.
     forward_ws: Option<DVec3>,
 }
 

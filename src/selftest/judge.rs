@@ -138,7 +138,7 @@ mod tests {
         assert!(Figures::of(&Picture { extent: EXTENT, pixels }, &reference).unwrap().is_equal);
     }
 
-    /// What a driver's mistakes look like: bounds that a GPU's roads have must see each.
+    /// What a driver's mistakes look like: the bounds for a GPU must detect each.
     #[test]
     fn wrong_pictures_are_found_by_the_bounds_of_other_devices() {
         let width = EXTENT.width as usize;

@@ -14,7 +14,7 @@ pub const APERTURE: Setting = Setting {
     help: "Diameter of the camera's thin lens, which blurs what is out of focus; 0: a pinhole, all is sharp",
 };
 
-/// Where the lens makes a sharp picture of.
+/// Distance at which the lens makes a sharp picture.
 pub const FOCUS: Setting = Setting {
     key: "focus",
     symbol: "",
@@ -39,7 +39,7 @@ pub const STEREO: Setting = Setting {
            left eye's; 0: one eye, the camera's",
 };
 
-/// Which of them see.
+/// Which of the two eyes see.
 pub const STEREO_EYES: Setting = Setting {
     key: "stereo-eyes",
     symbol: "",
@@ -51,7 +51,7 @@ pub const STEREO_EYES: Setting = Setting {
            with the right eye's picture in the stage stereo.right; or one eye alone, as seen by that eye",
 };
 
-/// What a pinhole and one eye leave unread.
+/// Settings that are not read with a pinhole or with one eye.
 pub const LENS_CONDITIONS: &[Condition] = &[
     Condition {
         key: FOCUS.key,
@@ -99,7 +99,7 @@ pub const MOTION_INTERVAL: Setting = Setting {
     help: "Time of one frame, over which --motion-vectors are measured; motion begins at 0 s at the earliest",
 };
 
-/// What a geometry pass without motion vectors leaves unread.
+/// Settings that a geometry pass without motion vectors does not read.
 pub const MOTION_CONDITIONS: &[Condition] = &[Condition {
     key: MOTION_INTERVAL.key,
     unread: |values| Unread::unless(values, MOTION_VECTORS.key, &["on"], "there are no motion vectors"),

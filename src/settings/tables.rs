@@ -193,7 +193,7 @@ pub const COMMON: &[Setting] = &[
     },
 ];
 
-/// What a surface does with light.
+/// The reflectance model of surfaces.
 pub const BRDF: Setting = Setting {
     key: "brdf",
     symbol: "",
@@ -204,7 +204,7 @@ pub const BRDF: Setting = Setting {
     help: "Reflectance model of surfaces under direct light",
 };
 
-/// Of every compute shader whose invocations are pixels.
+/// Workgroup size of every compute shader whose invocations are pixels.
 pub const WORKGROUP: Setting = Setting {
     key: "workgroup",
     symbol: "",
@@ -238,7 +238,7 @@ pub const EMISSIVE: Setting = Setting {
            maps carry both",
 };
 
-/// What is drawn of solid surfaces.
+/// Which triangles of solid surfaces are drawn.
 pub const GEOMETRY: Setting = Setting {
     key: "geometry",
     symbol: "",
@@ -285,13 +285,13 @@ pub const CULL_BY: Setting = Setting {
            the lights; auto: an invocation on software drivers, a workgroup elsewhere; the same lists",
 };
 
-/// What a G-buffer without lists for tiles leaves unread.
+/// Settings that are not read without light lists for tiles.
 pub const CULL_CONDITIONS: &[Condition] = &[Condition {
     key: CULL_BY.key,
     unread: |values| Unread::unless(values, "cull", &["tiled"], "there are no tiles"),
 }];
 
-/// What two normals of one surface differ by.
+/// How much two normals of one surface may differ.
 pub const NORMAL_THRESHOLD: Setting = Setting {
     key: "normal-threshold",
     symbol: "",
@@ -341,7 +341,7 @@ pub const MULTISAMPLE: &[Setting] = &[Setting {
            pixel",
 }];
 
-/// Of techniques that draw the scene with its materials.
+/// Whether techniques that draw the scene with its materials draw depth first.
 pub const DEPTH_PREPASS: Setting = Setting {
     key: "depth-prepass",
     symbol: "",

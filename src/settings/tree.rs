@@ -9,7 +9,7 @@
 
 use super::{Kind, Setting};
 
-/// How wide the tree is, how it lies in memory, and where a walk keeps what it has not looked at.
+/// Width of the tree, its order in memory, and where a walk keeps the nodes that it has yet to visit.
 pub const TREE: &[Setting] = &[
     Setting {
         key: "node-width",

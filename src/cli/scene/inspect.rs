@@ -138,7 +138,7 @@ fn describe(text: &mut String, scene: &Scene, facts: Option<&Facts>) -> std::fmt
 }
 
 fn describe_file(text: &mut String, facts: &Facts) -> std::fmt::Result {
-    let generator = facts.generator.as_deref().unwrap_or("a program that does not say its name");
+    let generator = facts.generator.as_deref().unwrap_or("an unnamed program");
     writeln!(text, "   glTF {} by {generator}, {}", facts.version, Bytes(facts.size_bytes))?;
     for (what, names) in [("uses", &facts.extensions_used), ("requires", &facts.extensions_required)] {
         if !names.is_empty() {
@@ -178,7 +178,7 @@ fn closed_mesh_count(scene: &Scene) -> usize {
     scene.meshes.par_iter().filter(|mesh| Shell::of(mesh).is_closed()).count()
 }
 
-/// Those of all meshes together.
+/// Number of normal groups of all meshes together.
 fn normal_group_count(scene: &Scene) -> usize {
     scene.meshes.par_iter().map(normal_groups::count).sum()
 }

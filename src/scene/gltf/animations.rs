@@ -16,13 +16,13 @@ use crate::scene::animation::{AnimationChoice, Curve, Interpolation, unit_quater
 /// How many numbers the curves of a file may have together, beside one for each byte of it: 16 MiB of them.
 const FREE_CURVE_NUMBERS: usize = 1 << 22;
 
-/// What a channel moves.
+/// Property that a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Motion {
     Translation,
     Rotation,
     Scale,
-    /// Of the morph targets of the node's mesh.
+    /// Weights of the morph targets of the node's mesh.
     Weights,
 }
 
@@ -166,7 +166,7 @@ fn read_channel(
     if motion == Motion::Rotation
         && let Some(key) = curve.key_values().position(|key| unit_quaternion(glam::Vec4::from_slice(key)).is_none())
     {
-        return Err(Error::request(format!("the rotation of key {key} is zero, which turns to nowhere")));
+        return Err(Error::request(format!("the rotation of key {key} is zero, which is not a rotation")));
     }
     Ok(Channel { node_index, motion, curve })
 }

@@ -29,7 +29,7 @@ pub struct Piece {
     pub deform: Option<Deform>,
 }
 
-/// What became of one primitive.
+/// Result of reading one primitive.
 #[derive(Debug)]
 enum Outcome {
     Piece {

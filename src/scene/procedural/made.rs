@@ -26,9 +26,9 @@ pub struct Motion {
     pub thing: Thing,
     /// Where the thing's origin stands, metres, where `translations` is None.
     translation: Vec3,
-    /// Of three numbers, metres.
+    /// Translation, three numbers in metres.
     pub translations: Option<Curve>,
-    /// Of quaternions x, y, z, w. None: it keeps the orientation of its own space.
+    /// Rotation, a quaternion x, y, z, w. None: the orientation of its own space stays.
     pub rotations: Option<Curve>,
     /// After how many seconds it has been wherever it goes.
     period_s: u32,

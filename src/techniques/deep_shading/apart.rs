@@ -32,7 +32,7 @@ struct Listed {
     count: Option<Count>,
 }
 
-/// Who puts triangles into lists.
+/// What puts triangles into lists.
 enum Insertion {
     Device(Box<Inserted>),
     Host(Direct),
@@ -45,15 +45,15 @@ struct Inserted {
     address: Option<Address>,
 }
 
-/// Who finds what samples see.
+/// What finds the triangles that samples see.
 enum Seen {
     Drawn(Samples, Drawer),
     Traced(Samples, Box<Rays>),
-    /// With `--lists direct` the lists alone know.
+    /// With `--lists direct` only the lists hold it.
     Listed,
 }
 
-/// Who shades samples that no list has.
+/// What shades samples that are in no list.
 enum Rest {
     Alone(Box<Brute>),
     /// All of them.

@@ -1,4 +1,4 @@
-//! What the settings come to.
+//! The choices that the settings make.
 
 use super::baseline::Shading;
 use super::middle::Middle;
@@ -50,12 +50,12 @@ pub struct Choices {
     pub has_addresses: bool,
     /// Shading space is drawn with what stands in lists.
     pub has_marks: bool,
-    /// Of the cache of `--shading indirect-gbuffer`.
+    /// Entries of the cache of `--shading indirect-gbuffer`.
     pub cache_entries: u64,
     pub is_counted: bool,
-    /// Shaders come to buffers of an entry a sample, or more, by their addresses.
+    /// Shaders reach buffers with an entry a sample, or more, by their addresses.
     pub is_by_address: bool,
-    /// Of what the rasteriser snaps corners to.
+    /// Sub-pixel precision to which the rasteriser snaps corners, in bits.
     sub_pixel_bits: u32,
     /// Something is blurred, and its colours are filtered.
     pub is_reconstructed: bool,
@@ -67,13 +67,13 @@ pub struct Choices {
     pub maps: Option<MapLayout>,
 }
 
-/// Errors: `--lists direct` without rays, or without the addresses that stand for SPIDs (exit code 2).
+/// Errors: `--lists direct` without rays, or without the addresses that replace SPIDs (exit code 2).
 fn require_direct(values: &Values) -> Result<()> {
     let refused =
         |why: &str, advice: &str| Err(Error::request(format!("--lists direct: {why}")).within(NAME).note(advice));
     match values.text("lists") {
         "direct" if values.text("visibility") != "ray" => {
-            refused("only rays know a sample's triangle at once", "--visibility ray has them")
+            refused("only rays find a sample's triangle at once", "--visibility ray has them")
         }
         "direct" if !values.is_on("address-buffer") => {
             refused("without SPIDs a sample needs its address", "--address-buffer on gives it one")
@@ -89,7 +89,7 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
         "geometry" => Road::Geometry,
         "vertex" => Road::Vertex,
         "none" => Road::Plain,
-        // Never the device's own: no device was there on which it could be seen to leave no sample without a colour.
+        // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
         _ if caps.features.geometry_shader => Road::Geometry,
         _ => Road::Vertex,
     }
@@ -99,10 +99,10 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
 fn require_straight(values: &Values) -> Result<()> {
     let road = values.text("conservative");
     if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
-        let why = "in a foveated shading space triangles are not straight";
+        let why = "triangles are not straight in a foveated shading space";
         return Err(Error::request(format!("--conservative {road}: {why}"))
             .within(NAME)
-            .note("--conservative geometry and vertex draw what holds them"));
+            .note("--conservative geometry and vertex draw polygons that enclose them"));
     }
     Ok(())
 }
@@ -179,7 +179,7 @@ impl Choices {
         Ok(choices)
     }
 
-    /// What shaders know of shading space, cameras, lens and samples.
+    /// The shaders' block: shading space, cameras, lens and samples.
     pub fn deep_block(&self, inputs: &Inputs<'_>) -> DeepBlock {
         let close = self.middle.as_ref().map(|middle| &middle.closing.view);
         self.space.block(inputs.view, close, self.lens, &self.table)
@@ -260,7 +260,7 @@ mod tests {
     use crate::gpu::known;
     use crate::techniques::deep_shading::settings::SETTINGS;
 
-    /// What nobody has seen run is taken where it is asked for by name, and nowhere else.
+    /// A method that nobody has seen run is used only where it is asked for by name.
     #[test]
     fn the_device_s_own_conservative_rasterisation_is_never_taken_by_itself() {
         let caps = |name: &str| known::caps(name).unwrap();

@@ -1,5 +1,5 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them (Clarberg & Munkberg 2014, section 6, lists the
-//! groups; the checklist's O1 to O3 are their bytes).
+//! groups with their bytes).
 
 use super::baseline::{self, Shading, texture_space};
 use super::choices::Choices;
@@ -40,9 +40,9 @@ pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
 pub const LINEAR_COUNT: u64 = 16;
-/// Of a list's pointer.
+/// Bytes of the pointer at which a list begins.
 pub const BEGIN_BYTES: u64 = 4;
-/// Of a row's id, a node (id, next), a colour (RGBA16F), an address.
+/// Bytes of a row's id, a node (id, next), a colour (RGBA16F), and an address.
 pub const ROW_ID_BYTES: u64 = 4;
 pub const NODE_BYTES: u64 = 8;
 pub const COLOR_BYTES: u64 = 8;

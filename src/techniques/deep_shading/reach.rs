@@ -1,6 +1,7 @@
-//! How shaders come to buffers that have an entry a sample, or more (`--list-access`): lists and colours, what a reconstruction
-//! keeps, a compact geometry buffer. Through descriptors, which a device lets reach so far (maxStorageBufferRange) and the
-//! validation layers follow, or by the buffers' addresses, however long they are. Shaders' half: reach.glsl.
+//! How shaders reach buffers that have an entry a sample, or more (`--list-access`): lists and colours, what a
+//! reconstruction keeps, a compact geometry buffer. Through descriptors, which a device lets reach so far
+//! (maxStorageBufferRange) and the validation layers follow, or by the buffers' addresses, however long they are.
+//! Shaders' half: reach.glsl.
 
 use super::baseline::Shading;
 use super::choices::Choices;
@@ -32,7 +33,7 @@ fn space_entries(choices: &Choices) -> u64 {
     choices.space.extent.pixel_count() * a_pixel
 }
 
-/// Of a sample in the longest buffer that has an entry a sample; 0 where what is shaded has none.
+/// Bytes of a sample in the longest buffer with an entry for each sample; 0 where `--shading` has no such buffer.
 fn sample_bytes(choices: &Choices) -> u64 {
     match choices.shading {
         Shading::Deep => NODE_BYTES.max(COLOR_BYTES).max(reconstruct::SAMPLE_BYTES),
@@ -137,7 +138,7 @@ fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]); 15] {
     ]
 }
 
-/// What it is called in the report.
+/// How buffers are reached, in the report's words.
 pub fn name(is_by_address: bool) -> &'static str {
     if is_by_address { "addresses" } else { "descriptors" }
 }

@@ -215,7 +215,7 @@ pub const SETTINGS: &[Setting] = &[
     },
 ];
 
-/// What its settings leave unread of each other.
+/// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "light-roughness",
@@ -223,7 +223,7 @@ pub const CONDITIONS: &[Condition] = &[
     },
     Condition {
         key: "stencil-least",
-        unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn alike"),
+        unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn in the same way"),
     },
     Condition {
         key: CULL_BY.key,

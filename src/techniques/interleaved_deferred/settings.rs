@@ -211,7 +211,7 @@ fn is_unfiltered(values: &Values) -> Option<Unread> {
     is_even(values).or_else(|| Unread::unless(values, "filter", &["gauss", "gauss-fast"], "nothing is filtered"))
 }
 
-/// What its settings leave unread of each other.
+/// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "pattern",
@@ -234,8 +234,8 @@ pub const CONDITIONS: &[Condition] = &[
         unread: |values| Unread::unless(values, "split", &["fragment"], "it has no fragment programs"),
     },
     Condition { key: "blend-lights", unread: is_even },
-    Condition { key: "brdf", unread: |values| Unread::with(values, "direct", &["none"], "no light is direct") },
-    Condition { key: "cull", unread: |values| Unread::with(values, "direct", &["none"], "no light is direct") },
+    Condition { key: "brdf", unread: |values| Unread::with(values, "direct", &["none"], "there is no direct light") },
+    Condition { key: "cull", unread: |values| Unread::with(values, "direct", &["none"], "there is no direct light") },
     Condition {
         key: "direct-pattern",
         unread: |values| {

@@ -9,7 +9,7 @@ use crate::settings::{
 pub const MOST_SAMPLES: u32 = 1 << 16;
 const DEFAULT_SAMPLES: u32 = 64;
 
-/// What --until-error asks for; None: nothing.
+/// The error that `--until-error` asks for; None: no such bound.
 pub fn until_error(values: &Values) -> Option<f64> {
     Some(values.number("until-error")).filter(|error| *error > 0.0)
 }
@@ -138,14 +138,14 @@ pub const SETTINGS: &[Setting] = &[
     WORKGROUP,
 ];
 
-/// What its settings leave unread of each other.
+/// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "bounces",
-        unread: |values| Unread::unless(values, "transport", &["full"], "it says itself how often light is scattered"),
+        unread: |values| Unread::unless(values, "transport", &["full"], "it fixes how often light is scattered"),
     },
     Condition {
         key: "stack-entries",
-        unread: |values| Unread::unless(values, "stack", &["short"], "it has room for all that can wait"),
+        unread: |values| Unread::unless(values, "stack", &["short"], "it has room for all nodes that can wait"),
     },
 ];

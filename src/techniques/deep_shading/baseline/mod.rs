@@ -123,9 +123,9 @@ pub fn needs(values: &Values) -> Option<Need> {
 /// What is shaded (`--shading`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// What the lists have.
+    /// Triangles in the lists.
     Deep,
-    /// What samples point to in a compact geometry buffer.
+    /// Entries of a compact geometry buffer that samples point to.
     IndirectGbuffer,
     /// Every sample that is drawn.
     Ssaa,
@@ -222,7 +222,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
     plan.push("frame_buffer", full(DEPTH), attached(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
 }
 
-/// Who touches them.
+/// Plans the passes that touch the baseline's resources.
 pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];

@@ -42,7 +42,7 @@ pub struct HostLists {
 /// A sample that is listed, and where.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
-    /// Of shading space, row by row.
+    /// Index of a pixel of shading space, row by row.
     pixel: u32,
     primitive: u32,
     sample: u32,
@@ -135,7 +135,7 @@ fn staged_name(name: &str) -> String {
 /// Lists on their way to the device.
 pub struct Direct {
     sets: Vec<HostLists>,
-    /// Of `Lists::all`, in its order.
+    /// Staging buffers of the buffers in `Lists::all`, in that order.
     staged: Vec<RefCell<Buffer>>,
     staged_run: Cell<u32>,
 }

@@ -40,7 +40,8 @@ pub const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
 const RANGES: &str = "reconstruct.samples.draws";
 const TILES: &str = "reconstruct.layers.tiles";
 
-/// Of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; two of motion, and a depth.
+/// Bytes of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; and two
+/// half floats of motion with a depth.
 pub const SAMPLE_BYTES: u64 = 8;
 
 /// TILE_PX of blur.glsl.
@@ -143,7 +144,7 @@ impl Reconstruct {
         })
     }
 
-    /// Those of an entry a sample.
+    /// The buffers with one entry for each sample.
     pub fn buffers(&self) -> [&Buffer; 2] {
         [&self.reconstructed.colors, &self.reconstructed.vectors]
     }

@@ -43,7 +43,7 @@ pub fn is_looped(values: &Values, caps: &Caps, visibility: Visibility, bytes: u6
         }
 }
 
-/// What it is called in the report.
+/// Its name in the report.
 pub fn name(is_looped: bool) -> &'static str {
     if is_looped { "loop" } else { "layers" }
 }

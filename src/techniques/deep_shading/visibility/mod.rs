@@ -38,7 +38,7 @@ use looped::Looped;
 use sample::{Repeats, Sample, Stages};
 use std::sync::Arc;
 
-/// What triangles are drawn as, and in which order tuples and draws come (`--visibility`).
+/// Shape in which triangles are drawn, and order of tuples and draws (`--visibility`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     RepeatFrame,
@@ -61,12 +61,12 @@ impl Visibility {
         }
     }
 
-    /// All layers are drawn into at once.
+    /// Whether all layers are drawn into at once.
     pub fn is_layered(self) -> bool {
         matches!(self, Self::RepeatDraw | Self::Instancing | Self::Replicate)
     }
 
-    /// Whatever draws the samples' triangles again draws polygons around them, and finds the samples by what they see.
+    /// Whether later passes redraw polygons around triangles, and find samples by the triangle that they see.
     pub fn has_polygons(self) -> bool {
         matches!(self, Self::Stochastic | Self::Ray)
     }
@@ -76,12 +76,12 @@ impl Visibility {
         if self == Self::Ray { Access::TransferWrite } else { Access::ColorWrite }
     }
 
-    /// Someone must say the layer, and may be chosen.
+    /// Whether some stage must write `gl_Layer`, so that `--layer-from` chooses which.
     pub fn has_layer_from(self) -> bool {
         matches!(self, Self::RepeatDraw | Self::Instancing)
     }
 
-    /// How each draw call comes to its tuples; where layers are drawn one by one, those of the first.
+    /// How each draw call is repeated for its tuples; where layers are drawn one by one, the repeats of the first.
     pub fn repeats(self, scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
         match self {
             Self::RepeatFrame | Self::Stochastic | Self::Ray => repeat_frame::repeats(0),
@@ -96,7 +96,7 @@ impl Visibility {
         if self.is_layered() { repeats.round_count() } else { layer_count }
     }
 
-    /// Tells `draw` the layers to open, one after the other or all together, and how calls repeat in them.
+    /// Calls `draw` with the layers to open, one after the other or all together, and how calls repeat in them.
     pub fn for_layers(self, repeats: &Repeats, layer_count: u32, mut draw: impl FnMut(Layers, &Repeats)) {
         if self.is_layered() {
             draw(Layers::All(layer_count), repeats);
@@ -120,7 +120,7 @@ pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages 
 /// One entry a sample.
 pub struct Samples {
     pub spids: Image,
-    /// Of rasterised ones.
+    /// Depth buffer of rasterised samples.
     pub depth: Option<Image>,
     /// How SPIDs and depths at shading points were written.
     pub written: Access,
@@ -185,7 +185,7 @@ pub fn begin_counters(cmd: &mut Commands, counters: &Buffer) {
     cmd.barriers([counters.from(Access::TransferWrite).to(Access::FragmentWrite)]);
 }
 
-/// Who draws triangles.
+/// What draws triangles.
 pub enum Drawer {
     /// Each tuple into its layer.
     Layers(Box<Sample>),

@@ -16,12 +16,12 @@ use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How each draw call comes to its tuples.
+/// How each draw call is repeated for its tuples.
 pub struct Repeats {
-    /// The call comes again for every `step`th of them, and is told it.
+    /// The call is repeated for every `step`th of them, whose number it gets.
     pub tuples: Range<u32>,
     pub step: u32,
-    /// Of each of these. More than one: an instance is a tuple.
+    /// Instances of each of these draws. More than one: an instance is a tuple.
     pub instance_count: u32,
 }
 
@@ -32,7 +32,7 @@ impl Repeats {
     }
 }
 
-/// What triangles are drawn with.
+/// Shader stages that triangles are drawn with.
 pub struct Stages {
     pub vertex: &'static Shader,
     pub geometry: Option<&'static Shader>,
@@ -42,7 +42,7 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Of triangles as one tuple sees them.
+    /// Stages that draw triangles as one tuple sees them.
     pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
         Self { vertex, geometry, sides: Sides::AsDrawn, vertex_count: 3 }
     }
@@ -75,7 +75,7 @@ pub fn draw<'a>(
     });
 }
 
-/// The same for whom draws the vertices of a call itself: `draw`, for each of its repeats.
+/// The same for a caller that draws the vertices of a call itself: `draw`, for each of its repeats.
 pub fn draw_by<'a>(
     cmd: &Commands,
     (pipeline, sides): (&GraphicsPipeline, Sides),
@@ -139,7 +139,7 @@ impl Sample {
         Ok(Self::of([pipeline("opaque")?, pipeline("tested")?], stages))
     }
 
-    /// Of solid surfaces, and of those with an alpha.
+    /// Pipelines of solid surfaces, and of surfaces with an alpha.
     pub fn of([opaque, tested]: [GraphicsPipeline; 2], stages: Stages) -> Self {
         Self { opaque, tested, stages }
     }

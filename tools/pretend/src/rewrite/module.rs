@@ -8,9 +8,9 @@ use std::collections::{HashMap, HashSet};
 
 pub struct Module {
     builder: Builder,
-    /// Of its words: chance falls otherwise in each shader.
+    /// Hash of its words, so that chance differs from shader to shader.
     hash: u64,
-    /// Of values that are floats of 32 bits or vectors of them.
+    /// Component count of values that are 32-bit floats or vectors of them.
     components: HashMap<Word, u32>,
     no_contraction: HashSet<Word>,
     invariant: HashSet<Word>,

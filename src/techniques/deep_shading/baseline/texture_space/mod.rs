@@ -68,7 +68,7 @@ fn draws_of(list: &DrawList) -> Vec<DrawList> {
     draws
 }
 
-/// What draws of one texture bind.
+/// Bindings of draws with one texture.
 struct SlotSets {
     claim: Option<vk::DescriptorSet>,
     shade: Option<vk::DescriptorSet>,
@@ -109,8 +109,9 @@ impl TextureSpace {
         })
     }
 
-    /// All draws, as many at a time as there are textures: claimed, shaded, and then drawn by `draw`, which is told them with the sets
-    /// that `sample` binds for each and whether they are the first. `bound`: what shaders of the technique may read.
+    /// All draws, as many at a time as there are textures: claimed, shaded, and then drawn by `draw`, which gets them
+    /// with the sets that `sample` binds for each and whether they are the first. `bound`: what shaders of the
+    /// technique may read.
     ///
     /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(
@@ -150,7 +151,7 @@ impl TextureSpace {
         Ok(())
     }
 
-    /// Of the pool, in a frame of `list`: `Pool::touched_bytes`.
+    /// Bytes of the pool that a frame of `list` touches (`Pool::touched_bytes`).
     ///
     /// Errors: memory for reading the counts back (exit code 4).
     pub fn touched_bytes(&self, gpu: &Arc<Gpu>, list: &DrawList) -> Result<BTreeMap<String, u64>> {
