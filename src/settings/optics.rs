@@ -142,7 +142,6 @@ pub const MEDIUM: Setting = Setting {
     default: "none",
     unit: "1/m",
     paper: "Dubla 2009, 3.4",
-    help: "Homogeneous medium: the part of light that it scatters (S) and absorbs (A) a metre, and the mean cosine of \
-           the scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the \
-           lights",
+    help: "Homogeneous medium: its coefficients of scattering (S) and absorption (A), and the mean cosine of the \
+           scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
 };

@@ -68,8 +68,8 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "2",
         unit: "px",
         paper: "",
-        help: "Texels of a shadow map over whose change of depth its surfaces are moved away from the light; 2 is the \
-               reach of four comparisons",
+        help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
+               this many texels; 2 is the reach of four comparisons",
     },
     Setting {
         key: "shadow-casters",

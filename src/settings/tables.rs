@@ -22,7 +22,7 @@ pub const COMMON: &[Setting] = &[
         unit: "",
         paper: "",
         help: "Camera of the scene, by index or name; `framing`: one that frames the whole scene from three quarters \
-               above, before the side that most front faces look to, which is what a scene without a camera gets",
+               above, on the side that most front faces look to; a scene without a camera gets this one",
     },
     Setting {
         key: "time",

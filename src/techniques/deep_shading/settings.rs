@@ -19,10 +19,10 @@ pub const SETTINGS: &[Setting] = &[
         unit: "",
         paper: "Clarberg 2014, 6",
         help: "What is shaded: the triangles in the lists (deep); or, as a baseline, every sample that is drawn \
-               (ssaa); each triangle once for the samples of a pixel that see it, by stochastic rasterisation, for \
-               which --visibility repeat-frame may stand too (msaa); by a compute shader, the entries of a compact \
-               geometry buffer that samples point to (indirect-gbuffer; Liktor and Dachsbacher 2012); or the texels of \
-               a texture of each draw, which is then drawn with that texture (texture-space; Andersson et al. 2014; \
+               (ssaa); each triangle once for the samples of a pixel that see it, by stochastic rasterisation, which \
+               --visibility repeat-frame means here too (msaa); by a compute shader, the entries of a compact geometry \
+               buffer that samples point to (indirect-gbuffer; Liktor and Dachsbacher 2012); or the texels of a \
+               texture of each draw, which is then drawn with that texture (texture-space; Andersson et al. 2014; \
                meshes need atlases)",
     },
     Setting {
@@ -146,7 +146,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "px",
         paper: "Clarberg 2014, 6",
         help: "Width of the border of shading space around the frame, for what blur brings in; samples that are \
-               farther out are shaded by themselves",
+               farther out are shaded one by one",
     },
     Setting {
         key: "shading-scale",
@@ -214,12 +214,12 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "compaction",
-        symbol: "M",
+        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
         unit: "",
         paper: "Clarberg 2014, 4.3",
-        help: "Sort the lists and store their first 16 triangles in a row; the same picture",
+        help: "Sort the lists and store their first M = 16 triangles in a row; the same picture",
     },
     Setting {
         key: "zmax",
@@ -249,7 +249,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.4",
         help: "How every pixel that a triangle touches gets drawn: its hull is drawn, from a geometry shader \
                (geometry) or from vertex shaders (vertex), or the device rasterises conservatively (hardware, which \
-               nobody has seen run yet); the same picture, or an error that says how many samples have no colour; \
+               has not been seen to run yet); the same picture, or an error that says how many samples have no colour; \
                auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
                triangle covers, to measure what the others cost and how much has no colour then",
     },
@@ -270,8 +270,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "off",
         unit: "",
         paper: "Clarberg 2014, 4.5",
-        help: "Filter what is blurred, in layers of depth, as far as its blur allows; off: take the mean of each \
-               pixel's own samples; not the paper's filter",
+        help: "Filter what is blurred, in layers of depth, as far as its blur allows (not the paper's filter); off: \
+               take the mean of each pixel's own samples",
     },
     INSTRUMENT,
     APERTURE,

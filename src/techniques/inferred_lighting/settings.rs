@@ -67,8 +67,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "4096",
         unit: "texels",
         paper: "Kircher 2009, 2.2",
-        help: "Number of texels in a light's rectangle from which --volumes auto draws it with the stencil (lavapipe: the \
-               stencil pays from some 16384 on, and below makes no difference)",
+        help: "Number of texels in a light's rectangle from which --volumes auto draws it with the stencil (lavapipe: \
+               the stencil pays from some 16384 on, and below makes no difference)",
     },
     Setting {
         key: "shadow-volumes",

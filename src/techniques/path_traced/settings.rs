@@ -49,9 +49,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "full",
         unit: "",
         paper: "",
-        help: "Light that is counted: straight from lights (direct); also scattered by one surface (one-bounce); also \
-               scattered once by a surface or by --medium (single-scatter); or scattered by either as often as \
-               --bounces says (full). The first two are dimmed by --medium, and lose what it scatters",
+        help: "Light that is counted: what reaches the visible surfaces straight from lights (direct), or by one \
+               surface more too (one-bounce); what is scattered once, by a surface or by --medium (single-scatter); or \
+               what is scattered by either as often as --bounces says (full). The first two are dimmed by --medium, \
+               and lose what it scatters",
     },
     Setting {
         key: "bounces",
