@@ -40,7 +40,7 @@ const uint DIGITS_IN_WORD = 32u / DIGIT_BITS;
 const uint ALL_LEFT_MASKS = NODE_WIDTH == 2u ? 0x55555555u : 0x33333333u;
 
 uint trail[TRAIL_WORDS];
-// Level of the node whose turn it is, and the one down to which the trail leads.
+// Level of the node to visit next, and the one down to which the trail leads.
 uint trail_level;
 uint trail_end;
 

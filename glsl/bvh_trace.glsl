@@ -63,7 +63,7 @@ bool stops(uint triangle, vec2 barycentric, uint kind, uint seed) {
 TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
     TraceHit hit = TraceHit(false, limit, 0u, vec2(0.0));
     vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
-    // A leaf's triangles that are still to be tried, and the node whose turn it is.
+    // A leaf's triangles that are still to be tried, and the node to visit next.
     uint triangle = 0u;
     uint end = 0u;
     uint node = ROOT;

@@ -1,7 +1,8 @@
-//! A picture that a run goes on with: its sums and how many samples they are of, from the EXR of an earlier run.
+//! A picture that a run continues: its sums and the number of their samples, from the EXR of an earlier run.
 //!
 //! Nothing in it is believed: the header must be that of the same picture, size, scene, settings and estimator, and the sums
-//! must be those that its pixels are the means of. Then sampling goes on as if it had never stopped, to the same bits.
+//! must be those that its pixels are the means of. Then sampling continues as if it had never stopped, to the same
+//! bits.
 
 use crate::error::{Error, Result};
 use crate::metrics::noise;
@@ -81,14 +82,14 @@ impl Earlier {
         Ok(Self { sums, sample_count: count as u32, ..earlier })
     }
 
-    /// `values`: the settings of the run that goes on.
+    /// `values`: the settings of the run that continues.
     ///
     /// Errors: it is a picture of another technique, of another version of it, of another seed or scene (exit code 2).
     pub fn require(&self, technique: &dyn Technique, values: &Values, scene: &Scene) -> Result<()> {
         self.require_text(TECHNIQUE, technique.name())?;
         self.require_text(VERSION, env!("CARGO_PKG_VERSION"))?;
         self.require_text(ESTIMATOR, &technique.estimator_version().to_string())?;
-        // Built-in scenes hang on it: it says more than their hash.
+        // Built-in scenes depend on it: it says more than their hash.
         self.require_setting(&self.settings()?, &run::settings(values, &BTreeMap::new()), "seed")?;
         self.require_text(SCENE_HASH, &scene.hash)
     }

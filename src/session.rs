@@ -275,7 +275,7 @@ fn block_name(technique: &dyn Technique) -> String {
 
 impl Renderer {
     /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes, or fewer
-    /// where its error is small enough before. Ctrl-C ends it after a run: `runs` tells which.
+    /// where its error is small enough before. Ctrl-C ends it after a run, whose number is in `runs`.
     ///
     /// Errors: the device fails, memory for reading the sums back (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {

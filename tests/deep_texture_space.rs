@@ -94,8 +94,8 @@ fn finer_texels_come_nearer_to_supersampling() {
     assert!(found[1].0 < 1.5 * deep, "{found:?}, {deep}");
 }
 
-/// A wall that faces the camera is shaded; one that turns its back, or is beside the frame, is not, unless the lens's rim sees its
-/// front or the shutter closes on it inside.
+/// A wall that faces the camera is shaded; one that faces away, or is beside the frame, is not, unless the lens's rim
+/// sees its front or the shutter closes on it inside.
 #[test]
 fn what_no_sample_can_see_is_not_shaded() {
     let wall = |center: Vec3, right: Vec3, closing: Option<Vec3>| {
@@ -128,8 +128,8 @@ fn what_no_sample_can_see_is_not_shaded() {
     assert!(shaded(&wall(outside, Vec3::X, Some(-outside)), &[]) > 0.0);
 }
 
-/// The box's draws have a texture each, or take turns in few: a texel that several draws shade is touched once. Owners are cleared
-/// in all textures that are used.
+/// The box's draws have a texture each, or share a few in sequence: a texel that several draws shade is touched once.
+/// Owners are cleared in all textures that are used.
 #[test]
 fn touched_bytes_are_of_texels_that_were_shaded() {
     let program = Program::new();

@@ -5,7 +5,7 @@ use crate::support::difference::require_same;
 use crate::support::shared_scenes;
 use crate::support::watched::Watched;
 
-/// One light more than the turns of the defect; a driver without it adds them all.
+/// One light more than the iterations of the defect; a driver without it adds them all.
 #[test]
 fn a_sum_that_the_driver_ends_early_is_no_picture() {
     let watched = Watched::open("cornell");

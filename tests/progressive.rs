@@ -88,7 +88,7 @@ impl Kept {
     }
 }
 
-/// Every number of the file, sums included: what comes next hangs on them.
+/// Every number of the file, sums included: what comes next depends on them.
 #[test]
 fn going_on_comes_to_the_bits_of_one_run() {
     let program = Program::new();

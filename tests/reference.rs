@@ -138,7 +138,7 @@ fn a_key_is_of_all_that_the_picture_hangs_on_and_of_nothing_else() {
     for other in [("size", "64x64"), ("lights", "3"), ("brdf", "lambert"), ("background", "1"), ("ambient", "0.5")] {
         assert_ne!(key("interleaved_deferred", &[other]), plain, "{other:?}");
     }
-    // Scattered lights hang on the seed; without them the seed is the judged technique's own.
+    // Scattered lights depend on the seed; without them the seed is the judged technique's own.
     assert_ne!(key("deferred", &[("lights", "3")]), key("deferred", &[("lights", "3"), ("seed", "2")]));
     assert_eq!(key("deferred", &[("lights", "3:7")]), key("deferred", &[("lights", "3:7"), ("seed", "2")]));
     let hall = Watched::open("lamps:objects=3,lights=3");

@@ -12,7 +12,7 @@ use quincunx::techniques;
 use quincunx::units::Extent;
 use serde_json::{Value, json};
 
-/// Every technique: what is said of a picture hangs on none.
+/// Every technique: what is said of a picture depends on none.
 const TECHNIQUES: [&str; 6] =
     ["forward", "deferred", "interleaved_deferred", "inferred_lighting", "deep_shading", "path_traced"];
 const SMALL: [&str; 4] = ["--size", "32x18", "--json", "--technique"];

@@ -1,4 +1,4 @@
-//! A group: the baseline and a few variants that are on the device together, with what their copies are held against.
+//! A group: the baseline and a few variants that are on the device together, with what their copies are compared with.
 
 use super::candidate::{Candidate, changed};
 use super::copy::BufferCopy;

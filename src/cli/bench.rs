@@ -118,7 +118,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     found.gates
 }
 
-/// Errors: no technique reads a setting of this name (exit code 2), with what `--KEY` is told to resemble.
+/// Errors: no technique reads a setting of this name (exit code 2), with the setting that `--KEY` resembles.
 fn require_known(key: &str) -> Result<()> {
     if key == TECHNIQUE || techniques::ALL.iter().any(|one| settings_of(*one).iter().any(|setting| setting.key == key))
     {

@@ -40,7 +40,7 @@ pub fn asked(matches: &ArgMatches) -> Result<Option<Asked>> {
     Asked::new(text, spp, threshold, gates, Box::new(Said)).map(Some)
 }
 
-/// Lines beside the progress of the rendering itself; none with --quiet, where nobody looks on.
+/// Lines beside the progress of the rendering itself; none with --quiet, where there is no observer.
 struct Said;
 
 impl Watch for Said {

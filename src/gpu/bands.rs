@@ -1,8 +1,9 @@
 //! Frames cut into pieces, so that no submit takes a device longer than it may.
 //!
-//! Drivers end what runs for seconds, and the whole device is lost with it: Windows after two by default. A frame's passes, and bands of
-//! the workgroups of its dispatches, are command buffers of their own, as many of which go into a submit as took its time the last time.
-//! A band's workgroups have the numbers that they have in the whole dispatch: the picture is the same to the bit.
+//! Drivers abort submits that run for seconds, and the whole device is lost with them: Windows after two by default. A
+//! frame's passes, and bands of the workgroups of its dispatches, are command buffers of their own, as many of which go
+//! into a submit as took its time the last time. A band's workgroups have the numbers that they have in the whole
+//! dispatch: the picture is the same to the bit.
 
 use std::ops::Range;
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Caps from a file that `quincunx devices --json` has written, on a machine that this one need not have seen. A file
-//! may hold anything: what a plan reckons with is asked of it first, and nothing else is trusted.
+//! Caps from a file that `quincunx devices --json` has written, perhaps on another machine. A file may hold anything:
+//! every number that a plan uses is checked first.
 
 use super::Caps;
 use super::caps::{LayoutRules, StructureRules};

@@ -1,4 +1,5 @@
-//! Compute and graphics pipelines from the table's entries: their layouts come from the shaders, not from hands.
+//! Compute and graphics pipelines from the table's entries: their layouts come from the shaders and are not written by
+//! hand.
 
 use super::Gpu;
 use super::descriptors::Bound;

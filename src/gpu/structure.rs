@@ -1,5 +1,5 @@
-//! Acceleration structures: what a driver's own ray queries go through. A bottom one holds triangles, a top one holds a
-//! bottom one where it stands, and is what shaders are given.
+//! Acceleration structures, through which a driver's own ray queries trace. A bottom one holds triangles, a top one
+//! holds a bottom one where it stands, and is what shaders are given.
 //!
 //! They are built once, on the device, by commands recorded here; the caller states the barriers (`Access::StructureWrite`
 //! and the like), makes the buffers that they lie in, and keeps what a build reads until its fence.

@@ -1,7 +1,7 @@
 //! Pass times by name: the wall clock of one submit a pass, and the device's timestamps beside it.
 //!
-//! Which of the two is the figure hangs on the device (`Clock`); the other one is a second column, and what does not fit
-//! together is reported, not hidden.
+//! Which of the two is the figure depends on the device (`Clock`); the other one is a second column, and a disagreement
+//! is reported, not hidden.
 
 use super::caps::Limits;
 use super::failure::failed;

@@ -6,7 +6,7 @@ use crate::shading::material::{MeshPoint, emissive_at};
 use glam::{DVec3, Vec3};
 
 /// Texels looked up for all triangles of a material together, where it has fewer triangles: each of them is looked at in as
-/// many places then, so that a panel of two triangles does not hang on two texels.
+/// many places then, so that a panel of two triangles does not depend on two texels.
 const LOOKUPS: usize = 1 << 14;
 /// Rows of places on one triangle at most.
 const MOST_ROWS: usize = 64;

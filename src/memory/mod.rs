@@ -1,4 +1,4 @@
-//! The only room that calls vkAllocateMemory: which type, which memory block, which range, and whose it is.
+//! The only module that calls vkAllocateMemory: it decides memory type, memory block and range, and keeps the owners.
 //!
 //! A resource asks with its name, its group and its requirements; it gets an `Allocation`, a range in a memory block,
 //! which returns itself when dropped. Resources that share bytes get theirs from an `Arena`. `pool` decides in numbers,

@@ -1,9 +1,10 @@
 //! How many pixels a thread shades, compares or filters one after the other (`--texels`): each reading of what they share
 //! then serves all of them. The same bits for every count.
 //!
-//! Why there is a bound: lavapipe before Mesa 25 ends all loops of an invocation together after 65,535 turns, without a
-//! word (`Identity::loop_turns`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as many pixels as its
-//! turns are enough for. Where one pixel is too many, the shader says so itself (glsl/loops.glsl).
+//! Why there is a bound: lavapipe before Mesa 25 ends all loops of an invocation together after 65,535 iterations,
+//! without an error (`Identity::loop_turns`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as
+//! many pixels as its iterations suffice for. Where one pixel is too many, the shader reports it itself
+//! (glsl/loops.glsl).
 
 use crate::gpu::Caps;
 use crate::gpu::caps::Identity;

@@ -1,4 +1,4 @@
-//! Plan: what a frame needs, by arithmetic alone: its resources, and which pass touches which of them how.
+//! Plan: what a frame needs, by arithmetic alone: its resources, and how each pass touches which of them.
 //!
 //! A resource that passes touch is transient: it lives from its first pass to its last, and its bytes may be another's
 //! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept.

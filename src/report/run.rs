@@ -1,4 +1,4 @@
-//! The report of one run: what was asked, on what, what came out, what each pass and each byte cost. Within a
+//! The report of one run: the request, the device, the result, and the cost of each pass and each byte. Within a
 //! schema number a key is only ever added.
 
 use crate::error::Result;

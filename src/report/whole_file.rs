@@ -1,7 +1,7 @@
 //! Files that are written whole or not at all.
 //!
 //! The bytes go into a temporary file in the same folder (a rename across file systems would be a copy) and take the
-//! asked name when they are all on disk. A failure leaves what stood there before.
+//! asked name when they are all on disk. A failure leaves the earlier file.
 
 use std::fmt::Display;
 use std::fs::File;

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::scene::animation::{AnimationChoice, Curve};
 use crate::scene::{Bounds, Facing, Scene, gltf};
 
-/// In how many moments of its period a thing is looked at for where the scene reaches.
+/// Number of moments of its period at which a thing is sampled for the scene's bounds.
 const REACH_PARTS: u32 = 8;
 
 /// Which thing of a scene.

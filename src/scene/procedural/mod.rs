@@ -48,7 +48,7 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// What may stand for it, and what does where nothing is said.
+    /// The values that it may have, and its default.
     pub fn described(&self) -> String {
         match self {
             Self::Number { default, range: [least, greatest] } => format!("{least} to {greatest}, default {default}"),

@@ -1,5 +1,5 @@
-//! Visibility first, then what it has seen is shaded: figure 3, from samples to their colours, and what counts the lists after
-//! the resolve.
+//! Visibility first, then shading of what it has seen: figure 3, from samples to their colours, and the counting of
+//! lists after the resolve.
 
 use super::baseline::Shading;
 use super::brute::Brute;

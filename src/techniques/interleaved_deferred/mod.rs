@@ -1,8 +1,8 @@
 //! Segovia, Iehl, Mitanchey, Peroche 2006: Non-interleaved Deferred Shading of Interleaved Sample Patterns.
 //!
-//! Hundreds of virtual point lights are dealt out to the n x m pixels of a pattern, the G-buffer is split so that pixels
-//! with the same lights lie together, each sub-buffer is shaded with its own lights, the irradiance is gathered back,
-//! filtered where no discontinuity is, and multiplied with the albedo last.
+//! Hundreds of virtual point lights are distributed over the n x m pixels of a pattern, the G-buffer is split so that
+//! pixels with the same lights lie together, each sub-buffer is shaded with its own lights, the irradiance is gathered
+//! back, filtered where no discontinuity is, and multiplied with the albedo last.
 //!
 //! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend.
 //! With `--split two-pass`, and `fragment` in two passes, split is split.blocks and split.translate, and gather is

@@ -1,6 +1,6 @@
-//! Direct insertion: what a ray has met goes into its list at once, on the host, and no SPIDs are kept (Clarberg & Munkberg 2014,
-//! section 4.2, "Ray Tracing"; `--lists direct`). The lists are those that insertion on the device makes, in the order that
-//! compaction brings them to.
+//! Direct insertion: the host puts each ray's hit into its list at once, and no SPIDs are kept (Clarberg & Munkberg
+//! 2014, section 4.2, "Ray Tracing"; `--lists direct`). The lists are those that insertion on the device makes, in the
+//! order that compaction gives them.
 //! writes  lists.begins, lists.nodes, lists.linear, lists.zmax, lists.addresses; begins alphas of colours at 0
 
 use super::super::choices::Choices;

@@ -145,7 +145,7 @@ impl Shade {
                 return Ok(());
             };
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
-            // A triangle that turns its back to the middle of the lens may show its front to the rim.
+            // A triangle whose back faces the middle of the lens may show its front to the rim.
             mesh::for_each(cmd, &self.pipeline, scene, Sides::Both, list.calls(), |call| {
                 cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&primitives.params(scene, call)));
                 let of = |indices: u32| indices / 3 * self.stages.vertex_count;

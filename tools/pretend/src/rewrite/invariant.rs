@@ -1,4 +1,4 @@
-//! What an output that is declared `invariant` hangs on: nothing that two compilers' runs may do differently may be
+//! What an output that is declared `invariant` depends on: nothing that two compilers' runs may do differently may be
 //! done to it.
 
 use super::module::{id, ids};

@@ -1,8 +1,8 @@
 //! Baseline `--shading texture-space`: Andersson, Hasselgren, Toth and Akenine-Moller 2014, "Adaptive Texture Space Shading for
 //! Stochastic Rendering", as far as Clarberg and Munkberg 2014 say what it does (sections 2 and 6, figure 9). Of each draw call a
 //! sparse hierarchy of shading values is drawn into a texture by conservative rasterisation, which then is the draw's colour
-//! where tuples see it; the next draw call begins with an empty one. Draws take turns in a pool of such textures.
-//! reads   the scene, its lights, the tuples
+//! where tuples see it; the next draw call begins with an empty one. Draws share a pool of such textures, one after the
+//! other. reads   the scene, its lights, the tuples
 //! writes  texture_space.textures.N, .owners.N, .touched.N   buffers of the pool (pool.rs)
 //!         texture_space.atlas, texture_space.charts         buffers, 8 B a vertex and 4 B a triangle, made once
 //!         baseline.colors, baseline.depth                   as supersampling has them

@@ -1,6 +1,6 @@
-//! The pool: textures that draws take turns in (Clarberg & Munkberg 2014, section 6: "a pool of large mipmapped textures"), buffers
-//! each with all levels to a texel, and beside each the triangle that shades each of its texels.
-//! texture_space.textures.N   buffer, 8 B a texel: RGBA16F
+//! The pool: textures that draws use one after the other (Clarberg & Munkberg 2014, section 6: "a pool of large
+//! mipmapped textures"), buffers each with all levels to a texel, and beside each the triangle that shades each of its
+//! texels. texture_space.textures.N   buffer, 8 B a texel: RGBA16F
 //! texture_space.owners.N     buffer, 4 B a texel: atlas.glsl says of what; ours, not the paper's
 //! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument off`
 //! 16 B that nothing reads
