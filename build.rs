@@ -89,7 +89,7 @@ fn generate(root: &Path, out: &Path) -> Result<(), Faults> {
     std::fs::write(out.join("shaders.rs"), text).map_err(|error| vec![format!("writing shaders.rs: {error}")])
 }
 
-/// Drop the first folder and the extension, and a shader and its pass have the same path (style.md, section 3).
+/// Drop the first folder and the extension, and a shader and its pass have the same path.
 fn mirrored(name: &str) -> Result<(), String> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let file = PathBuf::from(format!("src/{stem}.rs"));

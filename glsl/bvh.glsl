@@ -13,7 +13,7 @@ struct BvhNodeBlock {
 
 // Four children of a node, axis by axis, so that one reading tests all of them.
 struct BvhWideBlock {
-    // Corners of their boxes; a child that is not there lies where no ray comes to.
+    // Corners of their boxes; a missing child lies where no ray reaches.
     vec4 min_x;
     vec4 min_y;
     vec4 min_z;

@@ -9,7 +9,7 @@
 // 1: triangles move.
 layout(constant_id = 66) const uint MOVES = 0;
 
-// Of this path: 0 when the shutter opens, 1 when it closes.
+// Moment of this path: 0 when the shutter opens, 1 when it closes.
 float shutter_part = 0.0;
 
 BvhTriangleBlock triangle_at(uint index) {

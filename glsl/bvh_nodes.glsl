@@ -18,9 +18,9 @@ const uint ROOT = 0u;
 
 // Children whose boxes a ray enters, nearest first.
 struct Entered {
-    // Of them before the limit: the first ones.
+    // Number of them before the limit: the first ones.
     uint count;
-    // Those behind the limit too, which the same ray finds again in the same order whatever its limit has come to.
+    // Those behind the limit too, which the same ray finds again in the same order whatever its limit is by then.
     uvec4 nodes;
 };
 

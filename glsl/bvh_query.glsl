@@ -20,7 +20,7 @@ TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
         return hit;
     }
     uint flags = (kind & RAY_SHADOW) != 0u ? gl_RayFlagsTerminateOnFirstHitEXT : gl_RayFlagsNoneEXT;
-    // Backs can be told from fronts of what is asked about only.
+    // Backs and fronts can be distinguished only for the triangle that is asked about.
     flags |= (kind & RAY_CAMERA) != 0u ? gl_RayFlagsNoOpaqueEXT : gl_RayFlagsNoneEXT;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, structure, flags, 0xffu, origin, 0.0, direction, limit);

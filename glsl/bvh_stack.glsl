@@ -1,14 +1,14 @@
-// Where a walk goes on: nodes that wait, nearest last, and with STACK_SHORT the trail to those that did not fit. Host:
-// src/bvh/nodes.rs, which knows how many a tree can make wait.
+// Where a walk continues: nodes that wait, nearest last, and with STACK_SHORT the trail to those that did not fit.
+// Host: src/bvh/nodes.rs, which knows how many a tree can make wait.
 //
 // A short stack is a ring: what is put on a full one takes the place of the node that waits longest. The trail has a digit
 // for each level between the root and where the walk is: which of the entered children it went to, and how many are left
 // after that one. What is left is known by the digits alone, and all that waits in the ring are the last of it. So when the
 // ring is empty and a digit has some left, the walk begins at the root again, goes down by the digits, and puts what is left
 // at each level on the ring anew. Nothing is passed over: children are counted and ordered by where the ray enters them,
-// which does not hang on what it has met since; only what lies behind that is left out (after Laine, Restart Trail for
-// Stackless BVH Traversal, High Performance Graphics 2010, and Vaidyanathan, Woop and Benthin, Wide BVH Traversal with a
-// Short Stack, High Performance Graphics 2019; a digit that has what is left, not what is done, is ours).
+// which does not depend on what it has hit since; only what lies behind that is left out (after Laine, Restart Trail
+// for Stackless BVH Traversal, High Performance Graphics 2010, and Vaidyanathan, Woop and Benthin, Wide BVH Traversal
+// with a Short Stack, High Performance Graphics 2019; a digit that has what is left, not what is done, is ours).
 #ifndef BVH_STACK_GLSL
 #define BVH_STACK_GLSL
 
@@ -40,7 +40,7 @@ const uint DIGITS_IN_WORD = 32u / DIGIT_BITS;
 const uint ALL_LEFT_MASKS = NODE_WIDTH == 2u ? 0x55555555u : 0x33333333u;
 
 uint trail[TRAIL_WORDS];
-// Level of the node whose turn it is, and the one down to which the trail leads.
+// Level of the node to visit next, and the one down to which the trail leads.
 uint trail_level;
 uint trail_end;
 
@@ -96,7 +96,7 @@ bool trail_turn() {
     return true;
 }
 
-// Puts what waits on the ring and goes down, or turns.
+// Pushes what waits onto the ring and descends, or turns back.
 bool walk_on_by_trail(Entered entered, inout uint node) {
     uint word = trail_level / DIGITS_IN_WORD;
     uint shift = trail_level % DIGITS_IN_WORD * DIGIT_BITS;

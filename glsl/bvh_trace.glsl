@@ -4,13 +4,13 @@
 // The walk goes in two loops, down to a leaf and through its triangles, and looks at alpha outside both: a driver that runs
 // lanes side by side runs what any of them needs for all. With RAYS_QUERY the driver walks a structure of its own
 // (bvh_query.glsl). The including shader has the axis ALPHA and what bvh_stack.glsl, bvh_nodes.glsl, bvh_moving.glsl and, with
-// ALPHA=tested, shading/traced.glsl want.
+// ALPHA=tested, shading/traced.glsl need.
 //
-// Of triangles at one distance the first in the tree's order is met, so that the answer does not hang on the way through the
-// tree. A box around another is entered wherever the inner one is, in floats too (each step of the test is monotonic), so
-// every way comes to the same leaves before the limit, and any hit is the same hit for all. The nearest could still differ
-// where two distances are within what rounding makes of a distance to a box: there a leaf may count as behind a triangle
-// that is behind one of its own.
+// Among triangles at one distance the first in the tree's order is hit, so that the answer does not depend on the order
+// in which the tree is walked. A box around another is entered wherever the inner one is, in floats too (each step of
+// the test is monotonic), so every order reaches the same leaves before the limit, and any hit is the same hit for all.
+// The nearest could still differ where two distances are within what rounding makes of a distance to a box: there a
+// leaf may count as behind a triangle that is behind one of its own.
 #ifndef BVH_TRACE_GLSL
 #define BVH_TRACE_GLSL
 
@@ -63,7 +63,7 @@ bool stops(uint triangle, vec2 barycentric, uint kind, uint seed) {
 TraceHit trace(vec3 origin, vec3 direction, float limit, uint kind, uint seed) {
     TraceHit hit = TraceHit(false, limit, 0u, vec2(0.0));
     vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
-    // A leaf's triangles that are still to be tried, and the node whose turn it is.
+    // A leaf's triangles that are still to be tried, and the node to visit next.
     uint triangle = 0u;
     uint end = 0u;
     uint node = ROOT;

@@ -31,7 +31,7 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
         BvhNodeBlock node = bvh_nodes[at];
         bool is_entered = box_entry(node, origin, inverse, limit) >= 0.0;
         uint count = floatBitsToUint(node.min_count.w);
-        // Of a leaf its first triangle, of others the place after all below them.
+        // First triangle of a leaf; for other nodes the place after all below them.
         uint first = floatBitsToUint(node.max_first.w);
         at = count == 0u && !is_entered ? first : at + 1u;
         if (count == 0u || !is_entered) {

@@ -1,7 +1,8 @@
-//! A picture that a run goes on with: its sums and how many samples they are of, from the EXR of an earlier run.
+//! A picture that a run continues: its sums and the number of their samples, from the EXR of an earlier run.
 //!
 //! Nothing in it is believed: the header must be that of the same picture, size, scene, settings and estimator, and the sums
-//! must be those that its pixels are the means of. Then sampling goes on as if it had never stopped, to the same bits.
+//! must be those that its pixels are the means of. Then sampling continues as if it had never stopped, to the same
+//! bits.
 
 use crate::error::{Error, Result};
 use crate::metrics::noise;
@@ -73,7 +74,7 @@ impl Earlier {
         if let Some(index) = pixels.iter().position(|pixel| !is_mean(pixel, count as f32)) {
             let (x, y) = (index as u32 % extent.width, index as u32 / extent.width);
             return Err(earlier.refused(&format!(
-                "pixel ({x}, {y}) is {:?}, which {count} samples with the sums {:?} do not come to",
+                "pixel ({x}, {y}) is {:?}, which {count} samples with the sums {:?} cannot give",
                 &pixels[index][..3],
                 &pixels[index][3..]
             )));
@@ -82,14 +83,14 @@ impl Earlier {
         Ok(Self { sums, sample_count: count as u32, ..earlier })
     }
 
-    /// `values`: the settings of the run that goes on.
+    /// `values`: the settings of the run that continues.
     ///
     /// Errors: it is a picture of another technique, of another version of it, of another seed or scene (exit code 2).
     pub fn require(&self, technique: &dyn Technique, values: &Values, scene: &Scene) -> Result<()> {
         self.require_text(TECHNIQUE, technique.name())?;
         self.require_text(VERSION, env!("CARGO_PKG_VERSION"))?;
         self.require_text(ESTIMATOR, &technique.estimator_version().to_string())?;
-        // Built-in scenes hang on it: it says more than their hash.
+        // Built-in scenes depend on it: it says more than their hash.
         self.require_setting(&self.settings()?, &run::settings(values, &BTreeMap::new()), "seed")?;
         self.require_text(SCENE_HASH, &scene.hash)
     }
@@ -135,7 +136,7 @@ impl Earlier {
     fn settings(&self) -> Result<Value> {
         let text = self.text(SETTINGS)?;
         let settings = serde_json::from_str(text).ok().filter(Value::is_object);
-        settings.ok_or_else(|| self.refused(&format!("{SETTINGS} is no JSON object: {}", quoted(text))))
+        settings.ok_or_else(|| self.refused(&format!("{SETTINGS} is not a JSON object: {}", quoted(text))))
     }
 
     fn require_text(&self, name: &str, ours: &str) -> Result<()> {
@@ -149,7 +150,7 @@ impl Earlier {
     fn text(&self, name: &str) -> Result<&str> {
         let text = self.texts.get(name).map(String::as_str);
         text.ok_or_else(|| {
-            self.refused(&format!("there is no {name} in its header; a picture that can be gone on with has it"))
+            self.refused(&format!("there is no {name} in its header; a picture that can be continued has it"))
         })
     }
 

@@ -232,7 +232,7 @@ mod tests {
         assert!(!View::new(&scene, "window", Extent::new(8, 8)).unwrap().made_up);
         let error = View::new(&scene, "door", Extent::new(8, 8)).unwrap_err();
         assert!(error.to_string().contains("it has 1: window"), "{error}");
-        // One that frames the scene is there for who asks, unless the file has one of this name.
+        // A camera that frames the scene exists on request, unless the file has one of this name.
         assert!(View::new(&scene, "framing", Extent::new(8, 8)).unwrap().made_up);
         scene.cameras.push(own("framing"));
         assert!(!View::new(&scene, "framing", Extent::new(8, 8)).unwrap().made_up);

@@ -46,7 +46,7 @@ pub fn camera(bounds: &Bounds, facing: &Facing, extent: Extent) -> Camera {
     let distance = across.distance.max(along.distance).max(nearest + LEAST_DISTANCE * radius);
     let eye = center + across.middle * right + along.middle * up + distance * back;
     let world_from_view = Mat4::from_translation(eye) * Mat4::from_mat3(Mat3::from_cols(right, up, back));
-    // Halfway to the nearest corner: what moves may come nearer than the moments in which it was looked at.
+    // Halfway to the nearest corner: what moves may come nearer than at the moments that were sampled.
     let z_near = 0.5 * (distance - nearest);
     let projection = Projection::Perspective { y_fov: Y_FOV, aspect: None, z_near, z_far: None };
     Camera { name: NAME.to_owned(), world_from_view, projection }
@@ -77,7 +77,7 @@ fn toward_eye(facing: &Facing) -> DVec3 {
         Some(normal) => (heading(facing), normal.y.asin().clamp(-STEEPEST, STEEPEST)),
         None => {
             let is_hanging = facing.net.y < -HANGING * facing.area;
-            // To the right of the heading, as one sees it who comes from there.
+            // To the right of the heading, as seen on the way from there.
             let heading = DVec3::Y.cross(heading(facing)) * ASIDE.sin() + heading(facing) * ASIDE.cos();
             (heading, if is_hanging { -ABOVE } else { ABOVE })
         }
@@ -135,7 +135,7 @@ mod tests {
         faces(&[DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z].map(|side| (2.0, side)))
     }
 
-    /// The sides of the picture that the box comes to, in parts of half of it: greatest x and greatest y.
+    /// Extent of the box on the picture, in halves of the picture: greatest x and greatest y.
     fn filled(bounds: &Bounds, facing: &Facing, extent: Extent) -> [f32; 2] {
         let clip = View { extent, camera: camera(bounds, facing, extent), made_up: true }.clip_from_world();
         bounds.corners().into_iter().fold([0.0f32; 2], |[x, y], corner| {
@@ -219,7 +219,7 @@ mod tests {
             let eye = toward_eye(&facing);
             assert!((side * eye.y - STEEPEST.sin()).abs() < 1e-9 && eye.z > 0.5, "{eye}");
         }
-        // What stands is looked at straight on.
+        // What stands upright is seen straight on.
         for (facing, eye) in [
             (faces(&[(1.0, DVec3::Z)]), DVec3::Z),
             (faces(&[(1.0, -DVec3::Z)]), -DVec3::Z),

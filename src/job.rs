@@ -1,4 +1,4 @@
-//! Job: a checked request for one picture; `Job::run` is the whole road on one screen.
+//! Job: a checked request for one picture; `Job::run` is the whole path from arguments to report on one screen.
 
 use crate::caps::Caps;
 use crate::earlier::{self, Earlier};
@@ -40,7 +40,7 @@ pub struct Job {
     /// None: into `SCENE-TECHNIQUE.png` in the current folder.
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
-    /// A picture to go on with, instead of beginning anew.
+    /// A picture to continue, instead of starting anew.
     pub earlier: Option<Earlier>,
     /// What the picture is judged against.
     pub reference: Option<Asked>,
@@ -254,7 +254,7 @@ impl Job {
         if is_one_moment { model.into_pose(open_s) } else { scene_of(&model, &self.values) }
     }
 
-    /// `scene` with its textures as the request wants them on a device of `caps`.
+    /// `scene` with its textures as the request asks for them on a device of `caps`.
     pub fn with_texture_limit(&self, mut scene: Scene, caps: &Caps) -> Scene {
         let budget_bytes = self.values.bytes("memory-budget");
         scene.texture_limit_px = match self.values.integer_or_auto("texture-limit") {
@@ -264,7 +264,7 @@ impl Job {
         scene
     }
 
-    /// Opens a device with `scene` as the request wants it.
+    /// Opens a device with `scene` as the request asks for it.
     ///
     /// Errors: nothing of it is drawn (exit code 2), no fitting device (3), memory (4).
     pub fn open_session(&self, request: &DeviceRequest, scene: Scene) -> Result<Session> {
@@ -333,7 +333,7 @@ impl Job {
     }
 
     /// Picture and stages, both with the exposure that a PNG of them has, stops. `sums`: kept in an EXR of 32-bit floats, so
-    /// that `--continue` can go on with it.
+    /// that `--continue` can continue it.
     fn write(
         &self,
         path: &Path,

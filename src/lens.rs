@@ -1,8 +1,8 @@
 //! The thin lens of `--aperture` and `--focus`, which blurs what lies before and behind the plane in focus, and the two eyes of
 //! `--stereo`, which are places in the plane of the lens: what lies in the plane in focus is in one place of both pictures.
 //!
-//! Of a perspective camera the lens lies around the eye. An orthographic camera has one around each place that its parallel
-//! rays come from, so that what is out of focus is blurred alike all over the picture.
+//! The lens of a perspective camera lies around the eye. An orthographic camera has one around each place that its
+//! parallel rays come from, so that what is out of focus is blurred equally all over the picture.
 
 use crate::bvh::Bvh;
 use crate::frame::View;

@@ -25,7 +25,7 @@
 //! # Ok::<(), quincunx::Error>(())
 //! ```
 //!
-//! # The road, and the rooms along it
+//! # The path of a run, and the modules along it
 //!
 //! Arguments become a [`job`], a job loads a [`scene`] (a [`sequence`] once for all frames, posed for each), a technique
 //! makes a [`plan`] of it, a [`session`] makes the plan real, frames are recorded through [`gpu`] out of [`memory`], and
@@ -40,7 +40,7 @@
 //! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
 //! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
-//! | [`selftest`] | every road of a device beside a plain twin, as one document |
+//! | [`selftest`] | every method that a device supports beside a plain twin, as one document |
 //! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
 
 pub mod bench;

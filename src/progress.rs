@@ -1,15 +1,15 @@
-//! Progress: what may take long says that it has begun, how far it is, and that it has ended.
+//! Progress: work that may take long reports its start, how far it is, and its end.
 //!
-//! Why this way: like Ctrl-C (src/interrupt.rs), who looks on is a matter of the process, and not of a picture, so that no
-//! importer and no tree hands an observer down. The binary installs one; a library's process has none, and nothing is said.
+//! Why this way: like Ctrl-C (src/interrupt.rs), the observer belongs to the process, not to a picture, so that
+//! importers and tree builders need not pass one down. The binary installs one; without one nothing is printed.
 
 use std::fmt::Display;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Who looks on. Stages lie inside each other: the last that began is the first that ends.
+/// An observer of progress. Stages are nested: the last that began is the first that ends.
 pub trait Progress: Send + Sync {
-    /// A stage begins. `unit`: what is counted in it, in the plural; empty where nothing is.
+    /// A stage begins. `unit`: what is counted in it, in the plural; empty where nothing is counted.
     fn begins(&self, name: &str, unit: &'static str);
 
     /// `done` of `all` units of the innermost stage are done.
@@ -29,7 +29,7 @@ pub fn install(onlooker: Box<dyn Progress>) {
     let _ = ONLOOKER.set(onlooker);
 }
 
-/// A line for the user; nothing where nobody looks on.
+/// A line for the user; nothing without an observer.
 pub fn say(line: impl Display) {
     if let Some(onlooker) = ONLOOKER.get() {
         onlooker.says(&line.to_string());
@@ -56,7 +56,7 @@ impl Stage {
         Self { _made_by_begin: () }
     }
 
-    /// What `work` comes to, and the end of the stage.
+    /// The result of `work`, after which the stage ends.
     pub fn over<T>(self, work: impl FnOnce() -> T) -> T {
         work()
     }
@@ -80,7 +80,8 @@ impl Drop for Stage {
 /// How far counted work is, and how long the rest takes at the speed so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pace {
-    /// When the first count came, and what it was: what lies before, kept rows and what drivers compile, tells no speed.
+    /// When the first count came, and what it was: what lies before, kept rows and what drivers compile, says nothing
+    /// about speed.
     first: Option<(Instant, u64)>,
     pub done: u64,
     pub all: u64,
@@ -102,7 +103,7 @@ impl Pace {
     }
 }
 
-/// The stages that have begun and not ended, outermost first: the arithmetic of whoever shows them.
+/// The stages that have begun and not ended, outermost first: the arithmetic of what shows them.
 #[derive(Debug, Default)]
 pub struct Stages {
     open: Vec<Open>,

@@ -31,7 +31,7 @@ pub struct Frames {
 pub struct Sequence {
     /// One a finished frame, in order.
     pub reports: Vec<Report>,
-    /// The user stopped it: the frames that `reports` tells of are whole.
+    /// The user stopped it: the frames in `reports` are whole.
     pub is_interrupted: bool,
     /// Whether the gates of `Job::reference` hold in all of these frames.
     pub gates: Result<()>,
@@ -84,7 +84,7 @@ impl Frames {
 }
 
 impl Job {
-    /// A picture of each frame, in one session; `finished` is told of each, with its number. The report, where one is
+    /// A picture of each frame, in one session; `finished` is called with each and its number. The report, where one is
     /// asked for, has one entry a frame.
     ///
     /// Errors: as `Job::run`. Ctrl-C is no error: finished frames stay.
@@ -94,7 +94,8 @@ impl Job {
         frames.values(self, frames.last, None)?;
         let model = self.open_model()?;
         let mut session: Option<Session> = None;
-        // What `auto` comes to for the first frame that is not black holds for all: pictures of their own exposure flicker.
+        // The value of `auto` for the first frame that is not black holds for all: pictures with exposures of their own
+        // flicker.
         let mut exposure_ev: Option<f64> = None;
         let mut sequence = Sequence { reports: Vec::new(), is_interrupted: false, gates: Ok(()) };
         for frame in frames.first..=frames.last {

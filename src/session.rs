@@ -28,8 +28,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What a submit takes on a GPU with `--submit-ms auto`: a twentieth of what Windows lets it take, and a thousand times what a submit
-/// itself takes.
+/// Longest submit on a GPU with `--submit-ms auto`: a twentieth of what Windows allows, and a thousand times
+/// the cost of a submit itself.
 const GPU_SUBMIT_MS: f64 = 100.0;
 
 /// A device and a scene.
@@ -59,11 +59,11 @@ pub struct Renderer {
     pub view: View,
     pub lights: LightSet,
     pub host_passes: Vec<(String, u64)>,
-    /// Of the device before the first frame, nanoseconds.
+    /// Passes that the device ran once before the first frame, with their times in nanoseconds.
     pub once_passes: Vec<(String, u64)>,
     pub counters: BTreeMap<&'static str, f64>,
     pub resolved: BTreeMap<&'static str, String>,
-    /// Of the frame; the scene's own plan is `SceneStats::plan`.
+    /// Plan of the frame; the scene's own plan is `SceneStats::plan`.
     pub plan: Plan,
     /// Which of its resources lie in the same bytes.
     pub sharing: Sharing,
@@ -82,7 +82,7 @@ impl Session {
     /// The same device with another scene. One of the same hash and texture limit is there already; of one that shows the
     /// same pictures, as other moments of a model do, the textures are.
     ///
-    /// Errors: as `open`, but for the device.
+    /// Errors: as `open`, except for the device.
     pub fn showing(self, scene: Scene) -> Result<Self> {
         if scene.hash == self.scene.hash && scene.texture_limit_px == self.scene.texture_limit_px {
             return Ok(self);
@@ -274,7 +274,7 @@ fn block_name(technique: &dyn Technique) -> String {
 
 impl Renderer {
     /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes, or fewer
-    /// where its error is small enough before. Ctrl-C ends it after a run: `runs` tells which.
+    /// where its error is small enough before. Ctrl-C ends it after a run, whose number is in `runs`.
     ///
     /// Errors: the device fails, memory for reading the sums back (exit code 4).
     pub fn frame(&self) -> Result<FrameTime> {
@@ -308,7 +308,7 @@ impl Renderer {
         assert_eq!(sums.len() as u64, self.view.extent.pixel_count(), "the sums are of another picture");
         let all = self.frame.run_count();
         if self.frame.sums().is_none() {
-            return Err(Error::request("the technique sums no samples up: there is nothing to go on with"));
+            return Err(Error::request("the technique does not sum up samples: there is nothing to continue"));
         }
         if count >= all {
             let why = format!("there are {count} samples a pixel already, and --spp asks for {all} in all");
@@ -377,7 +377,7 @@ impl Renderer {
         self.recorded.run_first(pass_count)
     }
 
-    /// Whose clock the times of its frames are.
+    /// The clock of the times of its frames.
     pub fn clock(&self) -> Clock {
         self.recorded.clock()
     }
@@ -413,11 +413,12 @@ impl Renderer {
         match self.gpu.caps.identity.loop_turns() {
             Some(turns) if is_nan => error
                 .note(format!(
-                    "this driver ends the loops of a thread after {turns} turns: lights, times steps of shadow rays; or all \
-                     steps of a path's rays"
+                    "this driver ends a thread's loops after {turns} iterations, which may be lights times steps of \
+                     shadow rays, or all steps of a path's rays"
                 ))
                 .note(
-                    "fewer lights or --bounces, --direct-shadow none or sun, --cull tiled, or a newer driver (lavapipe of Mesa 25)",
+                    "fewer lights or --bounces, --direct-shadow none or sun, --cull tiled, or a newer driver \
+                     (lavapipe of Mesa 25) would help",
                 ),
             _ => error,
         }

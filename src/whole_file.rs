@@ -1,7 +1,7 @@
 //! Files that are written whole or not at all.
 //!
 //! The bytes go into a temporary file in the same folder (a rename across file systems would be a copy) and take the
-//! asked name when they are all on disk. A failure leaves what stood there before.
+//! asked name when they are all on disk. A failure leaves the earlier file.
 
 use std::fmt::Display;
 use std::fs::File;
@@ -19,7 +19,7 @@ pub fn write_whole<E: Display>(path: &Path, write: impl FnOnce(&mut BufWriter<Fi
     match path.metadata() {
         Ok(found) if found.is_dir() => return Err(failed(&"it is a folder; name a file in it")),
         // A rename would put a file in the place of a device such as /dev/null.
-        Ok(found) if !found.is_file() => return Err(failed(&"it is no regular file")),
+        Ok(found) if !found.is_file() => return Err(failed(&"it is not a regular file")),
         _ => {}
     }
     // A link keeps pointing where it points: its target is replaced.
@@ -92,7 +92,7 @@ mod tests {
         for (path, cause) in [
             (missing.as_path(), "there is no folder"),
             (folder.path(), "it is a folder"),
-            (Path::new("/dev/null"), "it is no regular file"),
+            (Path::new("/dev/null"), "it is not a regular file"),
             (Path::new(""), "it names no file"),
         ] {
             let error = write_whole(path, |_| -> Result<()> { unreachable!("nothing may be written") }).unwrap_err();

@@ -130,7 +130,7 @@ fn a_plan_that_passes_its_budget_is_refused_as_on_a_device_and_the_named_budget_
             }
             let (Err(planned), Err(made)) = (planned, made) else { continue };
             assert_eq!((planned.exit_code(), planned.message()), (4, made.message()), "{what}");
-            assert!(planned.to_string().contains("all of the plan takes "), "{planned}");
+            assert!(planned.to_string().contains("the whole plan takes "), "{planned}");
             refusals += 1;
             last = Some(enough(&planned));
         }

@@ -1,5 +1,5 @@
-//! What rows of `bench` say: that it is what the report of their command says, that what nothing reads tells no rows apart, and
-//! that few rounds tell nothing.
+//! What rows of `bench` say: that it is what the report of their command says, that no rows differ only in settings
+//! that are not read, and that few rounds prove nothing.
 
 use crate::support::benched::{bench, lines, read};
 use crate::support::program::Program;
@@ -9,7 +9,7 @@ use quincunx::bench::sweep;
 use quincunx::bench::what::What;
 use serde_json::Value;
 
-/// What a road draws into on the way, or writes twice, is not what is copied.
+/// What a method draws into on the way, or writes twice, is not what is copied.
 #[test]
 fn every_road_copies_as_many_bytes() {
     let program = Program::new();
@@ -122,7 +122,7 @@ fn an_axis_that_no_technique_has_is_answered_with_one_that_is_like_it() {
     let program = Program::new();
     program.fails(&bench("frame", &["--sweep", "blocks=8,16"]), 2, &["--blocks", "a similar one exists: --block"]);
     program.fails(&bench("frame", &["--sweep", "paterns=2x2"]), 2, &["a similar one exists: --pattern"]);
-    program.fails(&bench("frame", &["--sweep", "msaa=1,4"]), 2, &["it does not read --msaa"]);
+    program.fails(&bench("frame", &["--sweep", "msaa=1,4"]), 2, &["does not read --msaa"]);
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn fair_rows_shade_as_many_texels_a_thread() {
     program.fails(&forward, 2, &["--fair: forward has no --texels"]);
 }
 
-/// Rows of earlier versions: what they hold is read, and a sweep goes on behind them.
+/// Rows of earlier versions: what they hold is read, and a sweep continues behind them.
 #[test]
 fn kept_runs_are_read() {
     let runs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/runs");

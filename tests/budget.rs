@@ -20,7 +20,7 @@ fn within(strategy: Strategy, budget_bytes: u64) -> DeviceRequest {
     DeviceRequest { budget_bytes: Some(budget_bytes), ..counted_device(strategy) }
 }
 
-/// The whole road: scene, frame, picture; and the ledger before the picture is read back.
+/// The whole path: scene, frame, picture; and the ledger before the picture is read back.
 fn render(
     request: &DeviceRequest,
     scene: &Scene,

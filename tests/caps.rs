@@ -92,7 +92,7 @@ fn every_plan() -> Vec<Tried> {
 }
 
 fn number(value: &Value) -> u64 {
-    value.as_u64().unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_u64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 fn resources(study: &Study) -> Vec<Value> {
@@ -180,8 +180,8 @@ fn every_snapshot_is_of_a_known_driver() {
     }
 }
 
-/// Each memory type is there, is not for attachments that are never stored, and is seen by whom it must be; what lies in
-/// a heap fits into it.
+/// Each memory type is there, is not for attachments that are never stored, and is visible where it must be; what lies
+/// in a heap fits into it.
 fn require_memory(tried: &Tried) {
     let mut held = vec![0; tried.caps.heaps.len()];
     for row in resources(&tried.planned.0) {
@@ -208,8 +208,8 @@ fn require_samples(tried: &Tried) {
     }
 }
 
-/// What `auto` must come to: what the caps have, and never what no device has been seen to do right. None: what does not
-/// go by the device.
+/// Values that `auto` must have: what the caps support, and never what no device has been seen to do right. None: what
+/// does not go by the device.
 fn expected_choice(tried: &Tried, key: &str) -> Option<&'static str> {
     let Caps { features, formats, identity, .. } = &tried.caps;
     let is_software = identity.is_software();
@@ -371,8 +371,8 @@ fn a_device_can_be_planned_for_by_what_it_says_of_itself() {
     let plan = ["memory", SCENE, "--technique", "deferred", "--size", "64x36", "--plan"];
     let from = |more: &[&str]| program.run(&[&plan[..], more].concat()).fine();
     let own = from(&["--caps", "devices.json", "--device", "0"]);
-    assert!(own.out.contains("nobody has measured how this driver rounds"), "{}", own.out);
-    assert!(!from(&[]).out.contains("nobody has measured"));
+    assert!(own.out.contains("how this driver rounds sizes has not been measured"), "{}", own.out);
+    assert!(!from(&[]).out.contains("rounds sizes has not been measured"));
     let json = from(&["--caps", "devices.json", "--device", "0", "--json"]).json();
     let identity = &devices.json()["devices"][0]["caps"]["identity"];
     let study = &json["techniques"][0];

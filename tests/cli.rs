@@ -63,7 +63,7 @@ fn an_impossible_setting_is_a_bad_request_and_says_what_is_possible() {
         &["forwards", "interleaved_deferred", "deferred"],
     );
     let unread = ["render", "cornell", "--technique", "deferred", "--pattern", "4x4"];
-    program.fails(&unread, 2, &["deferred: it does not read --pattern"]);
+    program.fails(&unread, 2, &["deferred does not read --pattern"]);
     program.fails(&small(&["--patern", "4x4"]), 2, &["--patern"]);
     program.fails(&small(&["--aov", "split.colour"]), 2, &["split.colour", "split.normal"]);
     program.fails(&small(&["--split", "none", "--aov", "split.normal"]), 2, &["--aov split.normal", "one-pass"]);

@@ -1,4 +1,4 @@
-//! Roads that must agree, bit for bit on software drivers: a technique at its degenerate setting, culling on and off,
+//! Methods that must agree, bit for bit on software drivers: a technique at its degenerate setting, culling on and off,
 //! one submit and many.
 
 use crate::support;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 const INTERLEAVED: &str = "interleaved_deferred";
 
-/// Every road that must give the picture of the first one, `branch`.
+/// Every method that must give the picture of the first one, `branch`.
 const ROADS: [Changes<'_>; 19] = SPLITS;
 
 /// Those that read `--block`.
@@ -25,7 +25,7 @@ const ROADS_IN_BLOCKS: [Changes<'_>; 7] = [
     &[("split", "fragment"), ("fragment-passes", "2")],
 ];
 
-/// The same picture from every road that must give it, whose shaders differ; returns the first one's hash.
+/// The same picture from every method that must give it, whose shaders differ; returns the first one's hash.
 #[track_caller]
 fn require_one_picture(watched: &Watched, technique: &str, common: Changes<'_>, variants: &[Changes<'_>]) -> String {
     let first = watched.picture(technique, &both(common, variants[0]));
@@ -194,7 +194,7 @@ fn lights_joined_to_the_subsets_split_the_same() {
     require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "interleaved")], &one);
 }
 
-/// Clusters of sub-buffers share a subset of the punctual lights, on every road.
+/// Clusters of sub-buffers share a subset of the punctual lights, by every method.
 #[test]
 fn clusters_split_the_same() {
     let watched = Watched::open("lamps:objects=10,lights=24");
@@ -268,12 +268,13 @@ fn culling_changes_no_pixel_of_a_map() {
     let culls: [Changes<'_>; 2] = [&[("cull", "none")], &[("cull", "tiled")]];
     let common = [("size", "323x177"), ("vpls", "32"), ("lights", "40")];
     require_one_picture(&watched, INTERLEAVED, &common, &culls);
-    // One road of each kind.
+    // One method of each kind.
     let roads = [ROADS[0], ROADS[1], ROADS[3], ROADS[4], ROADS[5], ROADS[12], ROADS[14], ROADS[15], ROADS[18]];
     require_one_picture(&watched, INTERLEAVED, &common, &roads);
 }
 
-/// The depth buffer holds positions: lists of lights, the road and the filter sample it, and BLEND surfaces test it last.
+/// The depth buffer holds positions: lists of lights, the split and the filter sample it, and BLEND surfaces test it
+/// last.
 #[test]
 fn every_road_is_branch_under_blended_surfaces() {
     let watched = Watched::open("hall:triangles=8000");

@@ -101,7 +101,7 @@ fn a_failed_write_leaves_nothing() {
     for (name, options, cause) in [
         ("missing/a.png", WriteOptions::default(), "there is no folder"),
         ("taken.exr", WriteOptions::default(), "it is a folder"),
-        ("layers.png", WriteOptions { aovs: &layer, ..WriteOptions::default() }, "no room for the layer depth"),
+        ("layers.png", WriteOptions { aovs: &layer, ..WriteOptions::default() }, "cannot hold the layer depth"),
         ("reserved.exr", WriteOptions { attributes: reserved, ..WriteOptions::default() }, "channels"),
     ] {
         let path = folder.path().join(name);

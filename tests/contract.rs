@@ -1,5 +1,4 @@
-//! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document
-//! (design.md, sections 1 and 2).
+//! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document.
 
 use crate::support::program::Program;
 use serde_json::Value;
@@ -134,11 +133,11 @@ const MEMORY: &[Row] = &[
     ("resources[].last_pass", "text?"),
 ];
 
-/// Of memory that was made.
+/// Rows of memory that was allocated.
 const MADE: &[Row] =
     &[("memory_block_bytes", "count"), ("resources[].memory_block", "count"), ("resources[].offset", "count")];
 
-/// Of memory whose bytes a frame has counted as it touched them.
+/// Rows of memory whose bytes a frame counts as it touches them.
 const TOUCHED: &[Row] = &[("touched_bytes", "count"), ("touched_of_bytes", "count"), ("touched_groups.*", "count")];
 
 const DEVICE: &[Row] =
@@ -271,7 +270,7 @@ fn touched_bytes_are_said_only_where_a_frame_has_counted_them() {
         (sum("touched_bytes"), sum("bytes")),
         (count(&memory, "touched_bytes"), count(&memory, "touched_of_bytes"))
     );
-    assert!(text.contains("  touched: ") && text.contains("of those resources that the frame counts"), "{text}");
+    assert!(text.contains("  touched: ") && text.contains("over the resources in which the frame counts"), "{text}");
     // Nobody counts: nothing is known.
     let json = program.run(&[&deep[..], &["--instrument", "off", "--json"]].concat()).fine().json();
     assert!(!has_key(&json, "touched"), "{json:#}");

@@ -1,5 +1,5 @@
-//! Baselines of deep shading: on the same samples supersampling comes to the lists' picture, exactly where a triangle has one
-//! colour; multisampling to nearly the same; and what both shade is counted.
+//! Baselines of deep shading: on the same samples supersampling gives the lists' picture, exactly where a triangle has
+//! one colour; multisampling to nearly the same; and what both shade is counted.
 
 use crate::support::boxes::{camera, rectangle};
 use crate::support::difference::{require_same, rmse};
@@ -79,8 +79,8 @@ fn one_sample_in_the_middle_has_the_textures_of_the_lists() {
     }
 }
 
-/// Of a pass with one sample a pixel nothing is shared: the same tests, depths and places. The rasteriser says nothing of
-/// either picture, so that each pixel is the same.
+/// A pass with one sample a pixel shares nothing: the tests, depths and places are the same. The rasteriser says
+/// nothing of either picture, so that each pixel is the same.
 #[test]
 fn multisampling_of_one_sample_is_supersampling() {
     let watched = Watched::with_scene(rotor());
@@ -246,7 +246,7 @@ fn settings_that_a_baseline_does_not_read_are_refused() {
         (&[MSAA, ("polygon-from", "vertex")], "--polygon-from vertex with --shading msaa"),
         (&[("pass-samples", "8")], "--pass-samples 8 with --shading deep"),
         (&[("pass-samples", "1")], "--pass-samples 1 with --shading deep"),
-        (&[MSAA, ("pass-samples", "4"), ("spp", "6")], "--pass-samples 4: --spp 6 is no multiple of it"),
+        (&[MSAA, ("pass-samples", "4"), ("spp", "6")], "--pass-samples 4: --spp 6 is not a multiple of it"),
     ] {
         let made = watched.try_renderer(DEEP, changes, &[], Submits::One);
         let error = made.map(|_| ()).unwrap_err();

@@ -40,9 +40,9 @@ fn moving(triangles: &[Triangle], path: &str, from: [f32; 3], to: [f32; 3]) -> S
 
 type Counters = BTreeMap<&'static str, f64>;
 
-/// Every road comes to the bits of shading each sample by itself, none without a colour. Returns what the first road counts.
-/// Where each shader rounds for itself (other drivers than software ones), what such triangles show hangs on rounding: their
-/// colours are numbers.
+/// Every method gives the bits of shading each sample by itself, none without a colour. Returns what the first one
+/// counts. Where each shader rounds for itself (other drivers than software ones), what such triangles show depends on
+/// rounding: their colours are numbers.
 #[track_caller]
 fn require_whole(watched: &Watched, common: Changes<'_>) -> Counters {
     let mut plain = vec![("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")];

@@ -16,7 +16,7 @@ const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
 const LOOP: (&str, &str) = ("sample-tests", "loop");
 const LAYERS: (&str, &str) = ("sample-tests", "layers");
 
-/// Both ways come to the same triangles, pairs, colours and picture.
+/// Both methods give the same triangles, pairs, colours and picture.
 #[track_caller]
 fn require_one_picture(watched: &Watched, changes: Changes<'_>) {
     let gpu = &watched.session.gpu;

@@ -25,7 +25,7 @@ fn rotor() -> Scene {
 const LENS: Changes<'_> = &[SIZE, ("aperture", "0.8"), ("focus", "5")];
 const BOTH: Changes<'_> = &[SIZE, ("camera", "rotor"), ("aperture", "0.2"), ("focus", "4")];
 
-/// The lists' roads to a sample's colour.
+/// The lists' ways to a sample's colour.
 const ROADS: [Changes<'_>; 4] = [
     &[("lists", "none")],
     &[("list-access", "addresses")],

@@ -1,5 +1,5 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
-//! shaded is what is listed, each once; blur comes to what path tracing sees.
+//! shaded is what is listed, each once; blur equals what path tracing sees.
 
 use crate::support::difference::require_same;
 use crate::support::moving::{moving, unlit};
@@ -32,7 +32,7 @@ const ROADS: [Changes<'_>; 11] = [
     &[("list-access", "addresses"), ("compaction", "off"), ("address-buffer", "off")],
 ];
 
-/// Both software roads of conservative rasterisation, where the driver has them.
+/// Both software methods of conservative rasterisation, where the driver has them.
 fn conservative(watched: &Watched) -> Vec<&'static str> {
     let mut roads = vec!["vertex"];
     if has(&watched.session.gpu.caps, Feature::GeometryShader) {

@@ -92,7 +92,7 @@ fn require_one_eye(watched: &Watched, common: Changes<'_>) {
         require_same(&watched.session.gpu, &eye, &one.picture().unwrap(), &common);
     }
     let [one, two] = [one, two].map(|renderer| renderer.measured_counters().unwrap());
-    // What both see is listed once; supersampling knows no lists.
+    // What both see is listed once; supersampling has no lists.
     let shares = if common.contains(&("shading", "ssaa")) { 2.0 } else { 1.0 };
     assert_eq!(two["shader_invocations"], shares * one["shader_invocations"], "{common:?}");
     assert_eq!(two["samples_seen"], 2.0 * one["samples_seen"], "{common:?}");
@@ -238,7 +238,7 @@ fn what_both_eyes_see_is_shaded_once() {
     assert_eq!(shared["samples_without_colour"], 0.0);
 }
 
-/// Of as many samples as both eyes have; the picture of the right one is 16 bytes a pixel, and its sums as many.
+/// The plan holds the samples of both eyes; the picture of the right eye is 16 bytes a pixel, and its sums as many.
 #[test]
 fn memory_is_planned_for_both_eyes() {
     let program = Program::new();

@@ -1,6 +1,6 @@
-//! Shading in textures of draws (`--shading texture-space`; Andersson et al. 2014): on the same samples it comes to supersampling's
-//! bits where a draw has one colour, and near the lists' picture elsewhere, the nearer the finer it shades; every sample finds its
-//! texels, however many textures there are.
+//! Shading in textures of draws (`--shading texture-space`; Andersson et al. 2014): on the same samples it gives
+//! supersampling's bits where a draw has one colour, and near the lists' picture elsewhere, the nearer the finer it
+//! shades; every sample finds its texels, however many textures there are.
 
 use crate::support::boxes::{camera, rectangle};
 use crate::support::difference::require_same;
@@ -76,8 +76,8 @@ fn the_picture_is_the_same_again_and_with_any_number_of_textures() {
     assert_eq!(hash("3"), eight);
 }
 
-/// What supersampling has not is a texel's blur, which finer texels take away: at a quarter of their area the picture is nearer, and
-/// costs more. Not four times as much in so small a frame: charts of men a few pixels high stay a texel wide.
+/// Supersampling lacks the blur of texels, which finer texels remove: at a quarter of their area the picture is nearer,
+/// and costs more. Not four times as much in so small a frame: charts of men a few pixels high stay a texel wide.
 #[test]
 fn finer_texels_come_nearer_to_supersampling() {
     let watched = Watched::open("chess:triangles=12000");
@@ -94,8 +94,8 @@ fn finer_texels_come_nearer_to_supersampling() {
     assert!(found[1].0 < 1.5 * deep, "{found:?}, {deep}");
 }
 
-/// A wall that faces the camera is shaded; one that turns its back, or is beside the frame, is not, unless the lens's rim sees its
-/// front or the shutter closes on it inside.
+/// A wall that faces the camera is shaded; one that faces away, or is beside the frame, is not, unless the lens's rim
+/// sees its front or the shutter closes on it inside.
 #[test]
 fn what_no_sample_can_see_is_not_shaded() {
     let wall = |center: Vec3, right: Vec3, closing: Option<Vec3>| {
@@ -128,8 +128,8 @@ fn what_no_sample_can_see_is_not_shaded() {
     assert!(shaded(&wall(outside, Vec3::X, Some(-outside)), &[]) > 0.0);
 }
 
-/// The box's draws have a texture each, or take turns in few: a texel that several draws shade is touched once. Owners are cleared
-/// in all textures that are used.
+/// The box's draws have a texture each, or share a few in sequence: a texel that several draws shade is touched once.
+/// Owners are cleared in all textures that are used.
 #[test]
 fn touched_bytes_are_of_texels_that_were_shaded() {
     let program = Program::new();
@@ -144,7 +144,7 @@ fn touched_bytes_are_of_texels_that_were_shaded() {
         let shaded = json["counters"]["shader_invocations"].as_f64().unwrap() as u64;
         (shaded, touched("texture_pool"), touched("texture_owners"))
     };
-    // Of all levels.
+    // Texels of all levels.
     let texels = 349_525;
     let draw_count = scene::load("cornell", 1).unwrap().draws.len() as u64;
     let (shaded, apart, owners) = found("16");
@@ -206,7 +206,8 @@ fn settings_that_it_does_not_read_or_that_do_not_fit_are_refused() {
     }
 }
 
-/// The checklist's O5, to the byte of its formula, beside the frame buffer's 84.4 MiB; owners are ours.
+/// The texture pool of Clarberg & Munkberg 2014, section 6, to the byte of its formula, beside the frame buffer's 84.4
+/// MiB; owners are ours.
 #[test]
 fn the_pool_is_as_large_as_the_paper_says() {
     let groups = |more: &[&str]| -> BTreeMap<String, u64> {

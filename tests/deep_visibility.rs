@@ -1,5 +1,5 @@
 //! Stochastic rasterisation and rays see the very samples of interleaved rasterisation: what differs lies on edges, which the
-//! rasteriser places to a 256th of a layer's pixel and their tests to a float. Lists and strays come to the same bits as
+//! rasteriser places to a 256th of a layer's pixel and their tests to a float. Lists and strays give the same bits as
 //! without them.
 
 use crate::support::difference::require_same;
@@ -52,8 +52,9 @@ fn require_agreement(watched: &Watched, changes: Changes<'_>) {
     }
 }
 
-/// Of a rasteriser that places corners to 8 bits: an edge is up to 1/512 of a layer's pixel elsewhere, along x and along y, so that a layer's pixel with an edge through it
-/// differs in one of some 300 cases; where a few edges go through each, that is one in a hundred.
+/// With a rasteriser that places corners to 8 bits, an edge is up to 1/512 of a layer's pixel elsewhere, along x and
+/// along y, so that a layer's pixel with an edge through it differs in one of some 300 cases; where a few edges go
+/// through each, that is one in a hundred.
 const MOST_OTHERS: f64 = 0.01;
 
 /// Rays read alpha from the finest texture level, where layers, whose pixels are apart, read it from coarser ones.

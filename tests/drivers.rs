@@ -71,7 +71,7 @@ fn every_driver_makes_the_reference_s_pictures() {
             let render = |file: &str, variables: &[(&str, &str)]| {
                 let mut arguments = vec!["render", scene, "--technique", technique, "--size", "160x90", "--json"];
                 arguments.extend(["-o", file]);
-                // The same paths by both: few tell as much.
+                // The same paths by both, so that few show as much.
                 arguments.extend(if technique == "path_traced" { &["--spp", "16"][..] } else { &[] });
                 let report = program.run_with(&arguments, variables).fine().json();
                 let picture = image_file::read(program.path(file).as_ref()).unwrap();

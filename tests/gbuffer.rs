@@ -8,7 +8,7 @@ use glam::{Vec3, Vec4, vec3};
 use quincunx::scene::{Material, Scene};
 use std::collections::BTreeSet;
 
-/// Tiles a row and rows of them: more materials than eight bits tell apart.
+/// Tiles a row and rows of them: more materials than eight bits can distinguish.
 const TILES: [usize; 2] = [24, 14];
 /// Has no factor in common with the count of tiles.
 const STRIDE: usize = 143;

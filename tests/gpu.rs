@@ -32,7 +32,8 @@ fn own() -> Own {
     *OWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A rasteriser that draws less than what a road needs is found out: by the picture, whatever counts and whatever sums.
+/// A rasteriser that draws less than what a method needs is detected: by the picture, whatever counts and whatever
+/// sums.
 #[test]
 fn samples_that_find_no_colour_fail_the_picture() {
     let request = DeviceRequest { hook: Some(without_shading_space), ..watched_device() };
@@ -53,7 +54,7 @@ fn samples_that_find_no_colour_fail_the_picture() {
     // Where draws are shaded in textures, these are drawn into nothing too.
     let textures = [&common[..2], &[("shading", "texture-space")]].concat();
     let error = watched.render("deep_shading", &textures).picture().err().unwrap();
-    assert!(error.exit_code() == 1 && error.to_string().contains("texels nobody has shaded"), "{error}");
+    assert!(error.exit_code() == 1 && error.to_string().contains("texels were never shaded"), "{error}");
     let black = watched.render("deep_shading", &[&common[..], &[("conservative", "none")]].concat());
     assert_eq!(black.picture().unwrap().mean(), [0.0; 3]);
     assert!(black.measured_counters().unwrap()["samples_without_colour"] > 0.0);
@@ -246,7 +247,7 @@ fn frames_in_bands_are_the_same_frames() {
         submitted();
         roomy.frame().unwrap();
         let [count, most] = submitted();
-        // Of several runs all but the first go together.
+        // With several runs all but the first go together.
         let expected_count = roomy.runs().1.min(2);
         assert!(count == expected_count && most > 1, "{technique} {changes:?}: {count} submits of up to {most}");
         assert_eq!(roomy.picture().unwrap().hash().unwrap(), expected, "{technique} {changes:?}");

@@ -1,4 +1,4 @@
-//! Inferred lighting (Kircher 2009): where it must equal plain deferred shading, and what its roads must share.
+//! Inferred lighting (Kircher 2009): where it must equal plain deferred shading, and what its methods must share.
 
 use crate::support::boxes::{edge, point_light};
 use crate::support::difference::require_same;

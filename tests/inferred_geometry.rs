@@ -22,7 +22,7 @@ fn exact_squares(packing: Packing) -> (Scene, Vec<Vec3>, Vec<f32>) {
         // Depths from the first step to the last, so that the scene's own range is RANGE; both ends come once each.
         let step = u64::from(index) * u64::from(depth_steps) / u64::from(SIDE * SIDE - 1);
         let depth = RANGE[0] + step as f32 * (RANGE[1] / depth_steps as f32);
-        // Any direction of which the word is, then the direction that the word stands for.
+        // Any direction of which the word is, then the direction that the word encodes.
         let angle = index as f32 * 2.4;
         let slope = Vec3::new(angle.cos(), angle.sin(), 0.2 + 2.0 * index as f32 / (SIDE * SIDE) as f32).normalize();
         let normal = packing.view_normal(packing.normal_word(slope)).normalize();

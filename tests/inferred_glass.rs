@@ -85,8 +85,8 @@ fn sheets(z_m: &[f32]) -> Scene {
     scene
 }
 
-/// Of sheets that fill the screen the three nearest have a layer of a 2x2 stipple each; those behind them share it and are left
-/// without a texel, as is one behind the wall. One behind the eye is not on the screen and is not counted.
+/// The three nearest of the sheets that fill the screen have a layer of a 2x2 stipple each; those behind them share one
+/// and are left without a texel, as is one behind the wall. One behind the eye is not on the screen and is not counted.
 #[test]
 fn the_report_counts_layers_that_are_lit_and_draws_that_are_not() {
     let behind_wall = -7.0;
@@ -126,7 +126,7 @@ fn panes() -> GltfFile {
     file
 }
 
-/// Extras of a material or a node, and the flag, say which texels a surface is lit at; what is not said goes by turns.
+/// Extras of a material or a node, and the flag, say which texels a surface is lit at; the others follow in rotation.
 #[test]
 fn the_user_names_layers_in_the_file_or_by_flag() {
     let layer = |layer: u32| json!({"quincunx_stipple_layer": layer, "other": [1]});

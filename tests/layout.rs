@@ -253,3 +253,49 @@ fn vertices_that_several_pipelines_place_are_invariant() {
     ];
     assert_eq!(without, BTreeSet::from(needless));
 }
+
+/// Pages that are not in the project, and the letters of codes that only those pages explain. A comment that names one
+/// sends its reader nowhere. (In two parts, so that this file may be checked too.)
+const PRIVATE_PAGES: [&str; 4] =
+    [concat!("design", ".md"), concat!("style", ".md"), concat!("house", ".md"), concat!("check", "list")];
+const PRIVATE_CODES: [&str; 5] = ["SG", "KH", "KL", "DB", "CM"];
+
+/// Why a line is refused; None for a good one. `is_code`: it is Rust or GLSL, and comments begin with slashes.
+fn complaint(line: &str, is_code: bool) -> Option<String> {
+    let comment = ["///", "//!", "//"].iter().find_map(|mark| line.trim_start().strip_prefix(mark));
+    if is_code && comment.is_some_and(|text| text.trim_start().starts_with("Of ")) {
+        return Some("a comment begins with the thing that it is about, not with \"Of\"".to_owned());
+    }
+    if let Some(page) = PRIVATE_PAGES.iter().find(|page| line.to_lowercase().contains(*page)) {
+        return Some(format!("{page} is not in the project: name the paper's section"));
+    }
+    let words = line.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let is_private = |word: &&str| {
+        PRIVATE_CODES.iter().any(|code| {
+            let number = word.strip_prefix(code).unwrap_or_default();
+            !number.is_empty() && number.bytes().all(|digit| digit.is_ascii_digit())
+        })
+    };
+    words
+        .into_iter()
+        .find(is_private)
+        .map(|code| format!("{code} is in no page of the project: name the paper's section"))
+}
+
+#[test]
+fn comments_say_what_they_are_about_and_name_pages_that_a_reader_has() {
+    let git =
+        Command::new("git").args(["ls-files", "src", "glsl", "tests", "tools", "docs"]).current_dir(root()).output();
+    let listed = git.map(|output| String::from_utf8(output.stdout).unwrap()).unwrap_or_default();
+    if listed.is_empty() {
+        return support::skip("git does not say which files are the project's");
+    }
+    let mut refused = Vec::new();
+    for file in listed.lines() {
+        let Ok(text) = std::fs::read_to_string(root().join(file)) else { continue };
+        let is_code = ["rs", "glsl"].iter().chain(&ENTRY_POINTS).any(|ending| file.ends_with(&format!(".{ending}")));
+        let complaints = (1..).zip(text.lines()).filter_map(|(number, line)| Some((number, complaint(line, is_code)?)));
+        refused.extend(complaints.map(|(number, why)| format!("{file}:{number}: {why}")));
+    }
+    assert!(refused.is_empty(), "{}", refused.join("\n"));
+}

@@ -5,7 +5,7 @@ use crate::support::difference::require_same;
 use crate::support::shared_scenes;
 use crate::support::watched::Watched;
 
-/// One light more than the turns of the defect; a driver without it adds them all.
+/// One light more than the iterations of the defect; a driver without it adds them all.
 #[test]
 fn a_sum_that_the_driver_ends_early_is_no_picture() {
     let watched = Watched::open("cornell");
@@ -16,7 +16,7 @@ fn a_sum_that_the_driver_ends_early_is_no_picture() {
         Some(turns) => {
             let error = picture.unwrap_err();
             assert_eq!(error.exit_code(), 1, "{error}");
-            assert!(error.to_string().contains(&format!("after {turns} turns")), "{error}");
+            assert!(error.to_string().contains(&format!("after {turns} iterations")), "{error}");
         }
     }
 }

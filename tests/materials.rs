@@ -208,7 +208,7 @@ fn occlusion_darkens_ambient_light_and_no_other() {
         for alpha in [AlphaMode::Opaque, AlphaMode::Blend] {
             scene.materials[0].alpha = alpha;
             let watched = Watched::with_scene(scene.clone());
-            // Path tracing reads the map where no ray finds what it stands for.
+            // Path tracing reads the map where no ray finds the occluders that it describes.
             let traced = [("spp", "4"), ("transport", "direct"), ("ambient-visibility", "off")];
             for (technique, changes) in [("deferred", &[("direct-shadow", "none")][..]), ("path_traced", &traced)] {
                 for (index, found) in pixels_of(&watched, technique, &both(AMBIENT, changes)).into_iter().enumerate() {
@@ -414,7 +414,8 @@ fn sides_are_told_through_mirrors_and_turns() {
     }
 }
 
-/// The same of a skin, where the joints stand for the node: a mirrored joint keeps the front, a mirrored node does nothing.
+/// The same of a skin, where the joints replace the node: a mirrored joint keeps the front, a mirrored node does
+/// nothing.
 #[test]
 fn sides_are_told_through_mirrored_joints() {
     let raster = both(AMBIENT, &[("ambient", "0"), ("direct-shadow", "none"), ("size", "8x8")]);

@@ -277,7 +277,7 @@ fn memory_that_is_refused_leaves_nothing_behind() {
     }
 }
 
-/// The same of roads with images, look-up textures and resources between two passes.
+/// The same of methods with images, look-up textures and resources between two passes.
 #[test]
 fn memory_that_is_refused_on_any_road_leaves_nothing_behind() {
     counted(Strategy::Dedicated, "cornell", |watched| {

@@ -137,7 +137,7 @@ fn a_closed_box_that_shines_comes_to_its_geometric_sum() {
 fn albedo_towards(kind: Brdf, surface: &Surface, to_eye: Vec3) -> Vec3 {
     let (rings, steps, mut sum) = (600, 600, Vec3::ZERO);
     for ring in 0..rings {
-        // Equal steps of cos^2: each direction stands for the same projected solid angle.
+        // Equal steps of cos^2: each direction represents the same projected solid angle.
         let cosine = ((ring as f32 + 0.5) / rings as f32).sqrt();
         let sine = (1.0 - cosine * cosine).sqrt();
         for step in 0..steps {
@@ -198,7 +198,7 @@ fn relative_rmse(found: &Picture, expected: &Picture) -> f64 {
 
 /// A built-in scene as rays and rasterised pictures agree on it. Its lamps are dark to look at: next to their radiance all
 /// else would count for nothing. No normal maps, because coarser levels of one are flatter, and brighter, than the many
-/// normals that they stand for. No alpha, which the shadow rays of the others do not ask.
+/// normals that they replace. No alpha, which the shadow rays of the others do not ask.
 fn plain(spec: &str) -> Scene {
     let mut scene = scene::load(spec, 1).unwrap();
     for material in &mut scene.materials {

@@ -7,7 +7,7 @@ use crate::support::program::Program;
 use quincunx::metrics;
 use quincunx::picture::{Picture, image_file};
 
-/// Roads to one picture by shaders that differ, and what else has shaders of its own.
+/// Methods that make one picture by different shaders, and others that have shaders of their own.
 const ROADS: [&str; 19] = [
     "cornell --technique interleaved_deferred --size 64x36 --split tile --cull tiled",
     "cornell --technique interleaved_deferred --size 64x36 --split branch",

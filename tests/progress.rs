@@ -97,7 +97,7 @@ fn a_terminal_gets_a_bar_with_its_count_and_what_is_left() {
     let reader = std::thread::spawn(move || {
         let mut said = Vec::new();
         let mut piece = [0; 4096];
-        // The end is an error: nobody has the other side any more.
+        // The end is an error: the other side is closed.
         while let Ok(count @ 1..) = ours.read(&mut piece) {
             said.extend(&piece[..count]);
         }

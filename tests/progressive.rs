@@ -57,7 +57,7 @@ fn sampling_ends_where_the_error_is_small_enough() {
     assert!(ran.out.contains("20 samples a pixel, estimated error 0."), "{}", ran.out);
     assert!(ran.out.contains("note: --until-error 0.0001 is not reached"), "{}", ran.out);
     program.fails(&small(&["--until-error", "1.5"]), 2, &["--until-error 1.5", "0 to 1"]);
-    program.fails(&["render", "cornell", "--until-error", "0.1"], 2, &["it does not read --until-error"]);
+    program.fails(&["render", "cornell", "--until-error", "0.1"], 2, &["does not read --until-error"]);
 }
 
 /// What an EXR of `extent` holds: picture, sums, and texts.
@@ -88,7 +88,7 @@ impl Kept {
     }
 }
 
-/// Every number of the file, sums included: what comes next hangs on them.
+/// Every number of the file, sums included: what comes next depends on them.
 #[test]
 fn going_on_comes_to_the_bits_of_one_run() {
     let program = Program::new();
@@ -140,7 +140,7 @@ fn another_picture_s_samples_are_refused_with_both_values() {
     let frames = small(&["--continue", "a.exr", "--frames", "0..1"]);
     assert_eq!(program.run(&frames).code, 2);
     for (file, word) in
-        [("half.exr", "no flat part has the channels"), ("a.png", "it is no EXR"), ("none.exr", "No such")]
+        [("half.exr", "no flat part has the channels"), ("a.png", "it is not an EXR"), ("none.exr", "No such")]
     {
         program.fails(&small(&["--continue", file, "--spp", "9"]), 2, &["--continue", file, word]);
     }
@@ -176,7 +176,7 @@ fn nothing_of_a_file_to_go_on_with_is_believed() {
     changed(&text("samples", "4"), &["pixel (", "which 4 samples with the sums"]);
     changed(&text("version", "0.0.9"), &["its quincunx.version is \"0.0.9\", and here it is \"0.1.0\""]);
     changed(&text("estimator", "0"), &["its quincunx.estimator is \"0\""]);
-    changed(&text("settings", "[["), &["quincunx.settings is no JSON object"]);
+    changed(&text("settings", "[["), &["quincunx.settings is not a JSON object"]);
     changed(&text("settings", "{}"), &["is not there, and here it is"]);
     for name in ["samples", "version", "technique", "estimator", "scene_hash", "settings"] {
         let remove = move |kept: &mut Kept| drop(kept.texts.remove(&format!("quincunx.{name}")));

@@ -102,7 +102,7 @@ fn a_broken_file_is_put_aside_and_made_again() {
         let again = made(&watched, &recipe, folder.path(), &heard);
         assert!(!again.was_kept && again.picture == whole, "{word}");
         let notes = heard.notes.borrow();
-        assert!(notes.len() == 1 && notes[0].contains("is broken and made again"), "{notes:?}");
+        assert!(notes.len() == 1 && notes[0].contains("is broken and is made again"), "{notes:?}");
         let said = notes[0].replace("another key", "other key");
         assert!(said.contains(word), "{said}");
         assert!(path.with_extension("broken.exr").exists());
@@ -119,7 +119,7 @@ fn what_cannot_be_kept_is_used_all_the_same() {
     let heard = Heard::default();
     let picture = made(&watched, &recipe(&watched, TINY), &file, &heard).picture;
     assert_eq!(picture.extent, Extent::new(24, 16));
-    assert!(heard.notes.borrow()[0].contains("used and not kept"), "{:?}", heard.notes.borrow());
+    assert!(heard.notes.borrow()[0].contains("used but could not be kept"), "{:?}", heard.notes.borrow());
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_key_is_of_all_that_the_picture_hangs_on_and_of_nothing_else() {
     for other in [("size", "64x64"), ("lights", "3"), ("brdf", "lambert"), ("background", "1"), ("ambient", "0.5")] {
         assert_ne!(key("interleaved_deferred", &[other]), plain, "{other:?}");
     }
-    // Scattered lights hang on the seed; without them the seed is the judged technique's own.
+    // Scattered lights depend on the seed; without them the seed is the judged technique's own.
     assert_ne!(key("deferred", &[("lights", "3")]), key("deferred", &[("lights", "3"), ("seed", "2")]));
     assert_eq!(key("deferred", &[("lights", "3:7")]), key("deferred", &[("lights", "3:7"), ("seed", "2")]));
     let hall = Watched::open("lamps:objects=3,lights=3");
@@ -167,7 +167,7 @@ fn a_transport_without_a_reference_says_so() {
     }
     has(settings("interleaved_deferred", &[("vpl-bounces", "3")]), "bounces", "4");
     has(settings("interleaved_deferred", &[("direct", "interleaved")]), "brdf", "lambert");
-    // Of its three lamps none, all and one cast by volumes.
+    // None, all and one of its three lamps cast shadows by volumes.
     let by_volumes = |count| settings("inferred_lighting", &[("direct-shadow", "none"), ("shadow-volumes", count)]);
     has(by_volumes("0"), "light-visibility", "off");
     has(by_volumes("9"), "light-visibility", "on");

@@ -12,7 +12,7 @@ use quincunx::techniques::settings_of;
 use quincunx::units::Extent;
 use serde_json::{Value, json};
 
-/// Every technique: what is said of a picture hangs on none.
+/// Every technique: what is said of a picture depends on none.
 const TECHNIQUES: [&str; 6] =
     ["forward", "deferred", "interleaved_deferred", "inferred_lighting", "deep_shading", "path_traced"];
 const SMALL: [&str; 4] = ["--size", "32x18", "--json", "--technique"];
@@ -76,7 +76,7 @@ fn a_faint_glow_keeps_no_rig_away_and_a_lamp_does() {
         assert_eq!(faint["scene"]["rig"], "default", "{technique}");
         assert!(mean(&faint) > 0.05, "{technique}: {}", faint["image"]);
         let said = faint["scene"]["warnings"][0].as_str().unwrap();
-        assert!(said.starts_with("its emissive surfaces let 0 % of it be seen, less than half"), "{said}");
+        assert!(said.starts_with("its emissive surfaces make 0 % of it visible, less than half"), "{said}");
         let bright = report(&glowing(0.1), technique, &["-o", "a.png"]);
         assert_eq!(bright["scene"]["rig"], Value::Null, "{technique}");
         assert!(bright["scene"]["warnings"][0].as_str().unwrap().contains("--rig always"), "{technique}");
@@ -155,7 +155,7 @@ fn where_nothing_is_seen_a_note_says_why_and_what_would_help() {
     assert_eq!(notes(&report(&program, "forward", &["--camera", "framing", "-o", "a.png"])), [] as [&str; 0]);
 }
 
-/// A triangle of radiance 0.2 that moves away: what `auto` comes to is said, and typed again it makes the same file.
+/// A triangle of radiance 0.2 that moves away: the value of `auto` is reported, and typed again it makes the same file.
 #[test]
 fn an_automatic_exposure_is_a_number_in_the_report() {
     let mut file = triangle([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);

@@ -229,7 +229,7 @@ fn leaving_casters_out_changes_no_pixel() {
     }
 }
 
-/// The device's filter weighs four comparisons with a few bits, the shader with floats: nothing else tells them apart.
+/// The device's filter weighs four comparisons with a few bits, the shader with floats: they differ in nothing else.
 #[test]
 fn four_comparisons_are_the_same_in_the_sampler_and_in_the_shader() {
     let watched = Watched::open("lamps:objects=20,lights=6");

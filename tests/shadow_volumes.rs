@@ -92,8 +92,8 @@ struct Agreement {
     astray: usize,
 }
 
-/// Of the objects that `is_meant` names. At an edge: a texel of the same object, at most as far as the next cell of the
-/// stipple, is shadowed by another set of lights.
+/// Agreement over the objects that `is_meant` names. At an edge: a texel of the same object, at most as far as the next
+/// cell of the stipple, is shadowed by another set of lights.
 fn agreement(
     watched: &Watched,
     counted: Changes<'_>,
@@ -303,7 +303,7 @@ fn who_casts_nothing_is_said() {
     let program = Program::new();
     let common = ["render", "cornell", "--technique", NAME, "--size", "16x16", "--volumes", "scissor"];
     let said = |more: &[&str]| program.run(&[&common[..], more].concat()).fine().out;
-    let note = "note: draws that cast no shadow volumes, because their meshes are not closed: ";
+    let note = "note: draws without shadow volumes, because their meshes are not closed: ";
     assert!(said(&["--shadow-volumes", "1"]).contains(note));
     assert!(!said(&[]).contains(note));
 }
@@ -328,7 +328,7 @@ fn what_volumes_take_in_memory_is_planned_and_in_the_ledger() {
     assert!(plain.plan.resources.iter().all(|planned| planned.group != "shadow-volumes"));
 }
 
-/// A light that is blended in halves, no light at all, and a road that has no stencil.
+/// A light that is blended in halves, no light at all, and a method that has no stencil.
 #[test]
 fn halves_and_darkness_have_volumes_too() {
     let watched = Watched::with_scene(table(vec![above()], view()));

@@ -137,7 +137,7 @@ fn the_tree_holds_the_way_of_every_triangle() {
     });
     let found = columns(scene, &[]);
     for (x, value) in found.iter().enumerate().skip(4) {
-        // Of 8192 samples in or out: four and a half standard errors.
+        // The bound is four and a half standard errors of 8192 samples in or out.
         assert!((value - 0.5).abs() < 0.025, "column {x}: {value}");
     }
 }

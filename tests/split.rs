@@ -20,7 +20,7 @@ fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32;
     pixels
 }
 
-/// Every way to copy into sub-buffers and back: road, storage, form. The first five roads copy nothing.
+/// Every way to copy into sub-buffers and back: method, storage, form. The first five methods copy nothing.
 const COPIES: &[Changes<'_>] = SPLITS.split_at(5).1;
 
 /// Splits, gathers and compares; `changes` beside size and pattern.
@@ -207,7 +207,7 @@ fn contradictions_are_refused_with_what_would_work() {
     }
     // What is not read does not contradict.
     watched.render(TECHNIQUE, &[size, ("split", "branch"), ("storage", "buffer"), ("copy", "push"), ("block", "1024")]);
-    // As many subsets as the stencil tells apart, and more by depth.
+    // As many subsets as the stencil can distinguish, and more by depth.
     let stencil = [size, ("pattern", "16x16"), ("vpls", "256")];
     let [stencil, branch] =
         ["stencil", "branch"].map(|road| watched.picture(TECHNIQUE, &both(&stencil, &[("split", road)])));

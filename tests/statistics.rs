@@ -20,7 +20,7 @@ fn counting(submits: Submits) -> Recording {
     Recording { has_statistics: true, ..submits.into() }
 }
 
-/// Of each pass of one more frame.
+/// Statistics of each pass of one more frame.
 fn statistics(watched: &Watched, renderer: &Renderer) -> BTreeMap<String, PassStatistics> {
     let counted = renderer.frame().unwrap().statistics;
     crate::support::watched::require_silence(&watched.session.gpu, "a frame that is counted");
@@ -100,7 +100,7 @@ fn shaders_count_no_more_executions_than_the_device() {
     }
 }
 
-/// As counters are, and as the bytes and invocations beside them are told.
+/// Reported like counters, and like the bytes and invocations beside them.
 #[test]
 fn statistics_are_of_the_last_of_a_picture_s_runs() {
     if !has(&driver(), Feature::PipelineStatistics) {

@@ -156,7 +156,7 @@ fn structures_of_a_driver_that_nobody_measured_are_not_planned() {
         assert_eq!(error.exit_code(), code, "{error}");
         assert!(error.to_string().contains(words) && error.to_string().contains("--rays tree"), "{error}");
     };
-    require_refusal(|caps| caps.layout.as_mut().unwrap().structures = None, 2, "only its driver tells");
+    require_refusal(|caps| caps.layout.as_mut().unwrap().structures = None, 2, "only the driver says");
     require_refusal(|caps| caps.features.ray_query = false, 3, "VK_KHR_ray_query");
 }
 

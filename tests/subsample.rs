@@ -19,8 +19,8 @@ const FRAMES: [([u32; 2], [u32; 2]); 8] = [
     ([33, 17], [1, 1]),
 ];
 
-/// The pixels of a side that stand for the others: the middle of each stretch of `pattern` pixels, which is the right or
-/// lower one of two; the frame's last where the middle lies beyond.
+/// The pixels of a side that represent the others: the middle of each stretch of `pattern` pixels, which is the right
+/// or lower one of two; the frame's last where the middle lies beyond.
 fn middles(side: u32, pattern: u32) -> Vec<u32> {
     (0..side).step_by(pattern as usize).map(|first| (first + pattern / 2).min(side - 1)).collect()
 }
@@ -41,7 +41,7 @@ fn at(values: &[[f32; 3]], extent: Extent, x: u32, y: u32) -> DVec3 {
     Vec3::from_array(values[(y * extent.width + x) as usize]).as_dvec3()
 }
 
-/// The pixel in the middle of each cell has the bits that all lights give it on a road that shades every pixel, which
+/// The pixel in the middle of each cell has the bits that all lights give it on a method that shades every pixel, which
 /// `light_units` holds against the sum.
 #[test]
 fn every_light_shades_the_middle_of_each_cell() {

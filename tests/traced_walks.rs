@@ -47,7 +47,7 @@ fn a_map_s_coincident_surfaces_are_one_picture_too() {
     require_one_picture(&watched, &[("size", "64x36"), ("spp", "2"), ("rig", "always")]);
 }
 
-/// A tree that is a leaf, and one whose triangles nothing tells apart.
+/// A tree that is a leaf, and one whose triangles are all the same.
 #[test]
 fn trees_of_no_depth_and_of_no_shape() {
     for count in [2, 3000] {

@@ -89,7 +89,7 @@ fn conditions_are_of_settings_that_their_technique_has() {
             // They ask for settings of the technique only.
             (condition.unread)(&defaults);
         }
-        // What nobody has changed is never refused.
+        // A setting at its default is never refused.
         let conditions = technique.conditions().iter().copied().flatten();
         readers::require_read(conditions, &settings, &defaults).unwrap();
     }

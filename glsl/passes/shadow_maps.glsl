@@ -8,15 +8,15 @@
 
 // The shadow maps of one light.
 struct ShadowMapBlock {
-    // Of the one map of a spot or a directional light: its clip space, depth reversed.
+    // Clip space of the one map of a spot or a directional light, depth reversed.
     mat4 clip_from_world;
     uint first_layer;
     // 1, or 6: the faces of a cube around the light, +x -x +y -y +z -z.
     uint layer_count;
-    // Of a face: depth is `depth_far + depth_over / distance`, the distance along the face's axis in metres.
+    // Depth of a face is `depth_far + depth_over / distance`, the distance along the face's axis in metres.
     float depth_far;
     float depth_over;
-    // Of a face: part of its half that 45 degrees fill. The rest is seen by its neighbours too, so that filters find texels
+    // Part of a face's half that 45 degrees fill. The rest is seen by its neighbours too, so that filters find texels
     // beyond an edge.
     float face_scale;
     uint _unused[3];

@@ -101,7 +101,7 @@ void write_masks() {
     box = Box(least_of[0], greatest_of[0]);
     uint word_count = (frame.light_count + 31u) / 32u;
     for (uint word = 0u; word < word_count; word += THREADS / 32u) {
-        // Who empties a word is who has written it out before.
+        // The thread that clears a word is the one that has written it out before.
         if (thread < THREADS / 32u) {
             found[thread] = 0u;
         }

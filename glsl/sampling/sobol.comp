@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 struct SobolParams {
     uint seed;
-    // Of the sequence: where it begins, and how many points each pixel and pair has.
+    // Where the sequence begins, and how many points each pixel and pair has.
     uint first;
     uint count;
     uint pair_count;

@@ -1,6 +1,6 @@
 // Punctual and virtual point lights: irradiance at a surface point. Twin: src/shading/light.rs.
 //
-// Sums that two roads must agree on are `precise`: the compiler may not reorder or fuse them.
+// Sums that must be equal in two methods are `precise`: the compiler may not reorder or fuse them.
 #ifndef SHADING_LIGHT_GLSL
 #define SHADING_LIGHT_GLSL
 

@@ -1,7 +1,7 @@
 // A surface where it is drawn, lit forward by punctual lights: what blended surfaces and forward's material pass share.
 //
-// The including shader declares: `frame`, `lights[]`, what material.glsl, bvh_walk.glsl and shade_lights.glsl want, and,
-// with the axis LISTS=object, `light_lists[]` (src/lights/object_lists.rs).
+// The including shader declares: `frame`, `lights[]`, what material.glsl, bvh_walk.glsl and shade_lights.glsl need,
+// and, with the axis LISTS=object, `light_lists[]` (src/lights/object_lists.rs).
 #ifndef SHADING_LIT_GLSL
 #define SHADING_LIT_GLSL
 

@@ -1,12 +1,12 @@
 // A material at one fragment: factors times textures, the normal map applied. Fragment stages only.
 //
 // With the axis VERTEX=extended vertices have colours, and textures placements: `placements[]` is the including shader's.
-// Set 1 belongs to the material: src/resident.rs makes one set each, with a white pixel where a texture is missing.
-// The including shader reads the material's block: from its push constants, or from `materials[]`. Where pixels have several
-// samples it defines INTERPOLATION as centroid: a pixel whose middle the triangle does not cover must not be shaded beyond
-// the triangle's edge.
-// Where it shades another place than its own it defines MATERIAL_PLACE, and writes what is otherwise interpolated before it
-// calls anything, with the changes of texture coordinates that choose levels.
+// Set 1 belongs to the material: src/resident/textures.rs makes one set each, with a white pixel where a texture is
+// missing. The including shader reads the material's block: from its push constants, or from `materials[]`. Where
+// pixels have several samples it defines INTERPOLATION as centroid: a pixel whose middle the triangle does not cover
+// must not be shaded beyond the triangle's edge.
+// Where it shades another place than its own it defines MATERIAL_PLACE, and writes what is otherwise interpolated
+// before it calls anything, with the changes of texture coordinates that choose levels.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 

@@ -32,7 +32,8 @@ float largest(vec3 color) {
     return max(color.r, max(color.g, color.b));
 }
 
-// How often the mirroring part is drawn, 0 to 1. Both parts keep a share: what one never draws the other has not weighed.
+// How often the mirroring part is drawn, 0 to 1. Both parts keep a share: directions that one never draws would get no
+// weight from the other.
 float mirror_part(uint kind, Surface surface, vec3 normal, vec3 to_eye) {
     if (kind == BRDF_LAMBERT || dot(normal, to_eye) <= 0.0) {
         return 0.0;

@@ -1,6 +1,6 @@
 // The loop over punctual lights that full shading shares: deferred shading, composite, blended surfaces.
 //
-// The including shader declares: `lights[]`, `frame`, what bvh.glsl wants, and the constants BRDF_KIND and
+// The including shader declares: `lights[]`, `frame`, what bvh.glsl needs, and the constants BRDF_KIND and
 // DIRECT_SHADOW. With the axis SHADOWS=mapped shadow maps are asked instead of rays. A light beyond its range adds exactly
 // 0, so leaving it out changes no bit.
 #ifndef SHADING_SHADE_LIGHTS_GLSL

@@ -1,7 +1,7 @@
 // Punctual lights in turn on a surface that is known already: by forward shading from its material, by deferred from what was
 // stored of it.
 //
-// The including shader declares: `frame`, `lights[]`, what bvh_walk.glsl and shade_lights.glsl want, and, with the axis
+// The including shader declares: `frame`, `lights[]`, what bvh_walk.glsl and shade_lights.glsl need, and, with the axis
 // LISTS=object, `light_lists[]` (src/lights/object_lists.rs).
 #ifndef SHADING_SUM_LIGHTS_GLSL
 #define SHADING_SUM_LIGHTS_GLSL

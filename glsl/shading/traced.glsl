@@ -3,7 +3,7 @@
 // ray's cone (TEXTURE_CONE); of alpha and emission always the finest.
 //
 // The including shader declares bvh_triangles[], bvh_closing[], surfaces[], closings[], tangents[], extended[],
-// traced_materials[] and what texel.glsl wants.
+// traced_materials[] and what texel.glsl needs.
 #ifndef SHADING_TRACED_GLSL
 #define SHADING_TRACED_GLSL
 

@@ -1,4 +1,4 @@
-//! The best block of each pattern, and whether a sweep can tell it from its neighbours.
+//! The best block of each pattern, and whether a sweep can distinguish it from its neighbours.
 
 use super::faster;
 use super::row::asked;
@@ -9,11 +9,11 @@ use std::cmp::Ordering;
 /// The key of the swept blocks (Segovia 2006, section 3.3: p x q).
 const KEY: &str = "block";
 
-/// For each combination of the other axes whose road reads it: the block with the least time ratio, and its neighbours in
+/// For each combination of the other axes that reads it: the block with the least time ratio, and its neighbours in
 /// the order of the sweep. Empty where no block was swept.
 ///
-/// A block is the best where it is told to be faster than its neighbours, by the interval of the ratio of times that were
-/// taken in the same rounds; without three of those the answer is null.
+/// A block is the best if it is proven to be faster than its neighbours, by the interval of the ratio of times that
+/// were taken in the same rounds; without three of those the answer is null.
 pub fn best(axes: &[Axis], rows: &[Value]) -> Vec<Value> {
     if axes.iter().all(|axis| axis.key != KEY) {
         return Vec::new();
@@ -84,9 +84,9 @@ pub fn sentence(best: &Value) -> String {
             let neighbours = names(json!(true));
             format!("{of}best block {block}, ratio {ratio:.3}; by the interval faster than {neighbours} beside it")
         }
-        Some(false) => format!("{least}, and the interval does not tell it from {}", names(json!(false))),
+        Some(false) => format!("{least}, but the interval does not separate it from {}", names(json!(false))),
         None if best["neighbours"].as_array().is_none_or(Vec::is_empty) => format!("{least}, and no neighbour"),
-        None => format!("{least}, and no three rounds are of it and {}", names(Value::Null)),
+        None => format!("{least}, but fewer than three rounds measured it and {}", names(Value::Null)),
     }
 }
 
@@ -129,7 +129,7 @@ mod tests {
         // The neighbour that could not be is passed over.
         assert_eq!((&found[1]["block"], &found[1]["neighbours"][0]["block"]), (&json!("8"), &json!("32")));
         assert_eq!(found[1]["differs_from_neighbours"], false);
-        assert!(sentence(&found[1]).contains("no best block: 8 has the least ratio, 0.700, and the interval does not"));
+        assert!(sentence(&found[1]).contains("no best block: 8 has the least ratio, 0.700, but the interval does not"));
         assert!(best(&axes[..1], &rows).is_empty());
     }
 
@@ -139,7 +139,7 @@ mod tests {
         let rows = [row("2x2", "8", 0.5, 0.0), row("4x4", "16", 1.5, 0.0)];
         let found = best(&axes, &rows);
         assert_eq!(found[0]["differs_from_neighbours"], Value::Null);
-        assert!(sentence(&found[0]).ends_with("no three rounds are of it and 16"), "{}", sentence(&found[0]));
+        assert!(sentence(&found[0]).ends_with("fewer than three rounds measured it and 16"), "{}", sentence(&found[0]));
         // Rows of earlier versions know no groups, and hold their settings as they were typed.
         let old = ["8", "16"].map(|block| json!({ "settings": { "block": block }, "ratio": { "mean": 1.5 } }));
         assert_eq!(best(&axes, &old)[0]["block"], "8");

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The key of a sweep that names techniques; no setting has it.
 pub const TECHNIQUE: &str = "technique";
 
-/// What `--fair` gives every thread where `--texels` says nothing: every road can shade one.
+/// Texels a thread under `--fair` without `--texels`: every variant can shade one.
 const FAIR_TEXELS: &str = "1";
 
 /// A point with all its settings.
@@ -27,7 +27,8 @@ pub struct Candidate {
     unread: Option<BTreeMap<&'static str, String>>,
     /// Keys of the point that nothing reads.
     pub unread_axes: Vec<String>,
-    /// Checked, and what nothing reads at its default; an error where the point cannot be, or where another stands for it.
+    /// Checked, and what nothing reads at its default; an error where the point is impossible, or where another
+    /// represents it.
     pub values: Result<Values>,
 }
 
@@ -57,7 +58,7 @@ impl Candidate {
         let unread = checked.as_ref().ok().map(|values| unread_of(job.technique, values));
         let is_unread = |key: &str| unread.as_ref().is_some_and(|unread| unread.contains_key(key));
         let unread_axes: Vec<String> = own.iter().map(|(key, _)| key.clone()).filter(|key| is_unread(key)).collect();
-        // Of points that differ in nothing that is read, the first of the grid stands for all.
+        // The first of the grid's points that differ only in settings that are not read represents them all.
         let first = |key: &str| axes.iter().find(|axis| axis.key == key).map(|axis| axis.values[0].as_str());
         let other = own.iter().find(|(key, text)| unread_axes.contains(key) && first(key) != Some(text.as_str()));
         let values = checked.and_then(|values| match (other, &unread) {
@@ -167,7 +168,7 @@ fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
         let text = values.text(key);
         if text != job.values.text(key) {
             return Err(Error::request(format!(
-                "--{key} {text}: it is settled when the device opens, for all variants; each needs a bench of its own"
+                "--{key} {text}: it is fixed when the device opens, for all variants; run one bench for each value"
             )));
         }
     }
@@ -178,7 +179,7 @@ fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
         .collect();
     if !moved.is_empty() && job.at(values).load_scene()?.hash != scene_hash {
         return Err(Error::request(format!(
-            "{}: the scene {} is another one then, and times compare on one scene",
+            "{}: this changes the scene {}, and times compare only on the same scene",
             moved.join(" "),
             job.scene
         )));

@@ -1,4 +1,4 @@
-//! vkCmdCopyBuffer of as many bytes as a copying stage leaves: what the machine's memory can do.
+//! vkCmdCopyBuffer of as many bytes as a copying stage leaves: the limit of the machine's memory.
 
 use super::rounds::Probe;
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! Which of two rows is the faster one, as far as their rounds tell. Rows may come from a file and say anything.
+//! Which of two rows is the faster one, as far as their rounds show. Rows may come from a file and say anything.
 
 use super::stats::{LEAST_PAIRS, Ratio, paired_ratio};
 use serde_json::Value;
@@ -29,8 +29,8 @@ pub fn told(ratio: &Ratio) -> Option<Ordering> {
     })
 }
 
-/// Whether `a` is told to be faster than `b`: by the interval of their ratio, or, of other rounds, where the intervals of
-/// their ratios to the one baseline have nothing in common.
+/// Whether `a` is proven to be faster than `b`: by the interval of their ratio, or, for other rounds, if the intervals
+/// of their ratios to the same baseline do not overlap.
 pub fn is_faster(a: &Value, b: &Value) -> bool {
     if let Some(ratio) = paired(a, b) {
         return told(&ratio) == Some(Ordering::Less);

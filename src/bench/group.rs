@@ -1,4 +1,4 @@
-//! A group: the baseline and a few variants that are on the device together, with what their copies are held against.
+//! A group: the baseline and a few variants that are on the device together, with what their copies are compared with.
 
 use super::candidate::{Candidate, changed};
 use super::copy::BufferCopy;
@@ -30,13 +30,13 @@ pub struct Member {
     pub variant: Rc<Variant>,
     /// Place among the probes.
     pub probe: usize,
-    /// The same kernel at pattern 1x1; of a copying stage only.
+    /// The same kernel at pattern 1x1; for copying stages only.
     pub identity: Option<Companion>,
-    /// vkCmdCopyBuffer of as many bytes; of a copying stage only.
+    /// vkCmdCopyBuffer of as many bytes; for copying stages only.
     pub copy: Option<Companion>,
 }
 
-/// Who is measured in turn.
+/// The variants that are measured in turn.
 pub struct Group {
     probes: Vec<Rc<dyn Probe>>,
     pub members: Vec<Member>,
@@ -74,7 +74,7 @@ impl<'a> Ground<'a> {
 }
 
 impl Group {
-    /// With the baseline, which is measured in every group and a member of one.
+    /// A group with the baseline, which is measured in every group and is a member of one.
     pub fn new(baseline: &Rc<Variant>) -> Self {
         let probes: Vec<Rc<dyn Probe>> = vec![baseline.clone()];
         Self { probes, members: Vec::new(), renderer_count: 1, identities: HashMap::new(), copies: HashMap::new() }
@@ -176,7 +176,8 @@ pub fn is_of_memory(error: &Error) -> bool {
 /// The settings of the identity: the same kernel and storage at pattern 1x1. A copy's time does not depend on what is
 /// copied, so one virtual point light is enough for it; at 1x1 every pixel would meet all of them.
 fn identity_values(job: &Job, values: &Values) -> Result<Values> {
-    let identity = changed(job, values, [("pattern", "1x1"), ("direct-pattern", "auto")])
-        .map_err(|error| Error::request(format!("there is no identity: {}", error.message())))?;
+    let identity = changed(job, values, [("pattern", "1x1"), ("direct-pattern", "auto")]).map_err(|error| {
+        Error::request(format!("there is no copy at pattern 1x1 to compare with: {}", error.message()))
+    })?;
     Ok(changed(job, &identity, [("vpls", "1")]).unwrap_or(identity))
 }

@@ -1,5 +1,5 @@
 //! What else ran on the machine while rows were measured: processors' time that went to other processes, and to other
-//! guests of the same host. Linux tells both (proc(5)); elsewhere nothing is known.
+//! guests of the same host. Linux reports both (proc(5)); on other systems neither is known.
 
 use serde_json::{Value, json};
 
@@ -7,15 +7,16 @@ use serde_json::{Value, json};
 /// take of them a frame waits for: 5 % is about how wide the intervals of nine rounds are on a machine of two.
 pub const BUSY_SHARE: f64 = 0.05;
 
-/// Ticks of all processors that tell a share: one of a hundred is a percent. Two processors have them in half a second.
+/// Least ticks of all processors from which a share is computed: one of a hundred is a percent. Two processors have
+/// them in half a second.
 const LEAST_TICKS: u64 = 100;
 
 /// Time of all processors since the machine started, in the kernel's ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ticks {
-    /// With idle ones.
+    /// All ticks, including idle ones.
     all: u64,
-    /// Spent on processes and interrupts here.
+    /// Ticks spent on processes and interrupts of this machine.
     busy: u64,
     /// Taken by other guests of the host.
     steal: u64,
@@ -31,7 +32,7 @@ pub struct Load {
 }
 
 impl Ticks {
-    /// None where the system does not tell.
+    /// None where the system does not report it.
     pub fn now() -> Option<Self> {
         let read = |path: &str| std::fs::read_to_string(path).ok();
         Self::of(&read("/proc/stat")?, &read("/proc/self/stat")?)
@@ -65,7 +66,7 @@ impl Load {
             .then(|| Self { other_cpu_share: share(other), steal_share: share(passed(|one| one.steal)) })
     }
 
-    /// As rows have it.
+    /// Name in rows.
     pub fn json(self) -> Value {
         let Self { other_cpu_share, steal_share } = self;
         let busy = other_cpu_share + steal_share > BUSY_SHARE;

@@ -1,6 +1,6 @@
 //! Benchmarks: a grid of settings, measured in turn, each row with its error, its bytes and the command that repeats it.
 //!
-//! A sweep is worked in groups. A group holds the baseline and a few variants at once and measures them in rounds,
+//! A sweep is measured in groups. A group holds the baseline and a few variants at once and measures them in rounds,
 //! A B A B, so that drift of the machine falls on all of them; ratios are of the same round, and to the baseline of the
 //! same group. Rows are written when their group is done.
 

@@ -1,4 +1,4 @@
-//! The Pareto set of time and error: the variants that leave a choice, as far as their intervals tell.
+//! The Pareto set of time and error: the variants that no other beats in both, as far as their intervals show.
 
 use super::faster;
 use serde_json::{Value, json};
@@ -8,15 +8,15 @@ pub fn errors(row: &Value) -> &Value {
     if row["errors"].is_object() { &row["errors"] } else { &row["error_against_none"] }
 }
 
-/// The row's time ratio to the baseline and the RMSE of its `errors`, each better when less. None where it has not both,
-/// or no interval: then nothing tells whether another is faster.
+/// The row's time ratio to the baseline and the RMSE of its `errors`, each better when less. None where one of them is
+/// missing, or there is no interval: then it is unknown whether another is faster.
 fn place(row: &Value) -> Option<[f64; 2]> {
     row["ratio"]["interval_95"][1].as_f64()?;
     Some([row["ratio"]["mean"].as_f64()?, errors(row)["rmse"].as_f64()?])
 }
 
-/// Marks the rows of the set: no other that has at most their error is told to be faster. Those that are in it because the
-/// intervals do not tell are marked with whom they are not told from.
+/// Marks the rows of the set: no other with at most their error is proven to be faster. Those that are in it because
+/// the intervals do not decide are marked with the rows that they are not told apart from.
 pub fn mark(rows: &mut [Value]) {
     let places: Vec<_> = rows.iter().map(place).collect();
     let marks: Vec<Option<Vec<Value>>> = (0..rows.len())

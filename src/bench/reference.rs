@@ -70,7 +70,7 @@ impl References {
     }
 }
 
-/// What `values` come to without subsets.
+/// `values` without subsets.
 ///
 /// Errors: the technique has no subsets (exit code 2).
 fn plain(job: &Job, values: &Values) -> Result<Values> {

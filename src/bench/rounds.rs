@@ -37,8 +37,8 @@ impl Samples {
     }
 }
 
-/// One round that warms up and is not kept, then `repeat` rounds. `progress` is told the measurements done, and of how
-/// many.
+/// One round to warm up, which is not kept, then `repeat` rounds. `progress` is called with the measurements done, and
+/// of how many.
 ///
 /// Errors: the device fails (exit code 4); interrupted (130): unfinished rounds are worth nothing.
 pub fn run(probes: &[&dyn Probe], repeat: usize, progress: &mut dyn FnMut(usize, usize)) -> Result<Vec<Samples>> {

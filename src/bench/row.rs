@@ -31,13 +31,13 @@ pub struct Rounds {
     pub group: String,
     /// Times of every probe of the group.
     pub samples: Vec<Samples>,
-    /// What else the machine did meanwhile; None where nobody tells.
+    /// What else the machine did meanwhile; None where the system does not report it.
     pub load: Option<Load>,
 }
 
 impl Head<'_> {
-    /// The keys that say what a row is of; `key` reads these. Settings are as they were typed: what they come to is known
-    /// when they are made.
+    /// The keys that say what a row is of; `key` reads these. Settings are as they were typed: their resolved values
+    /// are known when they are made.
     pub fn row(&self, candidate: &Candidate) -> Value {
         let Ground { job, session, what, is_fair } = &self.ground;
         let settings: Map<String, Value> =

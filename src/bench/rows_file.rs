@@ -73,7 +73,7 @@ impl RowsFile {
         let lines = bytes[..whole].split(|byte| *byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty());
         for (index, line) in lines {
             let row: Value = serde_json::from_slice(line).ok().filter(Value::is_object).ok_or_else(|| {
-                self.error(&format!("line {} is no row", index + 1)).note("take the line out, or --force")
+                self.error(&format!("line {} is not a row", index + 1)).note("remove the line, or use --force")
             })?;
             self.kept.insert(key(&row), row);
         }
@@ -157,7 +157,7 @@ mod tests {
         let error = refused(Existing::Refuse);
         assert!(error.exit_code() == 2 && error.to_string().contains("--resume"), "{error}");
         let error = refused(Existing::Resume);
-        assert!(error.exit_code() == 2 && error.message().contains("line 2 is no row"), "{error}");
+        assert!(error.exit_code() == 2 && error.message().contains("line 2 is not a row"), "{error}");
         let mut rows = RowsFile::open(folder.path(), Existing::Overwrite).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "{}\nnothing\n");
         rows.append(&row("a")).unwrap();

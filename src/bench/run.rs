@@ -44,7 +44,7 @@ pub struct Rows {
     pub gates: Result<()>,
 }
 
-/// Who is told how it goes.
+/// Observer of the progress.
 pub trait Observer {
     /// A row is known, and written where rows are written.
     ///
@@ -65,7 +65,8 @@ pub trait Observer {
 pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dyn Observer) -> Result<Rows> {
     let job = request.job;
     if request.is_fair && request.axes.iter().any(|axis| axis.key == "texels") {
-        let why = "--fair: all rows shade as many texels a thread, and --sweep texels= asks for several numbers";
+        let why = "--fair: all rows must shade the same number of texels a thread, and --sweep texels= asks for \
+                   several numbers";
         return Err(Error::request(why).note("--fair --texels 4 gives them all four"));
     }
     let grid = sweep::grid(request.axes);

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-/// Rounds that an interval takes: Student's factor is 12.7 for two, whose intervals go from nothing to 10^17 and tell nothing,
-/// and 4.3 for three.
+/// Rounds that an interval takes: Student's factor is 12.7 for two, whose intervals go from nothing to 10^17 and say
+/// nothing, and 4.3 for three.
 pub const LEAST_PAIRS: usize = 3;
 
 /// How many times as long one thing takes as another.
@@ -23,7 +23,8 @@ impl Ratio {
     }
 }
 
-/// Of `long` over `short`: `long[i]` and `short[i]` were measured in the same round; at least one pair, all positive.
+/// Ratio of `long` to `short`, where `long[i]` and `short[i]` were measured in the same round; at least one pair, all
+/// positive.
 ///
 /// The interval is Student's, on logarithms: a ratio and its inverse are then the same finding.
 pub fn paired_ratio(long: &[f64], short: &[f64]) -> Ratio {
@@ -39,7 +40,7 @@ pub fn paired_ratio(long: &[f64], short: &[f64]) -> Ratio {
     Ratio { mean: mean.exp(), interval, pairs: logs.len() }
 }
 
-/// Of at least one sample, in any order.
+/// Median of at least one sample, in any order.
 pub fn median(samples: &[f64]) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! What a sweep comes to: all its rows with the Pareto set marked, the best blocks, what was skipped and why.
+//! The summary of a sweep: all its rows with the Pareto set marked, the best blocks, what was skipped and why.
 
 use super::machine::{BUSY_SHARE, is_busy};
 use super::stats::LEAST_PAIRS;
@@ -98,7 +98,7 @@ impl Summary {
         let rounds = &self.rows[0]["repeat"];
         let told = match rounds.as_u64() {
             Some(few) if few < LEAST_PAIRS as u64 => {
-                format!("no interval is printed, and no row is told from another, below {LEAST_PAIRS} rounds")
+                format!("below {LEAST_PAIRS} rounds no interval is printed, and no two rows are told apart")
             }
             _ => format!("{MARK}: no row with at most its rmse is faster by the interval of their ratio"),
         };
@@ -113,7 +113,7 @@ impl Summary {
         self.best_blocks.iter().map(blocks::sentence).chain(self.untold()).chain(self.busy()).chain(skipped).collect()
     }
 
-    /// Rows that are in the Pareto set for want of rounds.
+    /// Rows that are in the Pareto set because there were too few rounds.
     fn untold(&self) -> Option<String> {
         let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
         let pair = |row: &Value| {
@@ -122,7 +122,9 @@ impl Summary {
         };
         let pairs: Vec<String> = self.rows.iter().filter_map(pair).collect();
         let which = pairs.join("; ");
-        (!pairs.is_empty()).then(|| format!("marked because rounds do not tell a quicker rival to be faster: {which}"))
+        (!pairs.is_empty()).then(|| {
+            format!("marked because the rounds do not prove that a rival with a shorter time is faster: {which}")
+        })
     }
 
     /// Rows whose times others have had a part in.
@@ -197,7 +199,7 @@ mod tests {
         };
         let summary = Summary::new(What::Frame, &[], vec![few(row("a", 1.0, 0.0)), few(row("b", 2.0, 0.0))], &[]);
         let text = summary.text();
-        assert!(text.contains("no interval is printed, and no row is told from another, below 3 rounds"), "{text}");
+        assert!(text.contains("below 3 rounds no interval is printed, and no two rows are told apart"), "{text}");
         assert!(text.lines().all(|line| !line.ends_with(MARK)), "{text}");
     }
 
@@ -214,6 +216,9 @@ mod tests {
     #[test]
     fn rows_that_rounds_do_not_tell_apart_are_named() {
         let text = Summary::new(What::Frame, &[], vec![row("a", 1.0, 0.0), row("b", 1.05, 0.1)], &[]).text();
-        assert!(text.contains("marked because rounds do not tell a quicker rival to be faster: b (a)"), "{text}");
+        assert!(
+            text.contains("marked because the rounds do not prove that a rival with a shorter time is faster: b (a)"),
+            "{text}"
+        );
     }
 }

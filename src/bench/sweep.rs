@@ -62,7 +62,7 @@ pub fn label(point: &Point) -> String {
     point.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")
 }
 
-/// The one point of `grid` that `text`, `KEY=VALUE KEY=VALUE`, names; keys that tell no points apart may be left out.
+/// The one point of `grid` that `text`, `KEY=VALUE KEY=VALUE`, names; keys in which no points differ may be left out.
 ///
 /// Errors: no point or several are named (exit code 2).
 pub fn baseline(grid: &[Point], text: &str) -> Result<usize> {

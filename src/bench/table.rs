@@ -97,7 +97,7 @@ fn columns(what: What) -> Vec<Column> {
 }
 
 impl Table {
-    /// Of the rows that were measured.
+    /// A table of the rows that were measured.
     pub fn new(what: What, rows: &[Value]) -> Self {
         let measured = || rows.iter().filter(|row| row["skipped"].is_null());
         let mut columns = columns(what);
@@ -112,7 +112,7 @@ impl Table {
         Self { lines }
     }
 
-    /// Of titles and cells, at least one line, all of one length.
+    /// A table of these lines, titles first: at least one, all with the same number of cells.
     pub fn of_lines(lines: Vec<Vec<String>>) -> Self {
         Self { lines }
     }

@@ -61,7 +61,7 @@ impl Variant {
             return Ok(());
         }
         let used = used.unwrap_or("an unknown number");
-        Err(Error::request(format!("--fair --texels {asked}: of its texels a thread shades {used}")))
+        Err(Error::request(format!("--fair --texels {asked}: a thread shades {used} of these texels")))
     }
 }
 

@@ -31,13 +31,13 @@ impl What {
     pub fn summary(self) -> &'static str {
         match self {
             Self::Split => {
-                "The copy of the G-buffer into sub-buffers, beside the same kernel at pattern 1x1 and vkCmdCopyBuffer"
+                "Copy of the G-buffer into sub-buffers, beside the same kernel at pattern 1x1 and vkCmdCopyBuffer"
             }
-            Self::Shade => "The pass that shades with the lights of the subsets: nanoseconds an evaluation",
+            Self::Shade => "Pass that shades with the lights of the subsets, in nanoseconds an evaluation",
             Self::Gather => {
-                "The copy of the irradiance back to the frame, beside the same kernel at 1x1 and vkCmdCopyBuffer"
+                "Copy of the irradiance back to the frame, beside the same kernel at 1x1 and vkCmdCopyBuffer"
             }
-            Self::Filter => "The discontinuity buffer and the filter that reads it: nanoseconds a pixel and a tap",
+            Self::Filter => "Discontinuity buffer and the filter that reads it, in nanoseconds a pixel and a tap",
             Self::Frame => "Whole frames, one submit each",
         }
     }
@@ -90,7 +90,7 @@ impl What {
                 format!("--fuse on: {technique} has no passes of the {} alone", self.name())
             }
             (Self::Split, Some(split), ..) => format!("--split {split} makes no copy"),
-            (Self::Gather, Some(split), ..) => format!("--split {split} makes no copy, and gathers none"),
+            (Self::Gather, Some(split), ..) => format!("--split {split} makes no copy, and gathers nothing"),
             (Self::Filter, .., Some("none")) => "--filter none filters nothing".to_owned(),
             (Self::Filter, Some(split), Some(pattern), _) => {
                 format!("--split {split} --pattern {pattern} is not interleaved: nothing is filtered")

@@ -1,5 +1,5 @@
 //! The nodes of a tree for a walk that keeps nothing but its place (glsl/bvh_walk.glsl): each node before all below it, and
-//! with an inner node the place after these, where a ray goes on that does not enter its box.
+//! with an inner node the place after these, where a ray continues that does not enter its box.
 //!
 //! A stack of a ray's own costs a GPU registers: as many words as the deepest tree makes wait, for every ray of a wave.
 

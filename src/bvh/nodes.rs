@@ -189,7 +189,7 @@ impl Group {
 struct Groups<'a> {
     nodes: &'a [BvhNodeBlock],
     all: Vec<Group>,
-    /// Of each inner node that has one: the group of its children.
+    /// Group of the children of each inner node that has one.
     below: Vec<u32>,
 }
 
@@ -242,7 +242,8 @@ impl<'a> Groups<'a> {
         inner.map(|node| self.below[*node as usize])
     }
 
-    /// The most groups on a way down, and the most nodes that wait on one: all of a group but the one that is gone to.
+    /// The most groups on a path down, and the most nodes that wait on one: all of a group except the one that is
+    /// entered.
     fn depths(&self) -> [u32; 2] {
         let mut above = vec![[0; 2]; self.all.len()];
         let mut most = [0; 2];

@@ -1,5 +1,5 @@
-//! Caps from a file that `quincunx devices --json` has written, on a machine that this one need not have seen. A file
-//! may hold anything: what a plan reckons with is asked of it first, and nothing else is trusted.
+//! Caps from a file that `quincunx devices --json` has written, perhaps on another machine. A file may hold anything:
+//! every number that a plan uses is checked first.
 
 use super::{Caps, LayoutRules, StructureRules, known};
 use crate::error::{Error, Result};
@@ -42,7 +42,7 @@ pub fn asked(text: &str, selector: Option<&str>) -> Result<(String, Caps)> {
 pub fn read(path: &Path, selector: Option<&str>) -> Result<Caps> {
     let refused = |why: String| {
         let error = Error::request(format!("--caps {}: {why}", path.display()));
-        error.note("it takes what `quincunx devices --json` prints, or the caps of one device of it")
+        error.note("the file must hold what `quincunx devices --json` prints, or the caps of one device from it")
     };
     let document = document(path).map_err(refused)?;
     let caps = chosen(&document, selector).map_err(refused)?;
@@ -58,13 +58,13 @@ fn document(path: &Path) -> Result<Value, String> {
     if text.len() as u64 > MOST_BYTES {
         return Err(format!("it has more than {} MiB", MOST_BYTES >> 20));
     }
-    serde_json::from_slice(&text).map_err(|error| format!("it is no JSON: {error}"))
+    serde_json::from_slice(&text).map_err(|error| format!("it is not JSON: {error}"))
 }
 
 /// The caps of one device: of the whole list, of one of its devices, or by themselves.
 fn chosen<'a>(document: &'a Value, selector: Option<&str>) -> Result<&'a Value, String> {
     let Some(devices) = document.get("devices") else { return Ok(document.get("caps").unwrap_or(document)) };
-    let devices = devices.as_array().ok_or("its `devices` is no list")?;
+    let devices = devices.as_array().ok_or("its `devices` is not a list")?;
     let all: Vec<(usize, Caps, &Value)> = devices
         .iter()
         .enumerate()
@@ -122,7 +122,7 @@ fn require_heaps(caps: &Caps) -> Result<(), String> {
     let (heaps, types) = (caps.heaps.len(), caps.memory_types.len());
     if !(1..=MOST_HEAPS).contains(&heaps) || !(1..=MOST_TYPES).contains(&types) {
         return Err(format!(
-            "it has {heaps} heaps and {types} memory types; Vulkan knows 1 to {MOST_HEAPS} and 1 to {MOST_TYPES}"
+            "it has {heaps} heaps and {types} memory types; Vulkan allows 1 to {MOST_HEAPS} and 1 to {MOST_TYPES}"
         ));
     }
     if let Some(index) = caps.heaps.iter().position(|heap| !(1..=MOST_HEAP_BYTES).contains(&heap.bytes)) {
@@ -208,7 +208,7 @@ mod tests {
             (&both, Some("2"), "--device 2"),
             (&unusable, Some("1"), "--device 1"),
             (&list(&[]), None, "it has 0"),
-            (&r#"{"devices": 3}"#.to_owned(), None, "no list"),
+            (&r#"{"devices": 3}"#.to_owned(), None, "not a list"),
             (&list(&[lavapipe, serde_json::json!({})]), None, "device 1"),
         ] {
             let error = read_text(text, selector).unwrap_err();
@@ -225,9 +225,9 @@ mod tests {
             caps.to_string()
         };
         for (text, words) in [
-            ("voodoo".to_owned(), "no JSON"),
+            ("voodoo".to_owned(), "not JSON"),
             ("{}".to_owned(), "missing field"),
-            ("[".repeat(1000), "no JSON"),
+            ("[".repeat(1000), "not JSON"),
             (" ".repeat(MOST_BYTES as usize + 1), "more than 4 MiB"),
             (
                 caps("/limits/max_image_side_px", 4095.into()),

@@ -41,7 +41,7 @@ pub fn caps(name: &str) -> Result<Caps> {
     let (_, text) = found.ok_or_else(|| {
         Error::request(format!("--caps {name}: no driver of this name is known"))
             .note(format!("there are {}", names().collect::<Vec<_>>().join(", ")))
-            .note("a path of what `quincunx devices --json` has printed does as well")
+            .note("the path of a file that `quincunx devices --json` has printed works too")
     })?;
     Ok(serde_json::from_str(text).expect("a test reads every file of assets/caps"))
 }
@@ -61,7 +61,7 @@ mod tests {
         assert!([DEFAULT, LEAST].iter().all(|special| names().any(|name| name == *special)));
     }
 
-    /// One file each, none that nobody reads, and each with its source.
+    /// Each name has one file, each file is read and names its source.
     #[test]
     fn every_file_is_known_and_says_where_it_is_from() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/caps");

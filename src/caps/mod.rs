@@ -16,7 +16,7 @@ pub struct Caps {
     pub limits: Limits,
     pub features: Features,
     pub formats: Formats,
-    /// None: there is no VK_EXT_conservative_rasterization, or nobody has looked.
+    /// None: there is no VK_EXT_conservative_rasterization, or it was not looked up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conservative: Option<ConservativeRules>,
     pub heaps: Vec<Heap>,
@@ -27,7 +27,7 @@ pub struct Caps {
 }
 
 impl Caps {
-    /// How a plan without the device rounds: as was measured, or not at all where nobody has.
+    /// How a plan without the device rounds: as measured, or not at all where that was not done.
     pub fn rules(&self) -> Cow<'_, LayoutRules> {
         match &self.layout {
             Some(measured) => Cow::Borrowed(measured),
@@ -61,9 +61,9 @@ impl ConservativeRules {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LayoutRules {
     pub buffer_size_multiple_bytes: u64,
-    /// Of storage buffers.
+    /// Alignment of storage buffers.
     pub buffer_alignment_bytes: u64,
-    /// Of buffers of vertices and indices.
+    /// Alignment of vertex and index buffers.
     pub vertex_buffer_alignment_bytes: u64,
     /// Texels of a row are rounded up to a multiple of this, then its bytes, then the rows.
     pub image_width_multiple_px: u64,
@@ -76,7 +76,7 @@ pub struct LayoutRules {
     pub depth_stencil_texel_bytes: u32,
     /// A bit for each memory type that any resource may lie in.
     pub memory_type_bits: u32,
-    /// None: it has no ray queries, or nobody has measured.
+    /// None: it has no ray queries, or it was not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structures: Option<StructureRules>,
 }
@@ -174,7 +174,7 @@ impl Identity {
         self.loop_turns().is_some()
     }
 
-    /// The driver with its version where it tells one.
+    /// The driver, with its version if it reports one.
     pub fn driver_text(&self) -> &str {
         if self.driver_info.is_empty() { &self.driver } else { &self.driver_info }
     }
@@ -206,14 +206,14 @@ pub struct Limits {
     pub max_workgroup_invocations: u32,
     pub max_workgroup_size: [u32; 3],
     pub max_workgroup_count: [u32; 3],
-    /// Memory that the invocations of a workgroup share; as for `max_image_layers`.
+    /// Memory that the invocations of a workgroup share; in older caps files the least that Vulkan allows.
     #[serde(default = "least_shared_memory_bytes")]
     pub max_shared_memory_bytes: u32,
     pub max_sampled_images_per_stage: u32,
-    /// As for `max_image_layers`.
+    /// In older caps files the least that Vulkan allows.
     #[serde(default = "least_storage_buffers_per_stage")]
     pub max_storage_buffers_per_stage: u32,
-    /// The same.
+    /// In older caps files the least that Vulkan allows.
     #[serde(default = "least_storage_images_per_stage")]
     pub max_storage_images_per_stage: u32,
     pub max_bound_descriptor_sets: u32,
@@ -310,13 +310,13 @@ pub struct Features {
     #[serde(default)]
     pub draw_indirect_count: bool,
     pub fragment_stores_and_atomics: bool,
-    /// Data from before it was looked up has not.
+    /// False in caps files older than this field.
     #[serde(default)]
     pub depth_clamp: bool,
     pub sampler_anisotropy: bool,
     pub storage_image_extended_formats: bool,
     pub shader_float16: bool,
-    /// Of storage buffers, with integers of 64 bits.
+    /// 64-bit atomics in storage buffers, with 64-bit integers in shaders.
     pub shader_int64_atomics: bool,
     pub pipeline_statistics: bool,
     /// VK_KHR_ray_query and VK_KHR_acceleration_structure with their features, and addresses of buffers.
@@ -329,26 +329,26 @@ pub struct Features {
 pub struct Formats {
     /// D32_SFLOAT as depth attachment and sampled.
     pub float_depth: bool,
-    /// D32_SFLOAT sampled with linear filtering. Data from before it was looked up has not.
+    /// D32_SFLOAT sampled with linear filtering. False in caps files older than this field.
     #[serde(default)]
     pub float_depth_linear: bool,
     /// D32_SFLOAT_S8_UINT as attachment of depth and stencil.
     pub float_depth_with_stencil: bool,
     /// R32G32B32A32_SFLOAT blends as colour attachment.
     pub float_color_blend: bool,
-    /// R16G16_UNORM as colour attachment. Data from before it was looked up has not.
+    /// R16G16_UNORM as colour attachment. False in caps files older than this field.
     #[serde(default)]
     pub fixed_pair_color: bool,
-    /// R16G16B16A16_UNORM sampled. The same.
+    /// R16G16B16A16_UNORM sampled. False in caps files older than this field.
     #[serde(default)]
     pub fixed_quad_sampled: bool,
-    /// Samples a pixel of R32G32B32A32_SFLOAT as colour attachment. Data from before it was looked up has none but 1.
+    /// Samples a pixel of R32G32B32A32_SFLOAT as colour attachment. Only 1 in caps files older than this field.
     #[serde(default = "one_sample")]
     pub float_color_sample_counts: Vec<u32>,
-    /// The same of R16G16B16A16_SFLOAT.
+    /// Samples a pixel of R16G16B16A16_SFLOAT as colour attachment, likewise.
     #[serde(default = "one_sample")]
     pub half_color_sample_counts: Vec<u32>,
-    /// The same of D32_SFLOAT as depth attachment.
+    /// Samples a pixel of D32_SFLOAT as depth attachment, likewise.
     #[serde(default = "one_sample")]
     pub float_depth_sample_counts: Vec<u32>,
 }

@@ -1,5 +1,5 @@
-//! What a device may lack of what Vulkan 1.3 leaves optional, and the words for it. Who needs something says so as data:
-//! the same list refuses a render and is what `devices` prints.
+//! What a device may lack of what Vulkan 1.3 leaves optional, and the words for it. A technique states what it needs as
+//! data: the same list refuses a render and is what `devices` prints.
 
 use super::{Caps, Formats};
 use crate::error::Error;
@@ -9,7 +9,7 @@ use crate::error::Error;
 pub enum Ability {
     /// A depth buffer of floats that shaders sample.
     FloatDepth,
-    /// Its samples are filtered.
+    /// A depth buffer of floats that a sampler filters.
     FilteredDepth,
     /// Depth and stencil in one image.
     DepthWithStencil,
@@ -27,7 +27,7 @@ pub enum Ability {
     DepthClamp,
     /// Floats of colour and depth with 4 samples a pixel.
     FourSamples,
-    /// The same with 8.
+    /// Floats of colour and depth with 8 samples a pixel.
     EightSamples,
     /// Geometry shaders.
     GeometryShader,
@@ -117,8 +117,8 @@ impl Need {
     /// The error where it is not met (exit code 3).
     pub fn refusal(&self, caps: &Caps) -> Error {
         let (device, driver, ability) = (&caps.identity.name, caps.identity.driver_text(), self.ability.name());
-        let error = Error::no_device(format!("{} needs {ability}, which {device} on {driver} has not", self.of));
+        let error = Error::no_device(format!("{} needs {ability}, which {device} on {driver} lacks", self.of));
         let error = if self.instead.is_empty() { error } else { error.note(self.instead) };
-        error.note("`quincunx devices` tells what each device can do")
+        error.note("`quincunx devices` lists what each device can do")
     }
 }

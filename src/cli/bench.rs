@@ -24,8 +24,8 @@ pub fn command(listed: &Listed) -> Command {
     Command::new("bench")
         .about("Measure settings against each other: a frame, or one stage of it")
         .after_help(
-            "Each prints a row for each combination and a table at the end. Ratios are of the same round of one run: \
-             milliseconds drift.",
+            "Each command prints a row for each combination of settings, and a table at the end. Compare ratios: they are \
+             taken within one round of one run, while milliseconds drift.",
         )
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -45,13 +45,13 @@ fn sub_command(what: What) -> Command {
                 .long("sweep")
                 .value_name("KEY=V,V,...")
                 .action(ArgAction::Append)
-                .help("An axis of the grid; may be repeated"),
+                .help("Values of one setting to measure, one axis of the grid; may be repeated"),
         )
         .arg(
             Arg::new("baseline")
                 .long("baseline")
                 .value_name("KEY=V ...")
-                .help("The combination that ratios are to; default: the first that is possible"),
+                .help("Combination that ratios are relative to; default: the first that is possible"),
         )
         .arg(
             Arg::new("repeat")
@@ -59,11 +59,12 @@ fn sub_command(what: What) -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u32).range(1..=10_000))
                 .default_value("5")
-                .help("Rounds: each measures every combination of a group once; intervals take three"),
+                .help("Number of rounds, each of which measures every combination of a group once; intervals need three"),
         )
         .arg(Arg::new("fair").long("fair").action(ArgAction::SetTrue).help(
-            "All rows shade as many texels a thread: one, or those of --texels; rows that cannot are skipped. Without it each \
-             road shades as many as it does best with, up to 32 where threads share a list of lights and 1 where they do not",
+            "Shade the same number of texels a thread in all rows: one, or --texels; rows that cannot are skipped. Without \
+             this flag each row shades as many as suit it best, up to 32 where threads share a list of lights and 1 where \
+             they do not",
         ))
         .arg(
             Arg::new("output")
@@ -71,7 +72,7 @@ fn sub_command(what: What) -> Command {
                 .long("output")
                 .value_name("DIR")
                 .value_parser(value_parser!(PathBuf))
-                .help("Write rows.jsonl, summary.json and summary.md there"),
+                .help("Folder to write rows.jsonl, summary.json and summary.md to"),
         )
         .arg(flag("resume").help("Measure only what DIR/rows.jsonl lacks"))
         .arg(flag("force").conflicts_with("resume").help("Replace DIR/rows.jsonl"))
@@ -112,13 +113,13 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         }
     }
     if found.interrupted {
-        let way_out = if folder.is_some() { "--resume goes on" } else { "with -o DIR, --resume could go on" };
+        let way_out = if folder.is_some() { "--resume continues" } else { "with -o DIR, --resume could continue" };
         return Err(Error::interrupted("interrupted; finished rows are valid").note(way_out));
     }
     found.gates
 }
 
-/// Errors: no technique reads a setting of this name (exit code 2), with what `--KEY` is told to resemble.
+/// Errors: no technique reads a setting of this name (exit code 2), with the setting that `--KEY` resembles.
 fn require_known(key: &str) -> Result<()> {
     if key == TECHNIQUE || techniques::ALL.iter().any(|one| settings_of(*one).iter().any(|setting| setting.key == key))
     {

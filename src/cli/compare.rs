@@ -22,18 +22,18 @@ pub fn command() -> Command {
         .about("Compare a picture with its reference: RMSE, relMSE, PSNR, SSIM, FLIP, HDR-FLIP, pixels over a threshold")
         .long_about(
             "Compare a picture with its reference (PNG or EXR, of one size).\n\n\
-             rmse, relmse, hdr_flip and over_threshold (percent of pixels) are of scene-linear light; psnr (dB), ssim and \
-             flip of 8-bit sRGB at exposure 0. A PNG holds no light above 1: where one is compared, the measures of light \
-             are marked as cut. Equal pictures have psnr inf (null in JSON). Exit code 1: a gate failed, or a picture holds \
+             rmse, relmse, hdr_flip and over_threshold (percent of pixels) measure scene-linear light; psnr (dB), ssim and \
+             flip measure 8-bit sRGB at exposure 0. A PNG holds no light above 1: where one is compared, the measures of \
+             light are marked as cut. Equal pictures have psnr inf (null in JSON). Exit code 1: a gate failed, or a picture holds \
              NaN or infinity.",
         )
-        .arg(path_arg("a", "A").required(true).help("The picture"))
-        .arg(path_arg("b", "B").required(true).help("The reference"))
-        .arg(path_arg("diff", "FILE.png").long("diff").help("Write FLIP's error map in the magma colours"))
-        .arg(path_arg("hdr-diff", "FILE.png").long("hdr-diff").help("Write HDR-FLIP's error map in the same colours"))
+        .arg(path_arg("a", "A").required(true).help("Picture to measure"))
+        .arg(path_arg("b", "B").required(true).help("Reference picture"))
+        .arg(path_arg("diff", "FILE.png").long("diff").help("File to write FLIP's error map to, in the magma colours"))
+        .arg(path_arg("hdr-diff", "FILE.png").long("hdr-diff").help("File to write HDR-FLIP's error map to, in the same colours"))
         .arg(Arg::new("where").long("where").value_name("CHANNEL=FILE.exr[,FILE.exr]").help(
-            "Also measure the pixels in which this channel differs between two EXR files, such as \
-             geometry.dsf.id.Y=low.exr,high.exr; of one file, in which it is not 0; and the other pixels",
+            "Also measure, apart from the other pixels, those in which this channel differs between two EXR files, such as \
+             geometry.dsf.id.Y=low.exr,high.exr, or in which it is not 0 if one file is given",
         ))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
         .arg(quiet_flag());
@@ -267,9 +267,9 @@ mod tests {
         for (argument, cause) in [
             ("mse=1", "there is no metric mse"),
             ("rmse", "it has no ="),
-            ("rmse=small", "small is no number"),
-            ("rmse=nan", "nan is no number"),
-            ("rmse=", " is no number"),
+            ("rmse=small", "small is not a number"),
+            ("rmse=nan", "nan is not a number"),
+            ("rmse=", " is not a number"),
         ] {
             let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--max", argument]).err().unwrap();
             assert_eq!(error.exit_code(), 2);

@@ -12,7 +12,7 @@ pub fn with_gate_args(command: Command) -> Command {
         Arg::new(name).long(name).value_name("METRIC=VALUE").action(ArgAction::Append).help(help)
     };
     let threshold = Arg::new("threshold").long("threshold").value_name("T").allow_negative_numbers(true).help(format!(
-        "The HDR-FLIP, 0 to 1, above which a pixel counts in over_threshold [default: {DEFAULT_THRESHOLD}]"
+        "HDR-FLIP error, 0 to 1, above which a pixel counts in over_threshold [default: {DEFAULT_THRESHOLD}]"
     ));
     command
         .arg(gate(
@@ -36,7 +36,7 @@ pub fn gates(matches: &ArgMatches) -> Result<Vec<Gate>> {
         .collect()
 }
 
-/// Errors: it is no number from 0 to 1 (exit code 2).
+/// Errors: it is not a number from 0 to 1 (exit code 2).
 pub fn threshold(matches: &ArgMatches) -> Result<f64> {
     let Some(text) = matches.get_one::<String>("threshold") else { return Ok(DEFAULT_THRESHOLD) };
     text.parse().ok().filter(|threshold| (0.0..=1.0).contains(threshold)).ok_or_else(|| {

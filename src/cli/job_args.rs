@@ -10,7 +10,7 @@ use crate::techniques::{self, Technique, settings_of};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
-/// Adds SCENE, --technique, --device, --validate and every setting; help lists those that `listed` reads.
+/// Adds SCENE, --technique, --device, --validate and every setting; help lists those of the techniques in `listed`.
 pub fn with_job_args(listed: &Listed, command: Command) -> Command {
     let names = techniques::ALL.iter().map(|technique| PossibleValue::new(technique.name()));
     let mut command = command
@@ -26,15 +26,12 @@ pub fn with_job_args(listed: &Listed, command: Command) -> Command {
                 // A help flag behind it is not seen where a value is refused.
                 .value_parser(PossibleValuesParser::new(names.chain([PossibleValue::new(listed::ALL).hide(true)])))
                 .help(format!(
-                    "What makes the picture; default {DEFAULT_TECHNIQUE}; with --help, whose settings are listed"
+                    "Technique that makes the picture [default: {DEFAULT_TECHNIQUE}]; with --help: list its settings"
                 )),
         )
-        .arg(
-            Arg::new("device")
-                .long("device")
-                .value_name("SUBSTRING|INDEX")
-                .help("Which device, as `quincunx devices` lists them; default: a GPU before a processor"),
-        )
+        .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help(
+            "Device, by a part of its name or its index in `quincunx devices`; default: a GPU before a processor",
+        ))
         .arg(
             Arg::new("validate")
                 .long("validate")
@@ -42,7 +39,12 @@ pub fn with_job_args(listed: &Listed, command: Command) -> Command {
                 .help("Run under the validation layer with synchronization checks; a message fails the command"),
         )
         .arg(quiet_flag())
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON on standard output"));
+        .arg(
+            Arg::new("json")
+                .long("json")
+                .action(ArgAction::SetTrue)
+                .help("Print the results as JSON on standard output"),
+        );
     for Row { setting, heading, is_listed } in rows(listed) {
         command = command.arg(flag(setting).help_heading(heading).hide(!is_listed));
     }
@@ -56,8 +58,8 @@ struct Row {
     is_listed: bool,
 }
 
-/// Every setting once: common ones, those that `listed` reads, all others. Where techniques differ in what it may be, with all
-/// the choices that one of them has: of those that are listed, if they read it.
+/// Every setting once: common ones, those that `listed` reads, all others. Where techniques differ in what it may be,
+/// with all the choices that one of them has: of those that are listed, if they read it.
 fn rows(listed: &Listed) -> Vec<Row> {
     let common = |setting| Row { setting, heading: "Common settings".to_owned(), is_listed: true };
     let mut all: Vec<Row> = COMMON.iter().map(common).collect();
@@ -93,13 +95,12 @@ fn reads(technique: &dyn Technique, key: &str) -> bool {
 pub fn flag(setting: &'static Setting) -> Arg {
     let mut help = format!("{} [{}] [default: {}]", setting.help, setting.range(), setting.default);
     if !setting.unit.is_empty() {
-        help = format!("{help}, in {}", setting.unit);
+        help = format!("{help} [unit: {}]", setting.unit);
     }
-    if !setting.symbol.is_empty() {
-        help = format!("{help}, the paper's {}", setting.symbol);
-    }
-    if !setting.paper.is_empty() {
-        help = format!("{help} ({})", setting.paper);
+    match (setting.symbol, setting.paper) {
+        ("", "") => {}
+        ("", paper) => help = format!("{help} ({paper})"),
+        (symbol, paper) => help = format!("{help} ({symbol} in {paper})"),
     }
     let argument = Arg::new(setting.key).long(setting.key).value_name(value_name(setting)).help(help);
     match setting.kind {

@@ -1,5 +1,5 @@
-//! Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the default
-//! one. The other flags are there all the same, so that a technique can say what it does not read.
+//! Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the
+//! default one. The other flags are there all the same, so that a technique can say what it does not read.
 
 use crate::techniques::{self, Technique};
 
@@ -14,7 +14,8 @@ pub enum Listed {
 }
 
 impl Listed {
-    /// As the command line asks for it. It is read before it is parsed, because a help flag ends the parsing where it stands.
+    /// As the command line asks for it. It is read before it is parsed, because a help flag ends the parsing where it
+    /// stands.
     pub fn of(argv: &[String]) -> Self {
         let flag = "--technique";
         let behind = argv.windows(2).filter(|pair| pair[0] == flag).map(|pair| pair[1].as_str());
@@ -44,8 +45,8 @@ impl Listed {
                 let others: Vec<&str> =
                     all.into_iter().filter(|name| names.iter().all(|listed| listed != name)).collect();
                 format!(
-                    "Beside the common settings these are those of {}. --technique NAME --help lists those of another ({}), --technique {ALL} --help \
-                     all of them.",
+                    "Listed are the common settings and those of {}. --technique NAME --help lists those of another ({}), \
+                     --technique {ALL} --help all of them. A number after a paper and its year is a section of it.",
                     names.join(", "),
                     others.join(", ")
                 )

@@ -15,21 +15,21 @@ use serde_json::{Value, json};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Said where a table is of bytes that no driver has rounded.
-const UNROUNDED: &str = "nobody has measured how this driver rounds sizes: it takes these bytes, or more\n";
+/// Note above a table whose bytes no driver has rounded.
+const UNROUNDED: &str = "how this driver rounds sizes has not been measured: it takes these bytes, or more\n";
 
 /// The verb with its arguments.
 pub fn command(listed: &Listed) -> Command {
     let command = Command::new("memory")
-        .about("Print what a technique needs: each resource, its bytes, its memory type, its lifetime, the peak")
+        .about("Print the memory that a technique needs: each resource with its bytes, memory type and lifetime, and the peak")
         .arg(
             Arg::new("plan")
                 .long("plan")
                 .action(ArgAction::SetTrue)
-                .help("Without a device: arithmetic over the scene and a known driver's rules"),
+                .help("Compute the table without a device, from the scene and a known driver's rules"),
         )
         .arg(Arg::new("caps").long("caps").value_name("NAME|FILE").requires("plan").help(format!(
-            "The driver of --plan: {}, or a file that `devices --json` has printed, of whose devices --device names \
+            "Driver of --plan: {}, or a file that `devices --json` has printed, of whose devices --device names \
                      one [default: {}]",
             known::names().collect::<Vec<_>>().join(", "),
             known::DEFAULT
@@ -40,7 +40,7 @@ pub fn command(listed: &Listed) -> Command {
                 .value_name("NAME,...")
                 .value_delimiter(',')
                 .action(ArgAction::Append)
-                .help("Stages that are read back: they live until the frame's end"),
+                .help("Stages to plan for reading back: they live until the frame's end"),
         )
         .arg(
             Arg::new("output")
@@ -48,12 +48,12 @@ pub fn command(listed: &Listed) -> Command {
                 .long("output")
                 .value_name("DIR")
                 .value_parser(value_parser!(PathBuf))
-                .help("Write memory-TECHNIQUE.txt and memory-TECHNIQUE.json there"),
+                .help("Folder to write memory-TECHNIQUE.txt and memory-TECHNIQUE.json to"),
         );
     job_args::with_job_args(listed, command).mut_arg("technique", |technique| {
         technique
             .action(ArgAction::Append)
-            .help("What is planned; may be repeated; a setting must be read by one of them; with --help, whose settings are listed")
+            .help("Technique to plan; may be repeated; each setting must be read by one of them; with --help: list their settings")
     })
 }
 

@@ -63,7 +63,7 @@ impl Progress for Lines {
     }
 }
 
-/// Of a stage that has ended.
+/// Line for a stage that has ended.
 fn line(ended: &Shown) -> String {
     let count = match ended.pace.all {
         0 => String::new(),
@@ -72,7 +72,7 @@ fn line(ended: &Shown) -> String {
     format!("{PREFIX}{}{count} took {:.1} s", ended.path, ended.took.as_secs_f64())
 }
 
-/// Drawn by a thread of its own, because work that is not counted says nothing while it goes on.
+/// Drawn by a thread of its own, because work that is not counted reports nothing while it runs.
 struct Bar {
     state: Arc<Mutex<Drawn>>,
 }

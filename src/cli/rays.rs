@@ -1,4 +1,4 @@
-//! `quincunx bench rays`: what the walks of the tree do on a device, beside the host.
+//! `quincunx bench rays`: times of the walks of the tree on a device, beside the host.
 
 use super::{job_args, progress};
 use crate::bench::rays::{self, Request, Variant, report};
@@ -25,29 +25,29 @@ pub fn command() -> Command {
     };
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let command = Command::new(NAME)
-        .about("Millions of rays a second of each walk of the tree, beside the same tree walked on the host's threads")
+        .about("Traversal of the tree of triangles, in millions of rays a second, beside the same tree on the host's threads")
         .arg(
             Arg::new("scene")
                 .value_name("SCENE")
                 .default_value("hall:triangles=80000")
                 .help("A built-in scene or a .gltf or .glb file"),
         )
-        .arg(number("rays", "262144", 1 << 24).help("Rays of a set"))
-        .arg(number("repeat", "5", 10_000).help("Rounds: each measures every walk once"))
-        .arg(number("seed", "1", u64::from(u32::MAX)).help("Of the rays and of a built-in scene"))
-        .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("As `quincunx devices` lists them"))
+        .arg(number("rays", "262144", 1 << 24).help("Number of rays in a set"))
+        .arg(number("repeat", "5", 10_000).help("Number of rounds, each of which measures every walk once"))
+        .arg(number("seed", "1", u64::from(u32::MAX)).help("Seed of the rays and of a built-in scene"))
+        .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("Device, by a part of its name or its index in `quincunx devices`"))
         .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
         .arg(quiet_flag())
-        .arg(flag("json").help("Print a JSON line a walk on standard output"))
+        .arg(flag("json").help("Print one line of JSON for each walk on standard output"))
         .arg(
             Arg::new("sweep")
                 .long("sweep")
                 .value_name("KEY=V,V,...")
                 .action(ArgAction::Append)
-                .help("An axis of a grid of the settings below; may be repeated"),
+                .help("Values of one of the settings below, one axis of the grid; may be repeated"),
         );
     TREE.iter().fold(command, |command, setting| {
-        command.arg(job_args::flag(setting).help_heading("Settings of walks in order"))
+        command.arg(job_args::flag(setting).help_heading("Settings of the traversal"))
     })
 }
 

@@ -13,8 +13,8 @@ use std::time::Duration;
 pub fn with_reference_args(command: Command) -> Command {
     let command = command
         .arg(Arg::new("reference").long("reference").value_name("FILE.exr|FILE.png|auto").help(
-            "What pictures are judged against, for the report's `errors`: a picture of the same size, or auto: the \
-             path-traced one of the same transport, made where it is not kept",
+            "Reference that pictures are compared with, for the report's `errors`: a picture of the same size, or auto, \
+             the path-traced picture of the same light transport, which is made unless it is kept from before",
         ))
         .arg(
             Arg::new("reference-spp")
@@ -22,7 +22,7 @@ pub fn with_reference_args(command: Command) -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u64).range(1..=65_536))
                 .requires("reference")
-                .help(format!("Samples a pixel of --reference auto [default: {DEFAULT_SPP}]")),
+                .help(format!("Samples a pixel for --reference auto [default: {DEFAULT_SPP}]")),
         );
     let command = gate_args::with_gate_args(command);
     ["max", "min", "threshold"]
@@ -40,7 +40,7 @@ pub fn asked(matches: &ArgMatches) -> Result<Option<Asked>> {
     Asked::new(text, spp, threshold, gates, Box::new(Said)).map(Some)
 }
 
-/// Lines beside the progress of the rendering itself; none with --quiet, where nobody looks on.
+/// Lines beside the progress of the rendering itself; none with --quiet, where there is no observer.
 struct Said;
 
 impl Watch for Said {

@@ -12,7 +12,7 @@ use crate::sequence::Frames;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
 
-/// Of films.
+/// Frames a second of `--frames` without `--fps`.
 const DEFAULT_FPS: &str = "24";
 
 /// The verb with its arguments.
@@ -27,23 +27,23 @@ pub fn command(listed: &Listed) -> Command {
             .arg(
                 path("output", "FILE.exr|FILE.png")
                     .short('o')
-                    .help("The picture; default SCENE-TECHNIQUE.png in the current folder"),
+                    .help("File to write the picture to; default: SCENE-TECHNIQUE.png in the current folder"),
             )
-            .arg(path("report", "FILE.json").help("Write the report: settings, times, memory, hashes"))
+            .arg(path("report", "FILE.json").help("File to write the report to: settings, times, memory, hashes"))
             .arg(
                 Arg::new("aov")
                     .long("aov")
                     .value_name("NAME,...")
                     .value_delimiter(',')
                     .action(ArgAction::Append)
-                    .help("Stages of the technique: layers of an EXR, pictures FILE.NAME.png beside a PNG"),
+                    .help("Also write these stages of the technique: as layers of an EXR, or as pictures FILE.NAME.png beside a PNG"),
             )
             .arg(path("continue", "FILE.exr").conflicts_with("frames").help(
-                "Go on with the samples of an earlier picture of path_traced, of the same scene, size and settings, up to \
-                 --spp or --until-error: the picture of one run",
+                "Add samples to an earlier picture of path_traced, of the same scene, size and settings, up to --spp or \
+                 --until-error; the result is the picture of a single run",
             ))
             .arg(Arg::new("frames").long("frames").value_name("A..B").allow_hyphen_values(true).help(
-                "Frames A to B, both included, into FILE.0001.png and so on; frame n is drawn n / fps seconds after \
+                "Render frames A to B, both included, into FILE.0001.png and so on; frame n is drawn n / fps seconds after \
                      --time",
             ))
             .arg(
@@ -52,17 +52,17 @@ pub fn command(listed: &Listed) -> Command {
                     .value_name("N")
                     .requires("frames")
                     .allow_negative_numbers(true)
-                    .help(format!("Frames a second [default: {DEFAULT_FPS}]")),
+                    .help(format!("Frames a second of --frames [default: {DEFAULT_FPS}]")),
             )
             .arg(
                 Arg::new("profile")
                     .long("profile")
                     .action(ArgAction::SetTrue)
-                    .help("Time each pass: one submit and fence a pass, three frames after one that warms up"),
+                    .help("Time each pass, with a submit and a fence for each, in three frames after one to warm up"),
             )
             .arg(Arg::new("statistics").long("statistics").action(ArgAction::SetTrue).help(
-                "Report what the device counts in each pass: vertices, primitives, shader invocations. It may cost time, and \
-                 each driver counts in its own way: lavapipe of Mesa 22.3 whole blocks of 4x4 pixels",
+                "Report what the device counts in each pass: vertices, primitives, shader invocations. Counting may cost time, \
+                 and drivers differ in what they count: lavapipe of Mesa 22.3 counts whole blocks of 4x4 pixels",
             )),
     );
     reference_args::with_reference_args(command)
@@ -93,7 +93,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     outcome.gates
 }
 
-/// Renders each frame, with a line for it on standard error, and prints the sum.
+/// Renders each frame, with a line for each on standard error, and prints how many are written.
 fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> {
     let mut done = 0;
     let sequence = job.run_sequence(frames, &mut |frame, outcome| {

@@ -19,18 +19,18 @@ pub fn with_args(command: Command) -> Command {
     let of_test = |arg: Arg| arg.requires(FLAG);
     command
         .arg(Arg::new(FLAG).long(FLAG).action(ArgAction::SetTrue).help(
-            "Test a device: every technique small, by each road that the device has, beside a plain twin or a formula; \
-             and its clock. Exit code 1 where something does not hold",
+            "Test a device: render a small picture by every technique and every method that the device supports, and \
+             compare it with a plain twin or a formula; test its clock too. Exit code 1 if a test fails",
         ))
         .arg(of_test(
             Arg::new("device")
                 .long("device")
                 .value_name("SUBSTRING|INDEX")
-                .help("Which device, by name or by its index in the list; default: a GPU before a processor"),
+                .help("Device, by a part of its name or its index in the list; default: a GPU before a processor"),
         ))
         .arg(of_test(
             Arg::new("only").long("only").value_name("PART,...").value_delimiter(',').action(ArgAction::Append).help(
-                "Cases whose names begin so, or go on so after a slash (deep_shading/conservative, msaa), or clocks",
+                "Run only cases whose names, or whose parts after a slash, begin so (deep_shading/conservative, msaa), or clocks",
             ),
         ))
         .arg(of_test(
@@ -45,7 +45,7 @@ pub fn with_args(command: Command) -> Command {
                 .short('o')
                 .value_name("FILE.json")
                 .value_parser(value_parser!(PathBuf))
-                .help("Write the document to send, whatever came out"),
+                .help("File to write the results to, for sending in, whether the tests pass or fail"),
         ))
 }
 

@@ -148,7 +148,7 @@ impl Access {
 pub struct AccessSet(u32);
 
 impl AccessSet {
-    /// Not touched in this frame. A frame begins after the fence of the one before it, so nothing is waited for.
+    /// Not touched in this frame. A frame begins after the fence of the one before it, so there is nothing to wait for.
     pub const UNTOUCHED: Self = Self(0);
 
     pub fn iter(self) -> impl Iterator<Item = Access> {

@@ -1,8 +1,9 @@
 //! Frames cut into pieces, so that no submit takes a device longer than it may.
 //!
-//! Drivers end what runs for seconds, and the whole device is lost with it: Windows after two by default. A frame's passes, and bands of
-//! the workgroups of its dispatches, are command buffers of their own, as many of which go into a submit as took its time the last time.
-//! A band's workgroups have the numbers that they have in the whole dispatch: the picture is the same to the bit.
+//! Drivers abort submits that run for seconds, and the whole device is lost with them: Windows after two by default. A
+//! frame's passes, and bands of the workgroups of its dispatches, are command buffers of their own, as many of which go
+//! into a submit as took its time the last time. A band's workgroups have the numbers that they have in the whole
+//! dispatch: the picture is the same to the bit.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -38,8 +39,8 @@ impl Estimates {
         Self { limit, pieces_ns: vec![None; piece_count] }
     }
 
-    /// Where a submit ends that begins with the piece `first`, before `end`: one piece at least, and one alone while nobody knows what it
-    /// takes.
+    /// Where a submit ends that begins with the piece `first`, before `end`: one piece at least, and one alone until it
+    /// is known what it takes.
     pub fn end_of_submit(&self, first: usize, end: usize) -> usize {
         let limit_ns = self.limit.as_nanos() as f64;
         let mut sum_ns = 0.0;
@@ -53,7 +54,7 @@ impl Estimates {
         end
     }
 
-    /// How many times all pieces fit into a submit; once while nobody knows what they take.
+    /// How many times all pieces fit into a submit; once until it is known what they take.
     pub fn runs_of_submit(&self) -> u32 {
         let sum_ns: Option<f64> = self.pieces_ns.iter().copied().sum();
         sum_ns.map_or(1, |sum_ns| ((self.limit.as_nanos() as f64 / sum_ns.max(1.0)) as u32).max(1))
@@ -101,8 +102,8 @@ mod tests {
         }
     }
 
-    /// A device that takes as long for each piece as it does: no submit is longer than the limit once pieces have run, but for a piece that
-    /// is itself; and none is much shorter than it need be.
+    /// A device that takes the same time for a piece in every run: once pieces have run, no submit is longer than the
+    /// limit, except for a single piece that is; and none is much shorter than it need be.
     #[test]
     fn submits_come_as_near_to_the_limit_as_pieces_let_them() {
         let takes_ms = [3, 1, 1, 1, 50, 2, 2, 2, 2, 2, 0, 9, 1];

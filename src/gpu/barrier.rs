@@ -31,7 +31,7 @@ pub struct Barrier {
     pub(super) discard: bool,
 }
 
-/// What a barrier is about.
+/// The resource that a barrier covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     Buffer(vk::Buffer),
@@ -57,12 +57,12 @@ impl Buffer {
         Target::Buffer(self.handle)
     }
 
-    /// States who touched it last.
+    /// Names the access that touched it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
+    /// First touch of the frame, old contents not needed; it waits for the resource that had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
         Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
     }
@@ -73,12 +73,12 @@ impl Image {
         Target::Image(self.handle, self.aspect())
     }
 
-    /// States who touched it last.
+    /// Names the access that touched it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed; it waits for whoever had the bytes before.
+    /// First touch of the frame, old contents not needed; it waits for the resource that had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
         Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
     }
@@ -103,8 +103,8 @@ impl Barrier {
         self.discard && self.from != AccessSet::UNTOUCHED
     }
 
-    /// What makes the accesses of those who had the bytes before available: a barrier of one resource speaks of its own
-    /// accesses only.
+    /// Barriers that make the accesses of the bytes' earlier owners available: a barrier of one resource speaks of its
+    /// own accesses only.
     pub(super) fn memory_barrier(&self) -> vk::MemoryBarrier2<'static> {
         vk::MemoryBarrier2::default()
             .src_stage_mask(self.from.stages())

@@ -9,8 +9,8 @@ use std::sync::Arc;
 #[derive(Clone, Copy)]
 pub enum Berth<'a> {
     Own,
-    /// From `offset` on in the arena. `takes_over`: the last accesses of those who lay there, which the first barrier waits
-    /// for.
+    /// From `offset` on in the arena. `takes_over`: the last accesses of the resources that lay there, which the first
+    /// barrier waits for.
     Part {
         arena: &'a Arc<Arena>,
         offset: u64,

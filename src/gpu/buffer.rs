@@ -16,7 +16,7 @@ pub struct Buffer {
     pub name: String,
     /// Bytes asked for.
     pub bytes: u64,
-    /// Last accesses of whoever had its bytes before it in the frame.
+    /// Last accesses of the resource that had its bytes before it in the frame.
     pub(super) takes_over: AccessSet,
     allocation: ManuallyDrop<Allocation>,
 }

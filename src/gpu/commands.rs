@@ -1,7 +1,7 @@
 //! Commands: a frame's command buffers, recorded by hand. The order of lines is the order of work.
 //!
 //! A frame is one command buffer, or one a pass (`Submits::PerPass`) so that each pass can be timed by the wall clock.
-//! Debug builds keep the truth of who touched what last and hold every barrier's left side against it.
+//! Debug builds track what touched each resource last and compare every barrier's left side with it.
 
 use super::access::AccessSet;
 use super::descriptors::{Bound, Descriptors};
@@ -95,7 +95,7 @@ pub struct Commands {
     heirs: Heirs,
 }
 
-/// For each resource that takes bytes over, those who had them before it in the frame.
+/// For each resource that takes bytes over, the resources that had them before it in the frame.
 pub type Heirs = HashMap<Target, Vec<Target>>;
 
 /// Passes of one frame that can have timestamps and statistics.
@@ -278,7 +278,7 @@ impl Commands {
         self.heirs = heirs;
     }
 
-    /// A programmer's mistake: `record` says that somebody else wrote, or the plan that nobody did.
+    /// A programmer's mistake: `record` names another writer than the last one, or the plan has none.
     fn check_left_side(&self, barrier: &Barrier) {
         if cfg!(debug_assertions) && barrier.discard {
             let touched = |target: &Target| self.truth.get(target).copied().unwrap_or_default();

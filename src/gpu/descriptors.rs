@@ -17,7 +17,7 @@ pub enum Bound<'a> {
     Storage(&'a Image),
     /// Through a sampler, layout as `access` has it.
     Sampled(&'a Image, vk::Sampler, Access),
-    /// What rays go through.
+    /// The acceleration structure that rays are traced through.
     Structure(&'a Structure),
 }
 
@@ -139,7 +139,7 @@ impl Drop for Descriptors {
 }
 
 impl Interface {
-    /// Those of `bound` that its shaders have.
+    /// Entries of `bound` that its shaders declare.
     pub fn own<'a>(&self, bound: &[(&'static str, Bound<'a>)]) -> Vec<(&'static str, Bound<'a>)> {
         let is_own = |name: &str| self.bindings.iter().any(|binding| binding.name == name);
         bound.iter().filter(|(name, _)| is_own(name)).copied().collect()

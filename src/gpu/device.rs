@@ -61,7 +61,7 @@ pub struct Gpu {
     _entry: ash::Entry,
 }
 
-/// What the layer says while it lives. To be dropped before the instance.
+/// The layer's messenger, which collects messages while it lives. To be dropped before the instance.
 struct Validation {
     functions: ash::ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
@@ -105,7 +105,7 @@ fn create_instance(entry: &ash::Entry, validate: Option<&validation::Log>) -> Re
     let version = unsafe { entry.try_enumerate_instance_version() }.ok().flatten().unwrap_or(vk::API_VERSION_1_0);
     if version < API {
         return Err(Error::no_device(format!(
-            "the Vulkan loader speaks {}.{}, 1.3 is needed",
+            "the Vulkan loader supports {}.{}; 1.3 is needed",
             vk::api_version_major(version),
             vk::api_version_minor(version)
         )));
@@ -238,7 +238,7 @@ fn choose(instance: &ash::Instance, request: &DeviceRequest) -> Result<(vk::Phys
     Err(unfit(selector, &lacking))
 }
 
-/// What is said where no device that `selector` names can be used. `all`: each with what it lacks, by index.
+/// The error where no device that `selector` names can be used. `all`: each with what it lacks, by index.
 fn unfit(selector: Option<&str>, all: &[(&Identity, Vec<String>)]) -> Error {
     let has_named = all.iter().enumerate().any(|(index, (identity, _))| identity.is_named(selector, index));
     let error = Error::no_device(match selector {

@@ -1,4 +1,4 @@
-//! What a failed call of the driver means to whoever reads the error, and what would help.
+//! Explanations of failed driver calls for the reader of the error, and what would help.
 
 use crate::error::Error;
 use ash::vk;

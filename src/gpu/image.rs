@@ -134,7 +134,7 @@ pub struct Image {
     pub sampled_view: vk::ImageView,
     pub name: String,
     pub description: ImageDescription,
-    /// Last accesses of whoever had its bytes before it in the frame.
+    /// Last accesses of the resource that had its bytes before it in the frame.
     pub(super) takes_over: AccessSet,
     allocation: ManuallyDrop<Allocation>,
 }

@@ -1,4 +1,5 @@
-//! Compute and graphics pipelines from the table's entries: their layouts come from the shaders, not from hands.
+//! Compute and graphics pipelines from the table's entries: their layouts come from the shaders and are not written by
+//! hand.
 
 use super::Gpu;
 use super::interface::Interface;
@@ -35,7 +36,7 @@ impl Drop for Module<'_> {
     }
 }
 
-/// The named constants as Vulkan wants them.
+/// The named constants in the form that Vulkan takes.
 struct Specialization {
     entries: Vec<vk::SpecializationMapEntry>,
     data: Vec<u8>,
@@ -82,7 +83,8 @@ pub struct ComputePipeline {
 }
 
 impl ComputePipeline {
-    /// A workgroup that is larger than the device's is a programmer's mistake: who takes its shape from a user asks before.
+    /// A workgroup that is larger than the device's is a programmer's mistake: a caller that takes its shape from a
+    /// user checks before.
     ///
     /// Errors: the driver refuses (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, shader: &Shader, constants: Constants<'_>) -> Result<Self> {
@@ -152,9 +154,9 @@ pub struct GraphicsDescription<'a> {
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,
     pub depth_compare: vk::CompareOp,
-    /// What lies before the near plane or beyond the far one is drawn there instead of being cut off.
+    /// Depth is clamped: what lies before the near plane or beyond the far one is drawn on it instead of being clipped.
     pub depth_clamp: bool,
-    /// What is added to depth: parts of what it changes by from a pixel to the next where the surface is steepest.
+    /// Slope-scaled depth bias: added to depth, in multiples of its greatest change from a pixel to the next.
     pub depth_slope_bias: f32,
     /// Every pixel is drawn that a triangle touches whose edges lie this much farther out, pixels
     /// (VK_EXT_conservative_rasterization). None: every pixel whose middle it covers.
@@ -216,7 +218,7 @@ pub enum StencilUse {
 }
 
 impl StencilUse {
-    /// Of front faces and of back faces.
+    /// Stencil states of front faces and of back faces.
     fn states(self) -> [vk::StencilOpState; 2] {
         let (compare_op, pass_op) = match self {
             Self::Replace => (vk::CompareOp::ALWAYS, vk::StencilOp::REPLACE),

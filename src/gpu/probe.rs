@@ -74,7 +74,7 @@ fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
     }
 }
 
-/// The numbers of samples a pixel that a set of flags stands for, rising.
+/// The numbers of samples a pixel in a set of flags, rising.
 fn counts(flags: vk::SampleCountFlags) -> Vec<u32> {
     (0..7).map(|bit| 1 << bit).filter(|count| flags.as_raw() & count != 0).collect()
 }

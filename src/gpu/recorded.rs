@@ -26,12 +26,12 @@ pub struct Recorded {
 pub struct FrameTime {
     /// First submit to last fence.
     pub wall_ns: u64,
-    /// By the device's clock, where it has one that is looked at: from the first pass's beginning to the last one's end in one
-    /// submit, else the sum of its passes.
+    /// By the device's clock, where it has one that is read: from the first pass's beginning to the last one's end in
+    /// one submit, else the sum of its passes.
     pub device_ns: Option<u64>,
-    /// Of the passes that ran, in the order of `Recorded::passes`.
+    /// Times of the passes that ran, in the order of `Recorded::passes`.
     pub passes: Vec<PassTime>,
-    /// Of the same passes; empty where none were asked for.
+    /// Statistics of the same passes; empty where none were asked for.
     pub statistics: Vec<PassStatistics>,
 }
 
@@ -81,7 +81,7 @@ impl Recorded {
         &self.commands.passes
     }
 
-    /// Whose clock the times of its runs are.
+    /// The clock of the times of its runs.
     pub fn clock(&self) -> Clock {
         Clock::of(&self.commands.gpu.caps)
     }

@@ -39,7 +39,7 @@ impl Layers {
 }
 
 impl<'a> ColorTarget<'a> {
-    /// Not resolved.
+    /// A target that is not resolved.
     pub fn new(image: &'a Image, clear: Option<vk::ClearColorValue>) -> Self {
         Self { image, clear, resolve: None }
     }
@@ -90,7 +90,7 @@ impl Commands {
         self.begin_layers(extent, Layers::First, colors, depth);
     }
 
-    /// The same into layers of arrays.
+    /// Begins rendering into layers of arrays.
     pub fn begin_layers(
         &mut self,
         extent: Extent,

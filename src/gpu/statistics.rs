@@ -54,7 +54,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of `pass_count` passes, at least one, on a device that `require` found fit.
+    /// Queries for `pass_count` passes, at least one, on a device that `require` found fit.
     ///
     /// Errors: the driver refuses (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, pass_count: u32) -> Result<Self> {

@@ -1,5 +1,5 @@
-//! Acceleration structures: what a driver's own ray queries go through. A bottom one holds triangles, a top one holds a
-//! bottom one where it stands, and is what shaders are given.
+//! Acceleration structures, through which a driver's own ray queries trace. A bottom one holds triangles, a top one
+//! holds a bottom one where it stands, and is what shaders are given.
 //!
 //! They are built once, on the device, by commands of build.rs; the caller states the barriers (`Access::StructureWrite`
 //! and the like), makes the buffers that they lie in, and keeps what a build reads until its fence.
@@ -34,7 +34,7 @@ pub const SCRATCH: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
     vk::BufferUsageFlags::STORAGE_BUFFER.as_raw() | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS.as_raw(),
 );
 
-/// What a structure is over.
+/// Geometry or instances that a structure is built over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
     /// Triangles, `TRIANGLE_BYTES` each. `is_opaque`: a ray may stop at any of them without asking the shader.
@@ -137,7 +137,7 @@ pub struct Structure {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::AccelerationStructureKHR,
     pub(super) over: Over,
-    /// What barriers are about.
+    /// The buffer that barriers name.
     pub buffer: Buffer,
 }
 

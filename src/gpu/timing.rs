@@ -1,7 +1,7 @@
 //! Pass times by name: the wall clock of one submit a pass, and the device's timestamps beside it.
 //!
-//! Which of the two is the figure hangs on the device (`Clock`); the other one is a second column, and what does not fit
-//! together is reported, not hidden.
+//! Which of the two is the figure depends on the device (`Clock`); the other one is a second column, and a disagreement
+//! is reported, not hidden.
 
 use super::Gpu;
 use super::failure::failed;
@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// Whose clock a time is.
+/// The clock of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The host's, from a submit to its fence. Lavapipe writes a dispatch's time into the draw before it when both stand in

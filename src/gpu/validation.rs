@@ -26,7 +26,8 @@ pub struct Log {
 /// Messages that say nothing about this program: id and reason.
 const ALLOWED: [(&str, &str); 1] = [(
     "WARNING-GPU-Assisted-Validation",
-    "where the layer's settings ask shaders to check themselves: which features it switches on for that, and which limits it lowers",
+    "where its settings ask for shaders that check themselves: which features the layer enables for that, and which \
+     limits it lowers",
 )];
 
 impl Log {

@@ -6,7 +6,7 @@ use crate::shading::material::{MeshPoint, emissive_at};
 use glam::{DVec3, Vec3};
 
 /// Texels looked up for all triangles of a material together, where it has fewer triangles: each of them is looked at in as
-/// many places then, so that a panel of two triangles does not hang on two texels.
+/// many places then, so that a panel of two triangles does not depend on two texels.
 const LOOKUPS: usize = 1 << 14;
 /// Rows of places on one triangle at most.
 const MOST_ROWS: usize = 64;
@@ -30,7 +30,7 @@ pub fn lit_part(scene: &Scene, least_radiance: f64) -> f64 {
         for triangle in 0..mesh.triangle_count() {
             let front = draw.front(mesh, triangle);
             let one_side = 0.5 * front.length();
-            // What is no number, and what has no area, is not seen.
+            // What is not a number, and what has no area, is not seen.
             if one_side.is_nan() || one_side <= 0.0 {
                 continue;
             }
@@ -63,7 +63,7 @@ fn part_before(bounds: &Bounds, draw: &Draw, mesh: &Mesh, triangle: usize, front
     if reach > 0.0 { ((reach - at) / (2.0 * reach)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// In how many rows of places each triangle is looked at; 0 where it sends nothing.
+/// Rows of places at which each triangle is sampled; 0 where it sends no light.
 fn rows(mesh: &Mesh, material: &Material) -> usize {
     if !material.is_emissive() {
         return 0;
@@ -74,7 +74,7 @@ fn rows(mesh: &Mesh, material: &Material) -> usize {
     }
 }
 
-/// What a triangle sends.
+/// Light that a triangle sends.
 struct Glow {
     /// Mean luminance.
     radiance: f64,
@@ -151,7 +151,7 @@ mod tests {
             assert!((part - expected).abs() < 0.01, "{part}, {expected}");
             assert_eq!(lit_part(&scene(0.4, dark_m2), 0.5), 0.0, "too faint to be seen");
         }
-        // Of the picture only the white texel: half of it would be wrong.
+        // Only the white texel of the picture: half of it would be wrong.
         let mut spot = scene(2.0, 1.0);
         spot.meshes[0].uvs = vec![Vec2::new(0.2, 0.5); 4];
         assert!((lit_part(&spot, 0.5) - 0.5).abs() < 1e-6);

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// The triangles that shine.
 pub struct Emitters {
-    /// By index into the tree's triangles; the chances add up to 1.
+    /// Emitting triangles, by index into the tree's triangles; their chances add up to 1.
     pub sources: Vec<SourceBlock>,
     /// Sum of radiance times area, over all channels; 0 where nothing shines.
     total: f64,
@@ -61,7 +61,7 @@ fn luminous(color: Vec3) -> f64 {
     f64::from(color.x + color.y + color.z)
 }
 
-/// Those of `powers` that are not 0, each with its part of the sum.
+/// Sources for those of `powers` that are not 0, each with its part of the sum.
 fn sources(indices: &[u32], powers: &[f64]) -> Vec<SourceBlock> {
     let total: f64 = powers.iter().sum();
     let mut sum = 0.0;

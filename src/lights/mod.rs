@@ -14,16 +14,16 @@ use crate::scene::{Light, LightKind, Material, Scene};
 use crate::settings::{Values, parse_color};
 use glam::Vec3;
 
-/// The default rig's key light, in lux: white, from the camera's upper left (design.md, section 3).
+/// The default rig's key light, in lux: white, from the camera's upper left.
 const RIG_KEY_LUX: f32 = 3.0;
 /// The default rig's ambient radiance.
 const RIG_AMBIENT: f32 = 0.3;
 /// Radiance of white diffuse surfaces under the rig, on average over a closed convex body: the key light falls on its
 /// projection, a quarter of its surface (Cauchy's formula); ambient light on all of it.
 const RIG_RADIANCE: f64 = (RIG_KEY_LUX as f64 / 4.0) / std::f64::consts::PI + RIG_AMBIENT as f64;
-/// What is as good as black: this part of what the rig gives, code 46 of 255 at exposure 0.
+/// Radiance that counts as dark: this part of what the rig gives, code 46 of 255 at exposure 0.
 const FAINT_RADIANCE: f64 = 0.05 * RIG_RADIANCE;
-/// Emissive surfaces are the scene's light where this part of its area is not as good as black by them
+/// Emissive surfaces are the scene's light where at least this part of its area is not dark by them
 /// (`emission::lit_part`). A half, because nothing known lies near it.
 ///
 /// The part is 0.000 of WaterBottle, 0.011 of DamagedHelmet and 0.108 of MultiUVTest among Khronos' samples, 0.15 of a map whose

@@ -74,7 +74,7 @@ pub struct PieceLights {
 pub struct ObjectLists {
     /// Indices of lights, rising in each list.
     pub entries: Vec<u32>,
-    /// By index into `Scene::draws`; empty of `blended`.
+    /// Lists of the draws, by index into `Scene::draws`; empty in lists made by `blended`.
     pub objects: Vec<ObjectLights>,
     /// The pieces of each draw, in the order of its triangles, by index into `Scene::draws`; of BLEND draws only.
     pub pieces: Vec<Vec<PieceLights>>,
@@ -97,7 +97,7 @@ impl ObjectLists {
         Ok(Self { objects, ..maker.blended()? })
     }
 
-    /// Those of BLEND draws' pieces alone.
+    /// The lists of BLEND draws' pieces alone.
     ///
     /// Errors: as `new`.
     pub fn blended(scene: &Scene, lights: &[LightBlock], choice: ListChoice, most_bytes: u64) -> Result<Self> {

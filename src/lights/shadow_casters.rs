@@ -50,9 +50,9 @@ pub struct CastingLight {
 /// The volumes of some lights.
 #[derive(Debug, Default)]
 pub struct ShadowCasters {
-    /// As `ShadowVolume::positions`, light by light.
+    /// `ShadowVolume::positions` of all lights, one light after the other.
     pub positions: Vec<Vec4>,
-    /// As `ShadowVolume::triangles`, indices into the positions of the same light.
+    /// `ShadowVolume::triangles` of all lights, as indices into the positions of the same light.
     pub triangles: Vec<[u32; 3]>,
     /// Ascending by light.
     pub lights: Vec<CastingLight>,

@@ -26,7 +26,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// That of a punctual light; a spot's is its tip.
+    /// The source of a punctual light; that of a spot is its tip.
     pub fn of(light: &Light) -> Self {
         match light.kind {
             LightKind::Directional => Self::Along(light.direction),

@@ -2,12 +2,12 @@
 //! host whose landings become lights.
 //!
 //! Walks start on punctual lights and, with `--emissive on`, on emissive triangles, chosen by power. A start on an
-//! emissive triangle is a virtual light itself, because nothing else stands for the panel; a start on a punctual light is
-//! not, because `--direct` has it. A sun starts on a disc over the scene, so that roofs stop it.
+//! emissive triangle is a virtual light itself, because no other light represents the panel; a start on a punctual
+//! light is not, because `--direct` has it. A sun starts on a disc over the scene, so that roofs stop it.
 //!
-//! Walks go on until N lights are found, and all are divided by the number of walks: walks that leave the scene, or end
-//! on the back of a single-sided surface, count and leave nothing. Stopping at the N-th light instead of at a fixed number
-//! of walks biases the sum by about 1/N.
+//! Walks continue until N lights are found, and all are divided by the number of walks: walks that leave the scene, or
+//! end on the back of a single-sided surface, count and leave nothing. Stopping at the N-th light instead of at a fixed
+//! number of walks biases the sum by about 1/N.
 
 use crate::bvh::{Bvh, Hit};
 use crate::gpu::shader::structs::VplBlock;
@@ -16,7 +16,7 @@ use crate::shading::material::MeshPoint;
 use crate::shading::{light, material};
 use glam::Vec3;
 
-/// What the walk is told.
+/// Inputs of the walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
     /// How many lights to find (`--vpls`).

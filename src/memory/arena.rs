@@ -1,7 +1,7 @@
 //! An arena: a memory block of its own in which several resources share bytes, each in its own passes.
 //!
 //! Where the parts lie is decided elsewhere (`alias::place`), because only a plan knows lifetimes. Buffers and optimal
-//! images may both be in an arena: who places them aligns them to bufferImageGranularity at least.
+//! images may both be in an arena: the caller that places them aligns them to bufferImageGranularity at least.
 
 use super::ledger::{ArenaEntry, Entry};
 use super::pool::Ask;
@@ -51,8 +51,8 @@ impl Arena {
         self.ask.bytes
     }
 
-    /// The bytes from `offset` (in the arena) on, for one resource, whoever else holds them. A part that is not aligned as
-    /// it asks, lies beyond the arena's end or is for another use is a programmer's mistake.
+    /// The bytes from `offset` (in the arena) on, for one resource, even if another resource holds them too. A part
+    /// that is not aligned as it asks, lies beyond the arena's end or is for another use is a programmer's mistake.
     ///
     /// Errors: the resource may not be in the arena's memory type (exit code 4).
     pub fn part(self: &Arc<Self>, request: &Request<'_>, offset: u64) -> Result<Allocation> {

@@ -4,7 +4,7 @@ use crate::caps::{Caps, MemoryType};
 use crate::error::{Error, Result};
 use std::fmt;
 
-/// What the memory is for.
+/// Purpose of the memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// Read and written by the device alone.
@@ -58,10 +58,13 @@ impl Kinds {
             Use::Device => &[
                 (
                     |kind| kind.device_local && !kind.host_visible && !kind.lazily_allocated,
-                    "device-local, kept from the host",
+                    "device-local, not host-visible",
                 ),
-                (|kind| kind.device_local && !kind.lazily_allocated, "device-local, and the host sees it: no other is"),
-                (|kind| !kind.lazily_allocated, "not device-local: the driver allows no other"),
+                (
+                    |kind| kind.device_local && !kind.lazily_allocated,
+                    "device-local and host-visible: no other type is device-local",
+                ),
+                (|kind| !kind.lazily_allocated, "not device-local: the driver allows no such type"),
             ],
             Use::Upload => &[
                 // The host's memory before what it sees of the device's, which may be little.
@@ -77,7 +80,7 @@ impl Kinds {
                 // Else each wave of a discrete GPU reads it from the host.
                 (
                     |kind| kind.device_local && kind.host_visible && kind.host_coherent && !kind.lazily_allocated,
-                    "device-local, and the host writes it",
+                    "device-local, written by the host",
                 ),
                 (|kind| kind.host_visible && kind.host_coherent && !kind.host_cached, "host-coherent, write-combined"),
                 (|kind| kind.host_visible && kind.host_coherent, "host-coherent"),

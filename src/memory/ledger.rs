@@ -1,4 +1,4 @@
-//! Who owns how many bytes, now and at the peak: numbers and names only.
+//! The bytes that each resource owns, now and at the peak: numbers and names only.
 //!
 //! Two sums, never mixed: bound bytes count every resource, held bytes count an arena once, however many resources lie
 //! in the same bytes of it.
@@ -14,7 +14,7 @@ pub struct Entry {
     pub group: String,
     /// Asked for, by arithmetic.
     pub bytes: u64,
-    /// What the driver requires.
+    /// Bytes that the driver requires.
     pub bound_bytes: u64,
     pub memory_block: u32,
     /// In the memory block, also where the resource is a part of an arena.
@@ -39,7 +39,7 @@ pub struct ArenaEntry {
 }
 
 impl ArenaEntry {
-    /// What its parts would take beyond it, each in bytes of its own.
+    /// Bytes that its parts would take in addition if they shared none.
     fn aliased_bytes(&self) -> u64 {
         self.parts_bytes.saturating_sub(self.bytes)
     }
@@ -62,13 +62,13 @@ pub struct BlockState {
 /// The ledger at one moment.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Snapshot {
-    /// In order of entering.
+    /// Resources in the order in which they were entered.
     pub resources: Vec<Entry>,
-    /// In order of entering.
+    /// Arenas in the order in which they were entered.
     pub arenas: Vec<ArenaEntry>,
-    /// By index.
+    /// Memory blocks by index.
     pub blocks: Vec<BlockState>,
-    /// Sum of the live memory blocks: what vkAllocateMemory was asked for and has not got back.
+    /// Sum of the live memory blocks: what vkAllocateMemory was asked for and was not freed since.
     pub memory_block_bytes: u64,
     /// Greatest sum of held bytes so far.
     pub peak_bytes: u64,
@@ -93,7 +93,7 @@ impl Snapshot {
         own.chain(self.arenas.iter().map(|arena| arena.bytes)).sum()
     }
 
-    /// What sharing saves: the parts of arenas beyond the bytes of their arenas.
+    /// Bytes that sharing saves: the sum of the parts of arenas, less the bytes of the arenas.
     pub fn aliased_bytes(&self) -> u64 {
         self.arenas.iter().map(ArenaEntry::aliased_bytes).sum()
     }
@@ -108,7 +108,7 @@ impl Snapshot {
     }
 }
 
-/// Who holds bytes of its own: a resource, or an arena for all of its parts.
+/// An owner of bytes: a resource, or an arena for all of its parts.
 struct Owner<'a> {
     name: &'a str,
     group: &'a str,

@@ -1,4 +1,4 @@
-//! The only room that calls vkAllocateMemory: which type, which memory block, which range, and whose it is.
+//! The only module that calls vkAllocateMemory: it decides memory type, memory block and range, and keeps the owners.
 //!
 //! A resource asks with its name, its group and its requirements; it gets an `Allocation`, a range in a memory block,
 //! which returns itself when dropped. Resources that share bytes get theirs from an `Arena`. `pool` decides in numbers,
@@ -42,9 +42,9 @@ pub struct Allocation {
 
 /// Whose range it is.
 enum Source {
-    /// Its own.
+    /// A range of its own.
     Range { block: u32, bytes: u64 },
-    /// The arena's, which stays as long as any of its parts.
+    /// A part of an arena, which stays as long as any of its parts.
     Part { _arena: Arc<Arena> },
 }
 
@@ -119,7 +119,7 @@ impl Memory {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// What these requirements come to in numbers, with the memory type that the use gets.
+    /// These requirements in numbers, with the memory type that the use gets.
     ///
     /// Errors: no memory type fits (exit code 4).
     pub fn ask(&self, requirements: &vk::MemoryRequirements, usage: Use, tiling: Tiling) -> Result<Ask> {
@@ -223,7 +223,7 @@ fn allocating(ask: &Ask, name: &str, usage: Use) -> String {
     format!("allocating {name} ({}, {usage}, type {})", Bytes(ask.bytes), ask.type_index)
 }
 
-/// What the heap of this memory type holds, and for whom.
+/// What the heap of this memory type holds, and for which resources.
 fn held(ledger: &Ledger, pool: &Pool, type_index: u32) -> String {
     let groups = ledger.greatest_groups(3, |other| pool.share_a_heap(other, type_index));
     if groups.is_empty() {
@@ -244,7 +244,7 @@ fn refuse(state: &mut State, ask: &Ask, name: &str, usage: Use, misfit: Misfit) 
     refused(&state.ledger, &state.pool, ask, name, usage, misfit)
 }
 
-/// Why a resource goes nowhere, and who holds what.
+/// The error for a resource that fits nowhere, with what holds how many bytes.
 fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misfit: Misfit) -> Error {
     let what = allocating(ask, name, usage);
     match misfit {
@@ -252,7 +252,8 @@ fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misf
             Error::memory(format!("{what}: the device makes memory blocks of at most {}", Bytes(most_bytes)))
         }
         Misfit::TooMany { most } => Error::memory(format!(
-            "{what}: the device makes at most {most} memory blocks (maxMemoryAllocationCount), and as many are there"
+            "{what}: the device makes at most {most} memory blocks (maxMemoryAllocationCount), and that many \
+             exist already"
         ))
         .note("--allocation linear and tlsf put several resources into one"),
         Misfit::Spent { limit_bytes, held_bytes, is_budget } => {

@@ -26,7 +26,7 @@ fn shared_block_bytes(sibling_count: usize, bytes: u64, left_bytes: u64) -> u64 
     (left_bytes / 8).checked_ilog2().map_or(0, |power| 1 << power).min(wanted)
 }
 
-/// What a resource needs, as numbers.
+/// Memory that a resource needs, as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ask {
     pub bytes: u64,
@@ -36,7 +36,7 @@ pub struct Ask {
     /// The host must see it.
     pub mapped: bool,
     pub tiling: Tiling,
-    /// A memory block that nobody else joins, whatever the strategy.
+    /// A memory block of its own, whatever the strategy.
     pub alone: bool,
 }
 
@@ -60,7 +60,7 @@ pub enum Misfit {
     Spent { limit_bytes: u64, held_bytes: u64, is_budget: bool },
 }
 
-/// What a pool obeys.
+/// Limits that a pool keeps.
 #[derive(Clone, Debug)]
 pub struct Rules {
     strategy: Strategy,

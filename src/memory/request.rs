@@ -28,14 +28,14 @@ impl Strategy {
 }
 
 /// Buffers and linear images on one side, optimally tiled images on the other: the two sides share a memory block only
-/// in an arena, where whoever places the parts keeps them bufferImageGranularity apart.
+/// in an arena, where the caller that places the parts keeps them bufferImageGranularity apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tiling {
     Linear,
     Optimal,
 }
 
-/// What a resource asks for.
+/// A resource's request for memory.
 pub struct Request<'a> {
     /// Full name: `interleaved_deferred.gather.irradiance`.
     pub name: &'a str,

@@ -48,7 +48,7 @@ impl Gate {
             .ok_or_else(|| refused(&format!("there is no metric {name}")))?;
         match value.parse::<f64>() {
             Ok(value) if !value.is_nan() => Ok(Self { metric_index, bound, value }),
-            _ => Err(refused(&format!("{value} is no number"))),
+            _ => Err(refused(&format!("{value} is not a number"))),
         }
     }
 

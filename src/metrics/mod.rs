@@ -252,7 +252,8 @@ mod tests {
     fn pixels_over_a_threshold_are_counted_in_percent() {
         assert_eq!(percent_over(&[0.0, 0.1, 0.25, 0.5], 0.25), 25.0);
         assert_eq!(percent_over(&[0.0, 0.1, 0.25, 0.5], 0.0), 75.0);
-        // Of the authors' HDR-FLIP map of these pictures (flip_evaluator 1.7), 145 of 384 pixels are above 0.1, 3 above 0.3.
+        // The authors' HDR-FLIP map of these pictures (flip_evaluator 1.7) has 145 of 384 pixels above 0.1, 3 above
+        // 0.3.
         let [actual, reference] = formula_lights(24, 16);
         for (threshold, count) in [(0.1, 145.0), (0.3, 3.0)] {
             let metrics = compare(&actual, &reference, threshold).unwrap().metrics;

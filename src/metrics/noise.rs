@@ -1,9 +1,9 @@
 //! How far a mean of samples is from what it tends to, by the samples themselves: without a reference.
 //!
 //! Why this way: others compare two halves of the samples (Cycles; Dammertz et al. 2010), which needs a second buffer and a
-//! count that halves. The sum of squares says it at any count. It takes samples for independent; those of a scrambled Sobol
-//! sequence are better than that, so that the estimate is too high rather than too low. What no sample has met, a bright
-//! path of small probability, neither of the two knows.
+//! count that halves. The sum of squares says it at any count. It assumes independent samples; those of a scrambled
+//! Sobol sequence are better than that, so that the estimate is too high rather than too low. Neither method can know
+//! what no sample has hit: a bright path of small probability.
 
 use super::linear::RELMSE_EPSILON;
 
@@ -70,7 +70,7 @@ mod tests {
         assert!(relative_error(&[[f32::NAN, 0.0, 0.0, f32::NAN]], 16).is_nan());
     }
 
-    /// Of independent samples it is the error that their means have.
+    /// The estimate for independent samples is the error that their means have.
     #[test]
     fn independent_samples_are_as_far_off_as_they_say() {
         let mut random = Pcg32::new(5, 0);

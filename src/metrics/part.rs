@@ -12,7 +12,8 @@ pub struct Part {
     /// As `Metrics` has them.
     pub rmse: Option<f64>,
     pub relmse: Option<f64>,
-    /// Of FLIP's map of the whole picture: what lies around a pixel counts, wherever it belongs.
+    /// Mean over these pixels of FLIP's map of the whole picture: what surrounds a pixel counts, whichever part it is
+    /// in.
     pub flip: Option<f64>,
     pub hdr_flip: Option<f64>,
     /// Percent of these pixels.
@@ -42,7 +43,7 @@ impl Comparison {
         let map = |of: &[f32]| -> Vec<f32> { indices.iter().map(|index| of[*index]).collect() };
         let ([actual, reference], flip_map, hdr_flip_map) =
             ([actual, reference].map(picture), map(&self.flip_map), map(&self.hdr_flip_map));
-        // Of no pixels there is no mean.
+        // Without pixels there is no mean.
         let mean = |value: f64| (pixels > 0).then_some(value);
         Part {
             pixels,

@@ -1,7 +1,7 @@
 //! Structural similarity (Wang et al. 2004, "Image quality assessment: from error visibility to structural similarity").
 //!
-//! The paper speaks of grey pictures: luma here is the Rec.709 mix of the 8-bit sRGB codes, not rounded. Windows that reach
-//! past the border are left out, as in the paper's own program and in scikit-image.
+//! The paper treats grey pictures: luma here is the Rec.709 mix of the 8-bit sRGB codes, not rounded. Windows that
+//! reach past the border are left out, as in the paper's own program and in scikit-image.
 
 use crate::picture::tonemap::{REC709_WEIGHTS, Srgb8, weighted};
 

@@ -21,7 +21,7 @@ const TILE_PX: u32 = 16;
 /// Threads of a workgroup: tile_masks.glsl's THREADS.
 const THREADS: u32 = 64;
 
-/// What makes the mask of a tile; the same masks.
+/// What makes the mask of a tile, with equal results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CullBy {
     /// Reads the tile's pixels and tries its lights one after the other.
@@ -99,7 +99,7 @@ pub struct CullSurface<'a> {
     pub extent: Extent,
     /// What the pipeline reads of a pixel.
     pub texel_bytes: u64,
-    /// What makes it readable by compute shaders.
+    /// Barriers that make it readable by compute shaders.
     pub barriers: Vec<Barrier>,
     pub bound: Vec<(&'static str, Bound<'a>)>,
 }

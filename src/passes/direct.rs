@@ -27,7 +27,7 @@ pub enum DirectShadow {
     None = 0,
     Sun = 1,
     Ray = 2,
-    /// None of them: there are shadow maps instead (`passes::shadow_maps`).
+    /// No light by rays, all by shadow maps (`passes::shadow_maps`).
     Map = 3,
 }
 

@@ -104,24 +104,24 @@ pub fn plan(plan: &mut Plan, technique: &str, extent: Extent, position: Position
     image("depth", DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC);
 }
 
-/// What the pass that fills it touches.
+/// Resources that the pass which fills it touches.
 pub fn written(technique: &str, position: PositionStorage, has_emissive: bool) -> Vec<(String, Access)> {
     let images = color_images(position, has_emissive).into_iter().map(|what| (what, Access::ColorWrite));
     images.chain([("depth", Access::DepthWrite)]).map(|(what, access)| (full(technique, what), access)).collect()
 }
 
-/// What a compute pass touches that reads normal and position.
+/// Resources that a compute pass touches to read normal and position.
 pub fn surface(technique: &str, position: PositionStorage) -> Vec<(String, Access)> {
     surface_as(technique, position, Access::ComputeSample)
 }
 
-/// The same of a pass that samples them as `access` says.
+/// The same for a pass that samples them by `access`.
 pub fn surface_as(technique: &str, position: PositionStorage, access: Access) -> Vec<(String, Access)> {
     let place = if position.image_format().is_some() { "position" } else { "depth" };
     ["normal", place].map(|what| (full(technique, what), access)).to_vec()
 }
 
-/// What a compute pass touches that reads all of it.
+/// Resources that a compute pass touches to read all of it.
 pub fn shading(technique: &str, position: PositionStorage, has_emissive: bool) -> Vec<(String, Access)> {
     let materials = ["color"].into_iter().chain(has_emissive.then_some("emissive"));
     let mut touches = surface(technique, position);
@@ -190,7 +190,8 @@ impl GBuffer {
         self.surface_bytes() + 8 + if self.emissive.is_some() { 8 } else { 0 }
     }
 
-    /// States who touched normal and position last. `ColorWrite` stands for the G-buffer pass, which wrote the depth too.
+    /// Names the access that touched normal and position last. `ColorWrite` means the G-buffer pass, which wrote the
+    /// depth too.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
@@ -242,7 +243,7 @@ impl Edge<'_, GBuffer> {
     }
 
     /// All that a composite reads becomes readable by compute shaders. Colour and emission are read by no pass before
-    /// it, whoever read the surface.
+    /// it, whatever read the surface.
     pub fn shading_to_sampled(self) -> Vec<Barrier> {
         let gbuffer = self.resource;
         let materials = [Some(&gbuffer.color), gbuffer.emissive.as_ref()].into_iter().flatten();

@@ -46,12 +46,12 @@ pub fn vertex_shader(scene: &SceneGpu) -> &'static Shader {
     variant(VERT_VARIANTS, &[vertex_name(scene)])
 }
 
-/// What mesh.vert binds.
+/// Bindings of mesh.vert.
 pub fn vertex_bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> [(&'static str, Bound<'a>); 2] {
     [("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))]
 }
 
-/// What mesh.vert binds, and material.glsl of set 0.
+/// Bindings of mesh.vert, and those of material.glsl in set 0.
 pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> Vec<(&'static str, Bound<'a>)> {
     let mut bound = vertex_bound(frame, scene).to_vec();
     bound.extend(scene.extended.as_ref().map(|extended| ("Placements", Bound::Buffer(&extended.placements))));
@@ -100,7 +100,7 @@ pub fn draw_with<'a>(
     });
 }
 
-/// The same; `before` is told each call before it is drawn.
+/// The same; `before` is called with each draw before it is recorded.
 pub fn draw_each<'a>(
     cmd: &Commands,
     pipeline: &GraphicsPipeline,

@@ -1,4 +1,4 @@
-//! Next run: what stands between runs of a frame that go in one submit. Shader: next_run.comp.
+//! Next run: the pass between runs of a frame that go in one submit. Shader: next_run.comp.
 //! reads and writes  the frame's block
 
 use crate::error::Result;

@@ -1,8 +1,8 @@
 //! Resolve: the samples of a picture to their mean (`--msaa`). No shader: rendering that draws nothing, whose end resolves.
 //! reads  a picture of several samples a pixel, RGBA32F      writes  a plain one
 //!
-//! A pass of its own, so that its time is told apart: software drivers copy either way. The mean is of linear light, and
-//! the samples are 32-bit floats, because lavapipe stores halves by cutting their last bits off.
+//! A pass of its own, so that its time is measured apart: software drivers copy either way. The mean is of linear
+//! light, and the samples are 32-bit floats, because lavapipe stores halves by cutting their last bits off.
 
 use crate::caps::{Ability, Need};
 use crate::error::Result;
@@ -14,7 +14,7 @@ pub fn samples(values: &Values) -> u32 {
     values.text("msaa").parse().expect("the settings table has its words")
 }
 
-/// What they need of a device.
+/// What `--msaa` needs of a device.
 pub fn needs(values: &Values) -> Option<Need> {
     let (ability, instead) = match samples(values) {
         4 => (Ability::FourSamples, "--msaa 1 works everywhere"),

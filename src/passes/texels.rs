@@ -1,9 +1,10 @@
 //! How many pixels a thread shades, compares or filters one after the other (`--texels`): each reading of what they share
 //! then serves all of them. The same bits for every count.
 //!
-//! Why there is a bound: lavapipe before Mesa 25 ends all loops of an invocation together after 65,535 turns, without a
-//! word (`Identity::loop_turns`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as many pixels as its
-//! turns are enough for. Where one pixel is too many, the shader says so itself (glsl/loops.glsl).
+//! Why there is a bound: lavapipe before Mesa 25 ends all loops of an invocation together after 65,535 iterations,
+//! without an error (`Identity::loop_turns`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as
+//! many pixels as its iterations suffice for. Where one pixel is too many, the shader reports it itself
+//! (glsl/loops.glsl).
 
 use crate::caps::{Caps, Identity};
 use crate::settings::Values;
@@ -46,7 +47,7 @@ const IDLE_WALK_TURNS: u64 = 3;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LightLoad {
     pub light_count: u64,
-    /// Those that cast shadow rays.
+    /// Number of those that cast shadow rays.
     pub casting_count: u64,
 }
 

@@ -69,8 +69,8 @@ const DARKEST: f64 = 1e-6;
 const EXPOSURE_STEP_EV: f64 = 0.01;
 
 /// The exposure that brings the log average of the luminance (Reinhard et al. 2002, equations 1 and 2) to a middle grey,
-/// stops. It is that of the pixels that shine: where no surface is under the default background is no part of a picture's
-/// light, and its logarithm would outweigh everything. None where nothing shines.
+/// stops. It is that of the pixels that are not black: pixels without a surface under the default background are no
+/// part of a picture's light, and the logarithm of black would outweigh everything. None where all pixels are black.
 pub fn exposure_for(picture: &Picture) -> Option<f64> {
     let luminances = picture.pixels.iter().map(|pixel| weighted(pixel.map(f64::from), REC709_WEIGHTS));
     let brightest = luminances.clone().fold(0.0, f64::max);

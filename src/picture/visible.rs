@@ -1,4 +1,4 @@
-//! Stages for the eye: an AOV as a picture beside a PNG. The numbers are in an EXR.
+//! Stages as pictures: an AOV shown as a PNG beside the picture's. The numbers are in an EXR.
 
 use super::tonemap::linear_from_srgb;
 use super::{Aov, AovChannels, Picture};

@@ -18,7 +18,7 @@ pub struct Peak {
     pub pass: String,
 }
 
-/// What stands for the pass after the last.
+/// Index used for the pass after the last.
 const READBACK: &str = "readback";
 
 impl Plan {
@@ -43,7 +43,7 @@ impl Plan {
         self.passes.get(index).map_or(READBACK, |pass| pass.name.as_str())
     }
 
-    /// The accesses that whoever takes the bytes over waits for: the last write, or all reads since.
+    /// Accesses that the next owner of the bytes waits for: the last write, or all reads since.
     pub fn last_accesses(&self, resource: usize) -> AccessSet {
         let touches = self.passes.iter().flat_map(|pass| &pass.touches).filter(|touch| touch.resource == resource);
         touches.fold(AccessSet::UNTOUCHED, |known, touch| known.after(touch.access))

@@ -1,4 +1,4 @@
-//! Plan: what a frame needs, by arithmetic alone: its resources, and which pass touches which of them how.
+//! Plan: what a frame needs, by arithmetic alone: its resources, and how each pass touches which of them.
 //!
 //! A resource that passes touch is transient: it lives from its first pass to its last, and its bytes may be another's
 //! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept.
@@ -31,7 +31,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Who writes and reads it.
+    /// Which of host and device write and read it.
     pub fn usage(&self) -> Use {
         match self {
             Self::Buffer { usage, .. } => *usage,
@@ -95,7 +95,7 @@ impl Plan {
         self.push(group, name, Shape::Buffer { bytes: bytes.max(16), flags, usage: Use::Device });
     }
 
-    /// Shaders come to this buffer by its address. Nothing where the plan has none of the name.
+    /// Shaders reach this buffer by its address. Nothing where the plan has none of the name.
     pub fn addressed(&mut self, name: &str) {
         let found = self.resources.iter_mut().find(|planned| planned.name == name);
         if let Some(Planned { shape: Shape::Buffer { flags, .. }, .. }) = found {
@@ -195,7 +195,7 @@ impl Plan {
     }
 
     /// What a device's limits leave out is refused before anything is made: images that are too large, and storage buffers
-    /// that are longer than one binding may be, but those that shaders come to by their addresses.
+    /// that are longer than one binding may be, except those that shaders reach by their addresses.
     ///
     /// Errors: exit code 2 (images) or 4, naming the resource and the limit; what would fit, the technique knows
     /// (`techniques::bindable`).

@@ -20,7 +20,7 @@ pub struct Requirement {
     pub memory_type_bits: u32,
 }
 
-/// Who answers.
+/// Source of the answers.
 #[derive(Clone, Copy)]
 pub enum Requirements<'a> {
     Device(&'a Gpu),
@@ -28,7 +28,7 @@ pub enum Requirements<'a> {
 }
 
 impl Requirements<'_> {
-    /// What `shape` takes.
+    /// Memory that `shape` takes.
     pub fn of(&self, shape: &Shape) -> Requirement {
         match (self, shape) {
             (Self::Device(gpu), Shape::Buffer { bytes, flags, .. }) => Buffer::requirements(gpu, *bytes, *flags).into(),
@@ -49,7 +49,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// The most bytes that an image like this one may have; no bound where nobody tells.
+    /// The most bytes that an image like this one may have; no bound where none is known.
     pub fn greatest_image_bytes(&self, description: &ImageDescription) -> u64 {
         match self {
             Self::Device(gpu) => description.greatest_bytes(gpu),
@@ -59,13 +59,13 @@ impl Requirements<'_> {
 
     /// Bytes that an acceleration structure takes; the device has ray queries, or the rules' driver has.
     ///
-    /// Errors: nobody has measured how large the rules' driver makes them (exit code 2).
+    /// Errors: it has not been measured how large the rules' driver makes them (exit code 2).
     pub fn structure_bytes(&self, over: Over) -> Result<u64> {
         match self {
             Self::Device(gpu) => Ok(over.sizes(gpu).structure_bytes),
             Self::Rules(rules) => rules.structures.as_ref().map(|rules| over.bytes(rules)).ok_or_else(|| {
-                Error::request("--rays query: only its driver tells how large an acceleration structure is")
-                    .note("without --plan the device is asked; --rays tree is planned without one")
+                Error::request("--rays query: only the driver says how large an acceleration structure is")
+                    .note("without --plan the device is asked; --rays tree can be planned without a device")
             }),
         }
     }

@@ -74,7 +74,7 @@ impl Resources {
         self.images.remove(name).unwrap_or_else(|| panic!("the plan has no image {name}, or it was taken"))
     }
 
-    /// Whose bytes each resource takes over.
+    /// The resources whose bytes each resource takes over.
     pub fn heirs(&self, sharing: &Sharing) -> Heirs {
         let parts = sharing.arenas.iter().flat_map(|arena| &arena.parts);
         parts

@@ -36,7 +36,7 @@ pub struct PlannedArena {
 }
 
 impl PlannedArena {
-    /// What its parts would take apart from each other.
+    /// Bytes that its parts would take if they shared none.
     fn parts_bytes(&self) -> u64 {
         self.parts.iter().map(|part| part.bound_bytes).sum()
     }
@@ -106,7 +106,7 @@ impl Sharing {
         self.arenas[arena].parts.iter().filter(meets).map(|part| part.resource).collect()
     }
 
-    /// What sharing saves.
+    /// Bytes that sharing saves.
     pub fn aliased_bytes(&self) -> u64 {
         self.arenas.iter().map(|arena| arena.parts_bytes() - arena.bytes).sum()
     }

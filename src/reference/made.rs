@@ -15,7 +15,7 @@ const TRIAL_SAMPLES: u64 = 4;
 /// References of fewer trials than this are made without one.
 const WORTH_A_TRIAL: u64 = 4;
 
-/// Who is told how it goes.
+/// Observer of the making of a reference.
 pub trait Watch {
     /// A sentence for the user: a broken file, a picture that cannot be kept.
     fn note(&self, text: &str);
@@ -39,14 +39,14 @@ pub struct Made {
 pub fn reference_picture(recipe: &Recipe, session: &Session, cache: &Cache, watch: &dyn Watch) -> Result<Made> {
     match cache.find(recipe) {
         Kept::Whole(picture) => return Ok(Made { picture, was_kept: true }),
-        Kept::Broken(why) => watch.note(&format!("a kept reference is broken and made again: {why}")),
+        Kept::Broken(why) => watch.note(&format!("a kept reference is broken and is made again: {why}")),
         Kept::Nothing => {}
     }
     let estimate = trial(recipe, session)?;
     watch.begins(recipe, estimate);
     let picture = render(recipe, session)?;
     if let Err(error) = cache.keep(recipe, &picture) {
-        watch.note(&format!("the reference is used and not kept: {}", error.message()));
+        watch.note(&format!("the reference is used but could not be kept: {}", error.message()));
     }
     Ok(Made { picture, was_kept: false })
 }
@@ -56,7 +56,7 @@ fn trial(recipe: &Recipe, session: &Session) -> Result<Option<Duration>> {
     let Some(samples) = recipe.samples().filter(|samples| *samples >= WORTH_A_TRIAL * TRIAL_SAMPLES) else {
         return Ok(None);
     };
-    let _stage = Stage::begin("trying how long the reference takes");
+    let _stage = Stage::begin("estimating the time that the reference takes");
     let few = recipe.with_samples(TRIAL_SAMPLES)?;
     let renderer = session.renderer(recipe.technique, &few, &[], Submits::One)?;
     // The first frame also pays for what drivers compile.

@@ -1,6 +1,6 @@
 //! References: the picture that others are judged against, from a file, or path-traced once and kept.
 //!
-//! `auto` stands for the picture that `path_traced` makes of the same scene, camera, size and lights, of the transport that
+//! `auto` means the picture that `path_traced` makes of the same scene, camera, size and lights, of the transport that
 //! the judged technique claims to compute (`Technique::reference_settings`): what is left is the technique's own error.
 
 pub mod cache;
@@ -38,7 +38,7 @@ enum Source {
 /// A reference as it was asked for, and what is to be done with it.
 pub struct Asked {
     source: Source,
-    /// Of `Metrics::over_threshold`.
+    /// Threshold of `Metrics::over_threshold`.
     threshold: f64,
     gates: Vec<Gate>,
     watch: Box<dyn Watch>,
@@ -53,7 +53,7 @@ pub struct Judged {
 }
 
 impl Asked {
-    /// `text`: a picture's file, or `auto` with `spp` samples a pixel. `watch` is told of a reference in the making.
+    /// `text`: a picture's file, or `auto` with `spp` samples a pixel. `watch` is notified while a reference is made.
     ///
     /// Errors: the file cannot be read (exit code 2), or holds NaN or infinity (1).
     pub fn new(text: &str, spp: u64, threshold: f64, gates: Vec<Gate>, watch: Box<dyn Watch>) -> Result<Self> {

@@ -96,7 +96,7 @@ impl Recipe {
         }
         let scattered = values.text("lights");
         if !scattered.contains(':') {
-            // Which `--lights` there are hangs on the judged seed, not on the reference's.
+            // Which `--lights` there are depends on the judged seed, not on the reference's.
             set("lights", &format!("{scattered}:{}", values.integer("seed")))?;
         }
         set("seed", SEED)?;
@@ -126,7 +126,7 @@ impl Recipe {
         has.then(|| self.values.integer_or_auto(SAMPLES)).flatten()
     }
 
-    /// BLAKE3, in hexadecimal, of all that its picture hangs on: scene, camera, size, lights, settings, estimator.
+    /// BLAKE3, in hexadecimal, of all that its picture depends on: scene, camera, size, lights, settings, estimator.
     pub fn key(&self) -> &str {
         &self.key
     }

@@ -17,22 +17,22 @@ struct Row {
     name: String,
     group: String,
     shape: Option<Shape>,
-    /// Asked for, by arithmetic.
+    /// Bytes asked for, by arithmetic.
     bytes: u64,
-    /// What the driver requires.
+    /// Bytes that the driver requires.
     bound_bytes: u64,
     alignment_bytes: u64,
     memory_type: u32,
     reason: &'static str,
-    /// None: kept from frame to frame.
+    /// First and last pass; None: kept from frame to frame.
     passes: Option<[String; 2]>,
     /// Memory block and offset, where it was made.
     place: Option<(u32, u64)>,
     /// Arena, and offset in it.
     shared: Option<(usize, u64)>,
-    /// Who lies in some of the same bytes in other passes.
+    /// Resources that lie in some of the same bytes in other passes.
     shares_with: Vec<String>,
-    /// Bytes that a frame has touched; None where nobody counted.
+    /// Bytes that a frame has touched; None where they were not counted.
     touched_bytes: Option<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! What is said of a picture in which nothing is to be seen: why, as far as it is known, and what would help.
+//! The note on a picture that shows nothing: the reason, as far as it is known, and what would help.
 
 use crate::frame::View;
 use crate::framing;
@@ -7,10 +7,10 @@ use crate::picture::tonemap::srgb_from_linear;
 use crate::scene::{Draw, Mesh, Projection, Scene};
 use glam::DVec3;
 
-/// The brightest 8-bit code of a picture that counts as black: beside black, nobody sees it.
+/// The brightest 8-bit code of a picture that counts as black: nobody can tell it from black.
 const BLACK_CODE: u8 = 2;
 
-/// A sentence, or nothing where there is something to see. `exposure_ev`: what the picture is looked at under, stops.
+/// A sentence, or None where something is visible. `exposure_ev`: exposure at which the picture is shown, in stops.
 /// `has_rig`: the default rig lights it already.
 pub fn of_nothing_seen(
     picture: &Picture,

@@ -1,5 +1,5 @@
-//! The report of one run: what was asked, on what, what came out, what each pass and each byte cost. Keys: design.md,
-//! section 2; within a schema number a key is only ever added.
+//! The report of one run: the request, the device, the result, and the cost of each pass and each byte. Within a
+//! schema number a key is only ever added.
 
 use crate::error::Result;
 use crate::frame::View;
@@ -65,7 +65,7 @@ pub fn spread(samples: &[f64]) -> Value {
     json!({ "median": median(&sorted), "min": sorted[0], "max": sorted[sorted.len() - 1], "samples": samples })
 }
 
-/// Of sorted samples, at least one.
+/// Median of sorted samples, at least one.
 pub fn median(sorted: &[f64]) -> f64 {
     let middle = sorted.len() / 2;
     if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
@@ -139,8 +139,8 @@ impl Report {
         let mut warnings = scene.warnings.clone();
         if let Some(part) = lights.faint_part {
             warnings.push(format!(
-                "its emissive surfaces let {:.0} % of it be seen, less than half: the default rig is added; --rig none leaves \
-                 it to them",
+                "its emissive surfaces make {:.0} % of it visible, less than half: the default rig is added; --rig \
+                 none leaves the rig out",
                 100.0 * part
             ));
         }
@@ -175,7 +175,7 @@ impl Report {
         Ok(())
     }
 
-    /// What a person should know of the picture.
+    /// Notes on the picture for the reader.
     pub fn notes(&mut self, notes: &[String]) {
         if !notes.is_empty() {
             self.document.insert("notes".into(), json!(notes));
@@ -245,7 +245,7 @@ impl Report {
                 row["timestamp_ms"] = spread(&stamps);
                 row["wall_ms"] = spread(&walls);
             }
-            // Of the last frame, as counters are.
+            // Statistics are those of the last frame, as counters are.
             if let Some(counts) = frames.last().and_then(|frame| frame.statistics.get(index)) {
                 row["statistics"] = json!(counts);
             }
@@ -270,7 +270,7 @@ impl Report {
         self.document.insert("counters".into(), json!(counters));
     }
 
-    /// What the picture is away from its reference.
+    /// Errors of the picture against its reference.
     pub fn errors(&mut self, errors: Value) {
         self.document.insert("errors".into(), errors);
     }
@@ -298,7 +298,7 @@ impl Report {
         attributes
     }
 
-    /// What a person reads.
+    /// The report as text for a reader.
     pub fn text(&self) -> String {
         let document = &self.document;
         let string = |value: &Value| value.as_str().unwrap_or_default().to_owned();
@@ -346,7 +346,7 @@ impl Report {
             ));
         }
         if let Some(open) = counter("shadow_casters_not_closed").filter(|open| *open > 0.0) {
-            line(format!("  note: draws that cast no shadow volumes, because their meshes are not closed: {open}"));
+            line(format!("  note: draws without shadow volumes, because their meshes are not closed: {open}"));
         }
         if let Some(samples) = counter("samples") {
             let (error, plural) = (counter("estimated_error"), if samples == 1.0 { "" } else { "s" });
@@ -354,7 +354,7 @@ impl Report {
             line(format!("{samples} sample{plural} a pixel{words}"));
             let most = document["settings"].get("until-error").and_then(Value::as_f64).filter(|most| *most > 0.0);
             if let Some(most) = most.filter(|most| error.is_some_and(|error| error > *most)) {
-                line(format!("  note: --until-error {most} is not reached: more --spp would"));
+                line(format!("  note: --until-error {most} is not reached; a larger --spp would help"));
             }
         }
         if let (Some(evaluated), Some(left_out)) = (counter("light_evaluations"), counter("light_evaluations_culled"))
@@ -382,7 +382,7 @@ impl Report {
         ));
         if document["memory"]["touched_bytes"].is_u64() {
             let (touched, of) = (bytes("touched_bytes"), bytes("touched_of_bytes"));
-            line(format!("  touched: {touched} of the {of} of those resources that the frame counts"));
+            line(format!("  touched: {touched} of {of}, over the resources in which the frame counts"));
         }
         if let Some(errors) = document.get("errors") {
             line(format!("errors against {}", string(&errors["reference"])));

@@ -1,4 +1,4 @@
-//! Clusters: a mesh's triangles in groups that lie together, so that a view can leave a group out without looking at each
+//! Clusters: a mesh's triangles in groups that lie together, so that a view can leave a group out without testing each
 //! of its triangles (`visible.rs`).
 //!
 //! Triangles are halved by the median of their middles along the longest side of the box around them, until a group holds

@@ -31,7 +31,7 @@ pub struct DrawCall {
     pub material: u32,
     pub first_index: u32,
     pub index_count: u32,
-    /// Those of its mesh, in `SceneGpu::clusters`.
+    /// First cluster of its mesh in `SceneGpu::clusters`.
     pub first_cluster: u32,
     pub cluster_count: u32,
     pub vertex_offset: i32,

@@ -44,7 +44,7 @@ use textures::MaterialSets;
 pub struct Extended {
     /// The third vertex stream.
     pub attributes: Buffer,
-    /// Of each material's textures.
+    /// Placements of each material's textures.
     pub placements: Buffer,
 }
 
@@ -61,7 +61,7 @@ pub struct SceneGpu {
     pub material_blocks: Vec<MaterialBlock>,
     /// Sorted so that state changes least; BLEND draws last.
     pub calls: Vec<DrawCall>,
-    /// Of all meshes, one after the other, as `indices` holds them.
+    /// Clusters of all meshes, one mesh after the other, in the order of `indices`.
     pub clusters: Vec<Cluster>,
     /// What `indices` holds, for tests of single triangles on the host.
     pub host_indices: Vec<u32>,
@@ -137,7 +137,7 @@ impl SceneGpu {
         })
     }
 
-    /// For a scene that shows the same pictures.
+    /// The textures, for a scene that shows the same pictures.
     pub fn textures(&self) -> Arc<Textures> {
         self.textures.clone()
     }

@@ -5,7 +5,7 @@ use crate::units::Extent;
 /// Where in a pixel the device asks whether a triangle covers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
-    /// In its middle.
+    /// In the pixel's middle.
     Middle,
     /// Anywhere: at several samples, or in a middle that moves from run to run.
     Anywhere,

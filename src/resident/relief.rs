@@ -1,4 +1,4 @@
-//! What `--texture-limit` would free: advice for whoever has no memory left, by the driver's own numbers.
+//! What `--texture-limit` would free: advice when memory runs out, by the driver's own numbers.
 
 use super::SceneStats;
 use crate::error::{Error, ErrorKind};

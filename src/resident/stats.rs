@@ -55,7 +55,7 @@ impl SceneStats {
         Self::with_texture_limit(scene, scene.texture_limit_px)
     }
 
-    /// As if the scene's limit were `limit_px`; 0: none.
+    /// The numbers of `scene` as if its limit were `limit_px`; 0: none.
     pub fn with_texture_limit(scene: &Scene, limit_px: u32) -> Self {
         let drawn = || scene.drawn_materials();
         let is_extended = |mesh: &Mesh| !mesh.colors.is_empty() || !mesh.uvs_1.is_empty();
@@ -74,9 +74,9 @@ impl SceneStats {
         }
     }
 
-    /// The texture limit that `auto` comes to on a device of `caps`: 0, none, where the scene takes at most three quarters of
-    /// the greatest heap, or of `budget_bytes` where that is less; else the greatest power of two with which it does. 0 too
-    /// where no limit would do.
+    /// The texture limit that `auto` means on a device of `caps`: 0, none, where the scene takes at most three quarters
+    /// of the greatest heap, or of `budget_bytes` where that is less; else the greatest power of two with which it
+    /// does. 0 too where no limit would do.
     ///
     /// The last quarter is the frame's and the staging buffers'.
     pub fn fitting_limit_px(scene: &Scene, caps: &Caps, budget_bytes: Option<u64>) -> u32 {
@@ -95,7 +95,7 @@ impl SceneStats {
         plan
     }
 
-    /// Those that a moment of the scene has for itself: all but its textures.
+    /// Plan of the resources of one moment of the scene: all except its textures.
     pub(super) fn geometry_plan(&self) -> Plan {
         use vk::BufferUsageFlags as Flags;
         let mut plan = Plan::default();

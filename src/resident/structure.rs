@@ -40,7 +40,7 @@ pub fn plan(plan: &mut Plan, owner: &str, over: [Over; 2], requirements: Require
     Ok(())
 }
 
-/// What rays go through.
+/// The scene's acceleration structures, through which rays are traced.
 pub struct SceneStructure {
     // Dropped first: it refers to the other.
     top: Structure,

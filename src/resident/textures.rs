@@ -20,15 +20,15 @@ const TEXTURES_PER_MATERIAL: usize = TextureSlot::ALL.len();
 
 /// Pictures in their colour spaces, with all levels.
 pub struct Textures {
-    /// In the order of `distinct_images`.
+    /// Pictures in the order of `distinct_images`.
     sources: Vec<(Arc<scene::Image>, ColorSpace)>,
     texture_limit_px: u32,
-    /// As `sources`, and a white pixel.
+    /// Images of `sources` in their order, and a white pixel.
     images: Vec<Image>,
 }
 
 impl Textures {
-    /// Makes the textures that `stats`, the scene's, tells of, and fills them.
+    /// Makes the textures that the scene's `stats` list, and fills them.
     ///
     /// Errors: memory is too small (exit code 4).
     pub(super) fn new(gpu: &Arc<Gpu>, scene: &Scene, stats: &SceneStats) -> Result<Self> {

@@ -57,7 +57,7 @@ const TEXELS: [(&str, &str); TEXEL_BUFFERS] = [
     ("traced.texels.3", "Texels3"),
 ];
 
-/// What rays go through.
+/// What rays are traced through.
 pub enum Rays {
     /// The tree's nodes, walked by the shader.
     Tree(Nodes),
@@ -74,7 +74,7 @@ pub enum TexelLevels {
 }
 
 impl TexelLevels {
-    /// Of a picture whose finest level is number `first`, and which has `all`.
+    /// Levels to keep of a picture whose finest level is number `first`, and which has `all` levels.
     fn of(self, first: u32, all: u32) -> std::ops::Range<u32> {
         first..if self == Self::Cone { all } else { first + 1 }
     }
@@ -84,7 +84,7 @@ impl TexelLevels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reads {
     pub levels: TexelLevels,
-    /// Occlusion maps too: where no ray finds what they stand for.
+    /// Occlusion maps too, where rays do not find the occluders that they describe.
     pub occlusion: bool,
 }
 
@@ -114,7 +114,7 @@ pub struct Layout {
     is_moving: bool,
     /// None: rays walk the tree.
     structures: Option<[Over; 2]>,
-    /// Of each image of the scene; None where no traced material reads it.
+    /// Place of each image of the scene; None where no traced material reads it.
     places: Vec<Option<Place>>,
     /// Texels of each buffer.
     texel_counts: Vec<u64>,
@@ -128,10 +128,10 @@ impl Layout {
     pub fn new(scene: &Scene, bvh: &Bvh, rays: Rays, reads: Reads, most_bytes: u64) -> Result<Self> {
         if matches!(rays, Rays::Query { .. }) && !bvh.closing.is_empty() {
             return Err(Error::request(format!(
-                "--rays query: {} moves while its --shutter is open, and what ray queries go through stands still",
+                "--rays query: {} moves while --shutter is open, and the driver's acceleration structure cannot",
                 scene.name
             ))
-            .note("--rays tree moves with it; --shutter none freezes it"));
+            .note("--rays tree traces what moves; --shutter none stops the motion"));
         }
         let mut places = vec![None; scene.images.len()];
         let mut texel_counts = Vec::new();

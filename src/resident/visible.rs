@@ -3,7 +3,7 @@
 //!
 //! Why this way: leaving out is exact. A cluster is left out only where no triangle of it can make a fragment, whatever
 //! the device's 32-bit arithmetic and its snapping of corners do; a cone of normals would be quicker to test and cannot
-//! promise that, because snapping turns thin triangles round. Single triangles are looked at only in clusters that the
+//! promise that, because snapping can flip thin triangles. Single triangles are tested only in clusters that the
 //! planes left, up to the first that may be seen: the 78,000 triangles of `hall:triangles=80000` take 0.8 ms, once a
 //! renderer.
 //!
@@ -135,7 +135,7 @@ struct Lens<'a> {
     magnitude_from_object: DMat4,
     world_from_object: DMat4,
     eye_ws: DVec3,
-    /// Of an orthographic camera: it has no eye.
+    /// Direction of view of an orthographic camera, which has no eye.
     forward_ws: Option<DVec3>,
 }
 

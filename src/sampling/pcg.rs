@@ -20,7 +20,7 @@ impl Pcg32 {
         random
     }
 
-    /// All 32 bits.
+    /// The next number of the stream, uniform in all 32 bits.
     pub fn next_u32(&mut self) -> u32 {
         let old = self.state;
         self.state = old.wrapping_mul(Self::MULTIPLIER).wrapping_add(self.increment);

@@ -118,7 +118,7 @@ impl Curve {
     }
 
     fn key_value(&self, key: usize) -> &[f32] {
-        // Of in-tangent, value and out-tangent the second.
+        // A key has in-tangent, value and out-tangent: take the second.
         self.row(key, self.interpolation.values_per_key() / 2)
     }
 

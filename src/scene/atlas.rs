@@ -13,7 +13,7 @@ use std::fmt;
 /// a texel, so that neighbours along an edge never both have it.
 const INSIDE: f64 = 1.0 / 64.0;
 
-/// How far outside the unit square coordinates may lie by the rounding of who wrote them.
+/// How far outside the unit square coordinates may lie because of rounding in the program that wrote them.
 const ROUNDING: f32 = 1e-5;
 
 const NOBODY: u32 = u32::MAX;
@@ -23,7 +23,7 @@ const NOBODY: u32 = u32::MAX;
 pub struct Atlas {
     /// One a vertex, in the unit square.
     pub coordinates: Vec<Vec2>,
-    /// Of each triangle: which connected part of the atlas it is of, an index into `sides`.
+    /// Chart of each triangle, a connected part of the atlas: an index into `sides`.
     pub charts: Vec<u32>,
     /// The shorter side of the box around each chart, a part of the texture's.
     pub sides: Vec<f32>,

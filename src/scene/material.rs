@@ -67,7 +67,7 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// Also seen and lit from behind, with the normal turned around.
     pub double_sided: bool,
-    /// Of a BLEND surface: the layer of a stipple, 1 to 15, that the file gives it (Kircher 2009, section 4).
+    /// Layer of a stipple, 1 to 15, that the file gives a BLEND surface (Kircher 2009, section 4).
     pub stipple_layer: Option<u32>,
 }
 

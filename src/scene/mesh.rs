@@ -20,7 +20,7 @@ pub struct Mesh {
     /// The second set; empty where the material has no texture that reads it.
     pub uvs_1: Vec<Vec2>,
     /// Coordinates at which each triangle has a place of a texture to itself (`scene::atlas` looks whether it has); no material
-    /// reads them. Empty where nobody has laid them out.
+    /// reads them. Empty where they have not been laid out.
     pub atlas: Vec<Vec2>,
     /// Linear RGB and alpha, 0 to 1, that multiply the material's base colour; empty where all are white.
     pub colors: Vec<Vec4>,

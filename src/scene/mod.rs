@@ -62,7 +62,7 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras in file order. May be empty: the view then frames the bounds (`crate::framing`).
     pub cameras: Vec<Camera>,
-    /// The box around everything that is drawn while the animations play, looked at in a few moments of them; None where
+    /// The box around everything that is drawn while the animations play, sampled at a few moments; None where
     /// nothing moves.
     pub reach: Option<Bounds>,
     /// Which way front faces look when the animations begin; None where nothing moves.
@@ -79,7 +79,7 @@ pub struct Scene {
 impl Scene {
     /// This scene with a shutter that is open until it has become `closing`; where the two are one, it stands still.
     ///
-    /// Errors: they have not the same triangles, lights and cameras (exit code 2).
+    /// Errors: they differ in their triangles, lights or cameras (exit code 2).
     pub fn closing_as(mut self, mut closing: Scene) -> Result<Self> {
         if self.hash == closing.hash {
             return Ok(self);
@@ -94,7 +94,7 @@ impl Scene {
 
     /// This scene, which was `earlier` a moment before; where the two are one, it stands still. Its pictures are the same.
     ///
-    /// Errors: they have not the same triangles, lights and cameras (exit code 2).
+    /// Errors: they differ in their triangles, lights or cameras (exit code 2).
     pub fn moved_from(mut self, mut earlier: Scene) -> Result<Self> {
         if self.hash == earlier.hash {
             return Ok(self);
@@ -105,7 +105,7 @@ impl Scene {
         Ok(self)
     }
 
-    /// Errors: `other` has not the same triangles, lights and cameras (exit code 2).
+    /// Errors: `other` has other triangles, lights or cameras (exit code 2).
     fn require_same_shape(&self, other: &Scene, when: &str, instead: &str) -> Result<()> {
         let shape = |scene: &Scene| {
             let meshes = scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.material)).collect::<Vec<_>>();
@@ -114,8 +114,11 @@ impl Scene {
         };
         let has_same_indices = || self.meshes.iter().zip(&other.meshes).all(|(a, b)| a.indices == b.indices);
         if shape(self) != shape(other) || !has_same_indices() {
-            return Err(Error::request(format!("{}: what it draws changes {when}, not only its place", self.name))
-                .note(instead));
+            return Err(Error::request(format!(
+                "{}: its triangles, materials, lights or cameras change {when}, not only their places",
+                self.name
+            ))
+            .note(instead));
         }
         Ok(())
     }

@@ -8,14 +8,14 @@ use crate::scene::gltf;
 use crate::scene::procedural;
 use std::path::Path;
 
-/// What a name or a path stands for, read once; a scene at any time.
+/// The scene of a name or a path, read once, from which the scene at any time is made.
 #[derive(Debug)]
 pub enum Model {
     BuiltIn(Box<procedural::Made>),
     File(Box<gltf::Model>),
 }
 
-/// What a name or a path stands for: a built-in scene, with parameters after a colon, or a .gltf or .glb file.
+/// The scene of a name or a path: a built-in scene, with parameters after a colon, or a .gltf or .glb file.
 ///
 /// Errors: no such scene, impossible parameters, a broken file, no such animation (exit code 2).
 pub fn open(spec: &str, seed: u64, choice: &AnimationChoice) -> Result<Model> {

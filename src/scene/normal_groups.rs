@@ -13,7 +13,7 @@
 //! **Which ids.** The paper's are random. Here groups are numbered in the order of their first triangles, and each takes
 //! its number modulo 256, or the next id that no group has that touches it, at a corner or along an edge: up to 256
 //! groups all have different ids. Where more than 256 meet, that which the fewest of the places around have, so that
-//! neighbours along an edge, who share two, still differ.
+//! neighbours along an edge, which share two, still differ.
 //!
 //! Time is n log n in the triangles, memory linear, whatever the mesh: what a flat one of as many groups as triangles
 //! costs is what a smooth one costs.
@@ -32,10 +32,10 @@ use super::places::Places;
 pub const TOLERANCE: f32 = 1.0 / 64.0;
 
 /// With how many others of its place a normal is compared at most, those nearest along x: a bound on what files made to
-/// cost time can cost, which no mesh that someone made for its looks comes near.
+/// cost time can cost, which no mesh made to be looked at comes near.
 const MOST_COMPARED: usize = 64;
 
-/// Of a triangle in no group.
+/// Group of a triangle that is in none.
 const NONE: u32 = u32::MAX;
 
 /// Finds the groups of `mesh` and writes the id of its own into each vertex (`Mesh::normal_groups`). A vertex that
@@ -178,7 +178,7 @@ fn welded(normals: &[Vec3], places: &Places) -> Vec<u32> {
     (0..normals.len() as u32).map(|vertex| joined.first(vertex)).collect()
 }
 
-/// Sets of numbers that are joined one by one; the least stands for its set.
+/// Sets of numbers that are joined one by one; the least represents its set.
 struct Joined(Vec<u32>);
 
 impl Joined {

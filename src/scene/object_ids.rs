@@ -51,7 +51,7 @@ fn colored(boxes: &[Bounds]) -> Vec<u8> {
 /// Grids over the scene, each with cells half as wide as the one before.
 struct Grid {
     all: Bounds,
-    /// Of a cell at level 0.
+    /// Width of a cell at level 0, metres.
     width_m: f32,
 }
 

@@ -17,7 +17,7 @@ pub struct Shell {
     pub positions: Vec<Vec3>,
     /// Indices into `positions`, counter-clockwise from outside as the mesh has them.
     pub triangles: Vec<[u32; 3]>,
-    /// Those that two triangles share.
+    /// Edges that two triangles share.
     pub edges: Vec<Edge>,
     /// How many edges of triangles have no counterpart: where the surface ends, and where its winding turns.
     pub open_edge_count: usize,

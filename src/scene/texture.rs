@@ -20,7 +20,7 @@ pub enum ColorSpace {
     Linear,
 }
 
-/// What lies outside 0 to 1.
+/// How a texture is read outside 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wrap {
     Repeat,

@@ -16,17 +16,17 @@ use crate::techniques::{Technique, fitness};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a road left.
+/// What a method's run left.
 #[derive(Clone, Debug)]
 pub struct Rendered {
     pub picture: Picture,
     pub counters: BTreeMap<&'static str, f64>,
-    /// The frame's time from submit to fence; and by the device's clock, where that is looked at.
+    /// The frame's time from submit to fence; and by the device's clock, where that is read.
     pub wall_ns: u64,
     pub device_ns: Option<u64>,
 }
 
-/// What a device lacks for a road, by name.
+/// What a device lacks for a method, by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     /// The setting or the part of a frame that lacks it.
@@ -45,7 +45,7 @@ pub enum Made {
 /// Technique and settings in a place.
 pub type Road<'a> = (Place, &'a str, &'a [(&'static str, &'static str)]);
 
-/// Whose pictures are the same: place, technique and settings.
+/// What decides a picture: place, technique and settings.
 type Key = (Place, String, Vec<(&'static str, &'static str)>);
 
 pub struct Bed {
@@ -54,7 +54,7 @@ pub struct Bed {
     gpu: Option<Arc<Gpu>>,
     /// What it shows, by place and shutter.
     session: Option<((Place, String), Session)>,
-    /// The last twin, which the roads of a group share.
+    /// The last twin, which the methods of a group share.
     twin: Option<(Key, Result<Made>)>,
     /// What the validation layer said while devices were closed.
     last_words: Vec<Message>,
@@ -88,7 +88,7 @@ impl Bed {
         }
         if self.gpu.is_none() {
             let again = Gpu::open(&self.request);
-            // It was there before: that it is not any more is no lack of a road.
+            // It was there before: its loss is not something that the method needs.
             let again = again.map_err(|error| Error::device(format!("opening the device again: {error}")))?;
             self.gpu = Some(again);
         }
@@ -117,7 +117,7 @@ impl Bed {
         }
     }
 
-    /// The same, made once for all who ask for it one after the other.
+    /// The same, made once for consecutive calls that need it.
     ///
     /// Errors: as `render`.
     pub fn twin(&mut self, road: Road<'_>) -> Result<Made> {
@@ -145,7 +145,7 @@ impl Bed {
         Ok(Made::Rendered(Rendered { picture, counters, wall_ns: time.wall_ns, device_ns }))
     }
 
-    /// A renderer with a submit a pass, in the place of the road.
+    /// A renderer with a submit a pass, in place of the method's.
     ///
     /// Errors: as `Session::renderer`, and as `gpu`.
     pub fn profiled(&mut self, (place, technique, settings): Road<'_>) -> Result<Renderer> {

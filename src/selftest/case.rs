@@ -1,5 +1,5 @@
-//! What a case is: a picture by one road of the program, and what it is held against. Cases are data (`cases`); nothing
-//! here runs.
+//! What a case is: a picture by one method of the program, and what it is compared with. Cases are data (`cases`);
+//! nothing here runs.
 
 use super::closed_form::ClosedForm;
 use crate::error::Result;
@@ -12,14 +12,14 @@ use crate::units::Extent;
 /// Settings that differ from their defaults, by key.
 pub type Settings = &'static [(&'static str, &'static str)];
 
-/// Roads to one picture.
+/// Methods that make one picture.
 #[derive(Debug)]
 pub struct Group {
-    /// What its roads differ in, in a word or two.
+    /// What its methods differ in, in a word or two.
     pub name: &'static str,
     pub technique: &'static str,
     pub place: Place,
-    /// Settings of every road, and of the twin where that is of the same technique.
+    /// Settings of every method, and of the twin if it is of the same technique.
     pub common: Settings,
     pub twin: Twin,
     pub roads: &'static [Settings],
@@ -45,10 +45,10 @@ impl Place {
     }
 }
 
-/// What roads are held against.
+/// What methods are compared with.
 #[derive(Clone, Copy, Debug)]
 pub enum Twin {
-    /// The same technique by a plain road.
+    /// The same technique by a plain method.
     Road(Settings),
     /// Another technique, with all of its settings.
     Other(&'static str, Settings),
@@ -58,11 +58,11 @@ pub enum Twin {
     Nothing,
 }
 
-/// Side lengths that hold for every case, which names them in `common` where it wants others: odd, so that no workgroup
+/// Side lengths that hold for every case, which names them in `common` where it needs others: odd, so that no workgroup
 /// and no pattern divides them.
 pub const SIZE: (&str, &str) = ("size", "61x37");
 
-/// One road of a group.
+/// One method of a group.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     pub group: &'static Group,
@@ -70,7 +70,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Technique, group and what is special about the road: `deep_shading/lists/compaction=off`.
+    /// Technique, group and the settings of the method: `deep_shading/lists/compaction=off`.
     pub fn name(&self) -> String {
         let Group { name, technique, .. } = self.group;
         let road: Vec<String> = self.road.iter().map(|(key, text)| format!("{key}={text}")).collect();
@@ -78,7 +78,7 @@ impl Case {
         format!("{technique}/{name}/{road}")
     }
 
-    /// Every setting of the road that is not at its default.
+    /// Every setting of the method that is not at its default.
     pub fn settings(&self) -> Vec<(&'static str, &'static str)> {
         [&[SIZE], self.group.common, self.road].concat()
     }

@@ -1,4 +1,4 @@
-//! What the self-test tells: one JSON document to send, and the lines that a person reads. Within a schema number a key
+//! The self-test's results: one JSON document to send, and the lines that a person reads. Within a schema number a key
 //! is only ever added.
 
 use super::bed::Refusal;
@@ -131,8 +131,12 @@ pub fn closing_text(outcome: &Outcome, file: Option<&str>) -> String {
     writeln!(text, "{held} held, {failed} failed, {refused} refused in {seconds:.0} s on {name} ({driver})")
         .expect("writing to a string");
     match file {
-        Some(file) => text + &format!("{file} is the document to send: attach it to a report, whatever came out\n"),
-        None => text + "with -o FILE.json the same comes as one document to send with a report\n",
+        Some(file) => {
+            text + &format!(
+                "{file} is the document to send: attach it to a report, whether its tests passed or failed\n"
+            )
+        }
+        None => text + "-o FILE.json writes these results as one document to send with a report\n",
     }
 }
 

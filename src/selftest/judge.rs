@@ -91,7 +91,7 @@ fn is_apart(a: f32, b: f32) -> bool {
     (a - b).abs() > APART.max(APART_PART * a.max(b))
 }
 
-/// What must hold between a road's picture and its twin's.
+/// What must hold between a method's picture and its twin's.
 #[derive(Clone, Copy, Debug)]
 pub enum Must {
     /// Equal bits on every device: the same shaders on the same numbers.
@@ -177,7 +177,7 @@ mod tests {
         assert!(Figures::of(&Picture { extent: EXTENT, pixels }, &reference).unwrap().is_equal);
     }
 
-    /// What a driver's mistakes look like: bounds that a GPU's roads have must see each.
+    /// What a driver's mistakes look like: the bounds for a GPU must detect each.
     #[test]
     fn wrong_pictures_are_found_by_the_bounds_of_other_devices() {
         let width = EXTENT.width as usize;

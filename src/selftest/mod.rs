@@ -1,7 +1,8 @@
-//! The self-test: every technique small, by every road that a device has, beside a plain twin or a formula; and the
-//! clocks. What a GPU does that no software driver shows is found in its first minutes, and leaves as one document.
+//! The self-test: small pictures by every technique and every method that a device supports, beside a plain twin or a
+//! formula; and the clocks. What a GPU does that no software driver shows is found in its first minutes, and leaves as
+//! one document.
 //!
-//! [`cases`] has what is tried, as data; [`bed`] runs it, [`judge`] holds pictures side by side, [`document`] tells.
+//! [`cases`] has what is tried, as data; [`bed`] runs it, [`judge`] compares pictures, [`document`] reports.
 
 pub mod bed;
 pub mod case;
@@ -47,7 +48,7 @@ pub enum Verdict {
     Held,
     /// Why not, a sentence each.
     Failed(Vec<String>),
-    /// The device lacks what the road or its twin needs: no failure.
+    /// The device lacks what the method or its twin needs: no failure.
     Refused(Refusal),
 }
 
@@ -124,8 +125,11 @@ fn no_such_case(only: &[String]) -> Error {
     let mut kinds: Vec<String> =
         cases::all().map(|case| format!("{}/{}", case.group.technique, case.group.name)).collect();
     kinds.dedup();
-    Error::request(format!("--only {}: no case's name, and nothing after a slash in one, begins so", only.join(",")))
-        .note(format!("there are: {}, {}", clocks::NAME, kinds.join(", ")))
+    Error::request(format!(
+        "--only {}: no case has a name, or a part of it after a slash, that begins so",
+        only.join(",")
+    ))
+    .note(format!("there are: {}, {}", clocks::NAME, kinds.join(", ")))
 }
 
 fn sentence(message: &Message) -> String {

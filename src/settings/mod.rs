@@ -300,7 +300,7 @@ impl Values {
         self.parsed(key, parse_pair_or_auto)
     }
 
-    /// Of `Kind::Sides`.
+    /// Both sides of a `Kind::Sides` setting.
     pub fn sides(&self, key: &str) -> [u32; 2] {
         self.parsed(key, parse_sides)
     }
@@ -320,10 +320,10 @@ impl Values {
         self.parsed(key, parse_bytes)
     }
 
-    /// Of `Kind::PartsOrNone`, one for each part; None: `none`.
+    /// Numbers of a `Kind::PartsOrNone` setting, one for each part; None: `none`.
     pub fn numbers_or_none<const COUNT: usize>(&self, key: &str) -> Option<[f64; COUNT]> {
         let numbers = self.parsed(key, parse_numbers_or_none)?;
-        Some(numbers.try_into().unwrap_or_else(|_| panic!("--{key} was checked and has not {COUNT} parts")))
+        Some(numbers.try_into().unwrap_or_else(|_| panic!("--{key} was checked and does not have {COUNT} parts")))
     }
 
     pub fn color(&self, key: &str) -> Vec3 {

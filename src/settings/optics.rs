@@ -11,10 +11,10 @@ pub const APERTURE: Setting = Setting {
     default: "0",
     unit: "m",
     paper: "Clarberg 2014, table 3",
-    help: "diameter of the camera's thin lens: what is out of focus is blurred; 0: a pinhole, all is sharp",
+    help: "Diameter of the camera's thin lens, which blurs what is out of focus; 0: a pinhole, all is sharp",
 };
 
-/// Where the lens makes a sharp picture of.
+/// Distance at which the lens makes a sharp picture.
 pub const FOCUS: Setting = Setting {
     key: "focus",
     symbol: "",
@@ -22,8 +22,8 @@ pub const FOCUS: Setting = Setting {
     default: "auto",
     unit: "m",
     paper: "",
-    help: "of --aperture and --stereo: how far before the camera the plane in focus lies; auto: where the middle of the picture \
-           sees something, else through the middle of the scene",
+    help: "Distance from the camera to the plane in focus, for --aperture and --stereo; auto: the surface at the \
+           middle of the picture, or, where there is none, the middle of the scene",
 };
 
 /// How far two eyes are apart.
@@ -34,11 +34,12 @@ pub const STEREO: Setting = Setting {
     default: "0",
     unit: "m",
     paper: "Clarberg 2014, 7",
-    help: "distance between two eyes, to the camera's left and right, each with a lens of --aperture; both see what lies at --focus \
-           in one place, and the picture is the left one's; 0: one eye, the camera's",
+    help: "Distance between two eyes, one to the left and one to the right of the camera, each with a lens of \
+           --aperture; both see what lies at --focus in the same place of the picture, and the picture written is the \
+           left eye's; 0: one eye, the camera's",
 };
 
-/// Which of them see.
+/// Which of the two eyes see.
 pub const STEREO_EYES: Setting = Setting {
     key: "stereo-eyes",
     symbol: "",
@@ -46,11 +47,11 @@ pub const STEREO_EYES: Setting = Setting {
     default: "both",
     unit: "",
     paper: "Clarberg 2014, 7",
-    help: "of --stereo: deep_shading shades both eyes' samples at once, as seen from between them, and has the right one's picture in \
-           the stage stereo.right; or one eye's alone, as that one sees them",
+    help: "Eyes of --stereo to draw: both, which deep_shading shades at once as seen from the midpoint between them, \
+           with the right eye's picture in the stage stereo.right; or one eye alone, as seen by that eye",
 };
 
-/// What a pinhole and one eye leave unread.
+/// Settings that are not read with a pinhole or with one eye.
 pub const LENS_CONDITIONS: &[Condition] = &[
     Condition {
         key: FOCUS.key,
@@ -70,8 +71,8 @@ pub const SHUTTER: Setting = Setting {
     default: "none",
     unit: "s",
     paper: "Keller 2001, 3.2",
-    help: "when the shutter opens and closes, after --time: what animations move meanwhile is blurred, along straight lines \
-           from its place at the one to that at the other; none: one moment",
+    help: "Times at which the shutter opens and closes, relative to --time; what animations move in between is blurred \
+           along straight lines from its place at opening to its place at closing; none: a single moment",
 };
 
 /// Whether a G-buffer holds how surfaces move on the screen.
@@ -82,8 +83,9 @@ pub const MOTION_VECTORS: Setting = Setting {
     default: "off",
     unit: "",
     paper: "Kircher 2009, 2.1",
-    help: "the geometry pass writes how far each surface has moved on the screen since --motion-interval before --time, in \
-           texels right and down, two half floats in 4 bytes a texel (--aov geometry.motion)",
+    help: "Write motion vectors in the geometry pass: how far each surface has moved on the screen since \
+           --motion-interval before --time, in texels right and down, as two half floats in 4 bytes a texel (--aov \
+           geometry.motion)",
 };
 
 /// How long before `--time` motion vectors begin.
@@ -94,24 +96,24 @@ pub const MOTION_INTERVAL: Setting = Setting {
     default: "0.0333333333",
     unit: "s",
     paper: "Kircher 2009, 2.1",
-    help: "of --motion-vectors: the time of one frame; what moves begins at 0 s",
+    help: "Time of one frame, over which --motion-vectors are measured; motion begins at 0 s at the earliest",
 };
 
-/// What a geometry pass without motion vectors leaves unread.
+/// Settings that a geometry pass without motion vectors does not read.
 pub const MOTION_CONDITIONS: &[Condition] = &[Condition {
     key: MOTION_INTERVAL.key,
     unread: |values| Unread::unless(values, MOTION_VECTORS.key, &["on"], "there are no motion vectors"),
 }];
 
-/// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads no
-/// such setting.
+/// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads
+/// no such setting.
 pub fn earlier_s(values: &Values) -> Option<f64> {
     let is_asked = values.iter().any(|(key, text)| key == MOTION_VECTORS.key && text == "on");
     is_asked.then(|| (values.number("time") - values.number("motion-interval")).max(0.0))
 }
 
-/// The moments of `--time` and `--shutter` at which the shutter opens and closes, seconds; the same one where there is no
-/// shutter, or the technique reads none.
+/// The moments of `--time` and `--shutter` at which the shutter opens and closes, seconds; the same one where there is
+/// no shutter, or the technique reads none.
 ///
 /// Errors: it closes before it opens (exit code 2).
 pub fn exposure_s(values: &Values) -> Result<[f64; 2]> {
@@ -140,6 +142,6 @@ pub const MEDIUM: Setting = Setting {
     default: "none",
     unit: "1/m",
     paper: "Dubla 2009, 3.4",
-    help: "light that a homogeneous medium scatters (S) and absorbs (A) a metre, and the mean cosine of the angle by which it \
-           turns it (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
+    help: "Homogeneous medium: its coefficients of scattering (S) and absorption (A), and the mean cosine of the \
+           scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
 };

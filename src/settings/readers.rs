@@ -76,13 +76,13 @@ pub fn require_read<'a>(
             && let Some(unread) = unread(conditions.clone(), values, key)
         {
             return Err(Error::request(unread.sentence(key, text))
-                .note(format!("--{key} {} is the default and goes with all", setting.default)));
+                .note(format!("--{key} {} is the default, which is always accepted", setting.default)));
         }
     }
     Ok(())
 }
 
-/// `values` with every setting that nothing reads at its default: two requests that come to the same are equal.
+/// `values` with every setting that nothing reads at its default: two requests with the same effect are equal.
 pub fn without_unread<'a>(
     conditions: impl IntoIterator<Item = &'a Condition> + Clone,
     settings: &[Setting],

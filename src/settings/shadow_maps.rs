@@ -1,9 +1,9 @@
 //! The rows of techniques that light by shadow maps (`passes::shadow_maps`).
 //!
-//! The biases are those at which pictures of three scenes came nearest to shadow rays: with maps of 512 at 480x270, FLIP of
-//! the hall (80,000 triangles), `lamps` (27 lamps) and `fence` (30) is 0.028, 0.0075 and 0.0055 at 0.03 % and 2 texels; 0.152,
-//! 0.0088 and 0.027 without a slope's part, where surfaces shadow themselves; 0.032, 0.0083 and 0.0075 at 0.0001 %; at 0.1 % the
-//! RMSE of the fence is 0.103 instead of 0.061.
+//! The biases are those at which pictures of three scenes came nearest to shadow rays: with maps of 512 at 480x270,
+//! FLIP of the hall (80,000 triangles), `lamps` (27 lamps) and `fence` (30) is 0.028, 0.0075 and 0.0055 at 0.03 % and 2
+//! texels; 0.152, 0.0088 and 0.027 without a slope's part, where surfaces shadow themselves; 0.032, 0.0083 and 0.0075
+//! at 0.0001 %; at 0.1 % the RMSE of the fence is 0.103 instead of 0.061.
 
 use super::{Condition, Kind, Setting, Unread, Values};
 
@@ -14,9 +14,9 @@ pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
     kind: Kind::Choice(&["none", "sun", "ray", "map"]),
     default: "sun",
     unit: "",
-    paper: "Clarberg 2014, 6 (map)",
-    help: "shadow rays to no light, to directional lights, or to every punctual light; or, with techniques that have them, \
-           shadow maps of every punctual light",
+    paper: "map: Clarberg 2014, 6",
+    help: "Lights that cast shadows, and how: none; directional lights by rays (sun); every punctual light by rays \
+           (ray); or, with techniques that have them, every punctual light by shadow maps (map)",
 };
 
 /// How shadow maps are made and read.
@@ -28,8 +28,8 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "frame",
         unit: "",
         paper: "Clarberg 2014, 6.2",
-        help: "when shadow maps are drawn: anew in every frame and set of samples, as the paper does, or once before the first, their \
-               time in a row of its own; the same picture",
+        help: "When shadow maps are drawn: anew in every frame and set of samples, as in the paper (frame), or once \
+               before the first, with their time in a row of its own (once); the same picture",
     },
     Setting {
         key: "shadow-map-size",
@@ -38,8 +38,8 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "1024",
         unit: "px",
         paper: "Clarberg 2014, 6.2",
-        help: "side of a shadow map: one for each spot and directional light, six for each point light and for a spot wider \
-               than 178 degrees",
+        help: "Width and height of a shadow map; spot and directional lights have one map each, point lights and spots \
+               wider than 178 degrees six each",
     },
     Setting {
         key: "shadow-filter",
@@ -48,9 +48,9 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "how a shadow map is asked: one comparison, or four, weighed by their distance in the device's filter or, where \
-               depth does not filter, in the shader (the plain way to the same picture); auto: bilinear where the device \
-               has it, else gather",
+        help: "How a shadow map is read: by one comparison (nearest), or by four weighted by distance, in the device's \
+               filter (bilinear) or, where depth formats cannot be filtered, in the shader (gather, the plain way to \
+               the same picture); auto: bilinear where the device has it, gather elsewhere",
     },
     Setting {
         key: "shadow-bias",
@@ -59,7 +59,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "0.03%",
         unit: "m",
         paper: "",
-        help: "a point asks its shadow map from this much nearer to the light: what rounding moves surfaces by",
+        help: "Distance by which a point moves towards the light before its shadow map is read, to cover rounding",
     },
     Setting {
         key: "shadow-slope-bias",
@@ -68,8 +68,8 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "2",
         unit: "px",
         paper: "",
-        help: "surfaces in a shadow map lie farther from the light by what their depth changes over this many of its texels: \
-               2 is what four comparisons reach",
+        help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
+               this many texels; 2 is the reach of four comparisons",
     },
     Setting {
         key: "shadow-casters",
@@ -78,8 +78,8 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "culled",
         unit: "",
         paper: "",
-        help: "what is drawn into a shadow map: the clusters of triangles that it may hold, or all (the plain way to the same \
-               bits)",
+        help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
+               plain way to the same bits)",
     },
 ];
 

@@ -12,7 +12,7 @@ pub const COMMON: &[Setting] = &[
         default: "1280x720",
         unit: "px",
         paper: "",
-        help: "width and height of the picture",
+        help: "Width and height of the picture",
     },
     Setting {
         key: "camera",
@@ -21,7 +21,8 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "",
         paper: "",
-        help: "the scene's camera; framing: one that frames the scene, from three quarters above before the side that most front faces                look to, as a scene without a camera gets it",
+        help: "Camera of the scene, by index or name; `framing`: one that frames the whole scene from three quarters \
+               above, on the side that most front faces look to; a scene without a camera gets this one",
     },
     Setting {
         key: "time",
@@ -30,7 +31,7 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "s",
         paper: "",
-        help: "the moment of the animations that is drawn; nothing else moves",
+        help: "Moment of the animations that is drawn; nothing else moves",
     },
     Setting {
         key: "animation",
@@ -39,7 +40,7 @@ pub const COMMON: &[Setting] = &[
         default: "all",
         unit: "",
         paper: "",
-        help: "which animations of a file play, all of them at once or one; none: the rest pose",
+        help: "Animations of the file to play: all of them at once, none (the rest pose), or one by index or name",
     },
     Setting {
         key: "seed",
@@ -48,7 +49,7 @@ pub const COMMON: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "",
-        help: "seeds everything that is scattered or sampled",
+        help: "Seed of everything that is scattered or sampled",
     },
     Setting {
         key: "lights",
@@ -57,7 +58,7 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "",
         paper: "",
-        help: "scatter N point lights in the scene's bounds, beside its own",
+        help: "Scatter N point lights within the scene's bounds, in addition to its own lights",
     },
     Setting {
         key: "exposure",
@@ -66,7 +67,9 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "EV",
         paper: "",
-        help: "of PNGs: at 0, white diffuse under radiance 1 is 1.0; auto: brings the log average of what shines to 0.18                (Reinhard et al. 2002), of --frames as the first frame that is not black; stages beside a PNG stay at 0 then",
+        help: "Exposure of PNG output; at 0, white diffuse under radiance 1 is 1.0; auto: brings the log average of \
+               the light in the picture to 0.18 (Reinhard et al. 2002), and with --frames uses the exposure of the \
+               first frame that is not black; stages that --aov writes beside a PNG stay at exposure 0 then",
     },
     Setting {
         key: "tonemap",
@@ -75,7 +78,7 @@ pub const COMMON: &[Setting] = &[
         default: "clip",
         unit: "",
         paper: "",
-        help: "of PNGs",
+        help: "Tone-mapping operator of PNG output",
     },
     Setting {
         key: "exr",
@@ -84,7 +87,7 @@ pub const COMMON: &[Setting] = &[
         default: "float",
         unit: "",
         paper: "",
-        help: "precision of EXR files",
+        help: "Precision of the numbers in EXR files",
     },
     Setting {
         key: "background",
@@ -93,7 +96,7 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "",
         paper: "",
-        help: "radiance where no surface is",
+        help: "Radiance where no surface is",
     },
     Setting {
         key: "ambient",
@@ -102,7 +105,8 @@ pub const COMMON: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "radiance from everywhere; auto: 0 where the scene has lights, 0.3 with the default rig",
+        help: "Radiance that reaches surfaces from all directions; auto: 0 where the scene has lights, 0.3 with the \
+               default rig",
     },
     Setting {
         key: "rig",
@@ -111,8 +115,9 @@ pub const COMMON: &[Setting] = &[
         default: "default",
         unit: "",
         paper: "",
-        help: "a key light of 3 lux from the camera's upper left and an ambient of 0.3: default, for a scene without punctual lights of which \
-               emissive surfaces, if any, let less than half be seen; always, beside what it has",
+        help: "Add a key light of 3 lux from the camera's upper left and an ambient radiance of 0.3; default: only to \
+               a scene without punctual lights in which emissive surfaces, if there are any, make less than half of it \
+               visible; always: in addition to the scene's own lights; none: never",
     },
     Setting {
         key: "sun",
@@ -121,7 +126,7 @@ pub const COMMON: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "",
-        help: "directional lights",
+        help: "Whether directional lights shine",
     },
     Setting {
         key: "light-cutoff",
@@ -130,7 +135,7 @@ pub const COMMON: &[Setting] = &[
         default: "0.002",
         unit: "lux",
         paper: "",
-        help: "a punctual light without range ends where it gives this irradiance; 0: never",
+        help: "Irradiance at which a punctual light without a range of its own is cut off; 0: never",
     },
     Setting {
         key: "allocation",
@@ -139,8 +144,9 @@ pub const COMMON: &[Setting] = &[
         default: "linear",
         unit: "",
         paper: "",
-        help: "how resources come by their memory: ranges one after the other in shared memory blocks, a memory block \
-               each, or ranges in shared memory blocks wherever there is room",
+        help: "How memory is allocated for resources: as ranges one after the other in shared memory blocks (linear), \
+               as one memory block for each (dedicated), or as ranges in shared memory blocks wherever there is room \
+               (tlsf)",
     },
     Setting {
         key: "alias",
@@ -149,8 +155,8 @@ pub const COMMON: &[Setting] = &[
         default: "greedy",
         unit: "",
         paper: "",
-        help: "resources of a frame that never live in the same pass share bytes: placed by the best of a few orders, by a \
-               search for the least sum, or never",
+        help: "How resources of a frame that never live in the same pass share bytes: placed by the best of a few \
+               orders (greedy), by a search for the least sum (optimal), or not at all (off)",
     },
     Setting {
         key: "submit-ms",
@@ -159,9 +165,10 @@ pub const COMMON: &[Setting] = &[
         default: "auto",
         unit: "ms",
         paper: "",
-        help: "what a submit takes at most, as far as work can be cut: passes go one by one and dispatches in bands of rows, as many together \
-               as took that long before, samples of paths too; drivers of GPUs end what takes seconds. 0: a frame is one submit; auto: 100 on GPUs, 0 on software \
-               drivers; the same picture",
+        help: "Longest time of one submit, as far as the work can be divided, because GPU drivers abort submits that \
+               take seconds: passes are submitted one by one, dispatches in bands of rows and paths in groups of \
+               samples, each as large as took this long before; 0: a frame is one submit; auto: 100 on GPUs, 0 on \
+               software drivers; the same picture",
     },
     Setting {
         key: "memory-budget",
@@ -170,7 +177,8 @@ pub const COMMON: &[Setting] = &[
         default: "none",
         unit: "",
         paper: "",
-        help: "what memory blocks in one heap may sum up to; what would pass it is refused; none: the heap's size",
+        help: "Most bytes that the memory blocks of one heap may sum up to; an allocation beyond it is refused; none: \
+               the heap's size",
     },
     Setting {
         key: "texture-limit",
@@ -179,12 +187,13 @@ pub const COMMON: &[Setting] = &[
         default: "auto",
         unit: "px",
         paper: "",
-        help: "greatest side of a texture: larger ones begin at a coarser level; 0: no limit; auto: none, or where the scene \
-               would take more than three quarters of the heap or of --memory-budget the greatest power of two with which it does not",
+        help: "Longest side of a texture in pixels; larger textures start at a coarser mip level; 0: no limit; auto: \
+               no limit, or, where the scene would take more than three quarters of the heap or of --memory-budget, \
+               the greatest power of two with which it does not",
     },
 ];
 
-/// What a surface does with light.
+/// The reflectance model of surfaces.
 pub const BRDF: Setting = Setting {
     key: "brdf",
     symbol: "",
@@ -192,10 +201,10 @@ pub const BRDF: Setting = Setting {
     default: "ggx",
     unit: "",
     paper: "",
-    help: "of direct light",
+    help: "Reflectance model of surfaces under direct light",
 };
 
-/// Of every compute shader whose invocations are pixels.
+/// Workgroup size of every compute shader whose invocations are pixels.
 pub const WORKGROUP: Setting = Setting {
     key: "workgroup",
     symbol: "",
@@ -203,7 +212,7 @@ pub const WORKGROUP: Setting = Setting {
     default: "64x1",
     unit: "",
     paper: "",
-    help: "shape of compute workgroups",
+    help: "Width and height of compute workgroups, in invocations",
 };
 
 /// How near virtual point lights count.
@@ -214,7 +223,7 @@ pub const VPL_CLAMP: Setting = Setting {
     default: "2%",
     unit: "m",
     paper: "",
-    help: "least distance of a virtual point light: nearer surfaces get no more light",
+    help: "Least distance at which a virtual point light is evaluated; surfaces nearer than this get no more light",
 };
 
 /// Whether emissive triangles light others.
@@ -225,10 +234,11 @@ pub const EMISSIVE: Setting = Setting {
     default: "auto",
     unit: "",
     paper: "",
-    help: "emissive triangles light other surfaces; auto: off where the scene has punctual lights, because maps carry both",
+    help: "Whether emissive triangles light other surfaces; auto: off where the scene has punctual lights, because \
+           maps carry both",
 };
 
-/// What is drawn of solid surfaces.
+/// Which triangles of solid surfaces are drawn.
 pub const GEOMETRY: Setting = Setting {
     key: "geometry",
     symbol: "",
@@ -236,8 +246,8 @@ pub const GEOMETRY: Setting = Setting {
     default: "culled",
     unit: "",
     paper: "",
-    help: "what is drawn of solid surfaces, nearest first: the clusters of triangles that the camera may see, or all (the \
-           plain way to the same picture)",
+    help: "Solid surfaces to draw, nearest first: only the clusters of triangles that the camera may see (culled), or \
+           all of them (the plain way to the same picture)",
 };
 
 /// Which punctual lights cast shadow rays.
@@ -248,7 +258,7 @@ pub const DIRECT_SHADOW: Setting = Setting {
     default: "sun",
     unit: "",
     paper: "",
-    help: "shadow rays to no light, to directional lights, or to every punctual light",
+    help: "Lights that cast shadows by rays: none, directional lights (sun), or every punctual light (ray)",
 };
 
 /// Whether shaders count.
@@ -259,8 +269,8 @@ pub const INSTRUMENT: Setting = Setting {
     default: "auto",
     unit: "",
     paper: "Clarberg 2014, 4.1",
-    help: "what is shaded, listed and missing is counted; auto: but in what is timed (bench, --profile), because threads that \
-           count wait for each other",
+    help: "Whether shaders count what is shaded, listed and missing; auto: on, except where times are measured (bench, \
+           --profile), because threads that count wait for each other",
 };
 
 /// What makes the lists of tiled culling.
@@ -271,17 +281,17 @@ pub const CULL_BY: Setting = Setting {
     default: "auto",
     unit: "",
     paper: "",
-    help: "a tile's list of lights is made by one invocation, or by a workgroup that shares its pixels and the lights; auto: \
-           an invocation on software drivers; the same lists",
+    help: "What makes a tile's list of lights: one invocation, or a workgroup that shares out the tile's pixels and \
+           the lights; auto: an invocation on software drivers, a workgroup elsewhere; the same lists",
 };
 
-/// What a G-buffer without lists for tiles leaves unread.
+/// Settings that are not read without light lists for tiles.
 pub const CULL_CONDITIONS: &[Condition] = &[Condition {
     key: CULL_BY.key,
     unread: |values| Unread::unless(values, "cull", &["tiled"], "there are no tiles"),
 }];
 
-/// What two normals of one surface differ by.
+/// How much two normals of one surface may differ.
 pub const NORMAL_THRESHOLD: Setting = Setting {
     key: "normal-threshold",
     symbol: "",
@@ -289,7 +299,8 @@ pub const NORMAL_THRESHOLD: Setting = Setting {
     default: "0.3",
     unit: "",
     paper: "Segovia 2006, 4.5",
-    help: "a neighbour is across a discontinuity where 1 - cos of the angle between the normals is greater",
+    help: "Difference of two normals, as 1 - cos of the angle between them, above which two neighbouring pixels lie \
+           across a discontinuity",
 };
 
 /// How many pixels a thread works on.
@@ -300,9 +311,9 @@ pub const TEXELS: Setting = Setting {
     default: "auto",
     unit: "px",
     paper: "",
-    help: "pixels that a thread shades, compares or filters one after the other at most, reading once what they share; 1 \
-           is the plain way to the same picture; fewer where their lights cast shadow rays; auto: 32 on lavapipe of Mesa \
-           22, 16 on other software drivers, else 1",
+    help: "Most pixels that one thread shades, compares or filters one after the other, reading once what they share; \
+           1 is the plain way to the same picture; fewer are used where lights cast shadow rays; auto: 32 on lavapipe \
+           of Mesa 22, 16 on other software drivers, 1 elsewhere",
 };
 
 /// Which punctual lights surfaces have that are shaded where they are drawn (`lights::object_lists`).
@@ -313,9 +324,9 @@ pub const LIGHT_LISTS: &[Setting] = &[Setting {
     default: "object",
     unit: "",
     paper: "Kircher 2009, 5",
-    help: "punctual lights of a surface that is shaded where it is drawn (every surface of forward, and what blends): those \
-           whose range reaches the box around its object, or around a piece of what blends, or every light (the plain way \
-           to the same picture)",
+    help: "Punctual lights that are evaluated for a surface shaded while it is drawn (every surface of forward, and \
+           BLEND surfaces): those whose range reaches the box around its object, or around a piece of a BLEND surface \
+           (object), or every light (none, the plain way to the same picture)",
 }];
 
 /// Settings of what is drawn with several samples a pixel (`passes::resolve`).
@@ -326,10 +337,11 @@ pub const MULTISAMPLE: &[Setting] = &[Setting {
     default: "1",
     unit: "",
     paper: "Kircher 2009, 3",
-    help: "places of a pixel that are tested for coverage and depth and averaged; a surface is shaded once a pixel",
+    help: "Samples of a pixel that are tested for coverage and depth and then averaged; each surface is shaded once a \
+           pixel",
 }];
 
-/// Of techniques that draw the scene with its materials.
+/// Whether techniques that draw the scene with its materials draw depth first.
 pub const DEPTH_PREPASS: Setting = Setting {
     key: "depth-prepass",
     symbol: "",
@@ -337,7 +349,7 @@ pub const DEPTH_PREPASS: Setting = Setting {
     default: "on",
     unit: "",
     paper: "",
-    help: "depth is drawn first, so that no surface is shaded that another one hides; the same picture (with --msaa 1 to \
+    help: "Draw depth first, so that no surface is shaded that another one hides; the same picture (with --msaa 1 to \
            the bit)",
 };
 
@@ -351,8 +363,8 @@ pub const SHADING: &[Setting] = &[
         default: "unorm16",
         unit: "",
         paper: "Segovia 2006, 4.1",
-        help: "how the G-buffer holds positions: half floats (the paper's), 16-bit fractions of the scene's box, the depth \
-               buffer, or 32-bit floats (the oracle)",
+        help: "How the G-buffer stores positions: as half floats (the paper's), as 16-bit fractions of the scene's box \
+               (unorm16), as the depth buffer, or as 32-bit floats (the most exact, for comparison)",
     },
     GEOMETRY,
     Setting {
@@ -362,7 +374,8 @@ pub const SHADING: &[Setting] = &[
         default: "none",
         unit: "",
         paper: "",
-        help: "of direct light: every light on every pixel, or a list of lights for each tile of 16x16; the same picture",
+        help: "Lights that are evaluated for a pixel in direct lighting: all of them (none), or a list for each tile \
+               of 16x16 pixels (tiled); the same picture",
     },
     CULL_BY,
     DIRECT_SHADOW,

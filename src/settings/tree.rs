@@ -1,14 +1,15 @@
 //! The rows of how rays walk the tree of triangles on a device: the same hits, in another time and memory.
 //!
-//! Why these defaults: `bench rays` on a terrain of 100,352 triangles, the hall and a map of 33,892, on lavapipe 22.3.6, a
-//! software driver; no GPU was tried. Nodes of four with a stack in workgroup memory came first for every query and kind of
-//! ray, with 1.14 to 1.27 times the rays a second of nodes of two with a private stack. The two gain together only: with
-//! nodes of two the private stack is the faster one, with nodes of four and a private stack nothing is won. A short stack
-//! does 0.6 to 0.8 of a whole one's rays. Orders of nodes differ by no more than the measurement's noise.
+//! Why these defaults: `bench rays` on a terrain of 100,352 triangles, the hall and a map of 33,892, on lavapipe
+//! 22.3.6, a software driver; no GPU was tried. Nodes of four with a stack in workgroup memory came first for every
+//! query and kind of ray, with 1.14 to 1.27 times the rays a second of nodes of two with a private stack. The two gain
+//! together only: with nodes of two the private stack is the faster one, with nodes of four and a private stack nothing
+//! is won. A short stack does 0.6 to 0.8 of a whole one's rays. Orders of nodes differ by no more than the
+//! measurement's noise.
 
 use super::{Kind, Setting};
 
-/// How wide the tree is, how it lies in memory, and where a walk keeps what it has not looked at.
+/// Width of the tree, its order in memory, and where a walk keeps the nodes that it has yet to visit.
 pub const TREE: &[Setting] = &[
     Setting {
         key: "node-width",
@@ -17,7 +18,7 @@ pub const TREE: &[Setting] = &[
         default: "4",
         unit: "",
         paper: "",
-        help: "children of a node of the tree that rays walk; 4 joins nodes of 2, and one reading tests all of them",
+        help: "Children of a node of the tree that rays walk; nodes of 4 join nodes of 2, and one read tests all four",
     },
     Setting {
         key: "node-layout",
@@ -26,8 +27,9 @@ pub const TREE: &[Setting] = &[
         default: "depth-first",
         unit: "",
         paper: "",
-        help: "order of the tree's nodes in memory: a node before all below its first child, before all as deep as it, or the \
-               upper half of its levels before each tree of the lower half, and so on in the halves",
+        help: "Order of the tree's nodes in memory: each node before all below its first child (depth-first), before \
+               all that are as deep as it (breadth-first), or the upper half of the levels before each tree of the \
+               lower half, and so on within the halves (van-emde-boas)",
     },
     Setting {
         key: "stack",
@@ -36,8 +38,9 @@ pub const TREE: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "where a ray keeps the nodes that wait: memory of its own, of the workgroup, or --stack-entries of its own, with \
-               a trail by which it finds from the root what did not fit; auto: the workgroup's where that is enough, else its own",
+        help: "Where a ray keeps the nodes that it has yet to visit: in private memory, in workgroup memory (shared), \
+               or in a private stack of --stack-entries with a trail that finds from the root what did not fit \
+               (short); auto: workgroup memory where it is large enough, private memory elsewhere",
     },
     Setting {
         key: "stack-entries",
@@ -46,6 +49,7 @@ pub const TREE: &[Setting] = &[
         default: "8",
         unit: "",
         paper: "",
-        help: "of --stack short: nodes that wait at most; the others are as many as the tree can make wait",
+        help: "Most nodes that wait in the stack of --stack short; the other stacks hold as many as the tree can make \
+               wait",
     },
 ];

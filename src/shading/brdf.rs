@@ -50,7 +50,7 @@ impl Surface {
     }
 }
 
-/// The 8 bits that stand for F0 of a dielectric, 0 to 1, in materials and in the G-buffer: 0 for the default, else steps
+/// The 8 bits that encode F0 of a dielectric, 0 to 1, in materials and in the G-buffer: 0 for the default, else steps
 /// of its root.
 pub fn code_of_f0(f0: f32) -> u32 {
     if f0 == DEFAULT_DIELECTRIC_F0 { 0 } else { 1 + (f0.sqrt() * 254.0).round() as u32 }

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3, Vec4};
 /// What a mesh says of a point on one of its triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPoint {
-    /// Of both UV sets; 0 where there is none.
+    /// Coordinates in both UV sets; 0 where there is none.
     pub uvs: [Vec2; 2],
     /// Linear RGB and alpha; white where there is none.
     pub color: Vec4,

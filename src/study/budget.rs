@@ -43,7 +43,7 @@ pub fn judge(
     };
     let needed_bytes = rehearse(plans, job, driver, u64::MAX, Copies::Scene)?;
     let (needed, over) = (Bytes(needed_bytes), Bytes(needed_bytes.saturating_sub(budget_bytes)));
-    let refused = refused.note(format!("all of the plan takes {needed} of memory blocks, {over} more than the budget"));
+    let refused = refused.note(format!("the whole plan takes {needed} of memory blocks, {over} more than the budget"));
     let mut enough_bytes = needed_bytes.max(budget_bytes).next_multiple_of(MIB);
     for _ in 0..MOST_TRIES {
         let text = format!("{}MiB", enough_bytes / MIB);

@@ -49,8 +49,8 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     Ok(Study { device: caps_name.to_owned(), scene: name, table, is_unrounded, budget })
 }
 
-/// What settings of `job` come to under `caps` that stand for more than their text, such as `auto`: the host's part of a
-/// frame is done for it.
+/// Resolved values under `caps` of the settings of `job` whose text does not say all, such as `auto`: the host's part
+/// of a frame is done for it.
 ///
 /// Errors: as `planned`.
 pub fn resolved(job: &Job, caps: &Caps) -> Result<BTreeMap<&'static str, String>> {

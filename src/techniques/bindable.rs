@@ -1,4 +1,5 @@
-//! What is too large for a device to draw, to bind at once or to hold: refused with what is not, which is found by planning it.
+//! Requests too large for a device to draw, to bind at once or to hold: they are refused with one that fits, found by
+//! planning.
 
 use super::{Inputs, Technique};
 use crate::error::Error;
@@ -33,7 +34,8 @@ pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> E
     error.note(format!("{} would fit", joined(&ways)))
 }
 
-/// What would need less memory than the plan of `inputs`: settings of `Technique::shorter` that halve it, and a smaller picture.
+/// Changes that need less memory than the plan of `inputs`: settings of `Technique::shorter` that halve it, and a
+/// smaller picture.
 pub fn lessen(technique: &dyn Technique, inputs: &Inputs<'_>) -> String {
     let bytes = |values: &Values| technique.plan(&Inputs { values, ..*inputs }).map(|plan| plan.bytes());
     let now = bytes(inputs.values).unwrap_or_default();

@@ -7,12 +7,12 @@ use crate::error::{Error, Result};
 use crate::settings::{Kind, Values, WORKGROUP};
 use crate::techniques::settings_of;
 
-/// What a technique lacks on a device, and how far its settings go.
+/// What a technique lacks on a device, and the limits of its settings.
 #[derive(Clone, Debug)]
 pub struct Fitness {
-    /// What no frame goes without. Empty: it runs.
+    /// Missing abilities that every frame needs. Empty: the technique runs.
     pub stopped_by: Vec<Need>,
-    /// What single settings and kinds of scenes go without.
+    /// Missing abilities that only some settings or scenes need.
     pub left_out: Vec<Need>,
     /// A setting, and the most of it in words.
     pub bounds: Vec<(&'static str, String)>,

@@ -36,7 +36,7 @@ use std::sync::Arc;
 /// Everything that the plan and the host's part of a technique may read.
 pub struct Inputs<'a> {
     pub caps: &'a Caps,
-    /// Who says how large what only a driver knows is.
+    /// Source of the sizes that only a driver knows.
     pub requirements: Requirements<'a>,
     pub scene: &'a Scene,
     pub stats: &'a SceneStats,
@@ -47,7 +47,7 @@ pub struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// What is drawn of the solid surfaces.
+    /// The triangles of solid surfaces that are drawn.
     fn draw_list(&self, scene: &SceneGpu, coverage: Coverage) -> DrawList {
         self.draw_list_into(scene, Raster { extent: self.view.extent, coverage })
     }
@@ -108,7 +108,7 @@ pub trait Technique: Sync {
     /// the scene has BLEND surfaces. Settings that contradict each other need nothing: `plan` refuses them.
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need>;
 
-    /// How far its settings go on a device: a setting, and the most of it in words.
+    /// Limits of its settings on a device: a setting, and its greatest value in words.
     fn bounds(&self, caps: &Caps) -> Vec<(&'static str, String)>;
 
     /// The light transport that it claims to compute, as settings of `path_traced` (`--transport` and the like) by key: what
@@ -125,12 +125,12 @@ pub trait Technique: Sync {
         1
     }
 
-    /// What its paper holds its memory against.
+    /// Methods whose memory its paper compares with.
     fn rivals(&self) -> Vec<Rival> {
         Vec::new()
     }
 
-    /// What a frame needs. Arithmetic, but for the tree of shadow rays, whose size only building it tells.
+    /// What a frame needs. Arithmetic, except for the tree of shadow rays, whose size is known only after building it.
     ///
     /// Errors: settings that contradict each other, the scene or the device (exit code 2).
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan>;
@@ -149,7 +149,7 @@ pub trait Prepared {
     /// Numbers for the report's `counters` that the host's part knows.
     fn counters(&self) -> BTreeMap<&'static str, f64>;
 
-    /// Settings that stand for more than their text: what `auto` and percentages came to.
+    /// Settings whose text does not say all: the values of `auto` and of percentages.
     fn resolved(&self) -> BTreeMap<&'static str, String>;
 
     /// Punctual and virtual point lights that shaders loop over, for the frame's block.
@@ -202,7 +202,7 @@ pub trait Frame {
         Vec2::ZERO
     }
 
-    /// What it sums up from run to run; None where a picture is one run.
+    /// Sums that it keeps from run to run; None where a picture is one run.
     fn sums(&self) -> Option<Sums<'_>> {
         None
     }
@@ -213,7 +213,7 @@ pub trait Frame {
     /// The finished picture (RGBA32F) and how the frame touched it last.
     fn picture(&self) -> (&Image, Access);
 
-    /// What a NaN in the picture may stand for, and what would help; None: nothing that is the technique's own.
+    /// What a NaN in the picture may mean, and what would help; None: nothing particular to the technique.
     fn explained_nan(&self) -> Option<[String; 2]> {
         None
     }
@@ -254,7 +254,7 @@ pub fn set(technique: &dyn Technique, values: &mut Values, key: &str, value: &st
     let name = technique.name();
     match settings_of(technique).iter().find(|setting| setting.key == key) {
         Some(setting) => values.set(setting, value).map_err(|error| error.within(name)),
-        None => Err(Error::request(format!("{name}: it does not read --{key}"))
+        None => Err(Error::request(format!("{name} does not read --{key}"))
             .note(format!("`quincunx render --technique {name} --help` lists what it reads"))),
     }
 }

@@ -13,7 +13,7 @@ struct Family {
     name: &'static str,
     /// As tools/drivers calls it.
     driver: &'static str,
-    /// What tells it.
+    /// The variable that names it to the driver.
     variable: (&'static str, &'static str),
 }
 

@@ -14,8 +14,8 @@ use crate::support::program::{Program, quincunx};
 use std::path::Path;
 use std::time::Duration;
 
-/// Of a processor, over all threads: a clock would count what else the machine does. Of a picture also what the driver
-/// takes to compile shaders.
+/// Processor time over all threads: a clock would count what else the machine does. For a picture it includes what the
+/// driver takes to compile shaders.
 const MOST_CPU: Duration = Duration::from_secs(2);
 const MOST_BYTES: u64 = 1 << 30;
 

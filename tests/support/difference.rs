@@ -23,18 +23,18 @@ pub fn rmse(a: &Picture, b: &Picture) -> f64 {
     metrics::compare(a, b, metrics::DEFAULT_THRESHOLD).unwrap().metrics.rmse
 }
 
-/// Part of the pixels of one picture by two roads that may be more than one 8-bit code apart: where rounding decides
+/// Part of the pixels of one picture by two methods that may be more than one 8-bit code apart: where rounding decides
 /// on which side of an edge a point lies.
 const ROUNDED_PIXELS: f64 = 0.005;
 /// Greatest RMSE of the others, as a part of the brightest channel. Ours: with sums fused or last bits moved at random
 /// an RMSE of 2.4e-5 was the most that was seen (deferred, `--cull none` beside tiled, lavapipe 22.3.6).
 const ROUNDED_RMSE: f64 = 1e-4;
 
-/// Requires one picture of two roads that are different shaders. Software drivers round one source one way, so that
+/// Requires one picture of two methods that are different shaders. Software drivers round one source one way, so that
 /// theirs has the same bits; others may fuse sums and be a last bit off in each shader for itself, so that theirs is
 /// the same within a bound.
 ///
-/// One shader in other bytes, submits or bands is no other road: its bits are the same everywhere.
+/// One shader in other bytes, submits or bands is no other method: its bits are the same everywhere.
 #[track_caller]
 pub fn require_same(gpu: &Gpu, one: &Picture, other: &Picture, what: &dyn Debug) {
     if gpu.caps.identity.is_software() {

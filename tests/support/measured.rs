@@ -11,7 +11,7 @@ const MOST_CPU_S: u64 = 60;
 /// What a run left, and took.
 pub struct Measured {
     pub ran: Ran,
-    /// Of all its threads.
+    /// Processor time of all its threads.
     pub cpu: Duration,
     /// Greatest resident size.
     pub peak_bytes: u64,

@@ -119,7 +119,7 @@ fn handles_interrupts(id: u32) -> bool {
     caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 1 != 0)
 }
 
-/// The lines that tell of progress, and all others.
+/// The lines that report progress, and all others.
 pub fn without_progress(said: &str) -> (Vec<String>, String) {
     let (progress, other): (Vec<&str>, Vec<&str>) =
         said.split_inclusive('\n').partition(|line| line.starts_with("progress: "));

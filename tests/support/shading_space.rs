@@ -1,4 +1,4 @@
-//! A rasteriser that leaves shading space empty: samples find no colour there, as on a device whose road of
+//! A rasteriser that leaves shading space empty: samples find no colour there, as on a device whose method of
 //! conservative rasterisation leaves pixels out.
 
 use ash::vk;

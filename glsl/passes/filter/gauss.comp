@@ -1,4 +1,4 @@
-// One direction of a separable Gaussian that stops at discontinuities. Segovia 2006, section 4.5 (SG11).
+// One direction of a separable Gaussian that stops at discontinuities. Segovia 2006, section 4.5.
 // Pass: src/passes/filter/gauss.rs.
 #version 460
 

@@ -1,5 +1,5 @@
 // One direction of the fast Gaussian: half-texel fetches through a linear sampler, colour and flag at once. A pair of
-// texels with any flag ends the walk. Segovia 2006, section 4.5 and figure 4b (SG12). Pass: src/passes/filter/gauss_fast.rs.
+// texels with any flag ends the walk. Segovia 2006, section 4.5 and figure 4b. Pass: src/passes/filter/gauss_fast.rs.
 // variants: TARGET=image|buffer
 #version 460
 #include "passes/gbuffer.glsl"

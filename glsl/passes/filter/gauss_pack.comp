@@ -1,7 +1,7 @@
 // Irradiance and its discontinuity flags into one image, for the filter that lets the sampler blend: rgb and flags as
 // half floats through an integer view, the same bits on every driver. Pass: src/passes/filter/gauss_pack.rs.
 //
-// The fourth half is 1 where a walk along x stops, plus 4 where one along y does: the mean of two texels still tells
+// The fourth half is 1 where a walk along x stops, plus 4 where one along y does: the mean of two texels still shows
 // which of the flags any of them has.
 #version 460
 #include "passes/gbuffer.glsl"

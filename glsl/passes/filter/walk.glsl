@@ -1,4 +1,4 @@
-// The Gaussian's walk along a line of texels, which stops at discontinuities: Segovia 2006, section 4.5 (SG11). gauss.comp
+// The Gaussian's walk along a line of texels, which stops at discontinuities: Segovia 2006, section 4.5. gauss.comp
 // walks both ways; passes that are fused with it (--fuse) walk one of them. Twin: tests/filter.rs.
 //
 // The including shader has TEXELS: texels that a thread filters, one after the other along the line, so that it reads once
@@ -23,8 +23,8 @@ layout(constant_id = 8) const uint RADIUS = 2;
 const uint WINDOW = TEXELS + 2u * RADIUS;
 
 vec3 window_value[WINDOW];
-// Whether a walk may go on from a texel to the one after it, and back: not where a flag says that the two differ, and not
-// over the frame's edge.
+// Whether a walk may continue from a texel to the one after it, and back: not where a flag says that the two differ,
+// and not over the frame's edge.
 bool window_open_after[WINDOW];
 
 // Where the i-th texel of the window lies on a line of which the thread filters the texels from `first` on. It may lie

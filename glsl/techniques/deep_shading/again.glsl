@@ -9,14 +9,14 @@ layout(location = 1) flat in uint in_primitive;
 #ifdef VISIBILITY_STOCHASTIC
 #include "techniques/deep_shading/visibility/covers.glsl"
 
-// Of stochastic.vert.
+// Written by stochastic.vert.
 layout(location = 2) flat in vec4 in_corners[3];
 #else
 layout(location = 2) in vec3 in_weights;
 #endif
 layout(location = 6) flat in uint in_tuple;
 
-// Of a sample that sees `in_primitive`.
+// Weights of the corners of `in_primitive` at a sample that sees it.
 vec3 seen_weights() {
 #ifdef VISIBILITY_STOCHASTIC
     // What the sample sees has passed the test.

@@ -8,7 +8,7 @@
 #include "techniques/deep_shading/snap.glsl"
 
 const uint HULL_CORNERS = 8u;
-// Of a fan: six triangles are an octagon.
+// Vertices of a fan: six triangles are an octagon.
 const uint HULL_VERTICES = 18u;
 // Floats place what is far outside by as much of it less well.
 const float HULL_REACH_PART = 1.0 / 1048576.0;
@@ -94,9 +94,9 @@ Hull hull_around(vec4 a, vec4 b, vec4 c, float reach, vec2 extent) {
     reach += HULL_REACH_PART * max(far.x, far.y);
     vec2 size = greatest - least;
     float longest = max(size.x, size.y);
-    // Of corners that are rounded to 2^-24 of their places, and of products.
+    // Error of corners that are rounded to 2^-24 of their places, and of products.
     float rounding = longest * (1e-3 + 3e-7 * max(far.x, far.y) + 6e-7 * longest);
-    // Thinner than what floats tell apart: the box around it holds it too, and what is too much falls out at the look-up.
+    // Thinner than floats can resolve: the box around it holds it too, and the look-up drops what is too much.
     if (cut_count < 3u || abs(area) <= rounding) {
         return box_of(least - reach, greatest + reach);
     }

@@ -1,4 +1,4 @@
-// Bits whose every bit depends on all of those given: numbers that seem to be random, and sums that tell sets apart.
+// Bits whose every bit depends on all of those given: numbers that seem to be random, and sums that distinguish sets.
 #ifndef DEEP_SHADING_MIXED_GLSL
 #define DEEP_SHADING_MIXED_GLSL
 

@@ -1,6 +1,6 @@
 // A shading point: a pixel's middle on a triangle in canonical shading space, or the triangle's place nearest to it (section
-// 4.4). A function of triangle and pixel alone, in this order of operations: whoever asks, however the triangle got
-// there, gets the same bits.
+// 4.4). A function of triangle and pixel alone, in this order of operations: the same for every caller, however the
+// triangle got there, gets the same bits.
 //
 // Barycentric weights are ratios of homogeneous areas, taken from the pixel's middle on: products of places on the screen
 // would lose a small triangle in rounding. They hold for triangles that reach behind the eye too.
@@ -13,7 +13,7 @@ struct Place {
     // By how much they change a pixel to the right, and down.
     vec3 right;
     vec3 down;
-    // Of the triangle's winding as it was given: counter-clockwise on the screen.
+    // Whether the triangle, wound as it was given, is counter-clockwise on the screen.
     bool is_front;
 };
 

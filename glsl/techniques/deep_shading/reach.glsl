@@ -1,8 +1,8 @@
-// How shaders come to buffers that have an entry a sample, or more: lists and colours, what a reconstruction keeps, a compact
-// geometry buffer. Through descriptors, or by the buffers' addresses where one is longer than the device binds (--list-access).
-// Written by src/techniques/deep_shading/reach.rs.
+// How shaders reach buffers that have an entry a sample, or more: lists and colours, what a reconstruction keeps, a
+// compact geometry buffer. Through descriptors, or by the buffers' addresses where one is longer than the device binds
+// (--list-access). Written by src/techniques/deep_shading/reach.rs.
 //
-// Included first, as extensions want it; each shader says below what it binds which of these it calls.
+// Included first, as extensions require; each shader says below what it binds which of these it calls.
 #ifndef DEEP_SHADING_REACH_GLSL
 #define DEEP_SHADING_REACH_GLSL
 #extension GL_EXT_buffer_reference : require

@@ -15,7 +15,7 @@ const uint DRAWN_DOUBLE_SIDED = 4u;
 struct DrawnParams {
     MaterialBlock material;
     uint draw;
-    // Of its mesh's first vertex.
+    // Index of its mesh's first vertex.
     uint vertex_offset;
     // The id of a triangle is its place among all indices, a third of it, plus this (modulo 2^32).
     uint primitive_offset;

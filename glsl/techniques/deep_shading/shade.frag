@@ -60,8 +60,8 @@ bool is_hidden(uint pixel) {
 void main() {
     uvec2 at = uvec2(gl_FragCoord.xy);
     // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer. Nothing is
-    // attached that could be written, so a thread returns: one that is discarded goes on as a helper of its quad (glslang
-    // takes discard for demotion) and still reads.
+    // attached that could be written, so a thread returns: one that is discarded continues as a helper of its quad
+    // (glslang takes discard for demotion) and still reads.
     if (at.x >= deep.shading_width_px || at.y >= deep.shading_height_px) {
         return;
     }

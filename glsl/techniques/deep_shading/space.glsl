@@ -26,7 +26,7 @@ struct DeepBlock {
     vec2 scaled_px;
     uint shading_width_px;
     uint shading_height_px;
-    // Of a layer: a tuple's samples.
+    // Size of a layer, which holds a tuple's samples.
     uint layer_width_px;
     uint layer_height_px;
     // Pixels over which the table of tuples is spread.
@@ -43,7 +43,7 @@ struct DeepBlock {
 
 // One place in a pixel, on the lens and in time: (x, y, u, v, t) of the paper's appendix.
 struct TupleBlock {
-    // Of a layer's clip space, from the frame's: factors of x and y, and parts of w.
+    // From the frame's clip space to a layer's: factors of x and y, and parts of w.
     vec2 scale;
     vec2 shift;
     // On the unit disk.
@@ -93,7 +93,7 @@ uint eye_tuples(DeepBlock deep) {
     return deep.table_width_px * deep.table_height_px * deep.sample_count;
 }
 
-// Of a tuple among all runs': both eyes have the same numbers.
+// Number of a tuple among those of all runs; both eyes have the same numbers.
 uint tuple_number(DeepBlock deep, uint run, uint tuple) {
     return run * eye_tuples(deep) + tuple % eye_tuples(deep);
 }
@@ -103,7 +103,7 @@ uint sample_total(DeepBlock deep) {
     return deep.tuple_count * deep.layer_width_px * deep.layer_height_px;
 }
 
-// Of a sample in those buffers: layer by layer, row by row.
+// Index of a sample in those buffers: layer by layer, row by row.
 uint sample_index(DeepBlock deep, uvec3 at) {
     return (at.z * deep.layer_height_px + at.y) * deep.layer_width_px + at.x;
 }

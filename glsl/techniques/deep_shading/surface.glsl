@@ -139,7 +139,7 @@ bool is_unlit() {
     return SURFACE_EXTRAS != 0u && (params.material.flags & MATERIAL_UNLIT) != 0u;
 }
 
-// Of the place that was written last.
+// Colour at the place that was written last.
 uvec2 color_of_base(vec4 base_color) {
     vec3 radiance = base_color.rgb;
     if (!is_unlit()) {

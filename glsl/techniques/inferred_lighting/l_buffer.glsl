@@ -5,9 +5,9 @@
 // The greatest half float: what is brighter is held there instead of becoming infinite.
 const float MOST_LIGHT = 65504.0;
 
-// Light that the last step of fixed point stands for, what is brighter is held there; 0: half floats.
+// Light at the last step of fixed point, to which brighter light is clamped; 0: half floats.
 layout(constant_id = 21) const float LIGHT_RANGE = 0.0;
-// The number after the last step stands for NaN.
+// The number after the last step encodes NaN.
 const float LIGHT_STEPS = 65534.0;
 
 uvec2 pack_fixed_lighting(vec4 lighting) {
@@ -27,7 +27,7 @@ uvec2 pack_lighting(vec4 lighting) {
     return uvec2(packHalf2x16(held.rg), packHalf2x16(held.ba));
 }
 
-// What samples of the L-buffer, and sums of them whose weights are 1 together, stand for.
+// Light encoded by samples of the L-buffer, and by sums of them whose weights add up to 1.
 vec4 light_of(vec4 sampled) {
     return LIGHT_RANGE > 0.0 ? sampled * (LIGHT_RANGE * 65535.0 / LIGHT_STEPS) : sampled;
 }

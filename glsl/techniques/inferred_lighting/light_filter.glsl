@@ -1,6 +1,6 @@
 // The L-buffer at a fragment, from the four samples around it: those of its surface by the discontinuity sensitive filter
-// (Kircher 2009, section 3), or by what other papers tell surfaces apart by. Of alpha surfaces, section 4, the samples are one
-// texel of each cell of a stipple. With GUIDE=normals the including shader declares `frame`.
+// (Kircher 2009, section 3), or by what other papers distinguish surfaces by. Of alpha surfaces, section 4, the samples
+// are one texel of each cell of a stipple. With GUIDE=normals the including shader declares `frame`.
 #ifndef INFERRED_LIGHTING_LIGHT_FILTER_GLSL
 #define INFERRED_LIGHTING_LIGHT_FILTER_GLSL
 
@@ -18,7 +18,7 @@ layout(constant_id = 6) const uint LIGHT_FILTER = 1;
 layout(constant_id = 7) const float CONE_RADIUS = 0.0;
 // 1: where all four samples belong to a solid surface, the sampler blends them.
 layout(constant_id = 8) const uint SAMPLER_BLENDS = 0;
-// Of GUIDE=normals: 1 - cos between two normals of one surface, at most.
+// GUIDE=normals: most that 1 - cos between two normals of one surface may be.
 layout(constant_id = 9) const float NORMAL_THRESHOLD = 0.3;
 
 // Whatever the samples belong to.
@@ -46,7 +46,7 @@ struct LightQuery {
     // One sample in this many along both axes, beginning at `offset`.
     int spacing;
     ivec2 offset;
-    // Of GUIDE=normals.
+    // Read with GUIDE=normals.
     vec3 position_ws;
     vec3 normal_ws;
 };

@@ -1,5 +1,5 @@
-// The material pass: full materials, lit by the L-buffer through a filter that tells surfaces apart. Kircher 2009, sections
-// 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
+// The material pass: full materials, lit by the L-buffer through a filter that distinguishes surfaces. Kircher 2009,
+// sections 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
 // variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals
 #version 460
 #include "frame.glsl"

@@ -1,7 +1,7 @@
 // What the geometry pass left, as the light pass reads it, and what one light adds to the L-buffer there. Compute and
 // fragment shaders run the same code: the sums have the same bits. Kircher 2009, section 2.2.
 //
-// The including shader has the axis EXTRAS and declares `frame`, of the light buffer's extent, and what bvh.glsl wants.
+// The including shader has the axis EXTRAS and declares `frame`, of the light buffer's extent, and what bvh.glsl needs.
 #ifndef INFERRED_LIGHTING_SURFACE_GLSL
 #define INFERRED_LIGHTING_SURFACE_GLSL
 
@@ -19,7 +19,7 @@ layout(set = 0, binding = 42) uniform usampler2D geometry_extras;
 // BRDF_ and SHADOW_ values.
 layout(constant_id = 2) const uint BRDF_KIND = 2;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
-// Of every surface where the geometry pass writes no specular power.
+// Roughness of every surface where the geometry pass writes no specular power.
 layout(constant_id = 5) const float ROUGHNESS = 0.5;
 
 // Depth is reversed: nothing is farther than 0.

@@ -8,12 +8,13 @@
 #include "passes/filter/walk.glsl"
 
 struct CompositeParams {
-    // Of FILTER=columns.
+    // Read with FILTER=columns.
     WalkParams walk;
     uint row_pitch;
     // 1: --direct full. 0: the punctual lights are in the irradiance, or left out.
     uint direct_full;
-    // 0, which compilers do not know: one that sees halves packed and unpacked at once rounds them its own way (Mesa 25).
+    // Always 0, which compilers cannot know: one that sees halves packed and unpacked together rounds otherwise (Mesa
+    // 25).
     uint nothing;
     uint _unused;
 };

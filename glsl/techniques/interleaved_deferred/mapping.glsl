@@ -2,7 +2,7 @@
 // Twin: src/techniques/interleaved_deferred/mapping.rs.
 //
 // Three orders of the same texels, all of them n * sub_width_px by m * sub_height_px: each mapping is one to one.
-//   pixel        the frame, padded to whole patterns and, where a road has blocks, to whole blocks
+//   pixel        the frame, padded to whole patterns and, where a split has blocks, to whole blocks
 //   block texel  each block of p x q split by itself into n x m sub-blocks (figure 2c)
 //   texel        the sub-buffers: x and y inside one, z its number, which is the number of its light subset
 // A width is even, so that a thread can carry two texels of a row.
@@ -15,7 +15,7 @@ struct MappingParams {
     // The pattern, n x m.
     uint pattern_x;
     uint pattern_y;
-    // A block, p x q: a multiple of the pattern; the pattern itself where a road has no blocks.
+    // A block, p x q: a multiple of the pattern; the pattern itself where a split has no blocks.
     uint block_x;
     uint block_y;
     // A sub-buffer with its padding: whole sub-blocks.
@@ -79,7 +79,7 @@ uvec3 texel_of_pixel(MappingParams mapping, uvec2 pixel) {
     return uvec3(pixel / pattern_of(mapping), subset_of(mapping, pixel));
 }
 
-// Its inverse. Of padding it lies outside the frame.
+// Inverse of texel_of_pixel; a texel of the padding gives a pixel outside the frame.
 uvec2 pixel_of_texel(MappingParams mapping, uvec3 texel) {
     return texel.xy * pattern_of(mapping) + place_in_pattern(mapping, texel.z);
 }
@@ -91,7 +91,7 @@ uvec2 block_texel_of_pixel(MappingParams mapping, uvec2 pixel) {
     return pixel - inside + sub_block * sub_block_of(mapping) + inside / pattern_of(mapping);
 }
 
-// Its inverse.
+// Inverse of block_texel_of_pixel.
 uvec2 pixel_of_block_texel(MappingParams mapping, uvec2 at) {
     uvec2 inside = at % block_of(mapping);
     uvec2 sub_block = inside / sub_block_of(mapping);
@@ -106,7 +106,7 @@ uvec3 texel_of_block_texel(MappingParams mapping, uvec2 at) {
     return uvec3(moved, sub_block.y * mapping.pattern_x + sub_block.x);
 }
 
-// Its inverse.
+// Inverse of texel_of_block_texel.
 uvec2 block_texel_of_texel(MappingParams mapping, uvec3 texel) {
     uvec2 block = texel.xy / sub_block_of(mapping);
     uvec2 inside = texel.xy % sub_block_of(mapping);

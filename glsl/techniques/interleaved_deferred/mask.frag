@@ -1,4 +1,4 @@
-// Writes which subset each pixel belongs to, for the roads that choose pixels by a test (Segovia 2006, section 3.1).
+// Writes which subset each pixel belongs to, for the splits that choose pixels by a test (Segovia 2006, section 3.1).
 // Pass: src/techniques/interleaved_deferred/mask.rs.
 //   stencil  a draw a bit of the subset's number, its instance: where the bit is set, the stencil's bit becomes 1
 //   depth    one draw: the subset's number in 4096ths, each of them a float and each another. The test compares bits with

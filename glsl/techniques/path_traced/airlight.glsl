@@ -49,7 +49,7 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
     uint first = is_punctual ? params.emitter_count : 0u;
     uint count = is_punctual ? params.punctual_count : params.emitter_count;
     SourceBlock source = source_of(first, count, min(choice, 0.99999994));
-    // Of either kind there may be none: only what was chosen is read.
+    // There may be none of either kind: only what was chosen is read.
     LightBlock light;
     vec3 source_ws;
     bool is_somewhere = true;

@@ -26,7 +26,7 @@ WalkStart start_on_emitter(float number, float chance) {
     vec2 numbers = next_pair();
     normal = (flags & TRIANGLE_MIRRORED) != 0u ? -normal : normal;
     if ((flags & TRIANGLE_SINGLE_SIDED) == 0u) {
-        // Both sides shine: each walk takes one of them, and stands for both.
+        // Both sides shine: each walk takes one of them, and represents both.
         area *= 2.0;
         normal = numbers.x < 0.5 ? normal : -normal;
     }

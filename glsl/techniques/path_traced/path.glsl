@@ -35,17 +35,17 @@ struct SampleParams {
     // The medium's box.
     vec4 medium_min_ws;
     vec4 medium_max_ws;
-    // Of the medium, per metre: light that it scatters, and all that it stops.
+    // Light that the medium scatters, and all that it stops, per metre.
     float scattering;
     float extinction;
-    // Mean cosine of the angle by which the medium turns light, -1 to 1.
+    // Mean cosine of the angle by which the medium scatters light, -1 to 1.
     float asymmetry;
-    // Of the lens, in metres, and how far before it the plane in focus lies.
+    // Radius of the lens, and distance from it to the plane in focus, in metres.
     float lens_radius;
     float focus;
     // How far to the camera's right its middle is, metres.
     float lens_aside;
-    // Of TEXTURE_CONE: width of a pixel at the eye, metres, and by how much it grows a metre.
+    // With TEXTURE_CONE: width of a pixel at the eye, metres, and by how much it grows a metre.
     float cone_width;
     float cone_spread;
     // Square of --vpl-clamp, in square metres.
@@ -63,7 +63,7 @@ struct SourceBlock {
     // A triangle of the tree, or a light of the list.
     uint index;
     float chance;
-    // Of this one and all before it in its list.
+    // Sum over this one and all before it in its list.
     float cumulative;
     uint _unused;
 };
@@ -104,7 +104,7 @@ vec2 next_pair() {
     return sobol_pair(frame.sample_index, pair_seed(numbers_seed, numbers_pair));
 }
 
-// Of a ray's decisions about BLEND surfaces, which have no pairs of their own: how many a ray meets is not known.
+// Seed of a ray's decisions about BLEND surfaces, which have no pairs of their own: how many a ray meets is not known.
 uint next_seed() {
     numbers_pair++;
     return mixed(pair_seed(numbers_seed, numbers_pair) ^ mixed(frame.sample_index));

@@ -15,7 +15,7 @@ const float FAR = 1e30;
 // Paths end by chance from this surface on.
 const uint ROULETTE_FROM = 3u;
 
-// The path of a pixel's sample, and where it goes on.
+// The path of a pixel's sample, and where it continues.
 struct Path {
     vec3 origin;
     vec3 direction;
@@ -28,7 +28,7 @@ struct Path {
     // Surfaces and places of the medium that have scattered it.
     uint bounce;
     bool goes_on;
-    // Of the ray's cone: its width at the origin, metres, and by how much it grows a metre.
+    // Width of the ray's cone at the origin, metres, and by how much it grows a metre.
     float cone_width;
     float cone_spread;
 };

@@ -23,7 +23,7 @@ const HEIGHT: f32 = 0.9;
 impl Rays {
     pub const ALL: [Self; 2] = [Self::Incoherent, Self::Coherent];
 
-    /// As rows have it.
+    /// Name in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Incoherent => "incoherent",

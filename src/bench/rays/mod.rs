@@ -3,7 +3,7 @@
 //!
 //! Every walk is held against the host's: their hits may differ where a ray meets an edge, and nowhere else. Of triangles
 //! that a ray meets at one distance, such as those of a shared edge, the device takes the first in the tree's order and the
-//! host the first that it comes to.
+//! host the first that it finds.
 
 pub mod cast;
 mod host;
@@ -43,20 +43,20 @@ const RAY_SHADOW: u32 = 1;
 
 /// A way of walking in order that is measured.
 pub struct Variant {
-    /// What tells it from the others, as tables have it; empty where there are none.
+    /// Label that distinguishes it from the others in tables; empty where there are none.
     pub label: String,
-    /// Of `settings::TREE`.
+    /// Values of the settings in `settings::TREE`.
     pub values: Values,
 }
 
 /// The walks of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkKind {
-    /// That of shadow rays.
+    /// The walk of shadow rays.
     Plain,
-    /// That of path tracing: an index into `Request::variants`.
+    /// The walk of path tracing: an index into `Request::variants`.
     Ordered(usize),
-    /// The driver's own, by ray queries: there where the device has them.
+    /// The driver's own, by ray queries, where the device has them.
     Query,
 }
 
@@ -80,17 +80,17 @@ pub struct Measured {
     pub device: Samples,
     /// The host's walk for the same query.
     pub host: Samples,
-    /// Of the plain walk of the same rays.
+    /// Times of the plain walk of the same rays.
     pub plain: Samples,
     pub hit_count: usize,
     /// BLAKE3, in hexadecimal, of what each ray met.
     pub hits_hash: String,
-    /// Rays that the host answers otherwise, but for triangles at the same distance.
+    /// Rays for which the host has another answer, not counting triangles at the same distance.
     pub differing: usize,
 }
 
 impl Measured {
-    /// As rows have it.
+    /// Name in rows.
     pub fn walk(&self) -> &'static str {
         match self.kind {
             WalkKind::Plain => "plain",
@@ -122,7 +122,7 @@ pub fn run(
 ) -> Result<Vec<Measured>> {
     let bvh = Bvh::whole(scene)?;
     if bvh.sources.is_empty() {
-        return Err(Error::request(format!("{}: there is no triangle that rays could meet", scene.name)));
+        return Err(Error::request(format!("{}: there is no triangle that rays could hit", scene.name)));
     }
     let triangles = Rc::new(filled(gpu, "triangles", &bvh.triangles)?);
     let plain = Rc::new(Tree::plain(gpu, &bvh, &triangles)?);

@@ -10,7 +10,7 @@ pub enum Query {
 }
 
 impl Query {
-    /// As rows have it.
+    /// Name in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Any => "any",

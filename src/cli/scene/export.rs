@@ -28,7 +28,7 @@ pub fn command() -> Command {
                 .value_name("FILE.glb")
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
-                .help("The file, written whole or not at all"),
+                .help("File to write, whole or not at all"),
         )
         .arg(seed_argument())
         .arg(output::quiet_flag())

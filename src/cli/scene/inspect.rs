@@ -15,7 +15,7 @@ use std::fmt::Write;
 /// The sub-verb with its arguments.
 pub fn command() -> Command {
     Command::new("inspect")
-        .about("Say what a scene holds, and what of it is left out or approximated")
+        .about("Print what a scene holds, and what of it is left out or approximated")
         .arg(
             Arg::new("scene")
                 .value_name("SCENE")
@@ -139,7 +139,7 @@ fn describe(text: &mut String, scene: &Scene, facts: Option<&Facts>) -> std::fmt
 }
 
 fn describe_file(text: &mut String, facts: &Facts) -> std::fmt::Result {
-    let generator = facts.generator.as_deref().unwrap_or("a program that does not say its name");
+    let generator = facts.generator.as_deref().unwrap_or("an unnamed program");
     writeln!(text, "   glTF {} by {generator}, {}", facts.version, Bytes(facts.size_bytes))?;
     for (what, names) in [("uses", &facts.extensions_used), ("requires", &facts.extensions_required)] {
         if !names.is_empty() {
@@ -179,7 +179,7 @@ fn closed_mesh_count(scene: &Scene) -> usize {
     scene.meshes.par_iter().filter(|mesh| Shell::of(mesh).is_closed()).count()
 }
 
-/// Those of all meshes together.
+/// Number of normal groups of all meshes together.
 fn normal_group_count(scene: &Scene) -> usize {
     scene.meshes.par_iter().map(normal_groups::count).sum()
 }

@@ -9,7 +9,7 @@ pub fn seed_argument() -> Arg {
         .value_name("N")
         .value_parser(value_parser!(u32))
         .default_value("1")
-        .help("Seeds what a built-in scene scatters")
+        .help("Seed of what a built-in scene scatters")
 }
 
 pub fn seed(matches: &ArgMatches) -> u64 {

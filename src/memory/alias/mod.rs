@@ -66,7 +66,7 @@ pub fn place(spans: &[Span], mode: Mode) -> Placement {
     Placement { offsets, total_bytes, lower_bound_bytes, proven_optimal }
 }
 
-/// For each span, those that ended before it began and held some of its bytes: who must be done with them before it
+/// For each span, those that ended before it began and held some of its bytes: their accesses must end before it
 /// writes. In ascending order.
 ///
 /// All of them, not only the last: a barrier after one of two earlier owners does not wait for the other.

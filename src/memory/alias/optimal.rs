@@ -24,7 +24,7 @@ struct Search<'a> {
     least_total: u64,
     best: Vec<u64>,
     best_total: u64,
-    /// Of the spans that are piled up.
+    /// Offsets of the spans that are placed.
     offsets: Vec<u64>,
     is_placed: Vec<bool>,
     /// Height of the pile at each moment.
@@ -65,10 +65,11 @@ impl Search<'_> {
         height.next_multiple_of(self.spans[index].alignment)
     }
 
-    /// The height that every placement reaches which goes on from here, where nothing more comes below `floor`.
+    /// Height that every placement continued from here reaches at least, if nothing more is placed below `floor`.
     fn bound(&self, floor: u64) -> u64 {
         let mut highest = self.heights.iter().copied().max().unwrap_or(0);
-        // Of what waits at each moment: the sum of rounded sizes, and the most that rounding adds to one of them.
+        // For each moment, over the spans not yet placed: the sum of rounded sizes, and the most that rounding adds to
+        // one.
         let mut waiting = vec![(0u64, 0u64); self.heights.len()];
         for index in (0..self.spans.len()).filter(|index| !self.is_placed[*index]) {
             let bytes = self.spans[index].bytes;

@@ -1,4 +1,4 @@
-//! One range is the whole block: for resources that are large, or that are wanted apart.
+//! One range is the whole block: for resources that are large, or that must lie apart.
 
 use super::Suballocate;
 

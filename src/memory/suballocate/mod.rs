@@ -65,7 +65,7 @@ mod tests {
             bytes: u64,
             alignment: u64,
         },
-        /// Of the live ranges, which; modulo their number.
+        /// Index of the live range to give back, modulo their number.
         GiveBack(usize),
     }
 

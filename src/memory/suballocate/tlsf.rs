@@ -57,7 +57,7 @@ pub struct Tlsf {
     size_bytes: u64,
     used_bytes: u64,
     ranges: Vec<Range>,
-    /// Entries of `ranges` that stand for nothing.
+    /// Entries of `ranges` that are not in use.
     spare: Vec<Index>,
     /// Live ranges by offset.
     live: HashMap<u64, Index>,
@@ -166,7 +166,7 @@ impl Tlsf {
         (start.checked_add(bytes)? <= range.offset + range.bytes).then_some(start)
     }
 
-    /// Unites a range with the one behind it, which ends to exist.
+    /// Merges a range with the one behind it, which is removed.
     fn merge_behind(&mut self, index: Index, behind: Index) {
         let Range { bytes, behind: next, .. } = *self.range(behind);
         self.range(index).bytes += bytes;
@@ -235,7 +235,7 @@ impl Suballocate for Tlsf {
         self.size_bytes - self.used_bytes
     }
 
-    /// The greatest of the last list: not in constant time, and only asked for by who looks at memory.
+    /// The greatest of the last list: not in constant time, and only asked for by reports of memory.
     fn largest_free_bytes(&self) -> u64 {
         let Some(row) = self.rows.checked_ilog2() else { return 0 };
         let mut next = self.heads[row as usize][self.steps[row as usize].ilog2() as usize];

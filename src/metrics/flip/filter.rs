@@ -1,5 +1,6 @@
 //! FLIP's filters: the contrast sensitivity of the eye, and what finds edges and points. All are sums of products of
-//! one-dimensional kernels, so each runs along rows first and then along columns. Past the border the last pixel goes on.
+//! one-dimensional kernels, so each runs along rows first and then along columns. The last pixel is repeated past the
+//! border.
 
 use crate::units::Extent;
 use rayon::prelude::*;

@@ -5,14 +5,14 @@ use super::linear_map;
 use crate::picture::Picture;
 use crate::picture::tonemap::{REC709_WEIGHTS, ToneMap, weighted};
 
-/// What scales light before the tone map's fit, which is then the one that the paper uses (Narkowicz 2015).
+/// Scale of light before the tone map's fit, which makes it the fit that the paper uses (Narkowicz 2015).
 const ACES_SCALE: f64 = 0.6;
 /// The part of white up to which a tone-mapped picture is well exposed (section 3.2).
 const WELL_EXPOSED: f64 = 0.85;
 /// The least luminance that counts: the gap between 1 and the next 32-bit float, as in the authors' program.
 const LEAST_LUMINANCE: f64 = f32::EPSILON as f64;
 
-/// Which exposures a reference is looked at in, in stops.
+/// Exposures at which a reference is compared, in stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposures {
     /// The brightest pixel is well exposed: the darkest picture.
@@ -24,7 +24,7 @@ pub struct Exposures {
 }
 
 impl Exposures {
-    /// Of a reference without NaN and infinity.
+    /// Exposures for a reference without NaN and infinity.
     pub fn of(reference: &Picture) -> Self {
         let luminance = |pixel: &[f32; 3]| weighted(pixel.map(|channel| f64::from(channel.max(0.0))), REC709_WEIGHTS);
         let mut luminances: Vec<f64> = reference.pixels.iter().map(luminance).collect();

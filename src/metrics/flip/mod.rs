@@ -93,7 +93,7 @@ pub(super) fn map(actual: &Srgb8, reference: &Srgb8) -> Vec<f32> {
     linear_map(actual.extent, &decode(actual), &decode(reference))
 }
 
-/// The mean of a map: the one number that the authors advise.
+/// The mean of a map: the single number that the authors recommend.
 pub(super) fn mean(map: &[f32]) -> f64 {
     map.iter().map(|error| f64::from(*error)).sum::<f64>() / map.len() as f64
 }

@@ -1,4 +1,4 @@
-//! Separable Gaussian that walks until a discontinuity: Segovia 2006, section 4.5 (B, SG11). Shader: gauss.comp.
+//! Separable Gaussian that walks until a discontinuity: Segovia 2006, section 4.5 (B). Shader: gauss.comp.
 //! reads  an irradiance buffer and flags, frame order      writes  a buffer between the directions, then the target
 
 use super::Kernel;
@@ -53,7 +53,7 @@ impl Gauss {
         })
     }
 
-    /// Along the rows only: whoever reads `target` walks its columns.
+    /// Along the rows only: the reader of `target` walks its columns.
     pub fn record_rows(
         &self,
         cmd: &mut Commands,
@@ -81,7 +81,7 @@ impl Gauss {
         self.direction(cmd, true, source.resource, flags.resource, target)
     }
 
-    /// Of walks along x (true) and y.
+    /// Traffic of passes along x (true) and y.
     fn traffic(&self, walks: &[bool]) -> Traffic {
         let count = |threads: [u32; 3]| threads.map(u64::from).iter().product::<u64>();
         let threads: u64 = walks.iter().map(|horizontal| count(self.threads(*horizontal))).sum();

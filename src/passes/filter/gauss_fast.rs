@@ -1,5 +1,5 @@
 //! The fast Gaussian: half-texel fetches that let the sampler blend two texels and their flags at once. Segovia 2006,
-//! section 4.5 and figure 4b (SG12). Shader: gauss_fast.comp; gauss_pack.comp makes its image.
+//! section 4.5 and figure 4b. Shader: gauss_fast.comp; gauss_pack.comp makes its image.
 //! reads  an irradiance buffer and flags      writes  two images between, then the target buffer
 
 use super::Kernel;

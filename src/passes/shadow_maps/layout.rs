@@ -42,7 +42,7 @@ pub struct MapLayout {
     /// Texels whose change of depth surfaces are pushed away by.
     pub(super) slope_bias_px: f32,
     pub(super) casters: GeometryChoice,
-    /// They are drawn before the first frame, and kept.
+    /// Whether they are drawn before the first frame, and kept.
     pub(super) is_once: bool,
     size_px: u32,
     bias_m: f32,
@@ -143,12 +143,12 @@ impl MapLayout {
         }
     }
 
-    /// What a pass touches whose fragments ask the maps: of maps that are kept nothing.
+    /// The maps, as a pass touches them whose fragments read them; None for maps that are kept.
     pub fn read(&self, technique: &str) -> Option<(String, Access)> {
         self.read_by(technique, Access::FragmentSample)
     }
 
-    /// The same of one that does so by `access`.
+    /// The same for a pass that reads them by `access`.
     pub fn read_by(&self, technique: &str, access: Access) -> Option<(String, Access)> {
         (!self.is_once).then(|| (depth_name(technique), access))
     }
@@ -159,7 +159,7 @@ impl MapLayout {
         [("SHADOW_BIAS", self.bias_m.to_bits()), ("SHADOW_FILTER", filter)]
     }
 
-    /// What `--shadow-filter auto` came to.
+    /// Resolved value of `--shadow-filter`.
     pub fn resolved(&self) -> (&'static str, String) {
         ("shadow-filter", self.filter.name().to_owned())
     }
@@ -276,7 +276,7 @@ fn camera([right, up, back]: [Vec3; 3], position: Vec3, projection: Projection) 
     Camera { name: String::new(), world_from_view, projection }
 }
 
-/// Right and up of whoever looks along the unit vector `direction`: the right is across the axis of the world that it is
+/// Right and up of a view along the unit vector `direction`: the right is across the axis of the world that it is
 /// least along.
 fn across(direction: Vec3) -> (Vec3, Vec3) {
     let aside = Vec3::AXES[direction.abs().min_position()];

@@ -73,7 +73,7 @@ pub struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// As they stand in the scene itself.
+    /// The places of the scene itself.
     pub fn of(scene: &'a SceneGpu) -> Self {
         Self { draws: &scene.draws, positions: &scene.positions }
     }
@@ -92,7 +92,7 @@ pub struct ShadowMaps {
     depth: Image,
     blocks: Buffer,
     sampler: Sampler,
-    /// They are not drawn in frames.
+    /// Whether they are drawn once, and not in frames.
     is_once: bool,
 }
 
@@ -213,7 +213,7 @@ impl ShadowMaps {
         })
     }
 
-    /// What a pass waits for whose fragments, or threads, ask the maps: `to`. `from`: who touched them last,
+    /// Barriers of a pass whose fragments, or threads, read the maps: `to`. `from`: what touched them last,
     /// `Access::DepthWrite` or another such pass. Of maps that are kept nothing.
     pub fn barrier(&self, from: Access, to: Access) -> Option<Barrier> {
         (!self.is_once).then(|| self.depth.from(from).to(to))

@@ -114,7 +114,7 @@ pub(super) fn read_channels<const N: usize>(
 ) -> Result<Channels<N>> {
     let broken = |error: ExrError| match error {
         ExrError::Io(error) => unreadable(path, &error),
-        other => unreadable(path, &format!("it is no EXR, or a broken one ({other})")),
+        other => unreadable(path, &format!("it is not an EXR, or a broken one ({other})")),
     };
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
     let reader = Reader::read_from_buffered(BufReader::new(file), false).map_err(broken)?;

@@ -21,7 +21,7 @@ use crate::units::Extent;
 pub fn write(path: &Path, picture: &Picture, options: &WriteOptions) -> Result<()> {
     match Format::of(path)? {
         Format::Png if !options.aovs.is_empty() => Err(Error::request(format!(
-            "cannot write {}: a PNG has no room for the layer {}; -o FILE.exr has",
+            "cannot write {}: a PNG cannot hold the layer {}; -o FILE.exr can",
             path.display(),
             options.aovs[0].name
         ))),

@@ -39,7 +39,7 @@ pub(super) fn read(path: &Path) -> Result<Picture> {
             unreadable(path, &format!("it is larger than {SIDE_LIMIT_PX} pixels a side or {DECODED_LIMIT} decoded"))
         }
         ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => unreadable(path, &error),
-        other => unreadable(path, &format!("it is no PNG, or a broken one ({other})")),
+        other => unreadable(path, &format!("it is not a PNG, or a broken one ({other})")),
     };
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(SIDE_LIMIT_PX);
@@ -109,7 +109,7 @@ mod tests {
             std::fs::write(&path, &whole[..length]).unwrap();
             let error = read(&path).unwrap_err();
             assert_eq!(error.exit_code(), 2);
-            assert!(error.message().contains("a.png: it is no PNG, or a broken one"), "{length}: {error}");
+            assert!(error.message().contains("a.png: it is not a PNG, or a broken one"), "{length}: {error}");
         }
         // The width stands at byte 16 of the header; its checksum, now wrong, at byte 29.
         let mut huge = whole;

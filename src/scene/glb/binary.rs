@@ -48,7 +48,7 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// The same for positions, whose box glTF wants to know.
+    /// The same for positions, whose box glTF requires.
     pub fn positions(&mut self, positions: &[Vec3]) -> usize {
         let accessor = self.vectors(bytemuck::cast_slice(positions), "VEC3");
         let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
@@ -58,7 +58,7 @@ impl Binary {
         accessor
     }
 
-    /// The times of keyframes, ascending, whose ends glTF wants to know.
+    /// The times of keyframes, ascending, whose ends glTF requires.
     pub fn times(&mut self, times_s: &[f32]) -> usize {
         let view = self.view(bytemuck::cast_slice(times_s), None);
         let mut accessor =

@@ -113,7 +113,7 @@ pub fn is_packed(accessor: &Accessor<'_>) -> bool {
     accessor.view().is_none() || accessor.sparse().is_some()
 }
 
-/// Errors: the accessor has not one element for each of `vertex_count` vertices (exit code 2).
+/// Errors: the accessor does not have one element for each of `vertex_count` vertices (exit code 2).
 pub fn require_count(accessor: &Accessor<'_>, vertex_count: usize) -> Result<()> {
     if accessor.count() == vertex_count {
         return Ok(());

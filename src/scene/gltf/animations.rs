@@ -149,7 +149,7 @@ fn read_channel(
     if motion == Motion::Rotation
         && let Some(key) = curve.key_values().position(|key| unit_quaternion(glam::Vec4::from_slice(key)).is_none())
     {
-        return Err(Error::request(format!("the rotation of key {key} is zero, which turns to nowhere")));
+        return Err(Error::request(format!("the rotation of key {key} is zero, which is not a rotation")));
     }
     Ok(Channel { node_index, motion, curve })
 }

@@ -59,7 +59,7 @@ enum Form {
 /// Meshes of a node's own.
 #[derive(Debug)]
 struct Bent {
-    /// Those of `Bodies::bent` that they are made from.
+    /// Range of `Bodies::bent` from which they are made.
     sources: Range<usize>,
     /// Index in the file.
     skin: Option<usize>,
@@ -71,7 +71,7 @@ struct Bent {
 /// What is drawn at a moment.
 #[derive(Debug)]
 pub struct Shapes {
-    /// Those that bend, after those that stand still.
+    /// Meshes that stand still, and after them those that bend.
     pub meshes: Vec<Mesh>,
     pub draws: Vec<Draw>,
     /// The node of each draw.

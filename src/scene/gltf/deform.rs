@@ -28,7 +28,7 @@ const FREE_MORPHED_VECTORS: usize = 1 << 25;
 #[derive(Debug)]
 pub struct Deform {
     targets: Vec<Target>,
-    /// Of a mesh that a skin bends somewhere.
+    /// Joints and weights, if a skin bends the mesh somewhere.
     influences: Option<Influences>,
     /// The file gives no normals: they are those of the triangles, whatever their shape.
     flat: bool,

@@ -14,7 +14,7 @@ use crate::scene::gltf::images::ImageFacts;
 /// The file's own counts and names.
 #[derive(Clone, Debug)]
 pub struct Facts {
-    /// Of the file and the files it points at, as far as they were read.
+    /// Bytes of the file and of the files that it points at, as far as they were read.
     pub size_bytes: u64,
     pub generator: Option<String>,
     pub version: String,

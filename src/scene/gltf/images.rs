@@ -34,7 +34,7 @@ struct Encoded<'a> {
     bytes: Data<'a>,
     format: ImageFormat,
     extent: Extent,
-    /// Of the pixels as the file has them: sixteen bits a channel take more than eight.
+    /// Bytes of the decoded pixels at the file's precision: sixteen bits a channel take more than eight.
     decoded_bytes: u64,
 }
 

@@ -10,7 +10,7 @@ use crate::units::Bytes;
 /// What a file spends of one kind of thing.
 #[derive(Debug)]
 pub struct Allowance {
-    /// In the plural.
+    /// The name of the kind, in the plural.
     what: &'static str,
     spent: usize,
     limit: usize,

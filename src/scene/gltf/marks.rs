@@ -1,4 +1,4 @@
-//! What a file says of surfaces in `extras`, in keys of this program's own: which layer of a stipple lights them.
+//! Marks of surfaces in a file's `extras`, in keys of this program's own: the layer of a stipple that lights them.
 
 use gltf::Document;
 use gltf::json::Extras;
@@ -9,9 +9,10 @@ use super::label;
 use crate::error::{Error, Result};
 use crate::scene::Node;
 
-/// Of a material's or a node's extras: a layer of the stipple that BLEND surfaces are lit in (Kircher 2009, section 4).
+/// Key in a material's or a node's extras: the stipple layer that its BLEND surfaces are lit in (Kircher 2009,
+/// section 4).
 pub const STIPPLE_LAYER: &str = "quincunx_stipple_layer";
-/// Of a stipple of 4x4 texels, the largest.
+/// Greatest layer of a 4x4 stipple, the largest one.
 const MOST_LAYER: u64 = 15;
 
 #[derive(Deserialize)]

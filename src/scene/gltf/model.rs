@@ -30,7 +30,7 @@ use crate::scene::{Bounds, Camera, Facing, Light, Mesh, Scene};
 /// Stands in the hash for how a file becomes a scene; a change that alters scenes alters this line.
 const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 4: posed, COLOR_0, two UV sets, flat normals, MikkTSpace at rest";
 
-/// In how many equal parts the animations' duration is looked at for where the scene reaches.
+/// Number of equal parts of the animations' duration at which the scene's bounds are taken.
 const REACH_PARTS: u32 = 16;
 
 /// A glTF file: what no moment changes, and what moves and bends.
@@ -38,7 +38,7 @@ const REACH_PARTS: u32 = 16;
 pub struct Model {
     path: PathBuf,
     document: Document,
-    /// Of the bytes, the import settings, and what plays.
+    /// Hash of the bytes, the import settings, and the animations that play.
     hasher: blake3::Hasher,
     hierarchy: Hierarchy,
     channels: Vec<Channel>,

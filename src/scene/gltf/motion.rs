@@ -2,13 +2,13 @@
 
 use crate::scene::animation::Curve;
 
-/// What a channel moves.
+/// Property that a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Motion {
     Translation,
     Rotation,
     Scale,
-    /// Of the morph targets of the node's mesh.
+    /// Weights of the morph targets of the node's mesh.
     Weights,
 }
 

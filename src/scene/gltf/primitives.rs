@@ -30,7 +30,7 @@ pub struct Piece {
     pub deform: Option<Deform>,
 }
 
-/// What became of one primitive.
+/// Result of reading one primitive.
 #[derive(Debug)]
 enum Outcome {
     Piece {

@@ -175,8 +175,8 @@ impl Influences {
     ///
     /// A triangle that the joints mirror runs the other way round afterwards, so that its front stays its front. glTF 2.0
     /// has the determinant of a node's transform say which way fronts run (section 3.7.2.1), and has the node's transform
-    /// ignored where a skin is (3.7.3.3): what stands for it there, the joints, says it here, for each triangle as most of
-    /// its corners have it.
+    /// ignored where a skin is (3.7.3.3): the joints, which replace it there, decide it here, for each triangle as most
+    /// of its corners have it.
     pub fn apply(&self, mesh: &mut Mesh, world_from_mesh: &[Mat4]) {
         let mut is_mirrored = vec![false; mesh.positions.len()];
         for vertex in 0..mesh.positions.len() {

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 /// Gutters are this part of the atlas: four texels of 2048.
 const GUTTER: f64 = 1.0 / 512.0;
-/// Of as many charts as would have a square each, gutters are no more than this part of the square's side.
+/// Greatest gutter, as a part of the side of the square that each chart would have if all were equal squares.
 const MOST_GUTTER: f64 = 1.0 / 16.0;
 /// Sides are at least this part of the largest.
 const LEAST_SIDE: f64 = 1e-4;

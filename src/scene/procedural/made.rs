@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::scene::animation::{AnimationChoice, Curve};
 use crate::scene::{Bounds, Facing, Scene, gltf};
 
-/// In how many moments of its period a thing is looked at for where the scene reaches.
+/// Number of moments of its period at which a thing is sampled for the scene's bounds.
 const REACH_PARTS: u32 = 8;
 
 /// Which thing of a scene.
@@ -26,9 +26,9 @@ pub struct Motion {
     pub thing: Thing,
     /// Where the thing's origin stands, metres, where `translations` is None.
     translation: Vec3,
-    /// Of three numbers, metres.
+    /// Translation, three numbers in metres.
     pub translations: Option<Curve>,
-    /// Of quaternions x, y, z, w. None: it keeps the orientation of its own space.
+    /// Rotation, a quaternion x, y, z, w. None: the orientation of its own space stays.
     pub rotations: Option<Curve>,
     /// After how many seconds it has been wherever it goes.
     period_s: u32,

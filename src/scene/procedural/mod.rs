@@ -50,7 +50,7 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// What may stand for it, and what does where nothing is said.
+    /// The values that it may have, and its default.
     pub fn described(&self) -> String {
         match self {
             Self::Number { default, range: [least, greatest] } => format!("{least} to {greatest}, default {default}"),
@@ -103,17 +103,17 @@ pub const ALL: &[BuiltIn] = &[
         parameters: &[
             Parameter {
                 key: "triangles",
-                description: "how many triangles all draws have together, within 5 %",
+                description: "number of triangles of all draws together, within 5 %",
                 choice: Choice::Number { default: 256_000, range: [hall::LEAST_TRIANGLES, 4_000_000] },
             },
             Parameter {
                 key: "lights",
-                description: "how many of its lamps are there",
+                description: "number of its lamps that are there",
                 choice: Choice::Number { default: hall::MOST_LAMPS, range: [1, hall::MOST_LAMPS] },
             },
             Parameter {
                 key: "draws",
-                description: "in how many draws at most, copies joined to one mesh",
+                description: "greatest number of draws, with copies joined to one mesh",
                 choice: Choice::Number { default: hall::MOST_DRAWS, range: [hall::LEAST_DRAWS, hall::MOST_DRAWS] },
             },
         ],
@@ -125,12 +125,12 @@ pub const ALL: &[BuiltIn] = &[
         parameters: &[
             Parameter {
                 key: "objects",
-                description: "how many objects stand there",
+                description: "number of objects",
                 choice: Choice::Number { default: 101, range: [1, 5000] },
             },
             Parameter {
                 key: "lights",
-                description: "how many point lights hang there",
+                description: "number of point lights",
                 choice: Choice::Number { default: 81, range: [0, 5000] },
             },
         ],
@@ -142,10 +142,10 @@ pub const ALL: &[BuiltIn] = &[
         parameters: &[
             Parameter {
                 key: "lights",
-                description: "how many point lights hang there",
+                description: "number of point lights",
                 choice: Choice::Number { default: 122, range: [1, 5000] },
             },
-            Parameter { key: "alpha", description: "how wire is drawn", choice: Choice::Word(&["blend", "mask"]) },
+            Parameter { key: "alpha", description: "alpha mode of the wire", choice: Choice::Word(&["blend", "mask"]) },
         ],
         make: fence::make,
     },
@@ -154,7 +154,7 @@ pub const ALL: &[BuiltIn] = &[
         description: "a gothic round under 64 spots, with a camera that flies (after Clarberg & Munkberg 2014, table 1)",
         parameters: &[Parameter {
             key: "triangles",
-            description: "how many triangles all draws have together, within 1 %",
+            description: "number of triangles of all draws together, within 1 %",
             choice: Choice::Number { default: 528_000, range: [arena::LEAST_TRIANGLES, 8_000_000] },
         }],
         make: arena::make,
@@ -164,7 +164,7 @@ pub const ALL: &[BuiltIn] = &[
         description: "a hall of turbines, tanks and pipes in a floodlight (after Clarberg & Munkberg 2014, table 1)",
         parameters: &[Parameter {
             key: "triangles",
-            description: "how many triangles all draws have together, within 1 %",
+            description: "number of triangles of all draws together, within 1 %",
             choice: Choice::Number { default: 111_000, range: [power::LEAST_TRIANGLES, 4_000_000] },
         }],
         make: power::make,
@@ -174,7 +174,7 @@ pub const ALL: &[BuiltIn] = &[
         description: "a game of chess under sixteen spots, four men moving (after Clarberg & Munkberg 2014, table 1)",
         parameters: &[Parameter {
             key: "triangles",
-            description: "how many triangles all draws have together, within 1 %",
+            description: "number of triangles of all draws together, within 1 %",
             choice: Choice::Number { default: 46_000, range: [chess::LEAST_TRIANGLES, 2_000_000] },
         }],
         make: chess::make,
@@ -442,7 +442,7 @@ mod tests {
             assert_eq!(error.exit_code(), 2);
             assert!(error.message().contains(said), "{spec}: {error}");
         }
-        let error = build("lamps:lights=x", 1).expect("the name is known").expect_err("x is no number");
+        let error = build("lamps:lights=x", 1).expect("the name is known").expect_err("x is not a number");
         assert!(error.to_string().contains("objects=1 to 5000, default 101"), "{error}");
     }
 }

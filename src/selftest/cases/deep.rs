@@ -48,8 +48,8 @@ const LISTS: &[Settings] = &[
     &[("shading", "indirect-gbuffer"), ("shading-cache", "64")],
 ];
 
-/// Who makes a triangle as large as the pixels that it touches. The device's own way runs here and where it is asked
-/// for by name.
+/// What makes a triangle as large as the pixels that it touches. The device's own method runs here and where it is
+/// asked for by name.
 const CONSERVATIVE: &[Settings] =
     &[&[("conservative", "geometry")], &[("conservative", "vertex")], &[("conservative", "hardware")]];
 

@@ -13,8 +13,8 @@ const FENCE: Place = Place::Scene("fence:lights=6");
 const VPLS: (&str, &str) = ("vpls", "64");
 const UNFILTERED: (&str, &str) = ("filter", "none");
 
-/// Every road of `--split` that must give the picture of `branch`, and that one first, in every storage and form of copy
-/// that it knows.
+/// Every method of `--split` that must give the picture of `branch`, and that one first, in every storage and form of
+/// copy that it knows.
 pub const SPLITS: [Settings; 19] = [
     &[("split", "branch")],
     &[("split", "indirect")],

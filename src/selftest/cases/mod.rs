@@ -1,10 +1,10 @@
 //! Every case of the self-test, as data: a file a technique, and what all of them share.
 //!
-//! Bounds on other devices are not measured on a GPU: nobody had one. They are what the compilers' liberties come to on
-//! lavapipe, where products and sums were fused and last bits turned at random (RMSE below 1e-4, FLIP below 0.0005, one
-//! pixel in 500 along edges where paths go), with room for an edge that falls otherwise; a row or a tile that is
-//! missing, and a hundredth of the light, stay outside of them. Bounds of two ways to nearly the same picture are some
-//! three times the most that lavapipe of Mesa 22.3.6 and 25.0.7 and SwiftShader are off by.
+//! Bounds on other devices were not measured on a GPU, because none was at hand. They are what the compilers' liberties
+//! amount to on lavapipe, where products and sums were fused and last bits turned at random (RMSE below 1e-4, FLIP
+//! below 0.0005, one pixel in 500 along edges where paths go), with room for an edge that falls otherwise; a row or a
+//! tile that is missing, and a hundredth of the light, stay outside of them. Bounds of two ways to nearly the same
+//! picture are some three times the most that lavapipe of Mesa 22.3.6 and 25.0.7 and SwiftShader are off by.
 
 mod baselines;
 pub(super) mod bounds;
@@ -59,7 +59,7 @@ mod tests {
         assert!(names.len() > 100, "{}", names.len());
     }
 
-    /// What a setting chooses between is tried, choice by choice, so that a new road is not forgotten here.
+    /// Every choice of every setting is tried, so that a new one is not forgotten here.
     #[test]
     fn every_choice_of_a_road_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.

@@ -1,6 +1,6 @@
-//! The triangles of samples drawn once more, by the stages that drew them for visibility: every sample that sees one is found by
-//! what it sees, once, and the shader that comes after says what is done with it. Shaders: those before fragments of
-//! visibility, again.glsl.
+//! The triangles that samples see, drawn once more by the stages that drew them for visibility: every sample is found
+//! once, by the triangle that it sees, and the shader that follows says what is done with it. Shaders: those before
+//! fragments of visibility, again.glsl.
 //! reads  the scene, visibility.spids, visibility.depth
 
 use super::choices::Choices;
@@ -91,8 +91,8 @@ impl Again {
             + samples.map_or(0, |samples| samples.spids.description.bytes())
     }
 
-    /// Waits for the samples, who may have been read by compute shaders, and draws. `left`: who touched the SPIDs last. `bound`:
-    /// all that shaders read and write but for SPIDs.
+    /// Waits for the samples, which compute shaders may have read, and draws. `left`: what touched the SPIDs last.
+    /// `bound`: all that shaders read and write except for SPIDs.
     pub fn record<'a>(
         &self,
         cmd: &mut Commands,

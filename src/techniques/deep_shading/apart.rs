@@ -1,5 +1,5 @@
-//! Visibility first, then what it has seen is shaded: figure 3, from samples to their colours, and what counts the lists after
-//! the resolve.
+//! Visibility first, then shading of what it has seen: figure 3, from samples to their colours, and the counting of
+//! lists after the resolve.
 
 use super::brute::Brute;
 use super::choices::Choices;
@@ -35,7 +35,7 @@ struct Listed {
     count: Option<Count>,
 }
 
-/// Who puts triangles into lists.
+/// What puts triangles into lists.
 enum Insertion {
     Device(Box<Inserted>),
     Host(Direct),
@@ -48,15 +48,15 @@ struct Inserted {
     address: Option<Address>,
 }
 
-/// Who finds what samples see.
+/// What finds the triangles that samples see.
 enum Seen {
     Drawn(Samples, Drawer),
     Traced(Samples, Box<Rays>),
-    /// With `--lists direct` the lists alone know.
+    /// With `--lists direct` only the lists hold it.
     Listed,
 }
 
-/// Who shades samples that no list has.
+/// What shades samples that are in no list.
 enum Rest {
     Alone(Box<Brute>),
     /// All of them.

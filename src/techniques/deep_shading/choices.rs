@@ -1,4 +1,4 @@
-//! What the settings come to.
+//! The choices that the settings make.
 
 use super::middle::Middle;
 use super::space::ShadingSpace;
@@ -58,12 +58,12 @@ pub struct Choices {
     pub has_addresses: bool,
     /// Shading space is drawn with what stands in lists.
     pub has_marks: bool,
-    /// Of the cache of `--shading indirect-gbuffer`.
+    /// Entries of the cache of `--shading indirect-gbuffer`.
     pub cache_entries: u64,
     pub is_counted: bool,
-    /// Shaders come to buffers of an entry a sample, or more, by their addresses.
+    /// Shaders reach buffers with an entry a sample, or more, by their addresses.
     pub is_by_address: bool,
-    /// Of what the rasteriser snaps corners to.
+    /// Sub-pixel precision to which the rasteriser snaps corners, in bits.
     sub_pixel_bits: u32,
     /// Something is blurred, and its colours are filtered.
     pub is_reconstructed: bool,
@@ -82,7 +82,7 @@ pub fn road(values: &Values, caps: &Caps) -> Road {
         "geometry" => Road::Geometry,
         "vertex" => Road::Vertex,
         "none" => Road::Plain,
-        // Never the device's own: no device was there on which it could be seen to leave no sample without a colour.
+        // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
         _ if caps.features.geometry_shader => Road::Geometry,
         _ => Road::Vertex,
     }
@@ -160,7 +160,7 @@ impl Choices {
         Ok(choices)
     }
 
-    /// What shaders know of shading space, cameras, lens and samples.
+    /// The shaders' block: shading space, cameras, lens and samples.
     pub fn deep_block(&self, inputs: &Inputs<'_>) -> DeepBlock {
         let close = self.middle.as_ref().map(|middle| &middle.closing.view);
         self.space.block(inputs.view, close, self.lens, &self.table)
@@ -254,7 +254,7 @@ pub fn space_entries(choices: &Choices) -> u64 {
     choices.space.extent.pixel_count() * a_pixel
 }
 
-/// Of a sample in the longest buffer that has an entry a sample; 0 where what is shaded has none.
+/// Bytes of a sample in the longest buffer with an entry for each sample; 0 where `--shading` has no such buffer.
 pub fn sample_bytes(choices: &Choices) -> u64 {
     match choices.shading {
         Shading::Deep => NODE_BYTES.max(COLOR_BYTES).max(resources::SAMPLE_BYTES),
@@ -282,7 +282,7 @@ pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
     }
 }
 
-/// What it is called in the report.
+/// How buffers are reached, in the report's words.
 pub fn list_access_name(is_by_address: bool) -> &'static str {
     if is_by_address { "addresses" } else { "descriptors" }
 }
@@ -293,7 +293,7 @@ mod tests {
     use crate::caps::known;
     use crate::techniques::deep_shading::settings::SETTINGS;
 
-    /// What nobody has seen run is taken where it is asked for by name, and nowhere else.
+    /// A method that nobody has seen run is used only where it is asked for by name.
     #[test]
     fn the_device_s_own_conservative_rasterisation_is_never_taken_by_itself() {
         let caps = |name: &str| known::caps(name).unwrap();

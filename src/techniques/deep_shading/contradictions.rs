@@ -38,13 +38,13 @@ pub fn require_spids(values: &Values) -> Result<()> {
     }
 }
 
-/// Errors: `--lists direct` without rays, or without the addresses that stand for SPIDs (exit code 2).
+/// Errors: `--lists direct` without rays, or without the addresses that replace SPIDs (exit code 2).
 pub fn require_direct(values: &Values) -> Result<()> {
     let refused =
         |why: &str, advice: &str| Err(Error::request(format!("--lists direct: {why}")).within(NAME).note(advice));
     match values.text("lists") {
         "direct" if values.text("visibility") != "ray" => {
-            refused("only rays know a sample's triangle at once", "--visibility ray has them")
+            refused("only rays find a sample's triangle at once", "--visibility ray has them")
         }
         "direct" if !values.is_on("address-buffer") => {
             refused("without SPIDs a sample needs its address", "--address-buffer on gives it one")
@@ -57,10 +57,10 @@ pub fn require_direct(values: &Values) -> Result<()> {
 pub fn require_straight(values: &Values) -> Result<()> {
     let road = values.text("conservative");
     if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
-        let why = "in a foveated shading space triangles are not straight";
+        let why = "triangles are not straight in a foveated shading space";
         return Err(Error::request(format!("--conservative {road}: {why}"))
             .within(NAME)
-            .note("--conservative geometry and vertex draw what holds them"));
+            .note("--conservative geometry and vertex draw polygons that enclose them"));
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
 //! Count: how long the lists are, after the frame (`--instrument on`). Shader: count.comp.
-//! reads  the lists, and sorts them, as nobody needs them any more
+//! reads  the lists, and sorts them, as nothing needs them any more
 //! writes  count.lengths  buffer, 4 B a pixel of shading space; the counters
 
 use super::choices::Choices;

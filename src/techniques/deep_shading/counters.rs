@@ -37,7 +37,7 @@ impl Counted {
         counters
     }
 
-    /// Of lists in shading space.
+    /// Counters of lists in shading space.
     pub fn of_lists(&self) -> [(&'static str, f64); 11] {
         let [
             _,
@@ -77,7 +77,7 @@ impl Counted {
         ]
     }
 
-    /// Of a compact geometry buffer.
+    /// Counters of a compact geometry buffer.
     pub fn of_entries(&self) -> [(&'static str, f64); 3] {
         let [_, strays, _, missing, .., forgotten, _, _, _] = self.0.map(f64::from);
         [
@@ -87,7 +87,7 @@ impl Counted {
         ]
     }
 
-    /// Of textures that draws are shaded in.
+    /// Counters of textures in which draws are shaded.
     pub fn of_textures(&self) -> [(&'static str, f64); 2] {
         let [_, _, _, missing, .., of_other_charts, _, _] = self.0.map(f64::from);
         [("samples_without_colour", missing), ("samples_of_other_charts", of_other_charts)]

@@ -4,8 +4,8 @@ use crate::gpu::shader::structs::FrameBlock;
 use crate::lens::Lens;
 use glam::{Mat4, Vec4};
 
-/// Clip space from world space as the middle of what sees has it. `clip`: the camera's; `depth`: what a point is multiplied with
-/// for its distance before the camera; `metre`: by how much clip space's x grows a metre to the right.
+/// `clip_from_world` as seen from the midpoint between the eyes. `clip`: the camera's; `depth`: row whose product with
+/// a point is its distance before the camera; `metre`: growth of clip space's x for one metre to the right.
 pub fn clip_from(clip: Mat4, depth: Vec4, metre: f32, lens: Lens) -> Mat4 {
     // As visibility/seen.glsl moves what a place on the lens sees.
     let mut rows = clip.transpose();
@@ -13,7 +13,7 @@ pub fn clip_from(clip: Mat4, depth: Vec4, metre: f32, lens: Lens) -> Mat4 {
     rows.transpose()
 }
 
-/// The eye of `frame`, which is the camera's, in the middle of what sees.
+/// `frame` with its eye, which is the camera's, moved to the midpoint between the eyes.
 pub fn seen_from(frame: FrameBlock, lens: Option<Lens>) -> FrameBlock {
     let Some(lens) = lens else { return frame };
     let [eye, right, forward] = [frame.eye_ws, frame.right_ws, frame.forward_ws].map(Vec4::from);

@@ -130,7 +130,7 @@ impl DeepFrame {
         Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
     }
 
-    /// Of one set of samples.
+    /// Picture of one set of samples.
     fn run_picture(&self) -> &Image {
         self.reconstruct.as_ref().map_or(&self.color, |reconstruct| &reconstruct.color)
     }
@@ -210,14 +210,16 @@ impl Frame for DeepFrame {
         let road = self.choices.road.name();
         let (what, help) = match self.choices.shading {
             Shading::Deep if self.choices.has_lists => (
-                format!("a sample that finds no colour is NaN: --conservative {road} has not drawn what it needs"),
-                "--conservative vertex draws with what every device has; --conservative none lets such samples be black",
+                format!(
+                    "a sample that finds no colour is NaN: --conservative {road} did not draw the pixel that it needs"
+                ),
+                "--conservative vertex works on every device; --conservative none leaves such samples black",
             ),
             Shading::Deep | Shading::IndirectGbuffer => {
                 ("a sample that finds no colour is NaN".to_owned(), "--shading ssaa shades each sample by itself")
             }
             Shading::TextureSpace(_) => (
-                "a sample whose texels nobody has shaded is NaN".to_owned(),
+                "a sample whose texels were never shaded is NaN".to_owned(),
                 "--shading ssaa shades each sample by itself",
             ),
             Shading::Ssaa | Shading::Msaa { .. } => return None,

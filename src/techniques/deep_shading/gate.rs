@@ -29,7 +29,7 @@ pub fn plan(plan: &mut Plan, draws: u64) {
     plan.push("counters", full(COUNT), shape(4));
 }
 
-/// What the pass touches beside others.
+/// Resources that the pass touches in addition to others.
 pub fn touches() -> [(String, Access); 3] {
     let touch = |name: &str, access| (full(name), access);
     [touch(COUNTERS, Access::TransferRead), touch(COUNT, Access::TransferWrite), touch(COUNT, Access::IndirectRead)]

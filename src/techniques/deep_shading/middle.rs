@@ -1,8 +1,8 @@
 //! The scene in the middle of the exposure, where it is shaded: what moves is halfway between its places when the shutter opens
 //! and when it closes.
 //!
-//! Where a draw and its vertices both move, as in a skin on a node that moves, the mean of both is not quite the mean of where
-//! they come to; shading takes the latter (corners.glsl), shadow maps this one.
+//! Where a draw and its vertices both move, as in a skin on a node that moves, the mean of both is not quite the mean
+//! of their places in the world; shading takes the latter (corners.glsl), shadow maps this one.
 
 use crate::error::Result;
 use crate::gpu::shader::structs::FrameBlock;

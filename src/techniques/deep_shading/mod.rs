@@ -18,6 +18,14 @@
 //! - `texture-space`: adaptive texture-space shading (Andersson et al. 2014): draw by draw a texture is shaded and then drawn with
 //!   (baseline/texture_space/mod.rs)
 //!
+//! Words
+//! - tuple: a place in a pixel, on the lens and in time; N of them are spread over a table of N/n pixels (section 4.2)
+//! - SPID: what a sample keeps of what it sees, the triangle's id and the pixel of shading space where it is shaded
+//! - guard band: pixels of shading space around the frame's (`--guard-band`)
+//! - stray: a sample that no list has, because shading space has no place for it or the list is full
+//! - hull: the polygon that covers every pixel which a triangle touches (`--conservative`)
+//! - atlas, chart: a mesh's own texture coordinates, and a connected part of them (`--shading texture-space`)
+//!
 //! Differs from the paper
 //! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
 //!   an insertion that another was quicker than looks at what is new, and no triangle comes into a list twice

@@ -1,5 +1,5 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them (Clarberg & Munkberg 2014, section 6, lists the
-//! groups; the checklist's O1 to O3 are their bytes).
+//! groups with their bytes).
 
 use super::baseline;
 use super::baseline::texture_space;

@@ -75,7 +75,7 @@ impl Primitives {
         (first_index / 3).wrapping_add(self.orders[draw as usize])
     }
 
-    /// What shaders are told of a draw, but for the tuple.
+    /// Parameters of a draw for shaders, without the tuple.
     pub fn params(&self, scene: &SceneGpu, call: &DrawCall) -> DrawnParams {
         let mut flags = if call.mirrored { DRAWN_MIRRORED } else { 0 };
         if call.alpha == AlphaMode::Blend {

@@ -1,5 +1,5 @@
-//! Where each draw's triangles are among all, for shaders that know a triangle by its number and no draw of it. Shaders' half:
-//! ranges.glsl.
+//! Range of each draw among all triangles, for shaders that have only a triangle's number and not its draw. Shaders'
+//! half: ranges.glsl.
 
 use super::primitives::Primitives;
 use crate::error::Result;

@@ -1,6 +1,7 @@
-//! How shaders come to buffers that have an entry a sample, or more (`--list-access`): lists and colours, what a reconstruction
-//! keeps, a compact geometry buffer. Through descriptors, which a device lets reach so far (maxStorageBufferRange) and the
-//! validation layers follow, or by the buffers' addresses, however long they are. Shaders' half: reach.glsl.
+//! How shaders reach buffers that have an entry a sample, or more (`--list-access`): lists and colours, what a
+//! reconstruction keeps, a compact geometry buffer. Through descriptors, whose range a device limits
+//! (maxStorageBufferRange) and the validation layers check, or by the buffers' addresses, however long they are.
+//! Shaders' half: reach.glsl.
 
 use super::choices::Choices;
 use crate::error::{Error, Result};

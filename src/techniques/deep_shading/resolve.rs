@@ -23,13 +23,13 @@ use std::sync::Arc;
 pub enum Shaded<'a> {
     /// What samples see, and its colours, apart.
     Apart {
-        /// Where they have SPIDs; who read those, and who wrote them where compute shaders have not waited for it yet.
+        /// Where they have SPIDs: what read those, and what wrote them if compute shaders have not waited for it yet.
         samples: Option<(&'a Samples, AccessSet)>,
         lists: Option<&'a Lists>,
         colors: &'a Buffer,
     },
-    /// In a compact geometry buffer that samples point to. Who read the SPIDs, and who wrote them where compute shaders have not
-    /// waited for it yet.
+    /// In a compact geometry buffer that samples point to. What read the SPIDs, and what wrote them if compute shaders
+    /// have not waited for it yet.
     Pointed {
         samples: (&'a Samples, AccessSet),
         pointers: &'a Buffer,
@@ -47,13 +47,13 @@ impl<'a> Shaded<'a> {
                 let spids = samples.map_or(0, |(samples, _)| samples.spids.description.bytes());
                 spids + addresses.map_or(0, |buffer| buffer.bytes) + colors.bytes
             }
-            // Of colours those that there are, which are counted after the frame.
+            // Colours are counted after the frame: only those that exist.
             Self::Pointed { samples: (samples, _), pointers, .. } => samples.spids.description.bytes() + pointers.bytes,
             Self::Drawn(baseline) => baseline.colors.description.bytes(),
         }
     }
 
-    /// Who counted last.
+    /// The access that counted last.
     fn counted(self) -> Access {
         if matches!(self, Self::Pointed { .. }) { Access::ComputeWrite } else { Access::FragmentWrite }
     }

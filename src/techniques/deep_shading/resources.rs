@@ -47,10 +47,10 @@ pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 /// The paper's M.
 pub const LINEAR_COUNT: u64 = 16;
 
-/// Of a list's pointer.
+/// Bytes of the pointer at which a list begins.
 pub const BEGIN_BYTES: u64 = 4;
 
-/// Of a row's id, a node (id, next), a colour (RGBA16F), an address.
+/// Bytes of a row's id, a node (id, next), a colour (RGBA16F), and an address.
 pub const ROW_ID_BYTES: u64 = 4;
 
 pub const NODE_BYTES: u64 = 8;
@@ -76,7 +76,7 @@ pub const ENTRIES: [(&str, &str); 4] = [
     ("indirect.radiances", "EntryRadiances"),
 ];
 
-/// Of an entry in one of its buffers, a pointer, a word of the cache.
+/// Bytes of an entry in one of its buffers, of a pointer, and of a word of the cache.
 pub const ENTRY_BYTES: u64 = 16;
 
 pub const POINTER_BYTES: u64 = 4;
@@ -87,7 +87,8 @@ pub const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
 
 pub const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
 
-/// Of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; two of motion, and a depth.
+/// Bytes of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; and two
+/// half floats of motion with a depth.
 pub const SAMPLE_BYTES: u64 = 8;
 
 /// nearest.glsl's words.

@@ -1,4 +1,5 @@
-//! What the paper says that its rival's memory is (Clarberg & Munkberg 2014, section 6: 42.7 MB a texture, 341.3 MB for eight).
+//! Memory of the paper's rival, by the paper's own figures (Clarberg & Munkberg 2014, section 6: 42.7 MB a texture,
+//! 341.3 MB for eight).
 
 use crate::gpu::ImageDescription;
 use crate::techniques::Rival;
@@ -28,7 +29,7 @@ pub fn rivals() -> Vec<Rival> {
 mod tests {
     use super::*;
 
-    /// The checklist's O5. A sum over levels ends at a texel, 4/3 of the first one never ends.
+    /// The bytes of section 6. A sum over levels ends at a texel, 4/3 of the first level is the sum without an end.
     #[test]
     fn the_pool_is_as_large_as_the_paper_says() {
         let bytes = rivals().iter().map(|rival| rival.bytes).collect::<Vec<_>>();

@@ -18,10 +18,12 @@ pub const SETTINGS: &[Setting] = &[
         default: "deep",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "what is shaded: what the lists have, or, as baselines, every sample that is drawn (ssaa), or what a pixel's samples see of a \
-               triangle once, by stochastic rasterisation, which --visibility repeat-frame stands for too (msaa), or, by a compute shader, what samples point to \
-               in a compact geometry buffer (indirect-gbuffer; Liktor and Dachsbacher 2012), or texels of a texture of each draw, which \
-               is then drawn with it (texture-space; Andersson et al. 2014; meshes need atlases)",
+        help: "What is shaded: the triangles in the lists (deep); or, as a baseline, every sample that is drawn \
+               (ssaa); each triangle once for the samples of a pixel that see it, by stochastic rasterisation, which \
+               --visibility repeat-frame means here too (msaa); by a compute shader, the entries of a compact geometry \
+               buffer that samples point to (indirect-gbuffer; Liktor and Dachsbacher 2012); or the texels of a \
+               texture of each draw, which is then drawn with that texture (texture-space; Andersson et al. 2014; \
+               meshes need atlases)",
     },
     Setting {
         key: "shading-textures",
@@ -30,7 +32,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "8",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "textures of --shading texture-space: so many draws are shaded and drawn at a time; the same picture",
+        help: "Number of textures of --shading texture-space, which is how many draws are shaded and drawn at a time; \
+               the same picture",
     },
     Setting {
         key: "shading-texture-size",
@@ -39,7 +42,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "2048",
         unit: "px",
         paper: "Clarberg 2014, 6",
-        help: "texels along a side of the finest level of each: the most that a mesh's atlas is shaded with",
+        help: "Texels along a side of the finest level of each texture of --shading texture-space: the most with which \
+               a mesh's atlas is shaded",
     },
     Setting {
         key: "shading-cache",
@@ -48,8 +52,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 2",
-        help: "entries of the cache in which --shading indirect-gbuffer finds what has been seen before; what a full one forgets is \
-               shaded again, to the same picture; auto: as many as samples",
+        help: "Entries of the cache in which --shading indirect-gbuffer finds what has been seen before; what a full \
+               cache forgets is shaded again, to the same picture; auto: as many as samples",
     },
     Setting {
         key: "pass-samples",
@@ -58,8 +62,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "samples a pixel that --shading msaa draws at once: --spp takes as many passes; auto: the most of these that the device \
-               has and --spp is a multiple of",
+        help: "Samples a pixel that --shading msaa draws at once; --spp takes as many passes as it needs; auto: the \
+               most of these that the device has and that divide --spp",
     },
     Setting {
         key: "visibility",
@@ -68,9 +72,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "repeat-frame",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "how samples find what they see: the frame is drawn once for each tuple, or each draw is, or each draw has an instance a \
-               tuple, or a geometry shader makes a triangle for each tuple; or a polygon around each triangle's blur is drawn and its \
-               pixels' samples are tested by a shader; or the host casts rays; the same samples",
+        help: "How samples find the triangle that they see: the frame is drawn once for each tuple (repeat-frame); \
+               each draw is (repeat-draw); each draw has an instance for each tuple (instancing); a geometry shader \
+               makes a triangle for each tuple (replicate); a polygon around each triangle's blur is drawn, and a \
+               shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples",
     },
     Setting {
         key: "layer-from",
@@ -79,8 +84,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "which stage says the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a geometry \
-               shader that passes triangles through; the same samples; auto: vertex where the device can",
+        help: "Stage that writes the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a \
+               geometry shader that passes triangles through; the same samples; auto: vertex where the device can",
     },
     Setting {
         key: "polygon-from",
@@ -89,8 +94,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "which stage makes the polygon around a triangle's blur with --visibility stochastic (and around strays with ray): a \
-               geometry shader, once, or vertex shaders, each corner for itself; the same samples; auto: geometry where the device can",
+        help: "Stage that makes the polygon around a triangle's blur with --visibility stochastic (and around strays \
+               with ray): a geometry shader, once for the polygon, or vertex shaders, each corner for itself; the same \
+               samples; auto: geometry where the device can",
     },
     Setting {
         key: "sample-tests",
@@ -99,9 +105,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "how --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once over the frame and its \
-               fragments test all samples of their pixel, of which 64-bit atomics keep the nearest; or it is drawn into a layer of each \
-               tuple, where a pixel is a sample; the same picture; auto: a loop where the device can",
+        help: "How --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once, and each \
+               fragment tests all samples of its pixel, of which 64-bit atomics keep the nearest (loop); or it is \
+               drawn into a layer for each tuple, where a pixel is a sample (layers); the same picture; auto: loop \
+               where the device can",
     },
     Setting {
         key: "spp",
@@ -110,7 +117,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "8",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "samples a pixel in one set of buffers, of each eye with --stereo",
+        help: "Samples a pixel in one set of buffers, for each eye with --stereo",
     },
     Setting {
         key: "tuples",
@@ -119,8 +126,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.2",
-        help: "places in a pixel, on the lens and in time that all samples share, spread over a table of N/n pixels; a multiple of \
-               --spp; of each eye with --stereo; auto: four times --spp",
+        help: "Number of tuples, places in a pixel, on the lens and in time, that all samples share, spread over a \
+               table of N/n pixels; a multiple of --spp; for each eye with --stereo; auto: four times --spp",
     },
     Setting {
         key: "accumulate",
@@ -129,7 +136,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "",
-        help: "sets of --spp samples a pixel, each with tuples of its own, that the picture is the mean of",
+        help: "Number of sets of --spp samples a pixel that are averaged to the picture, each with tuples of its own",
     },
     Setting {
         key: "guard-band",
@@ -138,8 +145,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "64",
         unit: "px",
         paper: "Clarberg 2014, 6",
-        help: "pixels of shading space around the frame's, for what blur brings in; samples that are farther out are shaded by \
-               themselves",
+        help: "Width of the border of shading space around the frame, for what blur brings in; samples that are \
+               farther out are shaded one by one",
     },
     Setting {
         key: "shading-scale",
@@ -148,7 +155,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "Clarberg 2014, 6",
-        help: "pixels of shading space along a pixel of the frame: below 1 is shaded more coarsely",
+        help: "Pixels of shading space along one pixel of the frame; below 1, shading is coarser than the frame",
     },
     Setting {
         key: "shading-warp",
@@ -157,7 +164,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "even",
         unit: "",
         paper: "Clarberg 2014, 7",
-        help: "where shading space is finer: nowhere, or in its middle (foveated), as fine there as an even one; what is seen stays as fine",
+        help: "Where shading space is finer: nowhere (even), or in its middle, which is as fine as an even one \
+               (foveated); visibility stays as fine",
     },
     Setting {
         key: "warp-falloff",
@@ -166,8 +174,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "",
-        help: "c of --shading-warp foveated: a pixel of shading space is 1 + c r as wide as in the middle and the square of that along the \
-               way to the rim, r of which is 1; shading space has 1/(1 + c)^2 of the pixels",
+        help: "Falloff c of --shading-warp foveated: at r, from 0 in the middle to 1 at the rim, a pixel of shading \
+               space is 1 + c r times as wide across and (1 + c r)^2 times as long towards the rim; shading space then \
+               has 1/(1 + c)^2 of the pixels",
     },
     Setting {
         key: "lists",
@@ -176,9 +185,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "linked",
         unit: "",
         paper: "Clarberg 2014, 4.3",
-        help: "linked lists of what is shaded at each pixel of shading space; direct: rays put triangles into them at once, without a \
-               SPID a sample (--visibility ray); or none: every sample is shaded where it is seen, at its shading point (the plain \
-               way to the same picture)",
+        help: "How the triangles to shade at each pixel of shading space are listed: in linked lists (linked); in \
+               lists that rays fill at once, without a SPID a sample, with --visibility ray (direct); or not, each \
+               sample being shaded where it is seen, at its shading point (none, the plain way to the same picture)",
     },
     Setting {
         key: "list-access",
@@ -187,9 +196,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "how shaders come to what is kept of each sample and shading pixel (lists and colours, what --reconstruct filters, the \
-               buffers of --shading indirect-gbuffer): through descriptors, which reach as far as the device binds, or by the \
-               buffers' addresses, however long they are; the same picture; auto: addresses where a buffer is longer than that",
+        help: "How shaders reach what is kept of each sample and shading pixel (lists and colours, what --reconstruct \
+               filters, the buffers of --shading indirect-gbuffer): through descriptors, within the longest range that \
+               the device binds, or by the buffers' addresses, at any length; the same picture; auto: addresses where \
+               a buffer is longer than that range",
     },
     Setting {
         key: "duplicates",
@@ -198,16 +208,18 @@ pub const SETTINGS: &[Setting] = &[
         default: "avoided",
         unit: "",
         paper: "Clarberg 2014, 4.3",
-        help: "whether an insertion that another one was quicker than looks at what is new in its list; the same picture",
+        help: "What an insertion does when another one has changed the list first: it looks through the nodes added \
+               since, so that no triangle is listed twice (avoided), or it does not (tolerated, the paper's way); the \
+               same picture",
     },
     Setting {
         key: "compaction",
-        symbol: "M",
+        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
         unit: "",
         paper: "Clarberg 2014, 4.3",
-        help: "lists are sorted, and their first 16 triangles lie in a row; the same picture",
+        help: "Sort the lists and store their first M = 16 triangles in a row; the same picture",
     },
     Setting {
         key: "zmax",
@@ -216,7 +228,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "Clarberg 2014, 3.1",
-        help: "what lies behind all that samples saw at a pixel of shading space is left out before its list is read; the same picture",
+        help: "Leave out, before a list is read, triangles that lie behind all that samples saw at that pixel of \
+               shading space; the same picture",
     },
     Setting {
         key: "address-buffer",
@@ -225,7 +238,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "Clarberg 2014, 4.3",
-        help: "where each sample's colour lies is kept, or found again by following links; the same picture",
+        help: "Keep the address of each sample's colour; off: find it again by following links; the same picture",
     },
     Setting {
         key: "conservative",
@@ -234,9 +247,11 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Clarberg 2014, 4.4",
-        help: "how every pixel that a triangle touches is drawn: its hull from a geometry shader or from vertex shaders, or the \
-               device's own conservative rasterisation, which nobody has seen run yet; the same picture, or an error that says how many \
-               samples have no colour; auto: geometry where there are such shaders, else vertex; none: only pixels whose middle it covers, to measure what the others cost and what is without colour then",
+        help: "How every pixel that a triangle touches gets drawn: its hull is drawn, from a geometry shader \
+               (geometry) or from vertex shaders (vertex), or the device rasterises conservatively (hardware, which \
+               has not been seen to run yet); the same picture, or an error that says how many samples have no colour; \
+               auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
+               triangle covers, to measure what the others cost and how much has no colour then",
     },
     Setting {
         key: "shaded-triangles",
@@ -244,9 +259,9 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Choice(&["listed", "all"]),
         default: "listed",
         unit: "",
-        paper: "Clarberg 2014, 4.4 (all)",
-        help: "what shading space is drawn with: triangles that a list has, which insertion marks with a bit each, or all of the scene, as in \
-               the paper (and with --lists direct); the same picture",
+        paper: "all: Clarberg 2014, 4.4",
+        help: "Triangles that are drawn into shading space: those that are in a list, for which insertion marks one \
+               bit each (listed), or all of the scene, as in the paper and with --lists direct (all); the same picture",
     },
     Setting {
         key: "reconstruct",
@@ -255,8 +270,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "off",
         unit: "",
         paper: "Clarberg 2014, 4.5",
-        help: "what is blurred is filtered in layers of depth, as far as its blur allows, in place of the mean of each pixel's own \
-               samples; not the paper's filter",
+        help: "Filter what is blurred, in layers of depth, as far as its blur allows (not the paper's filter); off: \
+               take the mean of each pixel's own samples",
     },
     INSTRUMENT,
     APERTURE,

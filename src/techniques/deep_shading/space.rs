@@ -16,13 +16,13 @@ use glam::{Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
 /// Places of 16 bits a side, one of which says that there is none.
 const MOST_SIDE_PX: u64 = 65_534;
 
-/// Its size.
+/// Size and warp of shading space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadingSpace {
     guard_px: u32,
     /// Pixels of it along a pixel of the frame.
     scale: f64,
-    /// What the frame takes of it where it is even.
+    /// Pixels of it that the frame takes if it is even.
     scaled_px: [f32; 2],
     /// 0: it is even.
     warp_falloff: f64,
@@ -42,7 +42,7 @@ impl ShadingSpace {
         let [width, height] = even.map(|side| (side / (1.0 + warp_falloff)).ceil() as u64);
         let most = limits.most_drawn_px().map(|side| u64::from(side).min(MOST_SIDE_PX));
         if width > most[0] || height > most[1] {
-            // Of both sides the scale that fits, to be typed: three digits, cut off.
+            // Scale at which both sides fit, for a user to type: cut to three decimals.
             let room = |axis: usize| most[axis] as f64 * (1.0 + warp_falloff) - 2.0 * f64::from(guard_px) - 1.0;
             let fitting = (room(0) / f64::from(frame.width)).min(room(1) / f64::from(frame.height));
             let fitting = (fitting * 1000.0).floor() / 1000.0;
@@ -95,9 +95,9 @@ impl ShadingSpace {
         has_place.then_some([at.x as u32, at.y as u32])
     }
 
-    /// What shaders know of it, of the cameras at both ends of the exposure, and of the samples.
+    /// The shaders' block: shading space, the cameras at both ends of the exposure, and the samples.
     ///
-    /// It is seen from the middle of the lens, that of both eyes of two.
+    /// It is seen from the middle of the lens, or from the midpoint between two eyes.
     pub fn block(&self, open: &View, close: Option<&View>, lens: Option<Lens>, table: &Table) -> DeepBlock {
         let close = close.unwrap_or(open);
         let layer = table.layer(open.extent);
@@ -132,7 +132,7 @@ impl ShadingSpace {
     }
 }
 
-/// What a point's place is multiplied with for its distance before the eye's plane.
+/// Row whose product with a point is its distance before the plane of the eye.
 fn depth_row(view: &View) -> Vec4 {
     let forward: Vec3 = -view.camera.world_from_view.z_axis.truncate();
     forward.extend(-forward.dot(view.eye()))

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 pub const RIGHT: &str = "stereo.right";
 
-/// What the passes over the right eye's pictures of runs are named after.
+/// Name before those of the passes over the right eye's pictures of runs.
 fn right_eye() -> String {
     full("stereo")
 }
@@ -52,7 +52,7 @@ pub fn resolved(choices: &Choices) -> impl Iterator<Item = (String, Access)> {
 }
 
 pub struct RightEye {
-    /// Of a run.
+    /// Picture of one run.
     pub color: Image,
     accumulate: Option<Accumulate>,
 }

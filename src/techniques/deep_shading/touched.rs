@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 pub struct Entries {
     /// Written by insertion.
     pub nodes: u64,
-    /// Of what is listed, of what stands in a list again, and of strays.
+    /// Colours of listed triangles, of triangles that are in a list twice, and of strays.
     pub colors: u64,
-    /// Of rows of compacted lists.
+    /// Ids in rows of compacted lists.
     pub row_ids: u64,
-    /// Of samples that see something.
+    /// Addresses of samples that see something.
     pub addresses: u64,
     /// Entries for shading pixels.
     pub begins: u64,
@@ -39,7 +39,8 @@ impl Entries {
 mod tests {
     use super::*;
 
-    /// The checklist's O4: 1280x720 pixels, 1.5 executions each, of a node and a colour, and the begin pointers of 1408x848.
+    /// The paper's frame (section 6): 1280x720 pixels with 1.5 executions each, a node and a colour for each execution,
+    /// and the begin pointers of 1408x848 shading pixels.
     #[test]
     fn what_the_paper_s_frame_touches_is_about_25_mib() {
         let executions = 1280 * 720 * 3 / 2;

@@ -4,8 +4,8 @@
 //! Samples of a pixel are its cell's tuples. The table of cells repeats over the frame, so that all samples of one tuple are a
 //! regular grid, which the rasteriser draws as a picture of its own.
 //!
-//! Of two eyes (`--stereo`) the left one's tuples come first and then the right one's: the same places in a pixel, on the lens and
-//! in time, but that the lens is elsewhere.
+//! With two eyes (`--stereo`) the left eye's tuples come first and then the right eye's: the same places in a pixel, on
+//! the lens and in time, with the lens at another place.
 
 use crate::gpu::shader::structs::TupleBlock;
 use crate::sampling::sobol;
@@ -30,17 +30,18 @@ impl Table {
         Self { cells: [cells / height, height], samples, eyes: 1 }
     }
 
-    /// Of one eye: as many places in a pixel, on the lens and in time.
+    /// Number of tuples of one eye, each a place in a pixel, on the lens and in time.
     pub fn tuples_of_eye(&self) -> u32 {
         self.cells[0] * self.cells[1] * self.samples
     }
 
-    /// Of all eyes: layers.
+    /// Number of tuples of all eyes, each a layer.
     pub fn tuple_count(&self) -> u32 {
         self.eyes * self.tuples_of_eye()
     }
 
-    /// Of a tuple among all runs', twin of space.glsl's: both eyes have the same numbers.
+    /// Number of a tuple among those of all runs, the twin of tuple_number in space.glsl; both eyes have the same
+    /// numbers.
     pub fn number(&self, run: u32, tuple: u32) -> u32 {
         run.wrapping_mul(self.tuples_of_eye()).wrapping_add(tuple % self.tuples_of_eye())
     }
@@ -50,7 +51,7 @@ impl Table {
         Extent::new(frame.width.div_ceil(self.cells[0]), frame.height.div_ceil(self.cells[1]))
     }
 
-    /// Of all layers, what lies beyond the frame included.
+    /// Number of samples of all layers, including those beyond the frame.
     pub fn sample_count(&self, frame: Extent) -> u64 {
         self.layer(frame).pixel_count() * u64::from(self.tuple_count())
     }

@@ -12,7 +12,7 @@ use crate::techniques::Inputs;
 use crate::techniques::forward::resources::NAME;
 use crate::units::Bytes;
 
-/// What the settings come to.
+/// The choices that the settings make.
 pub struct Choices {
     pub(super) direct: DirectSettings,
     lists: ListChoice,

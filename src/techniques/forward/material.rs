@@ -137,7 +137,7 @@ impl Material {
     }
 }
 
-/// What is drawn into.
+/// Targets of the draws.
 pub struct Targets {
     pub(super) depth: Image,
     pub(super) drawn: Image,

@@ -11,7 +11,7 @@
 //!   them again, as every frame does
 //! - holes of MASK surfaces are cut once a pixel: their edges stay as jagged as without MSAA
 //!
-//! Equal to others: with `--msaa 1` it is `deferred` but for what that one's G-buffer rounds. `--light-lists none`,
+//! Equal to others: with `--msaa 1` it is `deferred` except for what that one's G-buffer rounds. `--light-lists none`,
 //! `--light-buffer storage` and, with one sample, `--depth-prepass off` are the plain ways to its own bits (with more a
 //! driver may choose the place in a pixel that is shaded among the samples that pass the depth test). `--supersample` is the reference of edges: the same picture
 //! from N x N places in each pixel, every one of them shaded.

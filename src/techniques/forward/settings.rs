@@ -10,18 +10,18 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "where solid surfaces read the lights from: a uniform buffer, which holds 1024, or a storage buffer; the same \
-               picture; auto: uniform where they fit",
+        help: "Buffer from which solid surfaces read the lights: a uniform buffer, which holds 1024, or a storage \
+               buffer; the same picture; auto: uniform where they fit",
     },
     DEPTH_PREPASS,
     Setting {
         key: "supersample",
-        symbol: "N",
+        symbol: "",
         kind: Kind::Integer { min: 1, max: 8 },
         default: "1",
         unit: "",
         paper: "",
-        help: "N x N runs a picture, each moved by a part of a pixel, and averaged: the reference for edges",
+        help: "Draw and average N x N frames, each moved by a part of a pixel: the reference for edges",
     },
     BRDF,
     GEOMETRY,

@@ -3,7 +3,7 @@
 /// How layers are given out (`--assignment`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Assignment {
-    /// As the user says; the rest by turns, in the order of the file.
+    /// As the user says; the rest in rotation, in the order of the file.
     Static,
     /// By turns, from the nearest on.
     Depth,

@@ -1,4 +1,4 @@
-//! What the settings come to, before there is a device: sizes, roads, the constants of the shaders.
+//! The choices that the settings make, before there is a device: sizes, methods, the constants of the shaders.
 
 use super::encoding::Packing;
 use super::layer_names;
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
 
-/// What tells the texels of one surface from those of another: light_filter.glsl's FILTER_ values.
+/// How texels of one surface are distinguished from those of another: light_filter.glsl's FILTER_ values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightFilter {
     Bilinear,
@@ -69,7 +69,7 @@ pub struct Choices {
     sampler_blends: bool,
     normal_threshold: f32,
     pub store: Store,
-    /// Light at which losses of the L-buffer are told.
+    /// Light at which losses of the L-buffer are reported.
     pub light_range: f32,
     pub packing: Packing,
     pub depth_threshold: f32,
@@ -80,7 +80,7 @@ pub struct Choices {
     /// The material pass shades what a pre-pass of its size sees.
     pub has_prepass: bool,
     pub assignment: Assignment,
-    /// Of `Assignment::Static`: the layers that the user gives to draws.
+    /// Layers that the user gives to draws, for `Assignment::Static`.
     pub named_layers: BTreeMap<u32, u32>,
     /// In texels; 0: bilinear.
     cone_radius: f32,
@@ -98,7 +98,7 @@ impl Choices {
         }
         let casting_count = values.integer("shadow-volumes") as usize;
         if casting_count > 0 && volumes == Volumes::Tiled {
-            let why = "shadows are counted into a stencil, which one dispatch for all lights has not";
+            let why = "shadows are counted in a stencil buffer, which one dispatch for all lights does not have";
             return Err(Error::request(format!("--shadow-volumes {casting_count} with --volumes tiled: {why}"))
                 .note("--volumes scissor draws a light at a time, as quad, stencil, both and auto do"));
         }
@@ -152,7 +152,7 @@ impl Choices {
         self.volumes.counts() || !self.casting_lights.is_empty()
     }
 
-    /// Of the geometry pass.
+    /// Depth format of the geometry pass.
     pub fn depth_format(&self) -> vk::Format {
         if self.has_stencil() { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT }
     }

@@ -110,13 +110,13 @@ impl Packing {
         range[1] / self.depth_steps() as f32
     }
 
-    /// What stands for an id; with fewer steps than ids, for neighbours too.
+    /// Code of an id; with fewer steps than ids, neighbours share it.
     pub fn id_code(self, id: u32) -> u32 {
         let (steps, first) = self.steps();
         first + (id * steps + LAST / 2) / LAST
     }
 
-    /// The object's id times 256, plus the normal group's: the least of those that the word may stand for.
+    /// The object's id times 256, plus the normal group's: the least of those that the word may encode.
     pub fn id(self, word: u32) -> u32 {
         let (steps, first) = self.steps();
         // The least id whose code is not less: id * steps + half >= code * LAST.
@@ -125,7 +125,7 @@ impl Packing {
     }
 }
 
-/// What a packing loses at most, measured by packing and reading back.
+/// Greatest loss of a packing, measured by packing and reading back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loss {
     /// Angle between a normal and what is read, degrees, over all directions but those within 8 degrees of straight away
@@ -154,7 +154,7 @@ impl Loss {
             let radius = (1.0 - z * z).sqrt();
             let normal = Vec3::new((radius * cos) as f32, (radius * sin) as f32, z as f32);
             let read = packing.view_normal(packing.normal_word(normal)).as_dvec3();
-            // Of small angles the chord is exact where the cosine is not.
+            // For small angles the chord is exact where the cosine is not.
             let degrees = (2.0 * (0.5 * read.distance(normal.as_dvec3())).asin()).to_degrees();
             most = most.max(degrees);
             sum += degrees;

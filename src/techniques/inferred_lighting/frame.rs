@@ -167,7 +167,7 @@ impl InferredFrame {
         if matches!(self.road, Road::Tiled(_)) { Access::ComputeSample } else { Access::FragmentSample }
     }
 
-    /// Who read the normals last.
+    /// The access that read the normals last.
     pub(super) fn normal_access(&self) -> Access {
         if self.filter.reads_normals() { Access::FragmentSample } else { self.lit_access() }
     }

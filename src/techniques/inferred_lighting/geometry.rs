@@ -33,7 +33,7 @@ use std::sync::Arc;
 
 const WORD: vk::Format = vk::Format::R32_UINT;
 
-/// What a word is drawn as.
+/// Format that a word is drawn as.
 fn target_format(packing: Packing) -> vk::Format {
     match packing {
         Packing::Words => WORD,
@@ -131,7 +131,7 @@ impl LowGeometry {
         8 + if self.extras.is_some() { 4 } else { 0 }
     }
 
-    /// States who touched the depth last. Nothing reads the rest before the lights do.
+    /// Names the access that touched the depth last. Nothing reads the rest before the lights do.
     pub fn from(&self, access: Access) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }

@@ -10,7 +10,7 @@ use crate::scene::gltf::marks::STIPPLE_LAYER;
 use crate::scene::{AlphaMode, Material, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Of no draw.
+/// Value of `--stipple-layers` that names no draw.
 pub const NONE: &str = "none";
 
 /// A BLEND draw by what it may be called.
@@ -24,7 +24,7 @@ struct Blended<'a> {
 
 /// The layers of draws that have one, by draw. `text`: of `--stipple-layers`. `side`: of the stipple.
 ///
-/// Errors: a name that no BLEND surface has, a name twice, a layer that the stipple has not (exit code 2).
+/// Errors: a name that no BLEND surface has, a name twice, a layer that the stipple does not have (exit code 2).
 pub fn layers(scene: &Scene, text: &str, side: u32) -> Result<BTreeMap<u32, u32>> {
     let blended: Vec<Blended<'_>> = blended(scene).collect();
     let names: BTreeSet<&str> = blended
@@ -82,7 +82,7 @@ fn asked(text: &str, side: u32) -> Result<BTreeMap<&str, u32>> {
         let Some((name, layer)) = part.rsplit_once('=') else {
             return Err(refused("it is not NAME=LAYER"));
         };
-        let layer = layer.parse().map_err(|_| refused("its layer is no whole number"))?;
+        let layer = layer.parse().map_err(|_| refused("its layer is not a whole number"))?;
         require_layer(layer, side).map_err(|error| error.within(format!("--stipple-layers {}", label::shown(part))))?;
         if asked.insert(name, layer).is_some() {
             return Err(refused("its name has a layer already"));
@@ -141,7 +141,7 @@ mod tests {
             ("green=1", 2, "there are amber, blue, left, right"),
             ("wall=1", 2, "no BLEND surface"),
             ("amber", 2, "not NAME=LAYER"),
-            ("amber=two", 2, "no whole number"),
+            ("amber=two", 2, "not a whole number"),
             ("amber=0", 2, "layers 1 to 3"),
             ("amber=4", 2, "--stipple 4x4"),
             ("amber=16", 4, "layers 1 to 15"),

@@ -79,7 +79,7 @@ fn touches(drawn: &str, choices: &Choices) -> Vec<(String, Access)> {
     touches
 }
 
-/// What the filter is told of every surface.
+/// What the filter gets for every surface.
 #[derive(Clone, Copy, Debug)]
 pub struct FilterSettings {
     pub kind: LightFilter,
@@ -179,7 +179,7 @@ impl Material {
         }
     }
 
-    /// `normal_from`: who read the normals last.
+    /// `normal_from`: what read the normals last.
     pub fn record(
         &self,
         cmd: &mut Commands,

@@ -5,11 +5,11 @@
 //! and material (at the frame's size), resolve (with `--msaa`).
 //!
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
-//! default road is one dispatch with light lists for tiles (`--volumes quad`, `scissor`, `stencil`, `both` and `auto` are
-//! draws, and only lights that are drawn have `--shadow-volumes`); depth is reversed and a float; specular power travels in
-//! a third target by default (`--extras`), because materials of glTF have a roughness each; a highlight's Fresnel factor is
-//! that of normal incidence, because the L-buffer keeps no directions (that of the angle to the eye is worse: `fence` against
-//! `forward`, FLIP 0.195 instead of 0.131).
+//! default method is one dispatch with light lists for tiles (`--volumes quad`, `scissor`, `stencil`, `both` and `auto`
+//! are draws, and only lights that are drawn have `--shadow-volumes`); depth is reversed and a float; specular power
+//! travels in a third target by default (`--extras`), because materials of glTF have a roughness each; a highlight's
+//! Fresnel factor is that of normal incidence, because the L-buffer keeps no directions (that of the angle to the eye
+//! is worse: `fence` against `forward`, FLIP 0.195 instead of 0.131).
 //!
 //! Equals `deferred` within the rounding of normals, depth and L-buffer with `--light-size` at the frame's size, without
 //! BLEND surfaces, with `--brdf lambert` (tests/inferred.rs has the bound).

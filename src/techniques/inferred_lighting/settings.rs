@@ -24,7 +24,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "px",
         paper: "Kircher 2009, 2.2",
-        help: "width and height of the geometry pass and the light pass; auto: 0.625 of the frame, 800x450 of 1280x720",
+        help: "Width and height of the geometry pass and the light pass; auto: 0.625 of the frame, so 800x450 for \
+               1280x720",
     },
     Setting {
         key: "extras",
@@ -33,8 +34,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "Kircher 2009, 2.1",
-        help: "the geometry pass writes roughness and material id, 4 bytes a texel; off: every highlight is as wide as \
-               --light-roughness says",
+        help: "Write roughness and material id in the geometry pass, 4 bytes a texel; off: every highlight is as wide \
+               as --light-roughness says",
     },
     Setting {
         key: "light-roughness",
@@ -43,7 +44,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "0.5",
         unit: "",
         paper: "Kircher 2009, 2.2",
-        help: "of every surface in the light pass, with --extras off",
+        help: "Roughness of every surface in the light pass with --extras off",
     },
     MOTION_VECTORS,
     MOTION_INTERVAL,
@@ -54,9 +55,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "tiled",
         unit: "",
         paper: "Kircher 2009, 2.2",
-        help: "how texels meet their lights: in one dispatch with a list of lights a tile (tiled), or in a draw a light, over \
-               the frame (quad), within the rectangle that bounds what it reaches (scissor), where its volume meets a surface \
-               (stencil, depth-fail), or both; auto: both, but for lights smaller than --stencil-least, which go without",
+        help: "How texels find their lights: by a list of lights for each tile, in one dispatch (tiled); or by one \
+               draw for each light, over the whole frame (quad), within the rectangle that bounds its reach (scissor), \
+               where its volume meets a surface (stencil, depth-fail), or within both limits (both); auto: both, but \
+               without the stencil for lights smaller than --stencil-least",
     },
     Setting {
         key: "stencil-least",
@@ -65,8 +67,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "4096",
         unit: "texels",
         paper: "Kircher 2009, 2.2",
-        help: "of --volumes auto: a light whose rectangle has fewer texels is drawn without the stencil (lavapipe: it pays from some \
-               16384 on, and below makes no difference)",
+        help: "Number of texels in a light's rectangle from which --volumes auto draws it with the stencil (lavapipe: \
+               the stencil pays from some 16384 on, and below makes no difference)",
     },
     Setting {
         key: "shadow-volumes",
@@ -75,8 +77,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "0",
         unit: "lights",
         paper: "Kircher 2009, 4, 7",
-        help: "how many lights cast stencil shadow volumes of all closed opaque and MASK surfaces, instead of the rays of \
-               --direct-shadow: directional lights first, then those of most flux; not with --volumes tiled",
+        help: "Number of lights that cast stencil shadow volumes of all closed opaque and MASK surfaces, instead of \
+               the rays of --direct-shadow: directional lights first, then those of most flux; not with --volumes \
+               tiled",
     },
     Setting {
         key: "l-buffer",
@@ -85,8 +88,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "float",
         unit: "",
         paper: "Kircher 2009, 2.2, 5.1",
-        help: "how lights sum up: in 32 bits, packed once, to half floats (float) or to 16 bits of fixed point (fixed); or \
-               blended in half floats as in the paper (half)",
+        help: "How the L-buffer sums up light: in 32 bits and packed once, to half floats (float) or to 16 bits of \
+               fixed point (fixed); or blended in half floats, as in the paper (half)",
     },
     Setting {
         key: "light-range",
@@ -95,7 +98,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "32",
         unit: "lx",
         paper: "Kircher 2009, 5.1",
-        help: "of --l-buffer fixed: the most light; what is brighter is held there, and counted",
+        help: "Most light that --l-buffer fixed can hold; brighter texels are clamped to it, and counted",
     },
     Setting {
         key: "packing",
@@ -104,8 +107,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "words",
         unit: "",
         paper: "Kircher 2009, 5",
-        help: "what the geometry pass draws a texel's two 16-bit numbers into: one word, the bytes of four channels, or two \
-               channels of fixed point",
+        help: "Format in which the geometry pass writes a texel's two 16-bit numbers: one word (words), the bytes of \
+               four channels (rgba8), or two channels of fixed point (fixed)",
     },
     Setting {
         key: "fixed-range",
@@ -114,8 +117,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "32",
         unit: "",
         paper: "Kircher 2009, 5.1",
-        help: "of --packing fixed, whose format goes from -32 to 32: how far numbers from -1 to 1 are scaled; 32 uses every \
-               step of it, 1 a 32nd of them",
+        help: "Factor by which --packing fixed scales numbers from -1 to 1 into its format, which goes from -32 to 32; \
+               32 uses every step of it, 1 a 32nd of them",
     },
     Setting {
         key: "light-filter",
@@ -124,9 +127,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "dsf",
         unit: "",
         paper: "Kircher 2009, 3",
-        help: "how four texels of the light buffer become the light of a pixel: the discontinuity sensitive filter, which takes those \
-               of its object and normal group; bilinear, or the nearest one, whatever they show; by normal and distance from the \
-               tangent plane, in weights that fall off (joint bilateral), or yes or no (discontinuity: Segovia 2006, 4.5)",
+        help: "How four texels of the light buffer become the light of a pixel: by the discontinuity sensitive filter, \
+               which takes those of the pixel's object and normal group (dsf); whatever they show, bilinear or the \
+               nearest one; or by normal and distance from the tangent plane, with weights that fall off (bilateral, a \
+               joint bilateral filter) or that are 0 or 1 (discontinuity: Segovia 2006, 4.5)",
     },
     Setting {
         key: "light-fetch",
@@ -135,8 +139,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "texels",
         unit: "",
         paper: "Kircher 2009, 7.1",
-        help: "of a solid surface's pixel whose four texels all belong to it: they are read one by one, or blended by the sampler in a \
-               single fetch, as finely as the device places it",
+        help: "How the four texels of a solid surface's pixel are read where all of them belong to that surface: one \
+               by one (texels), or blended by the sampler in a single fetch, with the device's precision of position \
+               (sampler)",
     },
     Setting {
         key: "depth-threshold",
@@ -145,7 +150,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "0.05",
         unit: "",
         paper: "Kircher 2009, 3.1",
-        help: "of the filter: by what part of its depth a sample's may be off, or, where normals decide, its place off the tangent plane",
+        help: "Most by which a sample of the filter may differ, as a part of the pixel's depth: in depth, or, where \
+               normals decide, in distance from the tangent plane",
     },
     Setting {
         key: "alpha",
@@ -154,7 +160,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "blend",
         unit: "",
         paper: "Kircher 2009, 4, 6",
-        help: "BLEND surfaces: stippled into the light buffer and blended, or drawn as solid where their alpha is 0.5 and more",
+        help: "How BLEND surfaces are drawn: stippled into the light buffer and blended (blend), or as solid surfaces \
+               where their alpha is at least 0.5 (test)",
     },
     Setting {
         key: "stipple",
@@ -163,7 +170,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "2x2",
         unit: "px",
         paper: "Kircher 2009, 4",
-        help: "which texels BLEND surfaces are lit at: one in four (3 layers over the solid one) or in sixteen (15)",
+        help: "Texels at which BLEND surfaces are lit: one in four (2x2, which leaves 3 layers over the solid one) or \
+               one in sixteen (4x4, 15 layers)",
     },
     Setting {
         key: "assignment",
@@ -172,8 +180,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "overlap",
         unit: "",
         paper: "Kircher 2009, 4, 7.1",
-        help: "how BLEND surfaces share the layers of the stipple: those that overlap on screen get different ones, nearest \
-               first (ours); by turns from the nearest on; or as the user says, the rest by turns in the order of the file",
+        help: "How BLEND surfaces share the layers of the stipple: those that overlap on the screen get different \
+               ones, nearest first (overlap, not the paper's); in rotation from the nearest on (depth); or as \
+               --stipple-layers says, the rest in rotation in the order of the file (static)",
     },
     Setting {
         key: "stipple-layers",
@@ -182,8 +191,8 @@ pub const SETTINGS: &[Setting] = &[
         default: layer_names::NONE,
         unit: "",
         paper: "Kircher 2009, 4",
-        help: "of --assignment static: layers of the stipple, 1 to 3 or 15, for BLEND surfaces by the name of their node or \
-               material; before quincunx_stipple_layer in the extras of a file's nodes and materials",
+        help: "Layers of the stipple for --assignment static, 1 to 3 or 15, for BLEND surfaces by the name of their \
+               node or material; these go before quincunx_stipple_layer in the extras of a file's nodes and materials",
     },
     Setting {
         key: "alpha-filter",
@@ -192,8 +201,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "cone",
         unit: "",
         paper: "Kircher 2009, 4",
-        help: "of the four samples nearest to a fragment of a BLEND surface: weights that fall to 0 at --cone-radius, or \
-               bilinear ones",
+        help: "Weights of the four samples nearest to a fragment of a BLEND surface: falling to 0 at --cone-radius \
+               (cone), or bilinear",
     },
     Setting {
         key: "cone-radius",
@@ -202,11 +211,11 @@ pub const SETTINGS: &[Setting] = &[
         default: "2",
         unit: "texels",
         paper: "Kircher 2009, 4",
-        help: "of --alpha-filter cone, in texels of the light buffer; with --stipple 4x4 twice as much",
+        help: "Radius of --alpha-filter cone, in texels of the light buffer; it is doubled with --stipple 4x4",
     },
 ];
 
-/// What its settings leave unread of each other.
+/// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "light-roughness",
@@ -214,7 +223,7 @@ pub const CONDITIONS: &[Condition] = &[
     },
     Condition {
         key: "stencil-least",
-        unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn alike"),
+        unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn in the same way"),
     },
     Condition {
         key: CULL_BY.key,

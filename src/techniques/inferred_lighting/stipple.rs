@@ -23,7 +23,7 @@ pub struct Stippled {
     pub is_on_screen: bool,
 }
 
-/// What an assignment came to.
+/// Result of an assignment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shares {
     /// Layers that some draw has.
@@ -44,7 +44,7 @@ pub(super) struct Footprint {
 impl Footprint {
     const WHOLE: Self = Self { low: Vec2::NEG_ONE, high: Vec2::ONE };
 
-    /// Of a box in object space; None where it lies outside of the screen.
+    /// Footprint of a box in object space; None where it lies outside of the screen.
     fn of(bounds: &Bounds, clip_from_object: Mat4) -> Option<Self> {
         let mut footprint = Self { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY };
         let mut is_crossing = false;

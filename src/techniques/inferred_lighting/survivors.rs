@@ -55,7 +55,7 @@ impl Survivors {
         depth_range_m: [f32; 2],
     ) -> Self {
         let on_screen: Vec<&Stippled> = stippled.iter().filter(|stippled| stippled.is_on_screen).collect();
-        // A scene without them need not be looked at.
+        // A scene without them need not be searched.
         let ids = if on_screen.is_empty() { Vec::new() } else { object_ids::of(scene) };
         let candidate = |stippled: &Stippled| {
             let draw = &scene.draws[stippled.call.draw as usize];

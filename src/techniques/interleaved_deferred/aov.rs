@@ -95,7 +95,7 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
             let irradiance = filter().irradiance().expect("with --fuse on it is refused");
             rgb(in_frame_order(frame, gpu, irradiance)?)
         }
-        _ => unreachable!("{NAME} has no stage {name} on this road"),
+        _ => unreachable!("{NAME} has no stage {name} with this split"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What the settings come to, and what is refused because it cannot be made.
+//! The choices that the settings make, and what is refused because it cannot be made.
 
 use super::mapping::mapping;
 use super::road::{Copier, Copies, Form, MaskKind, Road};
@@ -53,7 +53,7 @@ pub struct Choices {
 /// Workgroups that a list of texels is worth at least, where it has so many: the last one's threads may stand behind its end.
 const LEAST_WORKGROUPS: u64 = 4;
 
-/// Subsets that eight bits of stencil tell apart.
+/// Subsets that eight bits of stencil can distinguish.
 const STENCIL_SUBSETS: u32 = 256;
 
 impl Choices {
@@ -127,7 +127,7 @@ impl Choices {
             return Err(Error::request(format!(
                 "{NAME}: sub-buffers tiled in an image of {padded} pixels: this device allows {limit} a side"
             ))
-            .note("a smaller --size, --pattern or --block; --storage buffer where the road knows it"));
+            .note("a smaller --size, --pattern or --block; --storage buffer where --split supports it"));
         }
         if copies.storage == Storage::Layers && subset_count > limits.max_image_layers {
             let limit = limits.max_image_layers;
@@ -156,12 +156,12 @@ impl Choices {
         x * y * tile_texel_bytes(self.shading.position)
     }
 
-    /// The block after rounding; the pattern itself where the road has none.
+    /// The block after rounding; the pattern itself where the split has none.
     fn block(&self) -> [u32; 2] {
         [self.mapping.block_x, self.mapping.block_y]
     }
 
-    /// What `auto` and rounding came to, of the settings that the road reads.
+    /// Values after `auto` and rounding, for the settings that the split reads.
     pub fn resolved(&self) -> BTreeMap<&'static str, String> {
         let [i, j] = self.direct_pattern;
         let mut resolved = BTreeMap::from([
@@ -226,7 +226,7 @@ impl Choices {
         self.direct_pattern.iter().product()
     }
 
-    /// The constants of irradiance.glsl that every road has.
+    /// The constants of irradiance.glsl that every split sets.
     pub fn irradiance_constants(&self) -> [(&'static str, u32); 3] {
         let [shadow, offset] = self.shading.direct.shadow_constants();
         [shadow, offset, ("HAS_JOINED", u32::from(self.joined_count() > 0))]
@@ -260,7 +260,7 @@ fn tile_texel_bytes(position: PositionStorage) -> u64 {
     8 + position.bytes()
 }
 
-/// How far the roads go on a device, by the limits that `Choices::new` and the plan refuse with.
+/// Limits of the splits on a device, by the limits that `Choices::new` and the plan refuse with.
 pub fn bounds(caps: &Caps) -> Vec<(&'static str, String)> {
     let limits = &caps.limits;
     let texels = |bytes: u64, texel_bytes: u64| bytes / texel_bytes;

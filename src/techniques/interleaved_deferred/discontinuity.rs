@@ -1,4 +1,4 @@
-//! Discontinuity buffer (DB): Segovia 2006, section 4.5 (SG10). Shader: discontinuity.comp.
+//! Discontinuity buffer (DB): Segovia 2006, section 4.5. Shader: discontinuity.comp.
 //! reads  the G-buffer      writes  discontinuity.flags  buffer, frame order, 4 B a pixel, a bit a neighbour
 //!
 //! The paper leaves the measure open. Here: 1 - cos of the angle between the normals, and the distance of the

@@ -153,7 +153,7 @@ impl FilterStage {
         Ok(Some(self.flags.from(Access::ComputeWrite)))
     }
 
-    /// What is left to do behind the irradiance in frame order.
+    /// Records the work that is left after the irradiance is in frame order.
     pub fn record<'a>(
         &'a self,
         cmd: &mut Commands,

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Bytes that a fragment program reads of it for each texel.
 pub const TEXEL_BYTES: u64 = 4;
 
-/// What it says of padding, which comes from no pixel: fragment.frag's NOWHERE. No image is that large.
+/// Entry for padding, which comes from no pixel: fragment.frag's NOWHERE. No image is that large.
 const NOWHERE: [u16; 2] = [u16::MAX; 2];
 
 pub struct Lookup {

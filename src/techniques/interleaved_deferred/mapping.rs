@@ -8,7 +8,7 @@ use crate::units::Extent;
 /// The mapping of one frame, pattern and block.
 ///
 /// Sub-buffers are padded to one size: to whole sub-blocks, and so many that their width is even and a thread can carry
-/// two texels. A block is a multiple of the pattern; roads without blocks say the pattern.
+/// two texels. A block is a multiple of the pattern; splits without blocks give the pattern.
 pub fn mapping(extent: Extent, pattern: [u32; 2], block: [u32; 2]) -> MappingParams {
     assert!(block[0].is_multiple_of(pattern[0]) && block[1].is_multiple_of(pattern[1]), "{block:?} of {pattern:?}");
     let [sub_block_x, sub_block_y] = [block[0] / pattern[0], block[1] / pattern[1]];
@@ -93,7 +93,7 @@ impl MappingParams {
         [x / self.pattern_x, y / self.pattern_y, self.subset_of([x, y])]
     }
 
-    /// Its inverse; of padding it lies outside the frame.
+    /// Inverse of `texel_of_pixel`; a texel of the padding gives a pixel outside the frame.
     pub fn pixel_of_texel(&self, [x, y, subset]: [u32; 3]) -> [u32; 2] {
         let first = self.place_in_pattern(subset);
         [x * self.pattern_x + first[0], y * self.pattern_y + first[1]]
@@ -108,7 +108,7 @@ impl MappingParams {
         [along(x, self.block_x, self.pattern_x), along(y, self.block_y, self.pattern_y)]
     }
 
-    /// Its inverse.
+    /// Inverse of `block_texel_of_pixel`.
     pub fn pixel_of_block_texel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
         let along = |at: u32, block: u32, pattern: u32| {
             let (inside, sub_block) = (at % block, block / pattern);
@@ -125,7 +125,7 @@ impl MappingParams {
         [x / self.block_x * width + inside_x % width, y / self.block_y * height + inside_y % height, subset]
     }
 
-    /// Its inverse.
+    /// Inverse of `texel_of_block_texel`.
     pub fn block_texel_of_texel(&self, [x, y, subset]: [u32; 3]) -> [u32; 2] {
         let ([width, height], place) = (self.sub_block(), self.place_in_pattern(subset));
         [
@@ -146,7 +146,7 @@ impl MappingParams {
         [place[0] * self.sub_width_px + x, place[1] * self.sub_height_px + y]
     }
 
-    /// Its inverse.
+    /// Inverse of `tiled_of`.
     pub fn texel_of_tiled(&self, [x, y]: [u32; 2]) -> [u32; 3] {
         let subset = y / self.sub_height_px * self.pattern_x + x / self.sub_width_px;
         [x % self.sub_width_px, y % self.sub_height_px, subset]

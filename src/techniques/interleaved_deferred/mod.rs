@@ -1,14 +1,14 @@
 //! Segovia, Iehl, Mitanchey, Peroche 2006: Non-interleaved Deferred Shading of Interleaved Sample Patterns.
 //!
-//! Hundreds of virtual point lights are dealt out to the n x m pixels of a pattern, the G-buffer is split so that pixels
-//! with the same lights lie together, each sub-buffer is shaded with its own lights, the irradiance is gathered back,
-//! filtered where no discontinuity is, and multiplied with the albedo last.
+//! Hundreds of virtual point lights are distributed over the n x m pixels of a pattern, the G-buffer is split so that
+//! pixels with the same lights lie together, each sub-buffer is shaded with its own lights, the irradiance is gathered
+//! back, filtered where no discontinuity is, and multiplied with the albedo last.
 //!
 //! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend.
 //! With `--split two-pass`, and `fragment` in two passes, split is split.blocks and split.translate, and gather is
-//! gather.translate and gather.blocks. Roads that copy nothing have neither; before the shading of `stencil` and `depth`
-//! stands mask. With `--fuse on` gather walks the filter's rows (behind discontinuity, which then comes before split) and
-//! composite its columns: no pass filter where one compute shader pulls each pixel.
+//! gather.translate and gather.blocks. Splits that copy nothing have neither; before the shading of `stencil` and
+//! `depth` comes mask. With `--fuse on` gather walks the filter's rows (behind discontinuity, which then comes before
+//! split) and composite its columns: no pass filter where one compute shader pulls each pixel.
 //!
 //! Differs from the paper
 //! - by default compute shaders copy, where the paper drew; `--split fragment` draws, with the paper's look-up textures
@@ -22,7 +22,7 @@
 //! - secondary lights are never shadowed (SNSM), as in the paper's section 6.2
 //!
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
-//! every road but `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
+//! every split except `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
 
 mod aov;
 mod choices;
@@ -132,7 +132,7 @@ impl Technique for InterleavedDeferred {
             // Joined to the subsets, direct light is diffuse.
             "interleaved" => settings.push(("brdf", "lambert".to_owned())),
             "none" => {
-                return Err(Error::request("--direct none: path tracing does not leave direct light out")
+                return Err(Error::request("--direct none: path tracing cannot leave out direct light")
                     .note("--direct full and interleaved have a reference"));
             }
             _ => {}

@@ -1,4 +1,5 @@
-//! The roads of `--split`: how the pixels of one light subset come together. Segovia 2006, sections 3.1 to 3.3.
+//! The methods of `--split`: how the pixels of one light subset are brought together. Segovia 2006, sections 3.1 to
+//! 3.3.
 
 use super::sub_buffers::{Stage, Storage};
 use crate::caps::{Ability, Caps, Need};
@@ -25,14 +26,14 @@ pub enum Road {
     Copy(Copies),
 }
 
-/// What a masked road tests.
+/// What a masked split tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaskKind {
     Stencil,
     Depth,
 }
 
-/// How a road copies, there and back.
+/// How a split copies, there and back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Copies {
     pub by: Copier,
@@ -54,7 +55,7 @@ pub enum Copier {
     TwoFragmentPasses,
 }
 
-/// What a thread of a copy stands for (`--copy`).
+/// Texels that a thread of a copy handles (`--copy`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// A texel written, or two.
@@ -64,7 +65,7 @@ pub enum Form {
 }
 
 impl Road {
-    /// What `--split`, `--storage`, `--copy` and `--fragment-passes` come to on a device.
+    /// The split that `--split`, `--storage`, `--copy` and `--fragment-passes` ask for on a device.
     ///
     /// Errors: they contradict each other (exit code 2).
     pub fn new(values: &Values, caps: &Caps) -> Result<Self> {
@@ -106,7 +107,7 @@ impl Road {
                     "layered" | "fragment" => format!("--split {split}"),
                     _ => "--storage image".to_owned(),
                 };
-                let instead = "--split one-pass, two-pass and tile know --storage buffer";
+                let instead = "--split one-pass, two-pass and tile support --storage buffer";
                 need(of, Ability::StoreWordPairs, instead);
             }
             _ => {}
@@ -131,9 +132,9 @@ impl Road {
     }
 }
 
-/// What `--storage` comes to.
+/// The storage that `--storage` asks for.
 ///
-/// Errors: the road does not know it (exit code 2).
+/// Errors: the split does not support it (exit code 2).
 fn storage(split: &str, setting: &str, caps: &Caps) -> Result<Storage> {
     let needs_images = split == "layered" || split == "fragment";
     let stores_words = caps.features.storage_image_extended_formats;
@@ -152,16 +153,16 @@ fn needs_image(split: &str) -> Error {
         _ => "fragment programs draw into images",
     };
     Error::request(format!("{NAME}: --split {split} with --storage buffer: {why}"))
-        .note("--storage image or auto; --split one-pass, two-pass and tile know buffers")
+        .note("--storage image or auto; --split one-pass, two-pass and tile support buffers")
 }
 
 fn knows_one_form(split: &str) -> Error {
     let why = match split {
         "tile" => "a workgroup reads and writes its block in order, both ways",
-        _ => "a fragment program writes the texel that it stands for",
+        _ => "a fragment program writes the texel at its own place",
     };
     Error::request(format!("{NAME}: --split {split} with --copy push: {why}"))
-        .note("--copy pull; --split one-pass, two-pass and layered know both forms")
+        .note("--copy pull; --split one-pass, two-pass and layered support both forms")
 }
 
 impl Copies {

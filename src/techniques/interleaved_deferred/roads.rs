@@ -1,4 +1,4 @@
-//! The road of a frame on the device: from the G-buffer to irradiance in frame order.
+//! The split of a frame on the device: from the G-buffer to irradiance in frame order.
 
 use super::choices::Choices;
 use super::gather::{self, Gather};
@@ -43,11 +43,11 @@ pub struct SubBuffers {
     pub gathered: Buffer,
 }
 
-/// What a road leaves.
+/// The irradiance that a split leaves.
 pub struct Lit<'a> {
     /// In frame order.
     pub irradiance: Edge<'a, Buffer>,
-    /// Who has read the G-buffer's surface.
+    /// The access that has read the G-buffer's surface.
     pub readers: AccessSet,
 }
 
@@ -127,7 +127,7 @@ impl Roads {
         })
     }
 
-    /// Split, shade, gather, or what stands for them. `flags`: as `Gather::record`.
+    /// Records split, shade and gather, or what replaces them. `flags`: as `Gather::record`.
     pub fn record(
         &self,
         cmd: &mut Commands,

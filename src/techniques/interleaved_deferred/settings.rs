@@ -11,7 +11,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "4x4",
         unit: "px",
         paper: "Segovia 2006, 3",
-        help: "the interleaved pattern: each of its pixels has a light subset of its own",
+        help: "Size of the interleaved pattern; each of its pixels has a light subset of its own",
     },
     Setting {
         key: "split",
@@ -33,11 +33,13 @@ pub const SETTINGS: &[Setting] = &[
         default: "one-pass",
         unit: "",
         paper: "Segovia 2006, 3.1-3.3, 4.2",
-        help: "how pixels meet their subset: every light on every pixel (none), all lights at one pixel of a pattern \
-               (subsample); a draw a subset, its pixels chosen by a test (stencil, depth), each pixel looping over its \
-               own (branch), a subset at a time at the pattern's stride, in a dispatch each (indirect) or in one \
-               (remap); or a copy into n x m sub-buffers and back: in one pass, in two by blocks, through workgroup \
-               memory (tile), into the layers of an image (layered), by fragment programs and look-up textures (fragment)",
+        help: "How pixels get the light subset of their place in the pattern. Without subsets: every light on every \
+               pixel (none), or all lights at one pixel of each pattern (subsample). Without a copy: one draw for each \
+               subset, its pixels chosen by a test (stencil, depth); each pixel looping over its own subset (branch); \
+               pixels of one subset together, at the pattern's stride, in a dispatch for each (indirect) or one for \
+               all (remap). With a copy into n x m sub-buffers and back: in one pass (one-pass), in two passes by \
+               blocks (two-pass), through workgroup memory (tile), into the layers of an image (layered), or by \
+               fragment programs and look-up textures (fragment)",
     },
     Setting {
         key: "storage",
@@ -46,8 +48,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "Segovia 2006, figure 3",
-        help: "where sub-buffers lie: in storage buffers, two texels a thread, or tiled in images; auto: buffer on software \
-               drivers, image elsewhere and where the road knows nothing else",
+        help: "Where sub-buffers lie: in storage buffers, two texels a thread, or tiled in images; auto: images where \
+               --split knows nothing else, otherwise buffers on software drivers and images elsewhere",
     },
     Setting {
         key: "copy",
@@ -56,7 +58,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "pull",
         unit: "",
         paper: "",
-        help: "what a thread of a copy stands for: a texel written (pull) or a texel read (push); a pair in buffers",
+        help: "What a thread of a copy stands for: a texel that it writes (pull) or a texel that it reads (push), or a \
+               pair of such texels in buffers",
     },
     Setting {
         key: "block",
@@ -65,7 +68,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "16",
         unit: "px",
         paper: "Segovia 2006, 3.3",
-        help: "of the splits in blocks: two-pass, tile, fragment in two passes; rounded up to whole patterns",
+        help: "Size of a block for --split two-pass and tile, and for fragment in two passes; rounded up to whole \
+               patterns",
     },
     Setting {
         key: "fragment-passes",
@@ -74,7 +78,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "2",
         unit: "",
         paper: "Segovia 2006, 3.2, 4.2",
-        help: "of --split fragment: one with one look-up texture, or block splitting and block translation",
+        help: "Passes of --split fragment: 1 uses one look-up texture, 2 splits into blocks and then translates the \
+               blocks",
     },
     Setting {
         key: "vpls",
@@ -83,7 +88,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "256",
         unit: "",
         paper: "Segovia 2006, 6",
-        help: "virtual point lights, made by Instant Radiosity",
+        help: "Number of virtual point lights, made by Instant Radiosity",
     },
     Setting {
         key: "vpl-bounces",
@@ -92,7 +97,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         unit: "",
         paper: "Segovia 2006, 6.2",
-        help: "surfaces that a light walk lands on at most",
+        help: "Most surfaces that one light walk lands on",
     },
     VPL_CLAMP,
     EMISSIVE,
@@ -103,7 +108,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "full",
         unit: "",
         paper: "Segovia 2006, 4.6",
-        help: "the scene's own lights: shaded on every pixel by --brdf, joined to the subsets as diffuse light, or left out",
+        help: "How the scene's own lights are shaded: on every pixel by --brdf (full), in the subsets as diffuse light \
+               (interleaved), or not at all (none)",
     },
     Setting {
         key: "blend-lights",
@@ -112,7 +118,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "subset",
         unit: "",
         paper: "",
-        help: "virtual point lights of BLEND surfaces, which no filter smooths: those of the pixel's subset, or all",
+        help: "Virtual point lights that shade BLEND surfaces, which no filter smooths: those of the pixel's subset, \
+               or all",
     },
     Setting {
         key: "direct-pattern",
@@ -121,8 +128,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "px",
         paper: "Segovia 2006, 4.6",
-        help: "of --direct interleaved: the pattern of the scene's own lights, which divides --pattern and is made of \
-               clusters of its sub-buffers; fewer pixels share them out, so each has more of them; auto: --pattern",
+        help: "Pattern of the scene's own lights with --direct interleaved; it divides --pattern and is made of \
+               clusters of its sub-buffers; with fewer pixels to share the lights, each has more of them; auto: \
+               --pattern",
     },
     Setting {
         key: "filter",
@@ -131,7 +139,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "gauss",
         unit: "",
         paper: "Segovia 2006, 4.5",
-        help: "of the interleaved irradiance; a picture that is not interleaved (--split none, or 1x1) is not filtered",
+        help: "Filter of the interleaved irradiance; a picture that is not interleaved (--split none, or pattern 1x1) \
+               is not filtered",
     },
     Setting {
         key: "kernel",
@@ -140,7 +149,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "5",
         unit: "px",
         paper: "Segovia 2006, tables 2 and 3",
-        help: "taps of the filter in one direction, odd",
+        help: "Taps of the filter in one direction, an odd number",
     },
     Setting {
         key: "fuse",
@@ -149,8 +158,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "off",
         unit: "",
         paper: "",
-        help: "of --filter gauss: on, the composite walks the filter's columns, and a gather in one pass that pulls walks its rows; the \
-               same pixels with fewer passes, and fewer stages to time and to look at",
+        help: "Merge passes of --filter gauss: the composite runs over the filter's columns, and a one-pass gather \
+               that pulls over its rows; the same pixels with fewer passes, and fewer stages to time and to look at",
     },
     Setting {
         key: "sigma",
@@ -159,7 +168,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "0",
         unit: "px",
         paper: "",
-        help: "standard deviation of the filter; 0: a third of the kernel, which weighs the pixels of a 4x4 pattern most evenly",
+        help: "Standard deviation of the filter; 0: a third of the kernel, which weighs the pixels of a 4x4 pattern \
+               most evenly",
     },
     Setting {
         key: "discontinuity",
@@ -168,8 +178,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "directional",
         unit: "",
         paper: "Segovia 2006, 4.5",
-        help: "what ends a walk of the filter: a discontinuity in its own direction, or in any of the three (the paper's \
-               one flag, which leaves pixels along an edge unfiltered)",
+        help: "Discontinuity at which the filter stops: one in the direction of the filter (directional), or one in \
+               any of the three directions (any, the paper's single flag, which leaves pixels along an edge \
+               unfiltered)",
     },
     NORMAL_THRESHOLD,
     Setting {
@@ -179,7 +190,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "0.5%",
         unit: "m",
         paper: "Segovia 2006, 4.5",
-        help: "a neighbour is across a discontinuity where it lies farther off the pixel's tangent plane",
+        help: "Distance from a pixel's tangent plane above which a neighbour lies across a discontinuity",
     },
 ];
 
@@ -200,7 +211,7 @@ fn is_unfiltered(values: &Values) -> Option<Unread> {
     is_even(values).or_else(|| Unread::unless(values, "filter", &["gauss", "gauss-fast"], "nothing is filtered"))
 }
 
-/// What its settings leave unread of each other.
+/// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "pattern",
@@ -223,8 +234,8 @@ pub const CONDITIONS: &[Condition] = &[
         unread: |values| Unread::unless(values, "split", &["fragment"], "it has no fragment programs"),
     },
     Condition { key: "blend-lights", unread: is_even },
-    Condition { key: "brdf", unread: |values| Unread::with(values, "direct", &["none"], "no light is direct") },
-    Condition { key: "cull", unread: |values| Unread::with(values, "direct", &["none"], "no light is direct") },
+    Condition { key: "brdf", unread: |values| Unread::with(values, "direct", &["none"], "there is no direct light") },
+    Condition { key: "cull", unread: |values| Unread::with(values, "direct", &["none"], "there is no direct light") },
     Condition {
         key: "direct-pattern",
         unread: |values| {

@@ -124,7 +124,7 @@ impl Texels {
         })
     }
 
-    /// States who touched them last.
+    /// Names the access that touched them last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
@@ -226,7 +226,7 @@ impl Surface {
         Ok(Self { position: texels("position")?, normal: texels("normal")? })
     }
 
-    /// States who touched both last.
+    /// Names the access that touched both last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }

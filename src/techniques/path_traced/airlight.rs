@@ -27,7 +27,7 @@ impl Air {
             }
             None => Ok((Self::None, None)),
             Some(_) if !values.is_on("vpl-visibility") => {
-                Err(Error::request("--vpl-visibility off: virtual point lights know of no --medium")
+                Err(Error::request("--vpl-visibility off: virtual point lights ignore --medium")
                     .note("--vpl-visibility on, or --medium none"))
             }
             Some(medium) if is_scattered && medium.scattering > 0.0 => Ok((Self::Scatters, Some(medium))),

@@ -35,7 +35,7 @@
 //!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces
 //!
 //! Equal to others: `--transport direct` is `deferred --direct-shadow ray`; `--transport one-bounce --vpl-visibility off` is
-//! what `interleaved_deferred --split none` comes to with ever more virtual point lights.
+//! the limit of `interleaved_deferred --split none` with ever more virtual point lights.
 
 mod airlight;
 mod resources;

@@ -9,7 +9,7 @@ use crate::settings::{
 pub const MOST_SAMPLES: u32 = 1 << 16;
 const DEFAULT_SAMPLES: u32 = 64;
 
-/// What --until-error asks for; None: nothing.
+/// The error that `--until-error` asks for; None: no such bound.
 pub fn until_error(values: &Values) -> Option<f64> {
     Some(values.number("until-error")).filter(|error| *error > 0.0)
 }
@@ -29,7 +29,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         unit: "",
         paper: "",
-        help: "paths a pixel, one a run of the frame, at most where --until-error ends them; auto: 64, with --until-error 65536",
+        help: "Paths a pixel, one each time the frame is run; with --until-error, the most; auto: 64, with \
+               --until-error 65536",
     },
     Setting {
         key: "until-error",
@@ -38,8 +39,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "0",
         unit: "",
         paper: "",
-        help: "paths go on until the estimated relative standard error of the pixels, root of the mean square, is at most this, \
-               or --spp is reached; 0: all of --spp",
+        help: "Estimated relative standard error of the pixels (root of the mean square) at which rendering stops, if \
+               --spp is not reached before; 0: never, all of --spp is used",
     },
     Setting {
         key: "transport",
@@ -48,8 +49,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "full",
         unit: "",
         paper: "",
-        help: "light that is counted: straight from lights, or scattered by one surface more; scattered once, by a surface or by \
-               --medium; or as often as --bounces says, by either. The first two are dimmed by --medium, and lose what it scatters",
+        help: "Light that is counted: what reaches the visible surfaces straight from lights (direct), or by one \
+               surface more too (one-bounce); what is scattered once, by a surface or by --medium (single-scatter); or \
+               what is scattered by either as often as --bounces says (full). The first two are dimmed by --medium, \
+               and lose what it scatters",
     },
     Setting {
         key: "bounces",
@@ -58,7 +61,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "16",
         unit: "",
         paper: "",
-        help: "of --transport full: surfaces, or places of --medium, that scatter a path at most; from the fourth on it may end by chance, unbiased",
+        help: "Most surfaces, or places of --medium, that scatter a path with --transport full; from the fourth on it \
+               may end by chance, unbiased",
     },
     Setting {
         key: "light-visibility",
@@ -67,7 +71,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "",
-        help: "the scene's own lights cast shadows; off: they shine through everything",
+        help: "Whether the scene's own lights cast shadows; off: they shine through everything",
     },
     Setting {
         key: "vpl-visibility",
@@ -76,8 +80,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "Segovia 2006, 6.2",
-        help: "light between surfaces is stopped by what stands between; off: it is what infinitely many virtual point lights \
-               without shadows give, diffuse and with --vpl-clamp, by a light walk of its own for each pixel",
+        help: "Whether light between surfaces is stopped by what stands between them; off: the light that infinitely \
+               many virtual point lights without shadows would give, diffuse and with --vpl-clamp, from a separate \
+               light walk for each pixel",
     },
     Setting {
         key: "ambient-visibility",
@@ -86,9 +91,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "",
-        help: "--ambient and --background light surfaces from all around: stopped by what stands between, and scattered on; off: each \
-               surface that is seen sends all of --ambient on, which goes no further, and --background is seen and lights nothing, as \
-               in all other techniques",
+        help: "Light surfaces from all around by --ambient and --background, as light that other surfaces stop and \
+               scatter; off: as in all other techniques, each visible surface reflects all of --ambient, which goes no \
+               further, and --background is seen but lights nothing",
     },
     Setting {
         key: "punctual",
@@ -97,7 +102,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         unit: "",
         paper: "",
-        help: "point, spot and directional lights; off: emissive triangles light the scene even where --emissive is auto",
+        help: "Whether point, spot and directional lights shine; off: emissive triangles light the scene even where \
+               --emissive is auto",
     },
     Setting {
         key: "rays",
@@ -106,8 +112,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "tree",
         unit: "",
         paper: "",
-        help: "what rays go through: a tree of this program's, walked by the shader; or the driver's own acceleration structure, by \
-               ray queries, where the device has them. The same picture, but for rays that graze an edge",
+        help: "What rays are traced through: a tree built by this program and walked by the shader (tree); or the \
+               driver's own acceleration structure, by ray queries, where the device has them (query). The same \
+               picture, except for rays that graze an edge",
     },
     Setting {
         key: "texture-level",
@@ -116,8 +123,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "0",
         unit: "",
         paper: "",
-        help: "which level of a texture rays read: 0, the finest, which the paths of a pixel average; or the one whose texels are as \
-               wide as the ray's cone, which wants fewer paths, blurs where surfaces are seen at a slant, and takes a third more memory",
+        help: "Mip level of textures that rays read: 0, the finest, which the paths of a pixel average; or the one \
+               whose texels are as wide as the ray's cone, which needs fewer paths, blurs surfaces seen at a slant, \
+               and takes a third more memory",
     },
     APERTURE,
     FOCUS,
@@ -131,14 +139,14 @@ pub const SETTINGS: &[Setting] = &[
     WORKGROUP,
 ];
 
-/// What its settings leave unread of each other.
+/// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "bounces",
-        unread: |values| Unread::unless(values, "transport", &["full"], "it says itself how often light is scattered"),
+        unread: |values| Unread::unless(values, "transport", &["full"], "it fixes how often light is scattered"),
     },
     Condition {
         key: "stack-entries",
-        unread: |values| Unread::unless(values, "stack", &["short"], "it has room for all that can wait"),
+        unread: |values| Unread::unless(values, "stack", &["short"], "it has room for all nodes that can wait"),
     },
 ];

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[derive(Arbitrary, Debug)]
 struct Work {
     strategy: u8,
-    /// Of the block, before it is cut to what a heap may have.
+    /// Size of the block, before it is cut to what a heap may have.
     size: u64,
     size_bits: u8,
     steps: Vec<Step>,

@@ -15,7 +15,7 @@ const LINK: i32 = 0;
 struct Link<F> {
     next: *mut Link<F>,
     get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
-    /// Of devices: vkGetDeviceProcAddr.
+    /// For devices: vkGetDeviceProcAddr.
     other: F,
 }
 

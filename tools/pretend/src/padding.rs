@@ -51,7 +51,7 @@ pub unsafe extern "system" fn bind_buffer(
         let asked_bytes = table.known().buffers.get(&buffer).map_or(0, |bound| bound.asked_bytes);
         let mut bound = Bound { memory, offset, asked_bytes, bytes, is_shared: false };
         bound.is_shared = shares(&mut table.known(), &bound);
-        // Of bytes that others share nothing is kept yet.
+        // Bytes that others share hold nothing to keep yet.
         with_bytes(&table, memory, offset + asked_bytes, TAIL_BYTES, |tail| tail.fill(TAIL));
         table.known().buffers.insert(buffer, bound);
     }
@@ -170,7 +170,7 @@ pub unsafe extern "system" fn update_sets(
         let known = table.known();
         let mut writes = std::slice::from_raw_parts(writes, write_count as usize).to_vec();
         let mut kept = Vec::new();
-        // Of uniform buffers a descriptor may be too long with one.
+        // A tail could make a descriptor of a uniform buffer too long.
         let has_tail = |write: &&mut vk::WriteDescriptorSet<'_>| {
             write.descriptor_type == vk::DescriptorType::STORAGE_BUFFER && !write.p_buffer_info.is_null()
         };

@@ -5,13 +5,13 @@ use ash::vk::Handle;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Of an instance.
+/// Functions of an instance.
 pub struct InstanceTable {
     pub next: ash::Instance,
     pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
 }
 
-/// Of a device.
+/// Functions of a device.
 pub struct DeviceTable {
     pub next: ash::Device,
     pub get_device_proc_addr: vk::PFN_vkGetDeviceProcAddr,
@@ -79,12 +79,12 @@ pub fn instance(handle: impl Handle + Copy) -> Option<Arc<InstanceTable>> {
     held(&INSTANCES).as_ref()?.get(&key(handle)).cloned()
 }
 
-/// Of a physical device.
+/// Functions of a physical device's instance.
 pub fn of_physical(physical: vk::PhysicalDevice) -> Arc<InstanceTable> {
     instance(physical).unwrap_or_else(|| crate::fail("a physical device of an instance that was not made here"))
 }
 
-/// Of a device, a queue or a command buffer.
+/// Functions of the device of this device, queue or command buffer.
 pub fn device(handle: impl Handle) -> Arc<DeviceTable> {
     let found = held(&DEVICES).as_ref().and_then(|devices| devices.get(&key(handle)).cloned());
     found.unwrap_or_else(|| crate::fail("a device that was not made here"))

@@ -1,8 +1,8 @@
 // A cache of shading samples (Liktor & Dachsbacher 2012): which sample has the entry of the same triangle and shading pixel.
 //
 // A word of it is one more than the index of a sample, whose SPID is the key: SPIDs are all written before, so that an entry is
-// there at once and nobody waits for another. What finds no room where it may stand takes the place of something else,
-// which is then shaded once more where it is needed again.
+// there at once and no thread waits for another. What finds no room where it may stand takes the place of something
+// else, which is then shaded once more where it is needed again.
 //
 // The including shader declares `deep`, `spids`, `counters[]`, `reach` and IS_COUNTED, after reach.glsl, space.glsl and
 // counters.glsl.
@@ -28,7 +28,7 @@ uvec2 spid_of(uint index) {
     return texelFetch(spids, ivec3(at), 0).xy;
 }
 
-// The sample that has the entry of `spid`: `own`, the asking one, where nobody had.
+// The sample that has the entry of `spid`: `own`, the asking one, if no sample had it.
 uint memoised(uvec2 spid, uint own) {
     uint first = mixed(spid.y * 0x9e3779b1u ^ mixed(spid.x)) % CACHE_ENTRIES;
     for (uint way = 0u; way < CACHE_WAYS; way++) {

@@ -1,5 +1,5 @@
-// Samples find their shading samples in a cache; who finds none writes what its material says there into the compact geometry
-// buffer. Pass: src/techniques/deep_shading/indirect/gbuffer.rs.
+// Samples find their shading samples in a cache; a sample that finds none writes what its material says there into the
+// compact geometry buffer. Pass: src/techniques/deep_shading/indirect/gbuffer.rs.
 // variants: VERTEX=plain|extended VISIBILITY=interleaved|stochastic
 #version 460
 #include "techniques/deep_shading/reach.glsl"

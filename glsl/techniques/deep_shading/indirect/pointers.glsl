@@ -1,5 +1,5 @@
 // The visibility buffer of pointers: of each sample where in the compact geometry buffer the shading sample lies that it sees.
-// Who finds it in the cache knows the sample that has made the entry, and that one alone the entry.
+// A sample that finds it in the cache learns which sample made the entry; only that one knows the entry itself.
 #ifndef DEEP_SHADING_POINTERS_GLSL
 #define DEEP_SHADING_POINTERS_GLSL
 

@@ -6,7 +6,7 @@
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
-// 1: a node that was inserted meanwhile is not looked at: a triangle may come into a list again, as in the paper.
+// 1: nodes inserted meanwhile are not checked, so a triangle may be listed twice, as in the paper.
 layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
 // 1: colours are given out by compaction, those of strays from their end on.
 layout(constant_id = 93) const uint IS_COMPACTED = 0;
@@ -84,7 +84,7 @@ uint insert(uint pixel, uint primitive, uint own) {
             uint found = swap_begin(pixel, head, own + 1u);
             fence();
             holder = found == head ? own : NO_PRIMITIVE;
-            // Somebody was quicker: only what is new need be looked at.
+            // Lost the compare-exchange: only nodes newer than the head that was read need checking.
             known = TOLERATES_DUPLICATES != 0u ? found : head;
             head = found;
         }

@@ -86,7 +86,7 @@ float determinant_of(vec3 support) {
     return support.x * support.z - support.y * support.y;
 }
 
-// Of a pixel that is `d` away: 1 at 0, and 0 from the support's rim on, where it is smooth.
+// Weight of a pixel that is `d` away: 1 at 0, and 0 from the support's rim on, where it is smooth.
 float weight_at(vec3 support, vec2 d) {
     float square = dot(vec3(support.z, -2.0 * support.y, support.x), vec3(d.x * d.x, d.x * d.y, d.y * d.y));
     float left = max(1.0 - square / determinant_of(support), 0.0);

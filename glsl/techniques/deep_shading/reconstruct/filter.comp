@@ -77,7 +77,8 @@ void main() {
     for (uint each = 0u; each < LAYER_COUNT; each++) {
         areas[each] = sqrt(determinant_of(supports[each]));
     }
-    // Of each layer: what sees it, and what sees it or something behind it, as far as its filter reaches; colours, and their weights.
+    // For each layer: samples that see it, and those that see it or something behind it, as far as its filter reaches;
+    // colours, and their weights.
     vec4 seen = vec4(0.0);
     vec4 unhidden = vec4(0.0);
     mat4 colors = mat4(0.0);

@@ -14,7 +14,7 @@
 
 #include "techniques/deep_shading/snap.glsl"
 
-// Of the screen, of the triangle's edges at both ends, and of its way.
+// Sides of the screen, of the triangle's edges at both ends, and of its path.
 const uint BOUND_MOST_SIDES = 12u;
 // Without motion the triangle has one place and no way.
 const uint BOUND_STILL_SIDES = 7u;
@@ -89,9 +89,9 @@ Extent widened_by(Extent extent, Spot spot, vec2 reach) {
         min(extent.least, spot.middle - spot.radii - reach), max(extent.greatest, spot.middle + spot.radii + reach));
 }
 
-// Of what lies before the near plane: of the hull of both ends of the exposure that part lies between the corners that are seen
-// and the places where ways from those to the others meet the plane. Only where `is_wanted`, by which the loop ends, because
-// some drivers run both sides of every branch.
+// Extent of the part before the near plane: that part of the hull of both ends of the exposure lies between the corners
+// that are seen and the places where lines from those to the others cross the plane. Only where `is_wanted`, by which
+// the loop ends, because some drivers run both sides of every branch.
 Extent cut_extent(Seen seen[6], TupleBlock tuple, vec2 layer, float around_px, bool is_wanted) {
     Extent extent = Extent(vec2(3.0e38), vec2(-3.0e38));
     for (uint pair = 0u; pair < 36u && is_wanted; pair++) {

@@ -6,7 +6,7 @@
 #ifndef DEEP_SHADING_HIT_GLSL
 #define DEEP_SHADING_HIT_GLSL
 
-// Of this invocation: all of them add to the same words.
+// Counts of this invocation: all invocations add to the same words.
 uint tests_done = 0u;
 uint tests_hit = 0u;
 

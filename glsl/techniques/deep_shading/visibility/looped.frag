@@ -17,7 +17,7 @@
 // As in shade.frag.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
 
-// Of polygon_out.glsl.
+// Written by polygon_out.glsl.
 layout(location = 1) flat in uint in_primitive;
 layout(location = 2) flat in vec4 in_open[3];
 layout(location = 5) flat in vec4 in_close[3];

@@ -43,7 +43,7 @@ Polygon polygon_of(uint triangle) {
     see_triangle(triangle, polygon.seen);
     polygon.tuple = tuples[frame.sample_index * deep.tuple_count + params.tuple];
 #ifdef TESTS_LOOP
-    // Of the whole frame: the tuple is the first of its eye.
+    // Polygon over the whole frame: the tuple is the first of its eye.
     polygon.tuple = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, polygon.tuple.eye);
     polygon.size_px = vec2(frame.width_px, frame.height_px);
     polygon.bound = bound_of(polygon.seen, polygon.tuple, polygon.size_px, HALF_PIXEL);

@@ -1,6 +1,6 @@
 // A corner of a triangle as one tuple sees it, and where it is in shading space. Pass:
-// src/techniques/deep_shading/visibility/sample.rs. TUPLE: told by the draw, or the instance; LAYER: chosen by nobody or by
-// a later stage, or here.
+// src/techniques/deep_shading/visibility/sample.rs. TUPLE: given by the draw, or the instance; LAYER: not written, or
+// written by a later stage, or here.
 // variants: VERTEX=plain|extended TUPLE=pushed|instance LAYER=none|vertex
 #version 460
 #ifdef LAYER_VERTEX
@@ -17,7 +17,7 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 // xy: homogeneous pixels of shading space; zw: depth and w of its clip space.
 layout(location = 0) out vec4 out_canonical;
 layout(location = 1) flat out uint out_primitive;
-// Of the triangle's corners.
+// Weights of the triangle's corners.
 layout(location = 2) out vec3 out_weights;
 layout(location = 3) out vec2 out_uv;
 #ifdef VERTEX_EXTENDED

@@ -6,7 +6,7 @@
 
 // A corner at one end of the exposure, from the middle of the lens.
 struct Seen {
-    // Of the frame's clip space.
+    // Place in the frame's clip space.
     vec4 clip;
     // Metres before the eye.
     float depth;

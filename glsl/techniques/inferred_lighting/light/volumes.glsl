@@ -1,4 +1,4 @@
-// What a draw of one light is told. Both stages of light/volumes read it.
+// Parameters of a draw of one light. Both stages of light/volumes read it.
 #ifndef INFERRED_LIGHTING_LIGHT_VOLUMES_GLSL
 #define INFERRED_LIGHTING_LIGHT_VOLUMES_GLSL
 

@@ -1,5 +1,5 @@
 // A fragment program that moves irradiance as a look-up texture says: the gather as the paper ran it (Segovia 2006,
-// section 4.4). It knows no mapping. Pass: src/techniques/interleaved_deferred/gather/fragment.rs.
+// section 4.4). The shader does not know the mapping. Pass: src/techniques/interleaved_deferred/gather/fragment.rs.
 #version 460
 #define STORAGE_IMAGE
 #define READS_IRRADIANCE

@@ -7,7 +7,7 @@
 #ifdef COPY_PULL
 layout(std430, set = 0, binding = 16) writeonly buffer Irradiance { uvec4 pair[]; } irradiance;
 
-// The second pixel may lie in the padding of the row, which nobody reads.
+// The second pixel may lie in the padding of the row, which nothing reads.
 void store_pixels(MappingParams mapping, uvec2 first, uvec2 words, uvec2 second_words) {
     irradiance.pair[(first.y * row_pitch(mapping) + first.x) / 2u] = uvec4(words, second_words);
 }

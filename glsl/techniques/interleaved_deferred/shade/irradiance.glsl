@@ -1,5 +1,5 @@
 // Irradiance at a surface point from one subset of the lights: virtual point lights, then punctual lights that were
-// joined to the subsets (--direct interleaved). Every road of the split calls this one function, from compute shaders
+// joined to the subsets (--direct interleaved). Every method of the split calls this one function, from compute shaders
 // and from a fragment shader; where the irradiance goes is theirs.
 #ifndef INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
 #define INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
@@ -26,7 +26,7 @@ struct ShadeParams {
 // Points that a thread shades.
 layout(constant_id = 2) const uint TEXELS = 1;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
-// Whether punctual lights are joined to the subsets: a loop that never turns is compiled for seconds.
+// Whether punctual lights are joined to the subsets: even a loop that never iterates takes seconds to compile.
 layout(constant_id = 5) const bool HAS_JOINED = true;
 
 layout(push_constant) uniform Push { ShadeParams params; };

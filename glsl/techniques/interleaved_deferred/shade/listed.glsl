@@ -1,5 +1,5 @@
 // Texels of a list that compute shaders shade, TEXELS a thread: neighbouring threads take neighbouring texels, so that they
-// are read together. Groups: src/techniques/interleaved_deferred/shade/mod.rs, `listed_groups`.
+// are read together. Workgroup count: src/techniques/interleaved_deferred/shade/mod.rs.
 #ifndef INTERLEAVED_DEFERRED_LISTED_GLSL
 #define INTERLEAVED_DEFERRED_LISTED_GLSL
 

@@ -1,5 +1,5 @@
 // A fragment program that moves texels as a look-up texture says: the split as the paper ran it (Segovia 2006, sections
-// 3.2 and 4.2). It knows no mapping. Pass: src/techniques/interleaved_deferred/split/fragment.rs.
+// 3.2 and 4.2). The shader does not know the mapping. Pass: src/techniques/interleaved_deferred/split/fragment.rs.
 //   SOURCE=frame   from the un-split G-buffer: in one pass, or the first of two
 //   SOURCE=blocks  from the block layout: the second of two
 // variants: POSITION=half|unorm16|depth|float SOURCE=frame|blocks

@@ -38,7 +38,7 @@ pub struct Materials {
     boards: usize,
     chain_link: usize,
     barbed_wire: usize,
-    /// Of the panes, and of the sheets under the rotor.
+    /// Meshes of the panes, and of the sheets under the rotor.
     panes: [usize; 4],
     sheets: [usize; 3],
     bulbs: Vec<usize>,

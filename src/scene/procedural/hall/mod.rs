@@ -27,7 +27,7 @@ pub const LEAST_TRIANGLES: u64 = 5000;
 
 /// Lamps, each with its light.
 pub const MOST_LAMPS: u64 = Lamps::MOST;
-/// Of the whole hall; a sketch has fewer.
+/// Draws of the whole hall; a sketch has fewer.
 pub const MOST_DRAWS: u64 = 437;
 /// Pieces that nothing joins: with fewer draws there would be fewer of them.
 pub const LEAST_DRAWS: u64 = 60;

@@ -81,7 +81,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
     plan.push("frame_buffer", full(DEPTH), attached(DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT));
 }
 
-/// Who touches them.
+/// Plans the passes that touch the baseline's resources.
 pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let mut drawn = vec![touch(COLORS, Access::ColorWrite), touch(DEPTH, Access::DepthWrite)];

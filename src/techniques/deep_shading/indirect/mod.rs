@@ -10,7 +10,7 @@
 //!
 //! Our reading, where the papers leave a choice or drivers none
 //! - triangles come a second time, after visibility is known: theirs come once, and entries of what is covered later stay, of
-//!   which nobody can say how many there are before they are drawn
+//!   which it is unknown how many there are before they are drawn
 //! - the cache is one of all samples, their first kind; its words are samples, whose SPIDs are the keys, so that no thread waits
 //!   for another: lanes of a subgroup that did would wait forever. Where eight places in a row are taken, one forgets what it
 //!   had: what is asked for again is shaded again, and counted (`shading_samples_forgotten`)
@@ -51,7 +51,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, samples: u64) {
     plan.buffer("compact_geometry_buffer", full(COLORS), samples * COLOR_BYTES);
 }
 
-/// Who touches them, after visibility and up to the resolve.
+/// Plans the passes that touch its resources, after visibility and up to the resolve.
 pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     let touch = |name: &str, access| (full(name), access);
     let mut drawn = vec![touch(SPIDS, Access::FragmentSample)];

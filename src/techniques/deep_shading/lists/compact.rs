@@ -1,5 +1,5 @@
-//! Compaction: lists sorted, without what they hold twice, their first 16 triangles in a row, their colours in a row. Shader:
-//! compact.comp.
+//! Compaction: sorts each list, drops what it holds twice, and puts its first 16 triangles and its colours in rows.
+//! Shader: compact.comp.
 //! reads and writes  lists.begins, lists.nodes      writes  lists.linear; begins alphas of colours at 0
 
 use super::super::choices::Choices;

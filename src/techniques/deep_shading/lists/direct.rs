@@ -1,6 +1,6 @@
-//! Direct insertion: what a ray has met goes into its list at once, on the host, and no SPIDs are kept (Clarberg & Munkberg 2014,
-//! section 4.2, "Ray Tracing"; `--lists direct`). The lists are those that insertion on the device makes, in the order that
-//! compaction brings them to.
+//! Direct insertion: the host puts each ray's hit into its list at once, and no SPIDs are kept (Clarberg & Munkberg
+//! 2014, section 4.2, "Ray Tracing"; `--lists direct`). The lists are those that insertion on the device makes, in the
+//! order that compaction gives them.
 //! writes  lists.begins, lists.nodes, lists.linear, lists.zmax, lists.addresses; begins alphas of colours at 0
 
 use super::super::choices::Choices;
@@ -41,7 +41,7 @@ pub struct HostLists {
 /// A sample that is listed, and where.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
-    /// Of shading space, row by row.
+    /// Index of a pixel of shading space, row by row.
     pixel: u32,
     primitive: u32,
     sample: u32,
@@ -134,7 +134,7 @@ fn staged_name(name: &str) -> String {
 /// Lists on their way to the device.
 pub struct Direct {
     sets: Vec<HostLists>,
-    /// Of `Lists::all`, in its order.
+    /// Staging buffers of the buffers in `Lists::all`, in that order.
     staged: Vec<RefCell<Buffer>>,
     staged_run: Cell<u32>,
 }

@@ -19,17 +19,17 @@ pub fn pass_samples(values: &Values, caps: &Caps, spp: u32) -> Result<u32> {
     if spp.is_multiple_of(samples) {
         return Ok(samples);
     }
-    Err(Error::request(format!("--pass-samples {samples}: --spp {spp} is no multiple of it"))
+    Err(Error::request(format!("--pass-samples {samples}: --spp {spp} is not a multiple of it"))
         .note(format!("--spp {} works, and --pass-samples 1 always", spp.next_multiple_of(samples))))
 }
 
-/// What `--pass-samples` needs of a device; of other kinds of `--shading` nothing, which refuse it.
+/// What `--pass-samples` needs of a device; None with other kinds of `--shading`, which refuse the setting.
 pub fn needs(values: &Values) -> Option<Need> {
     let asked = values.text("pass-samples");
     if values.text("shading") != "msaa" {
         return None;
     }
     let (_, ability) = MULTIPLE.into_iter().find(|(samples, _)| asked == samples.to_string())?;
-    let instead = "--pass-samples auto takes as many as there are";
+    let instead = "--pass-samples auto takes as many as the device has";
     Some(Need { of: format!("--pass-samples {asked}"), ability, instead })
 }

@@ -15,7 +15,7 @@ pub fn is_looped(values: &Values, caps: &Caps, visibility: Visibility, bytes: u6
         }
 }
 
-/// What it is called in the report.
+/// How buffers are reached, in the report's words.
 pub fn sample_tests_name(is_looped: bool) -> &'static str {
     if is_looped { "loop" } else { "layers" }
 }

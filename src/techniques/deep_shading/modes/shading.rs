@@ -89,9 +89,9 @@ pub const NO_LISTS: &str = "it has no lists";
 /// What is shaded (`--shading`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// What the lists have.
+    /// Triangles in the lists.
     Deep,
-    /// What samples point to in a compact geometry buffer.
+    /// Entries of a compact geometry buffer that samples point to.
     IndirectGbuffer,
     /// Every sample that is drawn.
     Ssaa,

@@ -3,7 +3,7 @@
 use crate::gpu::Access;
 use crate::settings::Values;
 
-/// What triangles are drawn as, and in which order tuples and draws come (`--visibility`).
+/// Shape in which triangles are drawn, and order of tuples and draws (`--visibility`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     RepeatFrame,
@@ -26,12 +26,12 @@ impl Visibility {
         }
     }
 
-    /// All layers are drawn into at once.
+    /// Whether all layers are drawn into at once.
     pub fn is_layered(self) -> bool {
         matches!(self, Self::RepeatDraw | Self::Instancing | Self::Replicate)
     }
 
-    /// Whatever draws the samples' triangles again draws polygons around them, and finds the samples by what they see.
+    /// Whether later passes redraw polygons around triangles, and find samples by the triangle that they see.
     pub fn has_polygons(self) -> bool {
         matches!(self, Self::Stochastic | Self::Ray)
     }
@@ -41,7 +41,7 @@ impl Visibility {
         if self == Self::Ray { Access::TransferWrite } else { Access::ColorWrite }
     }
 
-    /// Someone must say the layer, and may be chosen.
+    /// Whether some stage must write `gl_Layer`, so that `--layer-from` chooses which.
     pub fn has_layer_from(self) -> bool {
         matches!(self, Self::RepeatDraw | Self::Instancing)
     }

@@ -100,7 +100,7 @@ impl Reconstruct {
         })
     }
 
-    /// Those of an entry a sample.
+    /// The buffers with one entry for each sample.
     pub fn buffers(&self) -> [&Buffer; 2] {
         [&self.reconstructed.colors, &self.reconstructed.vectors]
     }

@@ -3,7 +3,8 @@
 //! reads   the scene, the tuples, visibility.spids, shade.colors, lists.addresses or the lists
 //! writes  reconstruct.samples.colors and reconstruct.samples.vectors: buffers, 8 B a sample each
 //!
-//! Differs from the paper: visibility leaves no motion vectors; a SPID and a tuple say what they are, whoever found the SPID.
+//! Differs from the paper: visibility leaves no motion vectors; a SPID and a tuple determine them, whichever pass found
+//! the SPID.
 
 use super::super::primitives::Primitives;
 use super::super::ranges;
@@ -52,7 +53,7 @@ impl Gather {
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, ranges: buffer })
     }
 
-    /// After the resolve, for whom `shaded` came to compute shaders.
+    /// After the resolve, for which `shaded` was made readable by compute shaders.
     pub fn record(
         &self,
         cmd: &mut Commands,

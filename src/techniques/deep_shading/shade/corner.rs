@@ -1,5 +1,5 @@
-//! Triangles as they are, which the device draws conservatively (VK_EXT_conservative_rasterization), or as any others: what
-//! conservative rasterisation is for, and costs (Clarberg & Munkberg 2014, table 2). Shader: corner.vert.
+//! Triangles as they are, which the device rasterises conservatively (VK_EXT_conservative_rasterization) or as usual,
+//! to show what conservative rasterisation is for, and costs (Clarberg & Munkberg 2014, table 2). Shader: corner.vert.
 
 use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT_VARIANTS;
 use crate::gpu::shader::variant;

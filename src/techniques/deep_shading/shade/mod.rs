@@ -1,5 +1,5 @@
 //! Shade: all triangles once over shading space, every pixel that they touch; what the lists have is shaded and stored
-//! (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of the roads.
+//! (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of the methods.
 //! reads   the scene, its lights, the lists, lists.zmax, lists.marks
 //! writes  shade.colors   buffer, 8 B a sample: RGBA16F
 
@@ -77,7 +77,7 @@ impl Shade {
         Ok(Self { pipeline, stages, space: choices.space.extent })
     }
 
-    /// The lists with who touched their links last; the barrier of the shadow maps.
+    /// The lists with the access that touched their links last; the barrier of the shadow maps.
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
@@ -91,7 +91,7 @@ impl Shade {
         counters: &Buffer,
     ) -> Result<()> {
         let traffic = Traffic {
-            // Of vertices at most: those of triangles without a list may stay unread.
+            // Vertices are an upper bound: those of triangles without a list may stay unread.
             read_bytes: mesh::read_bytes(scene, list.calls())
                 + lists.link_bytes()
                 + lists.marks.as_ref().map_or(0, |marks| marks.bytes),
@@ -118,7 +118,7 @@ impl Shade {
                 return Ok(());
             };
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
-            // A triangle that turns its back to the middle of the lens may show its front to the rim.
+            // A triangle whose back faces the middle of the lens may show its front to the rim.
             mesh::for_each(cmd, &self.pipeline, scene, Sides::Both, list.calls(), |call| {
                 cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&primitives.params(scene, call)));
                 let of = |indices: u32| indices / 3 * self.stages.vertex_count;

@@ -2,7 +2,7 @@
 
 use crate::gpu::shader::Shader;
 
-/// What a road draws with.
+/// The pipelines that a method draws with.
 pub struct Stages {
     pub(super) vertex: &'static Shader,
     pub(super) geometry: Option<&'static Shader>,

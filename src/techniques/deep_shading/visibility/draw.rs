@@ -9,12 +9,12 @@ use crate::resident::{DrawCall, SceneGpu};
 use crate::techniques::deep_shading::primitives::{self, Primitives};
 use std::ops::Range;
 
-/// How each draw call comes to its tuples.
+/// How each draw call is repeated for its tuples.
 pub struct Repeats {
-    /// The call comes again for every `step`th of them, and is told it.
+    /// The call is repeated for every `step`th of them, whose number it gets.
     pub tuples: Range<u32>,
     pub step: u32,
-    /// Of each of these. More than one: an instance is a tuple.
+    /// Instances of each of these draws. More than one: an instance is a tuple.
     pub instance_count: u32,
 }
 
@@ -25,7 +25,7 @@ impl Repeats {
     }
 }
 
-/// What triangles are drawn with.
+/// Shader stages that triangles are drawn with.
 pub struct Stages {
     pub vertex: &'static Shader,
     pub geometry: Option<&'static Shader>,
@@ -35,7 +35,7 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Of triangles as one tuple sees them.
+    /// Stages that draw triangles as one tuple sees them.
     pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
         Self { vertex, geometry, sides: Sides::AsDrawn, vertex_count: 3 }
     }
@@ -68,7 +68,7 @@ pub fn draw<'a>(
     });
 }
 
-/// The same for whom draws the vertices of a call itself: `draw`, for each of its repeats.
+/// The same for a caller that draws the vertices of a call itself: `draw`, for each of its repeats.
 pub fn draw_by<'a>(
     cmd: &Commands,
     (pipeline, sides): (&GraphicsPipeline, Sides),

@@ -1,5 +1,5 @@
-//! Who says which layer a triangle is drawn into where tuples are drawn together (`--layer-from`). Shaders: sample.vert, and
-//! layer.geom, which passes triangles through.
+//! The stage that writes the layer a triangle is drawn into where tuples are drawn together (`--layer-from`). Shaders:
+//! sample.vert, and layer.geom, which passes triangles through.
 
 use crate::gpu::shader::techniques::deep_shading::visibility::layer::GEOM_VARIANTS;
 use crate::gpu::shader::variant;

@@ -36,7 +36,7 @@ use looped::Looped;
 use sample::Sample;
 use std::sync::Arc;
 
-/// Who draws triangles.
+/// What draws triangles.
 pub enum Drawer {
     /// Each tuple into its layer.
     Layers(Box<Sample>),

@@ -1,5 +1,5 @@
-//! Who makes the polygons of stochastic rasterisation (`--polygon-from`): vertex shaders (stochastic.rs), or a geometry shader as
-//! in the paper (section 4.2), once for all corners. Shaders: polygon.vert, polygon.geom.
+//! The stage that makes the polygons of stochastic rasterisation (`--polygon-from`): vertex shaders (stochastic.rs), or
+//! a geometry shader as in the paper (section 4.2), once for all corners. Shaders: polygon.vert, polygon.geom.
 
 use crate::gpu::shader::techniques::deep_shading::visibility::polygon::{GEOM_VARIANTS, VERT};
 use crate::gpu::shader::variant;

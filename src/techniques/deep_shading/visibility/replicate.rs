@@ -1,8 +1,8 @@
 //! Interleave-ReplicateGS: each draw call once, and a geometry shader makes a triangle for each tuple (Clarberg & Munkberg
 //! 2014, section 4.2). Vertices are fetched once for many tuples. Shaders: replicate.vert, replicate.geom.
 //!
-//! Geometry shaders give out so much and no more: the paper's 32 tuples of 32 bytes a vertex fit, but what samples need here
-//! is twice as long, so that a draw call comes again for the next tuples.
+//! The output of a geometry shader is limited: the paper's 32 tuples of 32 bytes a vertex fit, but what samples need
+//! here is twice as long, so that a draw call is repeated for the next tuples.
 
 use crate::caps::Limits;
 use crate::gpu::shader::techniques::deep_shading::visibility::replicate::{GEOM_VARIANTS, VERT_VARIANTS};

@@ -63,7 +63,7 @@ impl Sample {
         Ok(Self::of([pipeline("opaque")?, pipeline("tested")?], stages))
     }
 
-    /// Of solid surfaces, and of those with an alpha.
+    /// Pipelines of solid surfaces, and of surfaces with an alpha.
     pub fn of([opaque, tested]: [GraphicsPipeline; 2], stages: Stages) -> Self {
         Self { opaque, tested, stages }
     }

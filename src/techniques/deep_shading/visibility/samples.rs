@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// One entry a sample.
 pub struct Samples {
     pub spids: Image,
-    /// Of rasterised ones.
+    /// Depth buffer of rasterised samples.
     pub depth: Option<Image>,
     /// How SPIDs and depths at shading points were written.
     pub written: Access,

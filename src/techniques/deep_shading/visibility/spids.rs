@@ -49,7 +49,7 @@ impl Spids {
         Ok(Self { pipeline: GraphicsPipeline::new(gpu, &description)?, ranges })
     }
 
-    /// What of each layer is in the frame.
+    /// Records the pass over the part of each layer that lies in the frame.
     pub(super) fn record(
         &self,
         cmd: &mut Commands,

@@ -14,7 +14,7 @@ use crate::techniques::deep_shading::visibility::sample::{Repeats, Stages};
 use crate::techniques::deep_shading::visibility::stochastic;
 
 impl Visibility {
-    /// How each draw call comes to its tuples; where layers are drawn one by one, those of the first.
+    /// How each draw call is repeated for its tuples; where layers are drawn one by one, the repeats of the first.
     pub fn repeats(self, scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
         match self {
             Self::RepeatFrame | Self::Stochastic | Self::Ray => repeat_frame::repeats(0),
@@ -29,7 +29,7 @@ impl Visibility {
         if self.is_layered() { repeats.round_count() } else { layer_count }
     }
 
-    /// Tells `draw` the layers to open, one after the other or all together, and how calls repeat in them.
+    /// Calls `draw` with the layers to open, one after the other or all together, and how calls repeat in them.
     pub fn for_layers(self, repeats: &Repeats, layer_count: u32, mut draw: impl FnMut(Layers, &Repeats)) {
         if self.is_layered() {
             draw(Layers::All(layer_count), repeats);

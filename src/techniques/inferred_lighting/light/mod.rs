@@ -1,11 +1,11 @@
 //! Light: every light into the L-buffer, at its own size. Kircher 2009, section 2.2.
 //!
 //! The L-buffer holds irradiance in three channels and the intensity of the highlight in the fourth, as half floats. Sums
-//! are float and in the order of the lights on every road, so all roads leave the same bits; `--l-buffer half` blends in
+//! are float and in the order of the lights in every method, so all leave the same bits; `--l-buffer half` blends in
 //! half floats as the paper did, which loses light (drivers round towards zero). `--l-buffer fixed` packs the float sums to
 //! 16 bits of fixed point instead.
 //!
-//! roads  tiled      one dispatch, a list of lights a tile
+//! ways   tiled      one dispatch, a list of lights a tile
 //!        volumes    a draw a light, into float sums that `pack` rounds once, or into the L-buffer itself; lights may
 //!                   cast `shadow_volumes` before
 
@@ -33,7 +33,7 @@ pub enum Volumes {
     Stencil,
     /// The same within the rectangle.
     Both,
-    /// The same, but for small lights, which have the rectangle alone.
+    /// The same, except for small lights, which have the rectangle alone.
     Auto,
 }
 
@@ -89,7 +89,7 @@ pub fn plan(plan: &mut Plan, extent: Extent, volumes: Volumes, in_halves: bool, 
     }
 }
 
-/// How the last pass of the road left the L-buffer.
+/// The access with which the method's last pass left the L-buffer.
 pub fn last_access(in_halves: bool) -> Access {
     if in_halves { Access::ColorWrite } else { Access::ComputeWrite }
 }

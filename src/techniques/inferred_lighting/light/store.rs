@@ -2,7 +2,7 @@
 
 use half::f16;
 
-/// Numbers of fixed point that stand for light; the one after the last stands for NaN.
+/// Steps of fixed point that encode light; the number after the last encodes NaN.
 const LIGHT_STEPS: f32 = 65534.0;
 /// Down to what part of `--light-range` losses are measured.
 const LEAST_PART: f32 = 1.0 / 256.0;
@@ -25,7 +25,7 @@ impl Store {
         ("LIGHT_RANGE", if let Self::Fixed { range } = self { range.to_bits() } else { 0 })
     }
 
-    /// What 16 bits stand for.
+    /// The light that 16 bits encode.
     pub fn read(self, bits: u16) -> f32 {
         match self {
             Self::Halves => f16::from_bits(bits).to_f32(),
@@ -51,7 +51,7 @@ impl Store {
     pub fn loss(self, range: f32) -> f64 {
         let parts = (0..=LOSS_SAMPLES).map(|index| f32::from(index) / f32::from(LOSS_SAMPLES));
         let lights = parts.map(|part| range * (LEAST_PART + (1.0 - LEAST_PART) * part));
-        // Nearly all of a loss is near the darkest light: it is looked at more closely.
+        // Nearly all of a loss is near the darkest light: so it is sampled more densely there.
         let dark =
             (0..LOSS_SAMPLES).map(|index| range * LEAST_PART * (1.0 + f32::from(index) / f32::from(LOSS_SAMPLES)));
         let off = |light: f32| (f64::from(self.read(self.bits(light))) / f64::from(light) - 1.0).abs();

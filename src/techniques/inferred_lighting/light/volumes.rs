@@ -33,7 +33,7 @@ use std::sync::Arc;
 /// Corners of volumes.vert's surface.
 const VOLUME_VERTICES: u32 = 60;
 
-/// What a light's draw is.
+/// The draw of one light.
 #[derive(Clone, Debug)]
 struct LightDraw {
     light: u32,
@@ -72,7 +72,7 @@ pub struct VolumeSettings<'a> {
     pub constants: &'a [(&'static str, u32)],
     pub has_extras: bool,
     pub volumes: Volumes,
-    /// Of the geometry pass, where lights or shadows are counted into its stencil.
+    /// Depth format of the geometry pass, where lights or shadows are counted in its stencil.
     pub depth_format: Option<vk::Format>,
     pub casters: &'a ShadowCasters,
     /// `--volumes auto`: lights whose rectangle has fewer texels go without the stencil.

@@ -1,5 +1,6 @@
-//! Buffer gathering (BG): the irradiance of n x m sub-buffers back to the frame, by the road that split it. Segovia 2006,
-//! sections 3.4 and 4.4. All end in one buffer in frame order, which the filter reads; one filters the rows on the way.
+//! Buffer gathering (BG): the irradiance of n x m sub-buffers back to the frame, by the method that split it. Segovia
+//! 2006, sections 3.4 and 4.4. All end in one buffer in frame order, which the filter reads; one filters the rows on
+//! the way.
 
 pub mod blocks;
 pub mod filtered;
@@ -65,7 +66,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) 
     gathered
 }
 
-/// What it ends in, without the technique.
+/// Name of its result, without the technique.
 pub fn target(choices: &Choices) -> &'static str {
     if choices.gather_filters() { "filter.rows" } else { "gather.irradiance" }
 }

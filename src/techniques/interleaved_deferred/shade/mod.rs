@@ -1,4 +1,4 @@
-//! Shading without shadow maps (SNSM): Segovia 2006, section 4.3. Every road sums the same function over its lights
+//! Shading without shadow maps (SNSM): Segovia 2006, section 4.3. Every split sums the same function over its lights
 //! (irradiance.glsl): float, in the order of the list, packed to halves once.
 
 pub mod branch;
@@ -41,7 +41,7 @@ pub struct ShadeGpu {
     pub vpls: Buffer,
     subset_lights: Buffer,
     pub subsets: Buffer,
-    /// What every road of shading is told.
+    /// Parameters of shading that every split has.
     pub params: ShadeParams,
 }
 
@@ -65,7 +65,7 @@ impl ShadeGpu {
         &self.params.mapping
     }
 
-    /// What irradiance.glsl binds.
+    /// Bindings of irradiance.glsl.
     fn bound<'a>(&'a self, frame: &'a Buffer, direct: &'a DirectGpu) -> Vec<(&'static str, Bound<'a>)> {
         vec![
             ("Frame", Bound::Buffer(frame)),

@@ -48,7 +48,7 @@ enum Fused {
     },
 }
 
-/// Of two products that are added, chance takes one.
+/// The product to fuse; of two products that are added, chance takes one.
 fn fusable(module: &Module, known: &Known, inst: &Instruction, chance: u64) -> Option<Fused> {
     let op = inst.class.opcode;
     if !matches!(op, Op::FAdd | Op::FSub | Op::Dot) || module.is_precise(inst) {

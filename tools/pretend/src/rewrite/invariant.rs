@@ -1,4 +1,4 @@
-//! What an output that is declared `invariant` hangs on: nothing that two compilers' runs may do differently may be
+//! What an output that is declared `invariant` depends on: nothing that two compilers' runs may do differently may be
 //! done to it.
 
 use super::module::{id, ids};
@@ -38,7 +38,7 @@ struct Slice<'a> {
 }
 
 /// All ids whose values reach an invariant output, through variables and calls, and by the branches of functions that
-/// write it. Where a variable's value goes by whatever road, all that is written to it is in.
+/// write it. Where a variable's value goes by whatever path, all that is written to it is in.
 pub fn hung_on(module: &Module) -> HashSet<Word> {
     let held = outputs(module);
     if held.is_empty() {

@@ -1,8 +1,8 @@
 //! Last bits: quotients, roots, powers and angles come out one unit in the last place off, up or down.
 //!
-//! Vulkan lets them be farther off (2.5 units a quotient), `precise` or not. Which way hangs on the result's bits and
-//! on the place in the shader. Zero, one, infinity, NaN and what is too small for a full mantissa stay: devices come to
-//! them exactly, as good as always.
+//! Vulkan lets them be farther off (2.5 units a quotient), `precise` or not. The direction depends on the result's bits
+//! and on the place in the shader. Zero, one, infinity, NaN and what is too small for a full mantissa stay: devices
+//! come to them exactly, as good as always.
 
 use super::module::{Module, of_ids};
 use rspirv::dr::Instruction;

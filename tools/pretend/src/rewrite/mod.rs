@@ -1,8 +1,8 @@
 //! A shader that computes what its source says to another last bit, as compilers and devices may.
 //!
 //! What they may not change stays: a result that is `precise` (NoContraction) is rounded where its source rounds it,
-//! and what an `invariant` output hangs on is not touched at all, since pipelines with the same source for it must come
-//! to the same bits.
+//! and what an `invariant` output depends on is not touched at all, since pipelines with the same source for it must
+//! come to the same bits.
 
 mod contract;
 mod invariant;

@@ -8,9 +8,9 @@ use std::collections::{HashMap, HashSet};
 
 pub struct Module {
     builder: Builder,
-    /// Of its words: chance falls otherwise in each shader.
+    /// Hash of its words, so that chance differs from shader to shader.
     hash: u64,
-    /// Of values that are floats of 32 bits or vectors of them.
+    /// Component count of values that are 32-bit floats or vectors of them.
     components: HashMap<Word, u32>,
     no_contraction: HashSet<Word>,
     invariant: HashSet<Word>,
@@ -47,7 +47,7 @@ impl Consumer for Loading {
     }
 }
 
-/// Every bit of the result hangs on every bit of `value` (the last steps of SplitMix64).
+/// Every bit of the result depends on every bit of `value` (the last steps of SplitMix64).
 fn mixed(value: u64) -> u64 {
     let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -100,7 +100,7 @@ impl Module {
     }
 
     /// Components of an instruction's result, where it is a float of 32 bits or a vector of them and no invariant
-    /// output hangs on it.
+    /// output depends on it.
     pub fn free_components(&self, inst: &Instruction) -> Option<u32> {
         let result = inst.result_id.filter(|result| !self.invariant.contains(result));
         self.components.get(&result?).copied()

@@ -1,4 +1,4 @@
-//! What an invariant output hangs on stays as it is, through variables and calls; the rest is rewritten.
+//! What an invariant output depends on stays as it is, through variables and calls; the rest is rewritten.
 
 use super::*;
 use rspirv::binary::Assemble;

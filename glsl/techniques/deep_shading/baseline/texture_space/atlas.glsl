@@ -16,7 +16,7 @@ layout(std430, set = 0, binding = 41) readonly buffer Charts { uint charts[]; };
 const uint CHART_LEVEL_BITS = 4u;
 
 // A word of an owner: OWNER_RANK_BITS of how near the triangle comes to the texel's middle, the nearest greatest, above one more than
-// the triangle; 0: nobody.
+// the triangle; 0: no owner.
 const uint OWNER_RANK_BITS = 5u;
 const uint OWNER_TRIANGLE = 0xffffffffu >> OWNER_RANK_BITS;
 
@@ -35,7 +35,7 @@ uint texel_index(uint level, uvec2 texel) {
     return (all - (all >> (2u * level))) / 3u + texel.y * level_side(level) + texel.x;
 }
 
-// Of a triangle of the index buffer, in texels of a level.
+// Corners of a triangle of the index buffer in the atlas, in texels of a level.
 struct Charted {
     vec2 corners[3];
 };

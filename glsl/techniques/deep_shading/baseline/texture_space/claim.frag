@@ -1,4 +1,4 @@
-// Who shades a texel: the triangle that comes nearest to its middle, which of several is the last in the index buffer.
+// Owner of a texel: the triangle that comes nearest to its middle, and of several such the last in the index buffer.
 // Pass: src/techniques/deep_shading/baseline/texture_space/claim.rs.
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
@@ -8,7 +8,8 @@
 
 layout(std430, set = 0, binding = 42) buffer Owners { uint owners[]; };
 
-// Texels between places that are told apart; nearer to the middle than the least of them it lies inside.
+// Least distance between places that are distinguished, in texels; nearer to the middle than the least of them it lies
+// inside.
 const float RANK_STEP = 0.05;
 const float RANK_INSIDE = 1.0 / 256.0;
 // The texels that a look-up reads are no farther away: those of a hull that is a box may be.

@@ -12,7 +12,7 @@
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 
-// Of the index buffer.
+// Index of the triangle in the index buffer.
 layout(location = 0) flat out uint out_triangle;
 layout(location = 1) flat out uint out_level;
 // Claims and shading draw the same texels: what one of them leaves out would show what was there before.

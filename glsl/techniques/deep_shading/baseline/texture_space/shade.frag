@@ -27,7 +27,7 @@ void widen(inout Place place, Charted charted, vec4 canonical[3]) {
         return;
     }
     Place seen = place_at(canonical[0], canonical[1], canonical[2], at.xy / at.w);
-    // Of a pixel of the frame, not of a finer or coarser shading space.
+    // Size of a pixel of the frame, not of a finer or coarser shading space.
     vec2 pixel = deep.scaled_px / vec2(frame.width_px, frame.height_px);
     vec3 right = seen.right * pixel.x;
     vec3 down = seen.down * pixel.y;

@@ -23,7 +23,7 @@ vec4 determinants(vec3 a, vec3 b, vec3 c, vec3 a_close, vec3 b_close, vec3 c_clo
         dot(a_close, close));
 }
 
-// `seen`: as of see_triangle. False: nobody sees it.
+// `seen`: as of see_triangle. False: no sample sees it.
 bool may_be_seen(Seen seen[6], vec2 frame_px) {
     uint near_count = 0u;
     for (uint index = 0u; index < 6u; index++) {

@@ -13,7 +13,7 @@ const CHART_LEVEL_BITS: u32 = 4;
 /// Owners' words hold one more than a triangle (OWNER_TRIANGLE of atlas.glsl).
 const MOST_TRIANGLES: usize = (1 << 27) - 1;
 
-/// Of all meshes, as `Geometry` has them: vertices one after the other, triangles in the order of their clusters.
+/// Atlases of all meshes in the order of `Geometry`: vertices one after the other, triangles by cluster.
 pub struct Atlases {
     /// A place a vertex.
     pub coordinates: Vec<Vec2>,
@@ -29,7 +29,7 @@ impl Atlases {
         let triangles: usize = scene.meshes.iter().map(Mesh::triangle_count).sum();
         if triangles > MOST_TRIANGLES {
             return Err(Error::request(format!(
-                "--shading texture-space: {}: {triangles} triangles, and {MOST_TRIANGLES} are told apart",
+                "--shading texture-space: {}: {triangles} triangles, and at most {MOST_TRIANGLES} can be told apart",
                 scene.name
             ))
             .within(NAME));

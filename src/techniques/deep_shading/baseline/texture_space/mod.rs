@@ -1,8 +1,8 @@
 //! Baseline `--shading texture-space`: Andersson, Hasselgren, Toth and Akenine-Moller 2014, "Adaptive Texture Space Shading for
 //! Stochastic Rendering", as far as Clarberg and Munkberg 2014 say what it does (sections 2 and 6, figure 9). Of each draw call a
 //! sparse hierarchy of shading values is drawn into a texture by conservative rasterisation, which then is the draw's colour
-//! where tuples see it; the next draw call begins with an empty one. Draws take turns in a pool of such textures.
-//! reads   the scene, its lights, the tuples
+//! where tuples see it; the next draw call begins with an empty one. Draws share a pool of such textures, one after the
+//! other. reads   the scene, its lights, the tuples
 //! writes  texture_space.textures.N, .owners.N, .touched.N   buffers of the pool (pool.rs)
 //!         texture_space.atlas, texture_space.charts         buffers, 8 B a vertex and 4 B a triangle, made once
 //!         baseline.colors, baseline.depth                   as supersampling has them
@@ -68,7 +68,7 @@ fn draws_of(list: &DrawList) -> Vec<DrawList> {
     draws
 }
 
-/// What draws of one texture bind.
+/// Bindings of draws with one texture.
 struct SlotSets {
     claim: Option<vk::DescriptorSet>,
     shade: Option<vk::DescriptorSet>,
@@ -109,8 +109,9 @@ impl TextureSpace {
         })
     }
 
-    /// All draws, as many at a time as there are textures: claimed, shaded, and then drawn by `draw`, which is told them with the sets
-    /// that `sample` binds for each and whether they are the first. `bound`: what shaders of the technique may read.
+    /// All draws, as many at a time as there are textures: claimed, shaded, and then drawn by `draw`, which gets them
+    /// with the sets that `sample` binds for each and whether they are the first. `bound`: what shaders of the
+    /// technique may read.
     ///
     /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(
@@ -150,7 +151,7 @@ impl TextureSpace {
         Ok(())
     }
 
-    /// Of the pool, in a frame of `list`: `Pool::touched_bytes`.
+    /// Bytes of the pool that a frame of `list` touches (`Pool::touched_bytes`).
     ///
     /// Errors: memory for reading the counts back (exit code 4).
     pub fn touched_bytes(&self, gpu: &Arc<Gpu>, list: &DrawList) -> Result<BTreeMap<String, u64>> {

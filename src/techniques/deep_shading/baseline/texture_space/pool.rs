@@ -1,8 +1,9 @@
-//! The pool: textures that draws take turns in (Clarberg & Munkberg 2014, section 6: "a pool of large mipmapped textures"), buffers
-//! each with all levels to a texel, and beside each who shades which of its texels.
-//! texture_space.textures.N   buffer, 8 B a texel: RGBA16F
+//! The pool: textures that draws use one after the other (Clarberg & Munkberg 2014, section 6: "a pool of large
+//! mipmapped textures"), buffers each with all levels to a texel, and beside each the triangle that shades each of its
+//! texels. texture_space.textures.N   buffer, 8 B a texel: RGBA16F
 //! texture_space.owners.N     buffer, 4 B a texel: atlas.glsl says of what; ours, not the paper's
-//! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument off` 16 B that nobody reads
+//! texture_space.touched.N    buffer, a bit a texel and their count: what a frame has shaded; with `--instrument off`
+//! 16 B that nothing reads
 
 use crate::error::{Error, Result};
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, readback};
@@ -87,7 +88,7 @@ struct Slot {
     touched: Buffer,
 }
 
-/// What a chunk's textures are next: who touches them in which order is one round.
+/// The textures of the next chunk of draws: all that touches them, in its order, is one round.
 pub struct Pool(Vec<Slot>);
 
 impl Pool {
@@ -104,7 +105,7 @@ impl Pool {
         self.0.len()
     }
 
-    /// What shaders bind of each texture.
+    /// Buffers of each texture that shaders bind.
     pub fn bound(&self) -> impl Iterator<Item = [(&'static str, Bound<'_>); 3]> {
         self.0.iter().map(|Slot { texels, owners, touched }| {
             [("Texels", texels), ("Owners", owners), ("Touched", touched)]
@@ -112,7 +113,7 @@ impl Pool {
         })
     }
 
-    /// Of one texture.
+    /// Bytes of the owners of one texture.
     pub fn owner_bytes(&self) -> u64 {
         self.0.first().map_or(0, |slot| slot.owners.bytes)
     }
@@ -144,7 +145,8 @@ impl Pool {
         Ok(bytes)
     }
 
-    /// Forgets who owns the texels of the first `used`, for claims to follow. `is_first`: nobody has touched them in this frame.
+    /// Clears the owners of the texels of the first `used`, for claims to follow. `is_first`: nothing has touched them
+    /// in this frame.
     pub fn begin(&self, cmd: &mut Commands, used: usize, is_first: bool) {
         cmd.barriers(self.owners().map(|owners| match is_first {
             true => owners.discard(Access::TransferWrite),
@@ -179,7 +181,7 @@ impl Pool {
 mod tests {
     use super::*;
 
-    /// The checklist's O5: 42.7 MiB a texture.
+    /// 42.7 MiB a texture, as Clarberg 2014 section 6 has it.
     #[test]
     fn a_texture_has_all_levels_to_a_texel() {
         assert_eq!(texels(2048) * TEXEL_BYTES, 44_739_240);

@@ -28,7 +28,7 @@ use trace::{Hits, Spid, Tracer};
 /// Host memory that the sets of a picture may take.
 const MOST_HOST_BYTES: u64 = 4 << 30;
 
-/// Of a shading pixel: where its list begins, its first triangles, its depth.
+/// Bytes of a shading pixel: where its list begins, its first triangles, its depth.
 const LIST_BYTES: u64 = 4 * (2 + LINEAR_COUNT);
 
 const STAGED_SPIDS: &str = "visibility.rays.spids";
@@ -99,7 +99,7 @@ impl Traced {
     }
 }
 
-/// What rays have seen, on its way to the device.
+/// Results of the rays, on their way to the device.
 pub struct Rays {
     sets: Vec<Hits>,
     /// Whole layers, as images hold them.

@@ -48,16 +48,16 @@ pub fn corners_ws(moment: &Scene, draw: u32, vertices: [u32; 3]) -> [Vec3; 3] {
     vertices.map(|vertex| draw.world_from_object.transform_point3(positions[vertex as usize]))
 }
 
-/// What a ray has met.
+/// A ray's hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
     pub primitive: u32,
     pub draw: u32,
-    /// Of the draw's mesh.
+    /// Vertices of the draw's mesh.
     pub vertices: [u32; 3],
     /// Before the eye, metres.
     pub depth: f32,
-    /// Of the corners, of sum 1.
+    /// Weights of the corners, whose sum is 1.
     pub weights: Vec3,
     /// The corners run counter-clockwise on the screen.
     pub is_front: bool,
@@ -125,7 +125,7 @@ impl SweptTree {
         Ok(Self { nodes, swept })
     }
 
-    /// What a ray meets first between two depths; of what lies at one depth the least id. `accept` may let it pass.
+    /// The first hit of a ray between two depths; among hits at one depth the least id. `accept` may let it pass.
     pub fn first(&self, ray: &Ray, [near, far]: [f32; 2], accept: impl Fn(&Met) -> bool) -> Option<Met> {
         let mut first: Option<Met> = None;
         boxes::walk(&self.nodes, ray.origin, ray.direction, far, |index, limit| {
