@@ -1,4 +1,4 @@
-// The scene in device memory, as src/resident.rs lays it out: where each draw stands and what each material is.
+// The scene in device memory, as src/resident/mod.rs lays it out: where each draw stands and what each material is.
 #ifndef RESIDENT_GLSL
 #define RESIDENT_GLSL
 

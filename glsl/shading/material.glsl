@@ -1,7 +1,7 @@
 // A material at one fragment: factors times textures, the normal map applied. Fragment stages only.
 //
 // With the axis VERTEX=extended vertices have colours, and textures placements: `placements[]` is the including shader's.
-// Set 1 belongs to the material: src/resident.rs makes one set each, with a white pixel where a texture is missing.
+// Set 1 belongs to the material: src/resident/mod.rs makes one set each, with a white pixel where a texture is missing.
 // The including shader reads the material's block: from its push constants, or from `materials[]`. Where pixels have several
 // samples it defines INTERPOLATION as centroid: a pixel whose middle the triangle does not cover must not be shaded beyond
 // the triangle's edge.
