@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-/// What kind of trouble it is; it chooses the exit code of the command line (design.md, section 1).
+/// What kind of trouble it is; it chooses the exit code of the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// A comparison, a gate or `--validate` failed, or a picture holds NaN or infinity. Exit code 1.
@@ -90,7 +90,7 @@ impl Error {
         &self.message
     }
 
-    /// The process's exit code (design.md, section 1).
+    /// The process's exit code.
     pub fn exit_code(&self) -> u8 {
         match self.kind {
             ErrorKind::Gate => 1,

@@ -1,5 +1,5 @@
 //! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document
-//! (design.md, sections 1 and 2).
+//! (docs/report.md).
 
 use crate::support::program::Program;
 use serde_json::Value;

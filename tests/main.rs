@@ -26,6 +26,7 @@ mod deep_visibility;
 mod depth_prepass;
 mod derivatives;
 mod discontinuity;
+mod docs;
 mod drivers;
 mod filter;
 mod forward;

@@ -15,7 +15,7 @@ use crate::scene::{Light, LightKind, Material, Scene};
 use crate::settings::{Values, parse_color};
 use glam::Vec3;
 
-/// The default rig's key light, in lux: white, from the camera's upper left (design.md, section 3).
+/// The default rig's key light, in lux: white, from the camera's upper left.
 const RIG_KEY_LUX: f32 = 3.0;
 /// The default rig's ambient radiance.
 const RIG_AMBIENT: f32 = 0.3;

@@ -28,7 +28,7 @@ impl Picture {
         sum.map(|channel| channel / self.pixels.len().max(1) as f64)
     }
 
-    /// Fails with the first pixel that is NaN or infinite: such a picture has no hash (design.md, section 2; exit code 1).
+    /// Fails with the first pixel that is NaN or infinite: such a picture has no hash (exit code 1).
     pub fn check(&self) -> Result<()> {
         let broken = self.pixels.iter().position(|pixel| pixel.iter().any(|channel| !channel.is_finite()));
         let Some(index) = broken else { return Ok(()) };

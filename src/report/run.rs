@@ -1,5 +1,5 @@
-//! The report of one run: what was asked, on what, what came out, what each pass and each byte cost. Keys: design.md,
-//! section 2; within a schema number a key is only ever added.
+//! The report of one run: what was asked, on what, what came out, what each pass and each byte cost. Keys:
+//! docs/report.md; within a schema number a key is only ever added.
 
 use crate::error::Result;
 use crate::gpu::Gpu;
