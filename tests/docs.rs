@@ -41,27 +41,37 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// A page's lines outside of its blocks of code, indented or fenced, with their numbers.
-fn prose(text: &str) -> Vec<(usize, &str)> {
-    let mut is_fenced = false;
-    let is_outside = |(_, line): &(usize, &str)| {
+/// A page's paragraphs outside of its blocks of code, indented or fenced, with the number of their first lines.
+fn prose(text: &str) -> Vec<(usize, String)> {
+    let mut paragraphs: Vec<(usize, String)> = Vec::new();
+    let (mut is_fenced, mut goes_on) = (false, false);
+    for (number, line) in (1..).zip(text.lines()) {
         let is_fence = line.trim_start().starts_with("```");
         is_fenced ^= is_fence;
-        !is_fence && !is_fenced && !line.starts_with("    ")
-    };
-    (1..).zip(text.lines()).filter(is_outside).collect()
+        if is_fence || is_fenced || line.starts_with("    ") || line.is_empty() {
+            goes_on = false;
+            continue;
+        }
+        let is_heading = line.starts_with('#');
+        match paragraphs.last_mut().filter(|_| goes_on && !is_heading) {
+            Some((_, paragraph)) => *paragraph = format!("{paragraph}\n{line}"),
+            None => paragraphs.push((number, line.to_owned())),
+        }
+        goes_on = !is_heading;
+    }
+    paragraphs
 }
 
-/// What stands between backticks, and the line without it.
-fn code_spans(line: &str) -> (Vec<&str>, String) {
-    let parts: Vec<&str> = line.split('`').collect();
+/// What stands between backticks, and the paragraph without it.
+fn code_spans(paragraph: &str) -> (Vec<&str>, String) {
+    let parts: Vec<&str> = paragraph.split('`').collect();
     let spans = parts.iter().skip(1).step_by(2).copied().collect();
     (spans, parts.iter().step_by(2).copied().collect::<Vec<_>>().join(" "))
 }
 
-/// Where a line's links and pictures lead.
-fn links(line: &str) -> Vec<String> {
-    let (_, text) = code_spans(line);
+/// Where a paragraph's links and pictures lead.
+fn links(paragraph: &str) -> Vec<String> {
+    let (_, text) = code_spans(paragraph);
     let behind = |mark: &str, end: char| -> Vec<String> {
         text.split(mark).skip(1).filter_map(|rest| Some(rest.split_once(end)?.0.to_owned())).collect()
     };
@@ -91,8 +101,8 @@ fn every_link_of_a_page_leads_somewhere() {
     let mut dead = Vec::new();
     for page in pages() {
         let text = read(&page);
-        for (number, line) in prose(&text) {
-            for link in links(line).into_iter().filter(|link| !link.contains("://")) {
+        for (number, paragraph) in prose(&text) {
+            for link in links(&paragraph).into_iter().filter(|link| !link.contains("://")) {
                 let (path, heading) = link.split_once('#').map_or((link.as_str(), None), |(path, at)| (path, Some(at)));
                 let target = if path.is_empty() { page.clone() } else { page.with_file_name("").join(path) };
                 let is_there = root().join(&target).exists();
@@ -127,11 +137,12 @@ fn every_path_that_a_page_or_a_comment_names_is_there() {
         }
     };
     for page in pages() {
-        for (number, line) in (1..).zip(read(&page).lines()) {
-            let is_code = line.starts_with("    ");
-            let spans = if is_code { vec![line] } else { code_spans(line).0 };
-            spans.into_iter().for_each(|span| look(&page, number, span));
+        let text = read(&page);
+        for (number, paragraph) in prose(&text) {
+            code_spans(&paragraph).0.into_iter().for_each(|span| look(&page, number, span));
         }
+        let code = (1..).zip(text.lines()).filter(|(_, line)| line.starts_with("    "));
+        code.for_each(|(number, line)| look(&page, number, line));
     }
     let shaders = ["glsl", "vert", "geom", "frag", "comp"];
     let sources = [files("src", &["rs"]), files("tests", &["rs"]), files("glsl", &shaders)].concat();
@@ -153,6 +164,15 @@ fn every_technique_has_its_page() {
     let readme = read(Path::new("README.md"));
     for page in there {
         assert!(readme.contains(&format!("]({})", page.display())), "README.md does not link {}", page.display());
+    }
+}
+
+#[test]
+fn the_page_of_the_architecture_has_every_room() {
+    let page = read(Path::new("docs/architecture.md"));
+    for entry in std::fs::read_dir(root().join("src")).unwrap().map(|entry| entry.unwrap().path()) {
+        let room = entry.file_name().unwrap().to_str().unwrap();
+        assert!(!entry.is_dir() || page.contains(&format!("`src/{room}/`")), "docs/architecture.md has no src/{room}/");
     }
 }
 
