@@ -39,6 +39,8 @@
 //! | [`resident`] | the scene in device memory |
 //! | [`bvh`], [`lights`], [`shading`], [`sampling`] | rays, virtual lights and culling, BRDFs and light units, sequences |
 //! | [`passes`], [`techniques`] | what is drawn and computed, mirrored by glsl/ |
+//! | [`caps`] | what devices can do, as plain data |
+//! | [`picture`] | pictures on the host, tone mapping, files |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
 //! | [`selftest`] | every method that a device supports beside a plain twin, as one document |
 //! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |

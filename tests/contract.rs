@@ -1,4 +1,5 @@
-//! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document.
+//! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document
+//! (docs/report.md).
 
 use crate::support::program::Program;
 use serde_json::Value;
@@ -34,7 +35,7 @@ fn every_verb_ends_with_0_where_all_is_well() {
     require_code(&program, &["compare", "a.exr", "a.exr", "--max", "rmse=0"], &NOWHERE, 0);
     require_code(&program, &["scene", "list"], &NOWHERE, 0);
     require_code(&program, &small(&["memory", "--plan"], &[]), &NOWHERE, 0);
-    for verb in ["render", "compare", "bench", "memory", "scene", "devices"] {
+    for verb in ["render", "compare", "bench", "memory", "scene", "devices", "settings", "completions", "man"] {
         require_code(&program, &[verb, "--help"], &NOWHERE, 0);
     }
 }

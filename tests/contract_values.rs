@@ -1,5 +1,5 @@
 //! What the numbers of a report mean, by arithmetic of its own: each is made again from the picture, the scene, the request
-//! or the other numbers.
+//! or the other numbers (docs/report.md).
 
 use crate::support::known_driver;
 use crate::support::program::Program;

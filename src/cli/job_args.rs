@@ -52,15 +52,15 @@ pub fn with_job_args(listed: &Listed, command: Command) -> Command {
 }
 
 /// A setting among all flags.
-struct Row {
-    setting: &'static Setting,
-    heading: String,
-    is_listed: bool,
+pub(super) struct Row {
+    pub setting: &'static Setting,
+    pub heading: String,
+    pub is_listed: bool,
 }
 
 /// Every setting once: common ones, those that `listed` reads, all others. Where techniques differ in what it may be,
 /// with all the choices that one of them has: of those that are listed, if they read it.
-fn rows(listed: &Listed) -> Vec<Row> {
+pub(super) fn rows(listed: &Listed) -> Vec<Row> {
     let common = |setting| Row { setting, heading: "Common settings".to_owned(), is_listed: true };
     let mut all: Vec<Row> = COMMON.iter().map(common).collect();
     let (first, later): (Vec<_>, Vec<_>) =

@@ -2,10 +2,12 @@
 
 pub mod bench;
 pub mod compare;
+pub mod completions;
 pub mod devices;
 mod gate_args;
 mod job_args;
 mod listed;
+pub mod man;
 pub mod memory;
 mod output;
 mod progress;
@@ -14,6 +16,7 @@ mod reference_args;
 pub mod render;
 pub mod scene;
 mod self_test;
+pub mod settings;
 
 use crate::error::Result;
 use clap::Command;
@@ -38,6 +41,9 @@ fn command(listed: &Listed) -> Command {
             memory::command(listed),
             scene::command(),
             devices::command(),
+            settings::command(),
+            completions::command(),
+            man::command(),
         ])
 }
 
@@ -55,6 +61,9 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("memory", matches)) => memory::run(matches, argv),
         Some(("scene", matches)) => scene::run(matches),
         Some(("devices", matches)) => devices::run(matches, argv),
+        Some(("settings", matches)) => settings::run(matches),
+        Some(("completions", matches)) => completions::run(matches, command(&Listed::All)),
+        Some(("man", matches)) => man::run(matches, command(&Listed::All)),
         _ => unreachable!("clap requires one of the verbs"),
     }
 }

@@ -1,5 +1,5 @@
-//! The report of one run: the request, the device, the result, and the cost of each pass and each byte. Within a
-//! schema number a key is only ever added.
+//! The report of one run: the request, the device, the result, and the cost of each pass and each byte. Keys:
+//! docs/report.md; within a schema number a key is only ever added.
 
 use crate::error::Result;
 use crate::frame::View;

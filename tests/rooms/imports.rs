@@ -269,7 +269,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
     }
 }
 
-/// Sets of files that name each other in a circle, and sets of rooms by the same rule where `by` gives their names.
+/// Sets of files that name each other in a circle: each reaches every other by arrows.
 pub fn circles<T: Ord + Clone>(arrows: &BTreeSet<(T, T)>) -> Vec<Vec<T>> {
     let mut reaches: BTreeMap<T, BTreeSet<T>> = BTreeMap::new();
     for (from, to) in arrows {
