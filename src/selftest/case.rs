@@ -5,7 +5,7 @@ use super::closed_form::ClosedForm;
 use crate::error::Result;
 use crate::job::Job;
 use crate::picture::Picture;
-pub(super) use crate::selftest::judge::Must;
+use crate::selftest::judge::Must;
 use crate::techniques;
 use crate::units::Extent;
 

@@ -19,9 +19,9 @@ use crate::gpu::validation::Message;
 use crate::interrupt;
 use crate::progress::Stage;
 use bed::{Bed, Made, Refusal, Rendered};
-use case::{Case, Must, Twin};
+use case::{Case, Twin};
 use clocks::Clocks;
-use judge::Figures;
+use judge::{Figures, Must};
 use std::time::Instant;
 
 /// The counter of samples that no list has a colour for: 0 wherever something is to be drawn.

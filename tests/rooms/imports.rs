@@ -55,18 +55,10 @@ impl Crate {
     fn file(&mut self, src: &Path, index: usize, path: &Path, inside: &mut Vec<String>, name: &str) {
         let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let tree = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        self.items(src, index, path, &tree.items, inside, name);
+        self.items(src, index, &tree.items, inside, name);
     }
 
-    fn items(
-        &mut self,
-        src: &Path,
-        index: usize,
-        path: &Path,
-        items: &[syn::Item],
-        inside: &mut Vec<String>,
-        name: &str,
-    ) {
+    fn items(&mut self, src: &Path, index: usize, items: &[syn::Item], inside: &mut Vec<String>, name: &str) {
         let mut reader = Reader { known: BTreeMap::new(), inside: inside.clone(), name, paths: Vec::new() };
         // What is defined here hides what else is called so; children are named from here.
         for item in items.iter().filter(|item| !is_test(item)) {
@@ -97,7 +89,7 @@ impl Crate {
                         Some((_, items)) => {
                             let file = self.modules[index].file.clone();
                             self.modules.push(Module { file, ..Module::default() });
-                            self.items(src, next, path, items, inside, name);
+                            self.items(src, next, items, inside, name);
                         }
                         None => {
                             let file = file_of(src, inside);

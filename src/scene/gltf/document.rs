@@ -12,7 +12,7 @@ use super::label;
 use super::skins::SETS;
 use super::survey::survey;
 use crate::error::{Error, Result};
-pub(super) use crate::scene::gltf::label::json_error;
+use crate::scene::gltf::label::json_error;
 
 /// What is honoured where a file uses it. Quantised vertices need nothing beyond what `accessors` reads anyway.
 const EXTENSIONS: [&str; 8] = [

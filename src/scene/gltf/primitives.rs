@@ -12,7 +12,7 @@ use super::deform::Deform;
 use super::limits::Allowance;
 use super::{accessors, label, tangents, topology};
 use crate::error::{Error, Result};
-pub(super) use crate::scene::gltf::normals::{corners, flat_normals, normalize_normals};
+use crate::scene::gltf::normals::{corners, flat_normals, normalize_normals};
 use crate::scene::{Material, Mesh, TextureSlot, normal_groups};
 
 /// How many indices the drawn meshes may have together beside one for each byte of the file: 1.4 million triangles,

@@ -82,7 +82,7 @@ pub struct Surveyed<'a> {
 /// Errors: it is no JSON, an index is beyond 32 bits, or its arrays have too many elements (exit code 2).
 pub fn survey(json: &[u8]) -> Result<Surveyed<'_>> {
     let mut deserializer = serde_json::Deserializer::from_slice(json);
-    let top = deserializer.deserialize_map(Top::default()).map_err(|error| super::document::json_error(&error))?;
+    let top = deserializer.deserialize_map(Top::default()).map_err(|error| super::label::json_error(&error))?;
     let mut total = 0usize;
     for (name, size) in ELEMENTS {
         let count = top.counts.get(name).copied().unwrap_or_default();

@@ -17,7 +17,7 @@ use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::require_both;
 use crate::techniques::deep_shading::contradictions::require_spids;
 use crate::techniques::deep_shading::contradictions::{require_direct, require_straight};
-use crate::techniques::deep_shading::modes::conservative::Road;
+use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::is_looped;
@@ -67,7 +67,7 @@ pub struct Choices {
     sub_pixel_bits: u32,
     /// Something is blurred, and its colours are filtered.
     pub is_reconstructed: bool,
-    pub road: Road,
+    pub conservative: Conservative,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
     pub middle: Option<Middle>,
@@ -76,15 +76,15 @@ pub struct Choices {
 }
 
 /// `--conservative`, `auto` resolved.
-pub fn road(values: &Values, caps: &Caps) -> Road {
+pub fn conservative(values: &Values, caps: &Caps) -> Conservative {
     match values.text("conservative") {
-        "hardware" => Road::Hardware,
-        "geometry" => Road::Geometry,
-        "vertex" => Road::Vertex,
-        "none" => Road::Plain,
+        "hardware" => Conservative::Hardware,
+        "geometry" => Conservative::Geometry,
+        "vertex" => Conservative::Vertex,
+        "none" => Conservative::Plain,
         // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
-        _ if caps.features.geometry_shader => Road::Geometry,
-        _ => Road::Vertex,
+        _ if caps.features.geometry_shader => Conservative::Geometry,
+        _ => Conservative::Vertex,
     }
 }
 
@@ -153,7 +153,7 @@ impl Choices {
                 && (lens.is_some_and(|lens| lens.radius > 0.0) || middle.is_some()),
             lens,
             middle,
-            road: road(values, inputs.caps),
+            conservative: conservative(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         };
         choices.is_by_address = is_by_address(&choices, inputs);
@@ -227,7 +227,7 @@ impl Choices {
             ("SUB_PIXEL_BITS", self.sub_pixel_bits()),
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("CACHE_ENTRIES", self.cache_entries as u32),
-            ("MISSING_FAILS", u32::from(self.road != Road::Plain)),
+            ("MISSING_FAILS", u32::from(self.conservative != Conservative::Plain)),
             ("PASS_SAMPLES", self.shading.pass_samples()),
             ("TEXTURE_SIDE_BITS", self.shading.texture_side_bits()),
         ]);
@@ -300,13 +300,13 @@ mod tests {
         let of = |caps: &Caps, text: &str| {
             let mut values = Values::defaults(SETTINGS);
             values.set(SETTINGS.iter().find(|row| row.key == "conservative").unwrap(), text).unwrap();
-            road(&values, caps)
+            conservative(&values, caps)
         };
         for gpu in ["amd-navi21", "intel-arc-a770", "nvidia-rtx-2070"] {
             assert!(caps(gpu).conservative.is_some(), "{gpu}");
-            assert_eq!(of(&caps(gpu), "hardware"), Road::Hardware);
-            assert_eq!(of(&caps(gpu), "auto"), Road::Geometry);
+            assert_eq!(of(&caps(gpu), "hardware"), Conservative::Hardware);
+            assert_eq!(of(&caps(gpu), "auto"), Conservative::Geometry);
         }
-        assert_eq!(of(&caps("tiler-roadmap-2022"), "auto"), Road::Vertex);
+        assert_eq!(of(&caps("tiler-roadmap-2022"), "auto"), Conservative::Vertex);
     }
 }

@@ -207,11 +207,11 @@ impl Frame for DeepFrame {
     }
 
     fn explained_nan(&self) -> Option<[String; 2]> {
-        let road = self.choices.road.name();
+        let conservative = self.choices.conservative.name();
         let (what, help) = match self.choices.shading {
             Shading::Deep if self.choices.has_lists => (
                 format!(
-                    "a sample that finds no colour is NaN: --conservative {road} did not draw the pixel that it needs"
+                    "a sample that finds no colour is NaN: --conservative {conservative} did not draw the pixel that it needs"
                 ),
                 "--conservative vertex works on every device; --conservative none leaves such samples black",
             ),

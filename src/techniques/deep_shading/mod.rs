@@ -95,19 +95,20 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
+use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
 use crate::techniques::deep_shading::modes::shading::CONDITIONS;
 use crate::techniques::deep_shading::resources::{NAME, full};
-use baseline::Shading;
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
 use frame::DeepFrame;
 use modes::layer_from::LayerFrom;
 use modes::polygon_from::PolygonFrom;
+use modes::shading::Shading;
+use modes::visibility::Visibility;
 use primitives::Primitives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use visibility::Visibility;
 use visibility::ray::Traced;
 
 pub struct DeepShading;
@@ -170,17 +171,17 @@ impl Technique for DeepShading {
             let instead = "--sample-tests layers works without it";
             needs.push(need("--sample-tests loop", Ability::WideAtomics, instead));
         }
-        match choices::road(values, caps) {
+        match choices::conservative(values, caps) {
             _ if values.text("shading") != "deep" => {}
-            shade::Road::Geometry => {
+            Conservative::Geometry => {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative geometry", Ability::GeometryShader, instead));
             }
-            shade::Road::Hardware => {
+            Conservative::Hardware => {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative hardware", Ability::ConservativeRaster, instead));
             }
-            shade::Road::Vertex | shade::Road::Plain => {}
+            Conservative::Vertex | Conservative::Plain => {}
         }
         needs.extend(baseline::needs(values));
         needs.extend(shadow_maps::needs(values));
@@ -245,9 +246,11 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { shading, table, road, lens, visibility, layer_from, .. } = &self.choices;
-        let mut resolved =
-            BTreeMap::from([("tuples", table.tuples_of_eye().to_string()), ("conservative", road.name().to_owned())]);
+        let Choices { shading, table, conservative, lens, visibility, layer_from, .. } = &self.choices;
+        let mut resolved = BTreeMap::from([
+            ("tuples", table.tuples_of_eye().to_string()),
+            ("conservative", conservative.name().to_owned()),
+        ]);
         if let Shading::Msaa { pass_samples } = shading {
             resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
         }

@@ -19,7 +19,7 @@ use crate::resident::VertexAttributes;
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-pub(super) use crate::techniques::deep_shading::resources::{
+use crate::techniques::deep_shading::resources::{
     ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR, COLOR_BYTES, COLORS, COUNTERS, DEPTH, DEPTH_FORMAT, LENGTHS,
     LINEAR, LINEAR_COUNT, MARKS, NAME, NODE_BYTES, NODES, ROW_ID_BYTES, SHADING_DEPTH_FORMAT, SHADING_DEPTHS,
     SPID_FORMAT, SPIDS, ZMAX, full, stored,

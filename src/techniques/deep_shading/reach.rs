@@ -9,7 +9,7 @@ use crate::gpu::shader::structs::ReachBlock;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
-pub(super) use crate::techniques::deep_shading::choices::{longest_bytes, sample_bytes, space_entries};
+use crate::techniques::deep_shading::choices::{longest_bytes, sample_bytes, space_entries};
 use crate::techniques::deep_shading::resources;
 use crate::techniques::deep_shading::resources::{
     ADDRESSES, BEGIN_BYTES, BEGINS, COLORS, LENGTHS, LINEAR, NAME, NODES, ROW_ID_BYTES, ZMAX, full,

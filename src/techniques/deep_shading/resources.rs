@@ -12,36 +12,22 @@ pub fn full(what: &str) -> String {
 }
 
 pub const SPIDS: &str = "visibility.spids";
-
 pub const DEPTH: &str = "visibility.depth";
 
 /// Depth at shading points, s_z.
 pub const SHADING_DEPTHS: &str = "visibility.shading_depths";
-
 pub const BEGINS: &str = "lists.begins";
-
 pub const NODES: &str = "lists.nodes";
-
 pub const COLORS: &str = "shade.colors";
-
 pub const LINEAR: &str = "lists.linear";
-
 pub const ADDRESSES: &str = "lists.addresses";
-
 pub const ZMAX: &str = "lists.zmax";
-
 pub const MARKS: &str = "lists.marks";
-
 pub const LENGTHS: &str = "count.lengths";
-
 pub const COUNTERS: &str = "count.counters";
-
 pub const COLOR: &str = "resolve.color";
-
 pub const SPID_FORMAT: Format = Format::R32G32_UINT;
-
 pub const DEPTH_FORMAT: Format = Format::D32_SFLOAT;
-
 pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
@@ -52,11 +38,8 @@ pub const BEGIN_BYTES: u64 = 4;
 
 /// Bytes of a row's id, a node (id, next), a colour (RGBA16F), and an address.
 pub const ROW_ID_BYTES: u64 = 4;
-
 pub const NODE_BYTES: u64 = 8;
-
 pub const COLOR_BYTES: u64 = 8;
-
 pub const ADDRESS_BYTES: u64 = 4;
 
 /// A picture that is not the last one.
@@ -65,7 +48,6 @@ pub fn stored(plan: &mut Plan, name: &str, frame: Extent) {
 }
 
 pub const POINTERS: &str = "indirect.pointers";
-
 pub const CACHE: &str = "indirect.cache";
 
 /// Buffers of the entries, as entries.glsl names them in order.
@@ -78,13 +60,9 @@ pub const ENTRIES: [(&str, &str); 4] = [
 
 /// Bytes of an entry in one of its buffers, of a pointer, and of a word of the cache.
 pub const ENTRY_BYTES: u64 = 16;
-
 pub const POINTER_BYTES: u64 = 4;
-
 pub const CACHE_BYTES: u64 = 4;
-
 pub const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
-
 pub const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
 
 /// Bytes of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; and two

@@ -8,9 +8,7 @@ use crate::passes::{accumulate, blend, depth_prepass, direct, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Shape};
 use crate::techniques::Inputs;
 use crate::techniques::forward::choices::Choices;
-pub(super) use crate::techniques::forward::resources::{
-    DEPTH, DRAWN, LISTS, NAME, RESOLVED, UNIFORM, UNIFORM_BYTES, VPLS,
-};
+use crate::techniques::forward::resources::{DEPTH, DRAWN, LISTS, NAME, RESOLVED, UNIFORM, UNIFORM_BYTES, VPLS};
 use ash::vk::{BufferUsageFlags, ImageUsageFlags as Usage};
 
 /// Resources and passes of a frame.

@@ -3,7 +3,6 @@
 use crate::gpu::shader::structs::LightBlock;
 
 pub const NAME: &str = "forward";
-
 pub const DEPTH: &str = "forward.depth.reversed";
 
 /// The lights once more, where the material pass reads them as uniforms.
@@ -11,9 +10,7 @@ pub const UNIFORM: &str = "forward.lights.uniform";
 
 /// material.frag's UNIFORM_LIGHT_COUNT.
 pub const UNIFORM_LIGHT_COUNT: usize = 1024;
-
 pub const UNIFORM_BYTES: u64 = (UNIFORM_LIGHT_COUNT * size_of::<LightBlock>()) as u64;
-
 pub const LISTS: &str = "forward.lights.lists";
 
 /// No virtual lights: what blended surfaces bind in their place.

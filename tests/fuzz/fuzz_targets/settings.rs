@@ -6,10 +6,10 @@
 use libfuzzer_sys::fuzz_target;
 use quincunx::Error;
 use quincunx::bench::sweep;
-use quincunx::techniques::settings_of;
 use quincunx::sequence::Frames;
 use quincunx::settings::{Kind, Setting, Values};
 use quincunx::techniques;
+use quincunx::techniques::settings_of;
 use std::sync::LazyLock;
 
 static SETTINGS: LazyLock<Vec<Setting>> = LazyLock::new(|| {

@@ -31,7 +31,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::settings::Values;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::pass_samples;
-pub(super) use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::resources;
 use crate::techniques::deep_shading::resources::{COUNTERS, DEPTH_FORMAT, full};
 use crate::techniques::deep_shading::visibility::draw::Stages;

@@ -29,7 +29,7 @@ use crate::error::Result;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
-pub(super) use crate::techniques::deep_shading::resources::{
+use crate::techniques::deep_shading::resources::{
     CACHE, CACHE_BYTES, COLOR_BYTES, COLORS, COUNTERS, DEPTH, ENTRIES, ENTRY_BYTES, NAME, POINTER_BYTES, POINTERS,
     SPIDS, full,
 };

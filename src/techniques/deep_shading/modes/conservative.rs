@@ -1,8 +1,8 @@
-//! How every pixel that a triangle touches is drawn (`--conservative`).
+//! `--conservative`.
 
 /// How every pixel that a triangle touches is drawn (`--conservative`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
+pub enum Conservative {
     /// By the device.
     Hardware,
     /// Its hull from a geometry shader.
@@ -13,7 +13,7 @@ pub enum Road {
     Plain,
 }
 
-impl Road {
+impl Conservative {
     pub fn name(self) -> &'static str {
         match self {
             Self::Hardware => "hardware",

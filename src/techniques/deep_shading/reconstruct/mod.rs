@@ -30,7 +30,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::reconstruct::reconstructed::{RANGES, Reconstructed};
 use crate::techniques::deep_shading::resources::full;
-pub(super) use crate::techniques::deep_shading::resources::{SAMPLE_BYTES, SAMPLE_COLORS, SAMPLE_VECTORS};
+use crate::techniques::deep_shading::resources::{SAMPLE_BYTES, SAMPLE_COLORS, SAMPLE_VECTORS};
 use crate::units::Extent;
 use filter::Filter;
 use layers::Layers;

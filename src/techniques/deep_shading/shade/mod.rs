@@ -20,14 +20,14 @@ use crate::passes::mesh::{self, Sides};
 use crate::passes::shadow_maps;
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::constants_of;
-pub(super) use crate::techniques::deep_shading::modes::conservative::Road;
+use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::resources::full;
 use crate::techniques::deep_shading::shade::stages::Stages;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
-impl Road {
+impl Conservative {
     fn stages(self, marks: &str) -> Stages {
         match self {
             Self::Hardware => corner::stages(true, marks),
@@ -48,7 +48,7 @@ impl Shade {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let lists = if choices.is_compacted { "compact" } else { "linked" };
         let zmax = if choices.has_zmax { "on" } else { "off" };
-        let stages = choices.road.stages(if choices.has_marks { "on" } else { "off" });
+        let stages = choices.conservative.stages(if choices.has_marks { "on" } else { "off" });
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];

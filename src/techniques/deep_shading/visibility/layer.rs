@@ -5,7 +5,7 @@ use crate::gpu::shader::techniques::deep_shading::visibility::layer::GEOM_VARIAN
 use crate::gpu::shader::variant;
 use crate::passes::mesh;
 use crate::resident::SceneGpu;
-pub(super) use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
+use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::visibility::draw;
 use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
 

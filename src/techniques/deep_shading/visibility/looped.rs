@@ -25,7 +25,7 @@ use crate::passes::{fullscreen, mesh};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
-pub(super) use crate::techniques::deep_shading::resources::{NAME, NEAREST_BYTES, full};
+use crate::techniques::deep_shading::resources::{NAME, NEAREST_BYTES, full};
 use crate::techniques::deep_shading::visibility::draw::Repeats;
 use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
 use std::sync::Arc;

@@ -29,7 +29,7 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Layers, Traffic};
 use crate::passes::mesh;
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
-pub(super) use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::NAME;
 use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples, begin_counters};
 use looped::Looped;

@@ -13,7 +13,7 @@ use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
-pub(super) use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages, draw};
+use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages, draw};
 use crate::techniques::deep_shading::visibility::samples::Drawn;
 use ash::vk;
 use std::sync::Arc;

@@ -5,13 +5,8 @@ use crate::gpu::Layers;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::Choices;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::visibility::draw;
-use crate::techniques::deep_shading::visibility::instancing;
-use crate::techniques::deep_shading::visibility::repeat_draw;
-use crate::techniques::deep_shading::visibility::repeat_frame;
-use crate::techniques::deep_shading::visibility::replicate;
-use crate::techniques::deep_shading::visibility::sample::{Repeats, Stages};
-use crate::techniques::deep_shading::visibility::stochastic;
+use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
+use crate::techniques::deep_shading::visibility::{draw, instancing, repeat_draw, repeat_frame, replicate, stochastic};
 
 impl Visibility {
     /// How each draw call is repeated for its tuples; where layers are drawn one by one, the repeats of the first.

@@ -33,12 +33,13 @@ use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::Inputs;
+use crate::techniques::deep_shading::modes::pool_size::PoolSize;
 use crate::techniques::deep_shading::resources::full;
 use crate::techniques::deep_shading::visibility::samples::Drawn;
 use ash::vk;
 use atlases::Atlases;
 use hull::Hulls;
-use pool::{Pool, PoolSize};
+use pool::Pool;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, readback};
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
-pub(super) use crate::techniques::deep_shading::modes::pool_size::PoolSize;
+use crate::techniques::deep_shading::modes::pool_size::PoolSize;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use crate::units::Bytes;
 use std::collections::BTreeMap;
