@@ -5,8 +5,7 @@ use crate::support::known_driver;
 use crate::support::program::Program;
 use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
 use quincunx::picture::image_file;
-use quincunx::scene;
-use quincunx::techniques;
+use quincunx::{scene, techniques};
 use serde_json::Value;
 use std::collections::BTreeMap;
 

@@ -2,8 +2,7 @@
 //! one colour stays one colour, and what is sharp takes nothing from what is behind it.
 
 use crate::support::boxes::{camera, panel, rectangle};
-use crate::support::difference::require_same;
-use crate::support::difference::rmse;
+use crate::support::difference::{require_same, rmse};
 use crate::support::moving::moving;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};

@@ -3,8 +3,7 @@
 //! shades; every sample finds its texels, however many textures there are.
 
 use crate::support::boxes::{camera, rectangle};
-use crate::support::difference::require_same;
-use crate::support::difference::rmse;
+use crate::support::difference::{require_same, rmse};
 use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};

@@ -374,3 +374,31 @@ fn the_page_of_the_report_names_every_key() {
         &[told_of_report, told_of_row].concat(),
     );
 }
+
+/// Lines of code between `from` and `to`, without indentation, comment signs and blank lines.
+fn lines_between<'a>(text: &'a str, from: &str, to: &str) -> Vec<&'a str> {
+    let (_, rest) = text.split_once(from).unwrap_or_else(|| panic!("no {from:?}"));
+    let (lines, _) = rest.split_once(to).unwrap_or_else(|| panic!("no {to:?} after {from:?}"));
+    let bare = |line: &'a str| line.trim().trim_start_matches("//!").trim();
+    lines.lines().map(bare).filter(|line| !line.is_empty() && !line.starts_with("# ")).collect()
+}
+
+#[test]
+fn the_picture_in_ten_lines_is_the_same_everywhere_and_makes_a_picture() {
+    let example = read(Path::new("examples/picture.rs"));
+    let lines = lines_between(&example, "fn main() -> Result<(), quincunx::Error> {", "Ok(())");
+    for (page, from) in [("README.md", "```rust\n"), ("src/lib.rs", "```no_run\n")] {
+        let text = read(Path::new(page));
+        let shown = lines_between(&text, from, "```");
+        assert_eq!(shown, [&["use quincunx::job::Job;"], &lines[..]].concat(), "{page}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = root().join("Cargo.toml");
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    cargo.args(["run", "--quiet", "--example", "picture", "--manifest-path"]).arg(manifest).current_dir(folder.path());
+    let output = cargo.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let picture = quincunx::picture::image_file::read(&folder.path().join("cornell.exr")).unwrap();
+    assert_eq!(picture.extent.to_string(), "640x360");
+    assert!(picture.mean().iter().all(|channel| *channel > 0.01), "{:?}", picture.mean());
+}

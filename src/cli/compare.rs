@@ -1,8 +1,6 @@
 //! `quincunx compare`: a picture against its reference, as a table or JSON, with gates for scripts.
 
-use crate::cli::output::print;
-use crate::cli::output::print_text;
-use crate::cli::output::quiet_flag;
+use crate::cli::output::{print, print_text, quiet_flag};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

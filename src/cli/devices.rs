@@ -2,9 +2,7 @@
 
 use super::self_test;
 use crate::caps::Need;
-use crate::cli::output::print;
-use crate::cli::output::print_text;
-use crate::cli::output::quiet_flag;
+use crate::cli::output::{print, print_text, quiet_flag};
 use crate::error::Result;
 use crate::gpu::device::{self, Listed};
 use crate::techniques;

@@ -3,8 +3,7 @@
 use super::job_args;
 use super::listed::Listed;
 use crate::caps::{file, known};
-use crate::cli::output::print;
-use crate::cli::output::print_text;
+use crate::cli::output::{print, print_text};
 use crate::error::{Error, Result};
 use crate::study::{self, Study};
 use crate::techniques::Rival;

@@ -3,9 +3,7 @@
 use super::{job_args, progress};
 use crate::bench::rays::{self, Request, Variant, report};
 use crate::bench::sweep::{self, Point};
-use crate::cli::output::print;
-use crate::cli::output::print_text;
-use crate::cli::output::quiet_flag;
+use crate::cli::output::{print, print_text, quiet_flag};
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::job::judge;

@@ -2,8 +2,7 @@
 
 use super::listed::Listed;
 use super::{job_args, progress, reference_args};
-use crate::cli::output::print;
-use crate::cli::output::print_text;
+use crate::cli::output::{print, print_text};
 use crate::earlier::Earlier;
 use crate::error::{Error, Result};
 use crate::job::Job;

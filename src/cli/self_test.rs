@@ -1,8 +1,7 @@
 //! `quincunx devices --self-test`: parse, run, print; what is tried and how it is judged is the room `selftest`.
 
 use super::progress;
-use crate::cli::output::print;
-use crate::cli::output::print_text;
+use crate::cli::output::{print, print_text};
 use crate::error::Result;
 use crate::gpu::DeviceRequest;
 use crate::selftest::{self, Request, document};

@@ -2,11 +2,10 @@
 //! reads  scene.positions, scene.attributes, scene.extended (where the scene has it), scene.indices, scene.draws, the
 //!        frame's block
 
-use crate::gpu::Bound;
 use crate::gpu::pipeline::{GraphicsPipeline, VertexBuffer};
 use crate::gpu::shader::passes::mesh::VERT_VARIANTS;
 use crate::gpu::shader::{Shader, variant};
-use crate::gpu::{Buffer, Commands};
+use crate::gpu::{Bound, Buffer, Commands};
 use crate::resident::{DrawCall, ExtendedAttributes, SceneGpu, VertexAttributes};
 use ash::vk;
 use std::mem::offset_of;

@@ -2,10 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::progress::Stage;
-use crate::scene::AnimationChoice;
-use crate::scene::Scene;
-use crate::scene::gltf;
-use crate::scene::procedural;
+use crate::scene::{AnimationChoice, Scene, gltf, procedural};
 use std::path::Path;
 
 /// The scene of a name or a path, read once, from which the scene at any time is made.

@@ -13,8 +13,7 @@ use crate::memory::kinds::Kinds;
 use crate::plan::Requirements;
 use crate::report::memory::MemoryTable;
 use crate::session::frame_plan;
-use driver::with_inputs;
-use driver::{Driver, Plans};
+use driver::{Driver, Plans, with_inputs};
 use std::collections::BTreeMap;
 
 /// A table, and what it is of.

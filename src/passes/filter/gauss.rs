@@ -3,10 +3,9 @@
 
 use super::Kernel;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::GaussParams;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::units::Extent;
 use std::sync::Arc;
 

@@ -5,12 +5,11 @@
 use super::Kernel;
 use super::gauss_pack::GaussPack;
 use crate::error::Result;
-use crate::gpu::Bound;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::filter::gauss_fast as shader;
 use crate::gpu::shader::structs::GaussFastParams;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;

@@ -3,9 +3,8 @@
 //! The `gltf` crate's getters unwrap what its validation has seen; this file runs that validation, guards the one place
 //! where it indexes by itself, and lets pass what it is stricter about than drawing needs.
 
-use gltf::json;
 use gltf::json::validation::{Checked, Validate};
-use gltf::{Document, Semantic};
+use gltf::{Document, Semantic, json};
 use serde::Deserialize;
 
 use super::label;

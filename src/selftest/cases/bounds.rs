@@ -1,8 +1,7 @@
 //! How near pictures must be, and the settings that several groups of cases share.
 
 use crate::selftest::case::Settings;
-use crate::selftest::judge::Bounds;
-use crate::selftest::judge::Must;
+use crate::selftest::judge::{Bounds, Must};
 
 /// Two shaders that say the same, on a device whose compiler may round each in its way.
 pub const ROUNDING: Bounds = Bounds {

@@ -14,9 +14,7 @@ use crate::passes::shadow_maps::MapLayout;
 use crate::resident::GeometryChoice;
 use crate::settings::Values;
 use crate::techniques::Inputs;
-use crate::techniques::deep_shading::contradictions::require_both;
-use crate::techniques::deep_shading::contradictions::require_spids;
-use crate::techniques::deep_shading::contradictions::{require_direct, require_straight};
+use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
@@ -24,9 +22,9 @@ use crate::techniques::deep_shading::modes::sample_tests::is_looped;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources;
-use crate::techniques::deep_shading::resources::NAME;
-use crate::techniques::deep_shading::resources::NEAREST_BYTES;
-use crate::techniques::deep_shading::resources::{BEGIN_BYTES, COLOR_BYTES, LINEAR_COUNT, NODE_BYTES, ROW_ID_BYTES};
+use crate::techniques::deep_shading::resources::{
+    BEGIN_BYTES, COLOR_BYTES, LINEAR_COUNT, NAME, NEAREST_BYTES, NODE_BYTES, ROW_ID_BYTES,
+};
 use crate::units::Extent;
 
 pub struct Choices {

@@ -7,12 +7,11 @@
 //! one sample.
 
 use crate::error::Result;
-use crate::gpu::Image;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MaterialParams;
 use crate::gpu::shader::techniques::forward::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Traffic};
 use crate::lights::object_lists::ObjectLights;
 use crate::passes::shadow_maps::{self, ShadowMaps};
 use crate::passes::{depth_prepass, mesh};

@@ -3,7 +3,7 @@
 //!
 //! The flag is heard before the file, a node before a material.
 
-use super::stipple;
+use super::assignment;
 use crate::error::{Error, Result};
 use crate::scene::gltf::label;
 use crate::scene::gltf::marks::STIPPLE_LAYER;
@@ -92,7 +92,7 @@ fn asked(text: &str, side: u32) -> Result<BTreeMap<&str, u32>> {
 }
 
 fn require_layer(layer: u32, side: u32) -> Result<()> {
-    let most = stipple::layer_count(side);
+    let most = assignment::layer_count(side);
     if (1..=most).contains(&layer) {
         return Ok(());
     }

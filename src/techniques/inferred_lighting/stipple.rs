@@ -5,7 +5,7 @@
 //! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
 //! a greedy colouring, nearest first, of the graph of draws whose boxes overlap on screen.
 
-pub(super) use super::assignment::{Assignment, layer_count};
+use super::assignment::{Assignment, layer_count};
 use super::choices::Choices;
 use crate::frame::View;
 use crate::resident::DrawCall;

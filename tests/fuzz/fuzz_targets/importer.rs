@@ -4,15 +4,14 @@
 #![no_main]
 
 use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target, fuzzer_mutate};
-use quincunx::Error;
+use quincunx::{Error, techniques};
 use quincunx::bvh::Bvh;
 use quincunx::frame::View;
 use quincunx::lights::LightSet;
 use quincunx::resident::{Geometry, SceneStats};
-use quincunx::scene::gltf::{self, Model};
+use quincunx::scene::gltf::{Model, self};
 use quincunx::scene::{AnimationChoice, Scene};
 use quincunx::settings::Values;
-use quincunx::techniques;
 use quincunx::techniques::settings_of;
 use quincunx::units::Extent;
 use quincunx_fuzz::mutate;

@@ -4,11 +4,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use quincunx::Error;
+use quincunx::{Error, techniques};
 use quincunx::bench::sweep;
 use quincunx::sequence::Frames;
 use quincunx::settings::{Kind, Setting, Values};
-use quincunx::techniques;
 use quincunx::techniques::settings_of;
 use std::sync::LazyLock;
 

@@ -5,7 +5,7 @@
 #[path = "../../support/gltf_file.rs"]
 mod gltf_file;
 
-use gltf_file::{F32, GltfFile, U8, U16, png};
+use gltf_file::{F32, GltfFile, U16, U8, png};
 use quincunx::techniques;
 use serde_json::json;
 use std::path::Path;

@@ -16,6 +16,7 @@ mod rewrite;
 mod shaders;
 mod statistics;
 mod tables;
+mod tail;
 mod types;
 
 use ash::vk;

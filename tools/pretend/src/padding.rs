@@ -3,17 +3,10 @@
 use crate::memory::with_bytes;
 use crate::modes::MODES;
 use crate::tables::{self, Bound, DeviceTable, Known};
+use crate::tail::{TAIL_BYTES, padded};
 use ash::vk;
 
-const TAIL_BYTES: u64 = 4096;
 const TAIL: u8 = 0xff;
-
-/// The same buffer with a tail, and open to what overwrites it.
-pub fn padded<'a>(info: &vk::BufferCreateInfo<'a>) -> vk::BufferCreateInfo<'a> {
-    let usage =
-        info.usage | if MODES.discard { vk::BufferUsageFlags::TRANSFER_DST } else { vk::BufferUsageFlags::empty() };
-    vk::BufferCreateInfo { size: info.size + if MODES.padding { TAIL_BYTES } else { 0 }, usage, ..*info }
-}
 
 pub unsafe extern "system" fn create_buffer(
     device: vk::Device,

@@ -1,8 +1,8 @@
 //! Memory types as a discrete GPU has them. All of them are the driver's one that device and host both see.
 
 use crate::modes::MODES;
-use crate::padding;
 use crate::tables;
+use crate::tail;
 use ash::vk;
 use vk::MemoryPropertyFlags as Flags;
 
@@ -104,7 +104,7 @@ pub unsafe extern "system" fn device_buffer_requirements(
     let table = tables::device(device);
     // SAFETY: as above; the copies of the program's structs live as long as the call.
     unsafe {
-        let created = padding::padded(&*(*info).p_create_info);
+        let created = tail::padded(&*(*info).p_create_info);
         let info = vk::DeviceBufferMemoryRequirements { p_create_info: &created, ..*info };
         (table.next.fp_v1_3().get_device_buffer_memory_requirements)(device, &info, requirements);
         pretend(&mut (*requirements).memory_requirements, false);

@@ -3,7 +3,8 @@
 //! Computed in doubles, where the product of two floats is exact, since a software driver takes Fma apart again. Dot
 //! products, which devices compute as such sums, are rounded once too. Products of matrices stay as they are.
 
-use super::module::{Module, id, of_ids};
+use super::instruction::{id, of_ids};
+use super::module::Module;
 use rspirv::dr::{Function, Instruction};
 use rspirv::grammar::reflect::is_block_terminator;
 use rspirv::spirv::{Op, Word};

@@ -1,7 +1,7 @@
 //! What an output that is declared `invariant` depends on: nothing that two compilers' runs may do differently may be
 //! done to it.
 
-use super::module::{id, ids};
+use super::instruction::{id, ids};
 use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, Op, Word};
 use std::collections::{HashMap, HashSet};

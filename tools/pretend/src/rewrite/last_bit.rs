@@ -4,7 +4,8 @@
 //! and on the place in the shader. Zero, one, infinity, NaN and what is too small for a full mantissa stay: devices
 //! come to them exactly, as good as always.
 
-use super::module::{Module, of_ids};
+use super::instruction::of_ids;
+use super::module::Module;
 use rspirv::dr::Instruction;
 use rspirv::spirv::{GlslStd450Op as Glsl, Op};
 

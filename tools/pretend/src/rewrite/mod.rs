@@ -5,6 +5,7 @@
 //! come to the same bits.
 
 mod contract;
+mod instruction;
 mod invariant;
 mod last_bit;
 mod module;

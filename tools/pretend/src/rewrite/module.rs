@@ -1,5 +1,6 @@
 //! A SPIR-V module while it is rewritten: what its ids are, and the few types and constants that are added.
 
+use super::instruction::{id, of_ids};
 use super::invariant;
 use rspirv::binary::{Assemble, Consumer, ParseAction, parse_words};
 use rspirv::dr::{self, Builder, Instruction, Operand};
@@ -52,15 +53,6 @@ fn mixed(value: u64) -> u64 {
     let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     value ^ (value >> 31)
-}
-
-pub fn ids(instruction: &Instruction) -> impl Iterator<Item = Word> {
-    instruction.operands.iter().filter_map(Operand::id_ref_any)
-}
-
-/// Operand `index`, which the grammar says is an id.
-pub fn id(instruction: &Instruction, index: usize) -> Word {
-    instruction.operands[index].unwrap_id_ref()
 }
 
 impl Module {
@@ -201,8 +193,4 @@ impl Module {
     pub fn fresh(&mut self) -> Word {
         self.builder.id()
     }
-}
-
-pub fn of_ids(op: Op, kind: Word, result: Word, operands: &[Word]) -> Instruction {
-    Instruction::new(op, Some(kind), Some(result), operands.iter().map(|id| Operand::IdRef(*id)).collect())
 }
