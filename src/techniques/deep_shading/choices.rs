@@ -3,7 +3,6 @@
 use super::middle::Middle;
 use super::space::ShadingSpace;
 use super::tuples::Table;
-use crate::caps::Caps;
 use crate::error::{Error, Result};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
@@ -12,7 +11,6 @@ use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
 use crate::passes::shadow_maps::MapLayout;
 use crate::resident::GeometryChoice;
-use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
@@ -71,19 +69,6 @@ pub struct Choices {
     pub middle: Option<Middle>,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
-}
-
-/// `--conservative`, `auto` resolved.
-pub fn conservative(values: &Values, caps: &Caps) -> Conservative {
-    match values.text("conservative") {
-        "hardware" => Conservative::Hardware,
-        "geometry" => Conservative::Geometry,
-        "vertex" => Conservative::Vertex,
-        "none" => Conservative::Plain,
-        // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
-        _ if caps.features.geometry_shader => Conservative::Geometry,
-        _ => Conservative::Vertex,
-    }
 }
 
 impl Choices {
@@ -151,7 +136,7 @@ impl Choices {
                 && (lens.is_some_and(|lens| lens.radius > 0.0) || middle.is_some()),
             lens,
             middle,
-            conservative: conservative(values, inputs.caps),
+            conservative: Conservative::of(values, inputs.caps),
             geometry: GeometryChoice::from_setting(values.text("geometry")),
         };
         choices.is_by_address = is_by_address(&choices, inputs);
@@ -283,28 +268,4 @@ pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
 /// How buffers are reached, in the report's words.
 pub fn list_access_name(is_by_address: bool) -> &'static str {
     if is_by_address { "addresses" } else { "descriptors" }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::caps::known;
-    use crate::techniques::deep_shading::settings::SETTINGS;
-
-    /// A method that nobody has seen run is used only where it is asked for by name.
-    #[test]
-    fn the_device_s_own_conservative_rasterisation_is_never_taken_by_itself() {
-        let caps = |name: &str| known::caps(name).unwrap();
-        let of = |caps: &Caps, text: &str| {
-            let mut values = Values::defaults(SETTINGS);
-            values.set(SETTINGS.iter().find(|row| row.key == "conservative").unwrap(), text).unwrap();
-            conservative(&values, caps)
-        };
-        for gpu in ["amd-navi21", "intel-arc-a770", "nvidia-rtx-2070"] {
-            assert!(caps(gpu).conservative.is_some(), "{gpu}");
-            assert_eq!(of(&caps(gpu), "hardware"), Conservative::Hardware);
-            assert_eq!(of(&caps(gpu), "auto"), Conservative::Geometry);
-        }
-        assert_eq!(of(&caps("tiler-roadmap-2022"), "auto"), Conservative::Vertex);
-    }
 }

@@ -171,7 +171,7 @@ impl Technique for DeepShading {
             let instead = "--sample-tests layers works without it";
             needs.push(need("--sample-tests loop", Ability::WideAtomics, instead));
         }
-        match choices::conservative(values, caps) {
+        match Conservative::of(values, caps) {
             _ if values.text("shading") != "deep" => {}
             Conservative::Geometry => {
                 let instead = "--conservative vertex works without it";

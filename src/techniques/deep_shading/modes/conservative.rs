@@ -1,4 +1,7 @@
-//! `--conservative`.
+//! How every pixel that a triangle touches is drawn (`--conservative`). Clarberg & Munkberg 2014, section 4.4.
+
+use crate::caps::Caps;
+use crate::settings::Values;
 
 /// How every pixel that a triangle touches is drawn (`--conservative`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +17,19 @@ pub enum Conservative {
 }
 
 impl Conservative {
+    /// `--conservative`, `auto` resolved.
+    pub fn of(values: &Values, caps: &Caps) -> Self {
+        match values.text("conservative") {
+            "hardware" => Self::Hardware,
+            "geometry" => Self::Geometry,
+            "vertex" => Self::Vertex,
+            "none" => Self::Plain,
+            // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
+            _ if caps.features.geometry_shader => Self::Geometry,
+            _ => Self::Vertex,
+        }
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Self::Hardware => "hardware",
@@ -21,5 +37,29 @@ impl Conservative {
             Self::Vertex => "vertex",
             Self::Plain => "none",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::caps::known;
+    use crate::techniques::deep_shading::settings::SETTINGS;
+
+    /// A method that nobody has seen run is used only where it is asked for by name.
+    #[test]
+    fn the_device_s_own_conservative_rasterisation_is_never_taken_by_itself() {
+        let caps = |name: &str| known::caps(name).unwrap();
+        let of = |caps: &Caps, text: &str| {
+            let mut values = Values::defaults(SETTINGS);
+            values.set(SETTINGS.iter().find(|row| row.key == "conservative").unwrap(), text).unwrap();
+            Conservative::of(&values, caps)
+        };
+        for gpu in ["amd-navi21", "intel-arc-a770", "nvidia-rtx-2070"] {
+            assert!(caps(gpu).conservative.is_some(), "{gpu}");
+            assert_eq!(of(&caps(gpu), "hardware"), Conservative::Hardware);
+            assert_eq!(of(&caps(gpu), "auto"), Conservative::Geometry);
+        }
+        assert_eq!(of(&caps("tiler-roadmap-2022"), "auto"), Conservative::Vertex);
     }
 }

@@ -1,5 +1,5 @@
-//! What settings choose between: an enum each, parsed from its setting, and nothing else. What is done for a choice lies with the pass
-//! that does it.
+//! What settings choose between: a file for each, with what it may be, how it is parsed and which settings go with it.
+//! The work that a choice stands for lies with the pass that does it.
 
 pub mod conservative;
 pub mod layer_from;
