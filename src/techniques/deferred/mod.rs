@@ -5,7 +5,7 @@
 
 pub mod shade;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
@@ -78,14 +78,30 @@ impl Technique for Deferred {
         ])
     }
 
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let settings = ShadingSettings::new(inputs.values, inputs.lights, inputs.scene, inputs.caps);
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        let blended = blend::lists(inputs.scene, &lights, inputs.values, inputs.caps)?;
+        Ok(Box::new(PreparedDeferred { settings, lights, blended }))
+    }
+}
+
+struct PreparedDeferred {
+    settings: ShadingSettings,
+    lights: Vec<LightBlock>,
+    /// The lists of what blends.
+    blended: ObjectLists,
+}
+
+impl Prepared for PreparedDeferred {
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        let settings = settings(inputs);
+        let settings = &self.settings;
         let (extent, position, has_emissive) = (inputs.view.extent, settings.position, inputs.stats.has_emissive);
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
         gbuffer::plan(&mut plan, NAME, extent, position, has_emissive);
         let tree = settings.direct.tree(inputs.bvh, inputs.scene)?;
-        direct::plan_with_masks(&mut plan, NAME, light_count, &settings, tree, extent);
+        direct::plan_with_masks(&mut plan, NAME, light_count, settings, tree, extent);
         // No virtual lights: what blended surfaces bind in their place.
         plan.buffer("lights", "deferred.vpls", 0);
         plan.picture(COLOR, extent);
@@ -100,41 +116,10 @@ impl Technique for Deferred {
         shaded.push((COLOR.to_owned(), Access::ComputeWrite));
         plan.pass(format!("{NAME}.shade"), shaded);
         if inputs.stats.has_blend {
-            blend::plan_lists(&mut plan, NAME, &blended(inputs)?);
+            blend::plan_lists(&mut plan, NAME, &self.blended);
             plan.pass(format!("{NAME}.blend"), blend::touches(&gbuffer::depth(NAME), COLOR));
         }
         Ok(plan)
-    }
-
-    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let lights = direct::light_blocks(inputs.lights, inputs.values);
-        Ok(Box::new(PreparedDeferred { settings: settings(inputs), lights, blended: blended(inputs)? }))
-    }
-}
-
-/// The lists of what blends.
-fn blended(inputs: &Inputs<'_>) -> Result<ObjectLists> {
-    let lights = direct::light_blocks(inputs.lights, inputs.values);
-    blend::lists(inputs.scene, &lights, inputs.values, inputs.caps)
-}
-
-fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
-    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene, inputs.caps)
-}
-
-struct PreparedDeferred {
-    settings: ShadingSettings,
-    lights: Vec<LightBlock>,
-    blended: ObjectLists,
-}
-
-impl Prepared for PreparedDeferred {
-    fn host_passes(&self) -> Vec<(String, u64)> {
-        Vec::new()
-    }
-
-    fn counters(&self) -> BTreeMap<&'static str, f64> {
-        [("lights", self.lights.len() as f64)].into_iter().chain(blend::counters(&self.blended)).collect()
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -142,12 +127,23 @@ impl Prepared for PreparedDeferred {
         BTreeMap::from([("cull-by", self.settings.cull_by.name().to_owned()), ("texels", texels.to_string())])
     }
 
-    fn light_counts(&self) -> [u32; 2] {
-        [self.lights.len() as u32, 0]
+    fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
+        Ok(HostPart {
+            passes: Vec::new(),
+            counters: [("lights", self.lights.len() as f64)]
+                .into_iter()
+                .chain(blend::counters(&self.blended))
+                .collect(),
+            light_counts: [self.lights.len() as u32, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| self.build(gpu, inputs, scene, resources)),
+        })
     }
+}
 
+impl PreparedDeferred {
+    /// The frame on the device.
     fn build(
-        self: Box<Self>,
+        self,
         gpu: &Arc<Gpu>,
         inputs: &Inputs<'_>,
         scene: &SceneGpu,
