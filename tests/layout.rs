@@ -112,19 +112,59 @@ fn no_file_is_longer_than_can_be_read_at_once() {
     assert_eq!(long, [] as [&str; 0]);
 }
 
-/// A file that tests/main.rs does not name is not compiled, and its tests do not run.
+/// A file that no other names is not compiled, and its tests do not run.
 #[test]
 fn every_file_of_tests_is_one_of_the_program() {
-    let main = std::fs::read_to_string(root().join("tests/main.rs")).unwrap();
-    let named: BTreeSet<&str> = main.lines().filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';')).collect();
-    let there: BTreeSet<String> = std::fs::read_dir(root().join("tests"))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.join("mod.rs").is_file() || path.extension().is_some_and(|extension| extension == "rs"))
-        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
-        .filter(|name| name != "main")
-        .collect();
-    assert_eq!(named, there.iter().map(String::as_str).collect());
+    let is_rust = |file: &&PathBuf| file.extension().is_some_and(|extension| extension == "rs");
+    // tests/fuzz is a package of its own.
+    let rust: Vec<PathBuf> =
+        files("tests").iter().filter(is_rust).filter(|file| !file.starts_with("fuzz")).cloned().collect();
+    let mut named = BTreeSet::from([PathBuf::from("main.rs")]);
+    for file in rust.iter().filter(|file| file.ends_with("main.rs") || file.ends_with("mod.rs")) {
+        let text = std::fs::read_to_string(root().join("tests").join(file)).unwrap();
+        for line in text.lines() {
+            let line = line.strip_prefix("pub ").unwrap_or(line);
+            if let Some(name) = line.strip_prefix("mod ").and_then(|rest| rest.strip_suffix(';')) {
+                let module = file.with_file_name(name).join("mod.rs");
+                let is_folder = root().join("tests").join(&module).is_file();
+                named.insert(if is_folder { module } else { file.with_file_name(format!("{name}.rs")) });
+            }
+        }
+    }
+    let rust = BTreeSet::from_iter(rust);
+    let odd: Vec<&PathBuf> = named.symmetric_difference(&rust).collect();
+    assert!(odd.is_empty(), "named by no mod line, or not there: {odd:?}");
+}
+
+/// What of tests/ no room of src/ has: it holds for the whole program, or is what tests need.
+const BESIDE_ROOMS: [&str; 12] = [
+    "compilers",
+    "contract",
+    "docs",
+    "drivers",
+    "fuzz",
+    "golden",
+    "large",
+    "layout",
+    "main",
+    "pretend",
+    "rooms",
+    "support",
+];
+
+#[test]
+fn tests_lie_as_the_rooms_lie() {
+    let is_there = |path: &Path| path.is_dir() || path.with_extension("rs").is_file();
+    for file in files("tests").iter().filter(|file| !file.starts_with("snapshots")) {
+        let room = file.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
+        let is_of_all = BESIDE_ROOMS.contains(&room);
+        let has_room = is_of_all || is_there(&root().join("src").join(room));
+        assert!(has_room, "tests/{} is of no room of src/", file.display());
+        // Its folders are the room's folders; files of input lie where their tests do.
+        let folder = file.parent().filter(|folder| !is_of_all && !folder.ends_with("broken_corpus"));
+        let is_of_room = folder.is_none_or(|folder| is_there(&root().join("src").join(folder)));
+        assert!(is_of_room, "tests/{}: src/ has no such folder", file.display());
+    }
 }
 
 #[test]

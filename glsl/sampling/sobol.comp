@@ -1,4 +1,4 @@
-// The sequence as it is, a pixel's pairs one after the other: what tests/sobol.rs holds against src/sampling/sobol.rs.
+// The sequence as it is, a pixel's pairs one after the other: what tests/sampling/sobol.rs holds against src/sampling/sobol.rs.
 #version 460
 #include "sampling/sobol.glsl"
 

@@ -1,5 +1,5 @@
 // The Gaussian's walk along a line of texels, which stops at discontinuities: Segovia 2006, section 4.5. gauss.comp
-// walks both ways; passes that are fused with it (--fuse) walk one of them. Twin: tests/filter.rs.
+// walks both ways; passes that are fused with it (--fuse) walk one of them. Twin: tests/passes/filter.rs.
 //
 // The including shader has TEXELS: texels that a thread filters, one after the other along the line, so that it reads once
 // what they share.

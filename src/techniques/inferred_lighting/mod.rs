@@ -12,7 +12,7 @@
 //! is worse: `fence` against `forward`, FLIP 0.195 instead of 0.131).
 //!
 //! Equals `deferred` within the rounding of normals, depth and L-buffer with `--light-size` at the frame's size, without
-//! BLEND surfaces, with `--brdf lambert` (tests/inferred.rs has the bound).
+//! BLEND surfaces, with `--brdf lambert` (tests/techniques/inferred_lighting/mod.rs has the bound).
 
 mod aov;
 mod assignment;

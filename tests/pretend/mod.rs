@@ -1,5 +1,8 @@
 //! Pictures on a device that behaves as others may (tools/pretend): the same to the bit, or refused by name.
 
+mod rounding;
+mod shaders;
+
 use crate::support::pretending::Layer;
 use crate::support::program::Program;
 

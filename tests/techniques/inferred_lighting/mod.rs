@@ -1,5 +1,10 @@
 //! Inferred lighting (Kircher 2009): where it must equal plain deferred shading, and what its methods must share.
 
+mod filter;
+mod geometry;
+mod glass;
+mod shadow_volumes;
+
 use crate::support::boxes::{edge, point_light};
 use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};

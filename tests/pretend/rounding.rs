@@ -105,7 +105,7 @@ fn pictures_of_shaders_that_round_otherwise_are_the_same_to_the_eye() {
     assert!(changed > 0, "no bit of any picture has changed: nothing was pretended");
 }
 
-/// `tools/test --run-ignored only pretend_rounding --no-capture` prints the figures.
+/// `tools/test --run-ignored only pretend::rounding --no-capture` prints the figures.
 #[test]
 #[ignore = "238 renders, some ten minutes"]
 fn pictures_of_all_roads_are_the_same_to_the_eye_by_each_seed() {

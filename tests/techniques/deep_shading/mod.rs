@@ -1,6 +1,15 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
 //! shaded is what is listed, each once; blur equals what path tracing sees.
 
+mod baselines;
+mod hostile;
+mod looped;
+mod reconstruct;
+mod rivals;
+mod stereo;
+mod texture_space;
+mod visibility;
+
 use crate::support::difference::require_same;
 use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;

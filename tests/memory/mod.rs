@@ -1,5 +1,7 @@
 //! The ledger against a counter of its own around vkAllocateMemory and vkFreeMemory, to the byte.
 
+mod budget;
+
 use crate::support::counted::{STRATEGIES, begin, counted, counted_device, counter, live_bytes};
 use crate::support::watched::{Changes, Watched, both};
 use ash::vk;

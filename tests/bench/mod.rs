@@ -1,5 +1,8 @@
 //! `bench` from outside: rows with their keys, what is skipped, what is resumed. Never how long anything takes.
 
+mod rays;
+mod rows;
+
 use crate::support::benched::{bench, lines, read};
 use crate::support::program::{Program, quincunx};
 use serde_json::Value;

@@ -85,8 +85,9 @@ fn eight_samples_come_nearer_to_what_paths_see() {
     assert!(many < 0.8 * filtered, "{many}, {filtered}");
 }
 
-/// Interleaved kinds see the same samples, to the bit. Others differ in few, on edges (tests/deep_visibility.rs): filtered pictures
-/// are apart as means are by them, and by half of that again at most, as samples' depths also say where layers begin.
+/// Interleaved kinds see the same samples, to the bit. Others differ in few, on edges
+/// (tests/techniques/deep_shading/visibility.rs): filtered pictures are apart as means are by them, and by half of that
+/// again at most, as samples' depths also say where layers begin.
 #[test]
 fn every_kind_of_visibility_comes_to_one_picture_as_far_as_its_samples_agree() {
     for (watched, common) in [(Watched::open("hall:triangles=8000"), LENS), (Watched::with_scene(passing()), FLAT)] {

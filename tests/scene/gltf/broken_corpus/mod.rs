@@ -1,7 +1,7 @@
 //! Broken and hostile files, each given to the program as a stranger would: it ends with exit code 2 and one message that
 //! names file, element and fault, or draws a picture without NaN, soon and in little memory.
 //!
-//! `cargo test gltf_broken_corpus -- --nocapture` prints the table: what is broken, what is said, and what it took.
+//! `cargo test broken_corpus -- --nocapture` prints the table: what is broken, what is said, and what it took.
 
 mod containers;
 mod images;

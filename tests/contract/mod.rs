@@ -1,6 +1,8 @@
 //! What scripts rely on: the exit code of every verb in every case, and the keys and types of every JSON document
 //! (docs/report.md).
 
+mod values;
+
 use crate::support::program::Program;
 use serde_json::Value;
 

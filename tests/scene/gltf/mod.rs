@@ -1,5 +1,11 @@
 //! glTF files that load: built here in the small, and the shared scenes where QUINCUNX_SCENES names their folder.
 
+mod allowed;
+mod animation;
+mod animation_broken;
+mod broken;
+mod broken_corpus;
+
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,5 +1,12 @@
 //! Path tracing against closed forms, and the other techniques against path tracing of the same transport.
 
+mod medium;
+mod progressive;
+mod ray_query;
+mod shutter;
+mod twins;
+mod walks;
+
 use crate::support;
 use crate::support::Feature;
 use crate::support::boxes::{camera, closed_box, panel, point_light, rectangle};

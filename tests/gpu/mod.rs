@@ -1,6 +1,12 @@
 //! What a GPU would do and no software driver does, pretended: another clock, a rasteriser that leaves pixels out, rays that are
 //! none.
 
+mod loops;
+mod lost;
+mod multisample;
+mod statistics;
+mod validation;
+
 use crate::support::program::Program;
 use crate::support::shading_space::without_shading_space;
 use crate::support::square::{matt, square};

@@ -1,5 +1,8 @@
 //! The program from outside: exit codes, what it says, and which files it leaves.
 
+mod compare;
+mod scene_verbs;
+
 use crate::support::program::Program;
 use quincunx::techniques::Technique;
 use serde_json::Value;

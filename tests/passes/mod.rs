@@ -1,0 +1,7 @@
+//! Passes that several techniques use.
+
+mod blended;
+mod depth_prepass;
+mod filter;
+mod gbuffer;
+mod shadow_maps;

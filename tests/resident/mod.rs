@@ -1,0 +1,3 @@
+//! The scene in device memory.
+
+mod geometry;

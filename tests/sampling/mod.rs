@@ -1,0 +1,3 @@
+//! Sequences, on the host and in shaders.
+
+mod sobol;

@@ -1,0 +1,3 @@
+//! Scenes as they are read.
+
+mod gltf;

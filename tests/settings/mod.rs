@@ -1,0 +1,3 @@
+//! The table of settings.
+
+mod unread;

@@ -1,0 +1,5 @@
+//! Materials and light against closed forms.
+
+mod derivatives;
+mod light_units;
+mod materials;

@@ -1,0 +1,8 @@
+//! Techniques, each in its folder; collapse.rs is of several.
+
+mod collapse;
+mod deep_shading;
+mod forward;
+mod inferred_lighting;
+mod interleaved_deferred;
+mod path_traced;
