@@ -126,7 +126,7 @@ impl ShadingSpace {
             table_height_px: table.cells[1],
             sample_count: table.samples,
             tuple_count: table.tuple_count(),
-            nothing: 0,
+            opaque_zero: 0,
             warp_falloff: self.warp_falloff as f32,
         }
     }
