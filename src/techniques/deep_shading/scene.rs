@@ -124,7 +124,7 @@ impl DeepScene {
 
     /// What a pass waits for that lights, after the one that touched the shadow maps last.
     pub fn maps_barrier(&self, from: Access, to: Access) -> Option<Barrier> {
-        self.maps.as_ref().and_then(|maps| maps.barrier(from, to))
+        self.maps.as_ref().and_then(|maps| maps.from(from).to(to))
     }
 
     /// Everything that a shader of the technique may read of it, by name.
