@@ -52,35 +52,35 @@
 //! to the bit on software drivers, and so does every order of `--visibility`; `--conservative none` alone leaves samples
 //! without a colour. Without blur it is `forward --supersample` with samples in other places.
 
-mod again;
-mod apart;
 mod baseline;
 mod brute;
+mod buffer_addresses;
 mod choices;
 mod contradictions;
 mod count;
 mod counters;
 mod eyes;
 mod frame;
-mod gate;
 mod indirect;
 mod lists;
-mod middle;
+mod mid_exposure;
 mod modes;
 mod passes;
 mod plan;
 mod primitives;
 mod ranges;
-mod reach;
 mod reconstruct;
+mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
 mod scene;
+mod separate;
 mod settings;
 mod shade;
 mod space;
 mod stereo;
+mod stray_draws;
 mod touched;
 mod tuples;
 mod visibility;
@@ -109,7 +109,7 @@ use modes::visibility::Visibility;
 use primitives::Primitives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use visibility::ray::Traced;
+use visibility::ray::TracedSamples;
 
 pub struct DeepShading;
 
@@ -213,7 +213,7 @@ impl Technique for DeepShading {
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let (choices, primitives) = (Choices::new(inputs)?, Primitives::new(inputs.scene)?);
         let is_traced = choices.visibility == Visibility::Ray;
-        let traced = if is_traced { Some(Traced::new(inputs, &choices, &primitives)?) } else { None };
+        let traced = if is_traced { Some(TracedSamples::new(inputs, &choices, &primitives)?) } else { None };
         let atlases = match choices.shading {
             Shading::TextureSpace(size) => Some(Atlases::of(inputs.scene, size.side_px)?),
             _ => None,
@@ -231,7 +231,7 @@ impl Technique for DeepShading {
 struct PreparedDeep {
     choices: Choices,
     primitives: Primitives,
-    traced: Option<Traced>,
+    traced: Option<TracedSamples>,
     atlases: Option<Atlases>,
     light_count: u32,
 }
