@@ -421,10 +421,10 @@ impl Renderer {
         let is_nan = picture.pixels.iter().flatten().any(|channel| channel.is_nan());
         let own = self.frame.explained_nan().filter(|_| is_nan);
         let error = own.into_iter().flatten().fold(error, Error::note);
-        match self.gpu.caps.identity.loop_turns() {
-            Some(turns) if is_nan => error
+        match self.gpu.caps.identity.max_loop_iterations() {
+            Some(iterations) if is_nan => error
                 .note(format!(
-                    "this driver ends a thread's loops after {turns} iterations, which may be lights times steps of \
+                    "this driver ends a thread's loops after {iterations} iterations, which may be lights times steps of \
                      shadow rays, or all steps of a path's rays"
                 ))
                 .note(

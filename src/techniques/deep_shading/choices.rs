@@ -1,8 +1,8 @@
 //! The choices that the settings make.
 
-use super::middle::Middle;
+use super::mid_exposure::MidExposure;
 use super::space::ShadingSpace;
-use super::tuples::Table;
+use super::tuples::TupleTable;
 use crate::error::{Error, Result};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
@@ -35,7 +35,7 @@ pub struct Choices {
     pub is_looped: bool,
     /// Layers that are drawn together reach beyond the frame.
     pub has_padding: bool,
-    pub table: Table,
+    pub table: TupleTable,
     /// Sets of samples that the picture is the mean of.
     pub run_count: u32,
     pub space: ShadingSpace,
@@ -47,7 +47,7 @@ pub struct Choices {
     /// The host inserts into them, and samples have no SPIDs.
     pub is_direct: bool,
     /// The device draws strays only where there are some.
-    pub is_gated: bool,
+    pub has_stray_count: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
     pub has_zmax: bool,
@@ -66,7 +66,7 @@ pub struct Choices {
     pub conservative: Conservative,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
-    pub middle: Option<Middle>,
+    pub middle: Option<MidExposure>,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
 }
@@ -96,12 +96,12 @@ impl Choices {
         } else {
             None
         };
-        let middle = Middle::new(inputs)?;
+        let middle = MidExposure::new(inputs)?;
         let (scene, lights) =
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
-        let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
-        let table = Table { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
+        let (table, visibility) = (TupleTable::new(samples, tuples), shading.visibility(values)?);
+        let table = TupleTable { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
         let space =
             ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
@@ -122,7 +122,7 @@ impl Choices {
             is_moving: middle.is_some(),
             has_lists,
             is_direct,
-            is_gated: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
+            has_stray_count: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),

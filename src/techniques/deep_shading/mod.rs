@@ -52,35 +52,35 @@
 //! to the bit on software drivers, and so does every order of `--visibility`; `--conservative none` alone leaves samples
 //! without a colour. Without blur it is `forward --supersample` with samples in other places.
 
-mod again;
-mod apart;
 mod baseline;
 mod brute;
+mod buffer_addresses;
 mod choices;
 mod contradictions;
 mod count;
 mod counters;
 mod eyes;
 mod frame;
-mod gate;
 mod indirect;
 mod lists;
-mod middle;
+mod mid_exposure;
 mod modes;
 mod passes;
 mod plan;
 mod primitives;
 mod ranges;
-mod reach;
 mod reconstruct;
+mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
 mod scene;
+mod separate;
 mod settings;
 mod shade;
 mod space;
 mod stereo;
+mod stray_draws;
 mod touched;
 mod tuples;
 mod visibility;
@@ -106,7 +106,7 @@ use modes::shading::Shading;
 use modes::visibility::Visibility;
 use primitives::Primitives;
 use std::collections::BTreeMap;
-use visibility::ray::Traced;
+use visibility::ray::TracedSamples;
 
 pub struct DeepShading;
 
@@ -260,7 +260,7 @@ impl Prepared for PreparedDeep {
         let choices = self.choices;
         let primitives = Primitives::new(inputs.scene)?;
         let is_traced = choices.visibility == Visibility::Ray;
-        let traced = if is_traced { Some(Traced::new(inputs, &choices, &primitives)?) } else { None };
+        let traced = if is_traced { Some(TracedSamples::new(inputs, &choices, &primitives)?) } else { None };
         let atlases = match choices.shading {
             Shading::TextureSpace(size) => Some(Atlases::of(inputs.scene, size.side_px)?),
             _ => None,

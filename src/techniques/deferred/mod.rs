@@ -12,9 +12,9 @@ use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::lights::object_lists::ObjectLists;
-use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::cull;
-use crate::passes::cull::Cull;
+use crate::passes::cull::{Cull, CullLights};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::picture::Aov;
@@ -199,7 +199,7 @@ impl Frame for DeferredFrame {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
         let mut written = Access::ColorWrite;
         if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
-            let lights = (&self.direct.lights, self.direct.light_count);
+            let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
             cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
             written = Access::ComputeSample;
         }
@@ -214,9 +214,11 @@ impl Frame for DeferredFrame {
                 lists,
                 shadow_maps: None,
             };
-            let picture = self.color.from(Access::ComputeWrite);
-            let depth = gbuffer.depth_edge(Access::ComputeSample);
-            blend.record(cmd, NAME, frame, scene, &lights, depth, picture)?;
+            let solid = SolidPicture {
+                depth: gbuffer.depth_edge(Access::ComputeSample),
+                color: self.color.from(Access::ComputeWrite),
+            };
+            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
         }
         Ok(())
     }

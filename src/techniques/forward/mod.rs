@@ -33,7 +33,7 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, readback, upload};
 use crate::lights::LightSet;
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::accumulate::Accumulate;
-use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::direct::DirectGpu;
 use crate::passes::resolve;
@@ -43,7 +43,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::settings::{Condition, LIGHT_LISTS, MULTISAMPLE, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::techniques::forward::choices::Choices;
-use crate::techniques::forward::material::Targets;
+use crate::techniques::forward::material::{MaterialLights, Targets};
 use crate::techniques::forward::resources::NAME;
 use glam::Vec2;
 use material::Material;
@@ -237,7 +237,9 @@ impl Frame for ForwardFrame {
             lit.push(("Lights", Bound::Buffer(uniform)));
         }
         lit.push(("LightLists", Bound::Buffer(&self.lists)));
-        self.material.record(cmd, frame, scene, &self.list, &lit, self.maps.as_ref(), &self.targets)?;
+        let maps = self.maps.as_ref();
+        let lights = MaterialLights { bound: &lit, maps: maps.map(|maps| maps.from(Access::DepthWrite)) };
+        self.material.record(cmd, frame, scene, &self.list, &lights, &self.targets)?;
         if let Some(blend) = &self.blend {
             let lights = BlendLights {
                 lights: &self.direct.lights,
@@ -246,10 +248,11 @@ impl Frame for ForwardFrame {
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
                 lists: &self.lists,
-                shadow_maps: self.maps.as_ref(),
+                shadow_maps: maps.map(|maps| maps.from(Access::FragmentSample)),
             };
             let tested = depth_prepass::access(self.depth.is_some());
-            blend.record(cmd, NAME, frame, scene, &lights, depth.from(tested), drawn.from(Access::ColorWrite))?;
+            let solid = SolidPicture { depth: depth.from(tested), color: drawn.from(Access::ColorWrite) };
+            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
         }
         if let Some(plain) = resolved {
             resolve::record(cmd, NAME, drawn.from(Access::ColorWrite), plain)?;

@@ -53,7 +53,8 @@ use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
-use crate::passes::blend::{self, BlendLights};
+use crate::passes::blend::{self, BlendLights, SolidPicture};
+use crate::passes::cull::CullLights;
 use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
@@ -228,7 +229,7 @@ impl Frame for InterleavedFrame {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
         let mut surface = AccessSet::from(Access::ColorWrite);
         if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
-            let lights = (&self.direct.lights, self.direct.light_count);
+            let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
             cull.record(cmd, NAME, gbuffer.from(surface), frame, lights, masks)?;
             surface = surface.after(Access::ComputeSample);
         }
@@ -261,8 +262,9 @@ impl Frame for InterleavedFrame {
                 lists,
                 shadow_maps: None,
             };
-            let picture = self.color.from(Access::ComputeWrite);
-            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(surface), picture)?;
+            let solid =
+                SolidPicture { depth: gbuffer.depth_edge(surface), color: self.color.from(Access::ComputeWrite) };
+            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
         }
         Ok(())
     }

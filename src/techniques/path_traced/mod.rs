@@ -65,7 +65,7 @@ use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
-use sample::{Choices, SUM_BYTES, Sample};
+use sample::{Choices, PathLights, PathTree, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -301,12 +301,13 @@ impl PreparedPaths {
         let density_of =
             |material: &Material| self.sources.emitters.as_ref().map_or(0.0, |emitters| emitters.density_of(material));
         let (sources, layout) = (self.sources.all(), &self.layout);
-        let lit = (&lights[..], &sources[..], &closing[..]);
+        let lights = PathLights { blocks: &lights, sources: &sources, closing: &closing };
         let mut tree = vec![("triangles_traced", bvh.sources.len() as f64)];
         if let Some(nodes) = layout.nodes() {
             tree.extend([("tree_nodes", nodes.count() as f64), ("stack_entries", nodes.stack_entries().into())]);
         }
-        let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, layout), density_of)?;
+        let sample =
+            Sample::new(gpu, inputs, resources, &self.choices, &lights, &PathTree { bvh, layout }, density_of)?;
         Ok(Box::new(PathFrame {
             sample,
             sample_count: self.sample_count,
