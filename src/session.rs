@@ -275,7 +275,7 @@ impl Planned {
 /// `--submit-ms`, `auto` resolved.
 fn submit_limit(values: &Values, caps: &Caps) -> Option<Duration> {
     let of_kind = if caps.identity.is_software() { 0.0 } else { GPU_SUBMIT_MS };
-    let milliseconds = values.number_or_auto("submit-ms").unwrap_or(of_kind);
+    let milliseconds = values.unless_auto("submit-ms", Values::number).unwrap_or(of_kind);
     (milliseconds > 0.0).then(|| Duration::from_secs_f64(milliseconds / 1e3))
 }
 

@@ -11,6 +11,7 @@ use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
 use crate::passes::shadow_maps::MapLayout;
 use crate::resident::GeometryChoice;
+use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
@@ -78,7 +79,7 @@ impl Choices {
         let values = inputs.values;
         let samples = values.integer("spp") as u32;
         let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
-        let tuples = values.integer_or_auto("tuples").map_or(4 * samples, |tuples| tuples as u32);
+        let tuples = values.unless_auto("tuples", Values::integer).map_or(4 * samples, |tuples| tuples as u32);
         if !tuples.is_multiple_of(samples) {
             return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
                 .within(NAME)
@@ -105,7 +106,7 @@ impl Choices {
         let space =
             ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
-        let cache_entries = values.integer_or_auto("shading-cache");
+        let cache_entries = values.unless_auto("shading-cache", Values::integer);
         let mut choices = Self {
             shading,
             maps: maps.map_err(|error| error.within(NAME))?,

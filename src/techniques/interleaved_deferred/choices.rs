@@ -280,7 +280,7 @@ pub fn bounds(caps: &Caps) -> Vec<(&'static str, String)> {
 ///
 /// Errors: it does not divide the pattern, so that no clusters of sub-buffers make it (exit code 2).
 fn direct_pattern(values: &Values, pattern: [u32; 2]) -> Result<[u32; 2]> {
-    let direct = values.pair_or_auto("direct-pattern").unwrap_or(pattern);
+    let direct = values.unless_auto("direct-pattern", Values::pair).unwrap_or(pattern);
     if [0, 1].into_iter().all(|axis| pattern[axis].is_multiple_of(direct[axis])) {
         return Ok(direct);
     }
