@@ -8,7 +8,7 @@
 //! the lens and in time, with the lens at another place.
 
 use crate::gpu::shader::structs::TupleBlock;
-use crate::sampling::sobol;
+use crate::sampling::pattern::{Pattern, Sample};
 use crate::units::Extent;
 
 /// How samples are spread over pixels.
@@ -89,44 +89,36 @@ impl TupleTable {
         eyes.iter().flat_map(|eye| of_middle.iter().map(|tuple| beside(*eye, tuple))).collect()
     }
 
+    /// The tuples of one eye as a pattern over the table's cells. `run`: as for `tuples`.
+    pub fn pattern(&self, seed: u32, run: u32) -> Pattern {
+        Pattern::nets(self.cells, self.samples, seed, run)
+    }
+
     /// Those of one eye whose lens is the unit disk.
     fn of_eye(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
-        let count = self.tuples_of_eye();
-        // Aligned stretches of the sequence are nets: a cell's tuples are as well spread as all of them.
-        let of = |index: u32, purpose: u32| {
-            sobol::pair(
-                run.wrapping_mul(count).wrapping_add(index),
-                sobol::pair_seed(sobol::pixel_seed([0, 0], seed), purpose),
-            )
-        };
         let layer = self.layer(frame);
-        (0..count)
-            .map(|index| {
-                let cell = index / self.samples;
-                // A single sample a pixel is its middle.
-                let place = if count == 1 && run == 0 { [0.5, 0.5] } else { of(index, 0) };
-                let [radius, turn] = of(index, 1);
-                let [time, _] = of(index, 2);
-                let (radius, turn) = (radius.sqrt(), turn * std::f32::consts::TAU);
-                let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
-                    let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
-                    let offset = f64::from(cell) + f64::from(place);
-                    let scale = pixels / (cells * side);
-                    let shift = (pixels / cells + 1.0 - 2.0 * offset / cells) / side - 1.0;
-                    [scale as f32, shift as f32]
-                };
-                let [width, height] = self.cells;
-                let x = axis(frame.width, layer.width, width, cell % width, place[0]);
-                let y = axis(frame.height, layer.height, height, cell / width, place[1]);
-                TupleBlock {
-                    scale: [x[0], y[0]],
-                    shift: [x[1], y[1]],
-                    lens: [radius * turn.cos(), radius * turn.sin()],
-                    time,
-                    eye: 0.0,
-                }
-            })
-            .collect()
+        let block = |(cell, sample): ([u32; 2], &Sample)| {
+            let [time, radius, turn] = sample.further;
+            let (radius, turn) = (radius.sqrt(), turn * std::f32::consts::TAU);
+            let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
+                let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
+                let offset = f64::from(cell) + f64::from(place);
+                let scale = pixels / (cells * side);
+                let shift = (pixels / cells + 1.0 - 2.0 * offset / cells) / side - 1.0;
+                [scale as f32, shift as f32]
+            };
+            let [width, height] = self.cells;
+            let x = axis(frame.width, layer.width, width, cell[0], sample.place_px[0]);
+            let y = axis(frame.height, layer.height, height, cell[1], sample.place_px[1]);
+            TupleBlock {
+                scale: [x[0], y[0]],
+                shift: [x[1], y[1]],
+                lens: [radius * turn.cos(), radius * turn.sin()],
+                time,
+                eye: 0.0,
+            }
+        };
+        self.pattern(seed, run).placed().map(block).collect()
     }
 }
 

@@ -128,7 +128,8 @@ impl InferredFrame {
             }
         };
         let survivors = (!stippled.is_empty()).then(|| {
-            Survivors::new(inputs.scene, inputs.view, &stippled, choices.stipple_side, choices.packing, depth_range_m)
+            let stipple = choices.stipple.clone();
+            Survivors::new(inputs.scene, inputs.view, &stippled, stipple, choices.packing, depth_range_m)
         });
         let earlier = choices.has_motion.then(|| Earlier::new(gpu, inputs, resources)).transpose()?;
         let filter = FilterSettings {
@@ -136,7 +137,7 @@ impl InferredFrame {
             depth_range_m,
             depth_threshold: choices.depth_threshold,
             light_extent,
-            stipple_side: choices.stipple_side,
+            stipple_side: choices.stipple_side(),
             samples: choices.samples,
             has_prepass: choices.has_prepass,
         };
