@@ -204,6 +204,33 @@ fn levels_of_textures_are_chosen_by_inputs_alone() {
     assert_eq!(found, [] as [&str; 0]);
 }
 
+/// A number that host and device share is typed in GLSL, and `build.rs` hands it to the host.
+#[test]
+fn numbers_of_shaders_are_typed_once() {
+    /// The name in `const NAME...`, where what follows its `=` begins with a digit.
+    fn typed(line: &str) -> Option<&str> {
+        let (before, value) = line.trim_start().split_once(" = ")?;
+        let (_, declared) = before.rsplit_once("const ")?;
+        let name = declared.split(':').next()?.rsplit(' ').next()?;
+        value.starts_with(|first: char| first.is_ascii_digit()).then_some(name)
+    }
+    let text_of = |folder: &str, file: &Path| std::fs::read_to_string(root().join(folder).join(file)).unwrap();
+    let mut shared = BTreeSet::new();
+    for file in files("glsl") {
+        let text = text_of("glsl", &file);
+        shared.extend(text.lines().filter(|line| line.starts_with("const ")).filter_map(typed).map(str::to_owned));
+    }
+    assert!(shared.len() > 100 && shared.contains("TILE_PX"), "{} numbers were found", shared.len());
+    let mut twice = Vec::new();
+    // A scene's file has its number too, below the room of shaders: a test of shading compares the two.
+    for file in files("src").into_iter().filter(|file| !file.starts_with("scene")) {
+        let text = text_of("src", &file);
+        let copies = (1..).zip(text.lines()).filter(|(_, line)| typed(line).is_some_and(|name| shared.contains(name)));
+        twice.extend(copies.map(|(number, line)| format!("src/{}:{number}: {}", file.display(), line.trim())));
+    }
+    assert_eq!(twice, [] as [&str; 0]);
+}
+
 #[test]
 fn the_floor_knows_no_technique_and_no_scene() {
     for room in ["gpu", "memory"] {

@@ -5,14 +5,13 @@
 use super::Bvh;
 use crate::caps::Limits;
 use crate::error::{Error, Result};
+use crate::gpu::shader::bvh::LEAF_SHIFT;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhWideBlock};
 use crate::settings::Values;
 use crate::units::Bytes;
 use bytemuck::cast_slice;
 use std::collections::VecDeque;
 
-/// A wide node's bits for a child's number of triangles begin here: bvh.glsl's LEAF_SHIFT.
-const LEAF_SHIFT: u32 = 26;
 /// Bits of a word of the trail: glsl/bvh_stack.glsl.
 const WORD_BITS: u32 = 32;
 

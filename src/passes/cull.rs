@@ -7,6 +7,8 @@ use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::passes::cull::COMP_VARIANTS;
+use crate::gpu::shader::passes::cull::TILE_PX;
+use crate::gpu::shader::passes::tile_masks::THREADS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Traffic, readback};
 use crate::passes::gbuffer::{GBuffer, PositionStorage};
@@ -14,12 +16,6 @@ use crate::plan::Plan;
 use crate::settings::Values;
 use crate::units::Extent;
 use std::sync::Arc;
-
-/// Side of a tile: glsl/passes/cull.glsl's TILE_PX.
-const TILE_PX: u32 = 16;
-
-/// Threads of a workgroup: tile_masks.glsl's THREADS.
-const THREADS: u32 = 64;
 
 /// What makes the mask of a tile, with equal results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

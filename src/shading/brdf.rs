@@ -97,6 +97,14 @@ pub fn evaluate(kind: Brdf, surface: &Surface, normal: Vec3, to_light: Vec3, to_
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::shader::shading::{brdf, extras};
+
+    #[test]
+    fn numbers_are_the_shader_s() {
+        assert_eq!(DEFAULT_DIELECTRIC_F0, extras::DEFAULT_DIELECTRIC_F0);
+        let kinds = [Brdf::Lambert, Brdf::BlinnPhong, Brdf::Ggx].map(|kind| kind as u32);
+        assert_eq!(kinds, [brdf::BRDF_LAMBERT, brdf::BRDF_BLINN_PHONG, brdf::BRDF_GGX]);
+    }
 
     /// Part of the light from one direction that leaves in all directions, by a midpoint rule over the hemisphere.
     fn reflected(kind: Brdf, surface: &Surface, incidence: f32) -> f32 {

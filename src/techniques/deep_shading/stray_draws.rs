@@ -3,6 +3,7 @@
 //! reads  count.counters, strays.draws      writes  strays.count
 
 use crate::error::Result;
+use crate::gpu::shader::techniques::deep_shading::counters::COUNTED_ANY_STRAY;
 use crate::gpu::{Access, Buffer, Commands, Gpu, upload};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
@@ -15,9 +16,9 @@ use std::sync::Arc;
 const DRAWS: &str = "strays.draws";
 pub const COUNT: &str = "strays.count";
 
-/// COUNTED_ANY_STRAY of counters.glsl. The number of strays itself, millions, is more than a device may take for a draw count
+/// The word of the counters that is 1 where there are strays. Their own number, millions, is more than a device may take for a draw count
 /// (maxDrawIndirectCount).
-const ANY_STRAY_WORD: u64 = 20;
+const ANY_STRAY_WORD: u64 = COUNTED_ANY_STRAY as u64;
 
 const COMMAND_BYTES: u64 = size_of::<vk::DrawIndirectCommand>() as u64;
 

@@ -3,6 +3,7 @@
 use super::resources;
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
+use crate::gpu::shader::techniques::forward::material::UNIFORM_LIGHT_COUNT;
 use crate::lights::object_lists::{ListChoice, ObjectLists};
 use crate::passes::direct::{self, DirectSettings};
 use crate::passes::resolve;
@@ -32,9 +33,9 @@ impl Choices {
     pub(super) fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
         let (count, range) = (inputs.lights.lights.len(), inputs.caps.limits.max_uniform_buffer_range_bytes);
-        let fits = count <= resources::UNIFORM_LIGHT_COUNT && resources::UNIFORM_BYTES <= range;
+        let fits = count <= UNIFORM_LIGHT_COUNT as usize && resources::UNIFORM_BYTES <= range;
         if values.text("light-buffer") == "uniform" && !fits {
-            let (most, device) = (resources::UNIFORM_LIGHT_COUNT, &inputs.caps.identity.name);
+            let (most, device) = (UNIFORM_LIGHT_COUNT, &inputs.caps.identity.name);
             let why = format!(
                 "--light-buffer uniform: {count} lights: it holds {most}, where a device binds {} ({device} binds {})",
                 Bytes(resources::UNIFORM_BYTES),

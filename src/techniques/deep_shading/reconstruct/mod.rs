@@ -25,6 +25,7 @@ use super::ranges;
 use super::resolve::{SampleColors, fetch};
 use crate::error::Result;
 use crate::gpu::shader::structs::TileBlock;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::blur::TILE_PX;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
@@ -38,9 +39,6 @@ use std::sync::Arc;
 
 pub const COLOR: &str = "reconstruct.filter.color";
 const TILES: &str = "reconstruct.layers.tiles";
-
-/// TILE_PX of blur.glsl.
-const TILE_PX: u32 = 16;
 
 /// Tiles across and down.
 fn tiles(frame: Extent) -> [u32; 2] {

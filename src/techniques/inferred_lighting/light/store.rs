@@ -1,9 +1,8 @@
 //! How the L-buffer keeps light: the twin of l_buffer.glsl. Kircher 2009, sections 2.2, 5.1.
 
+use crate::gpu::shader::techniques::inferred_lighting::l_buffer::LIGHT_STEPS;
 use half::f16;
 
-/// Steps of fixed point that encode light; the number after the last encodes NaN.
-const LIGHT_STEPS: f32 = 65534.0;
 /// Down to what part of `--light-range` losses are measured.
 const LEAST_PART: f32 = 1.0 / 256.0;
 /// Lights that a loss is measured at.

@@ -2,11 +2,11 @@
 //! reads   the scene, texture_space.atlas, texture_space.charts
 
 use super::super::super::choices::Choices;
-use super::super::super::shade::vertex::HULL_VERTICES;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::texture_space::hull::VERT;
+use crate::gpu::shader::techniques::deep_shading::hull::HULL_VERTICES;
 use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
 use crate::resident::{DrawList, SceneGpu};
