@@ -65,6 +65,7 @@ mod indirect;
 mod lists;
 mod mid_exposure;
 mod modes;
+mod pass_inputs;
 mod passes;
 mod plan;
 mod primitives;
@@ -74,6 +75,7 @@ mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
+mod sample_colors;
 mod scene;
 mod separate;
 mod settings;
@@ -101,7 +103,7 @@ use crate::techniques::deep_shading::modes::shading::CONDITIONS;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
-use frame::DeepFrame;
+use frame::{DeepFrame, HostParts};
 use modes::layer_from::LayerFrom;
 use modes::polygon_from::PolygonFrom;
 use modes::shading::Shading;
@@ -295,7 +297,8 @@ impl Prepared for PreparedDeep {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        let host = (self.primitives, self.traced, self.atlases);
-        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, host)?))
+        let Self { choices, primitives, traced, atlases, .. } = *self;
+        let host = HostParts { primitives, traced, atlases };
+        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, choices, host)?))
     }
 }
