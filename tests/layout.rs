@@ -2,7 +2,7 @@
 
 use crate::support;
 use quincunx::gpu::shader;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -173,8 +173,8 @@ fn every_file_says_why_it_exists() {
         let text = std::fs::read_to_string(root().join("src").join(file)).unwrap();
         assert!(text.starts_with("//! "), "src/{} has no header", file.display());
     }
-    for file in files("glsl") {
-        let text = std::fs::read_to_string(root().join("glsl").join(&file)).unwrap();
+    for file in files("glsl").iter().filter(|file| file.extension().is_some_and(|extension| extension != "md")) {
+        let text = std::fs::read_to_string(root().join("glsl").join(file)).unwrap();
         assert!(text.starts_with("// "), "glsl/{} has no header", file.display());
     }
 }
@@ -184,8 +184,8 @@ fn every_file_says_why_it_exists() {
 #[test]
 fn levels_of_textures_are_chosen_by_inputs_alone() {
     let mut found = Vec::new();
-    for file in files("glsl") {
-        let text = std::fs::read_to_string(root().join("glsl").join(&file)).unwrap();
+    for file in files("glsl").iter().filter(|file| file.extension().is_some_and(|extension| extension != "md")) {
+        let text = std::fs::read_to_string(root().join("glsl").join(file)).unwrap();
         for (number, line) in (1..).zip(text.lines()) {
             let code = line.split("//").next().unwrap();
             let arguments = |name: &str| -> Vec<&str> {
@@ -365,4 +365,51 @@ fn comments_say_what_they_are_about_and_name_pages_that_a_reader_has() {
         refused.extend(complaints.map(|(number, why)| format!("{file}:{number}: {why}")));
     }
     assert!(refused.is_empty(), "{}", refused.join("\n"));
+}
+
+/// Rows of glsl/README.md's tables, `| number | names (where they are) |`, as the table of shaders has them: what stands at
+/// each binding of the first set, and at each number of a specialization constant.
+fn numbered_rows(numbers: impl Fn(&shader::Shader) -> Vec<(u32, &'static str)>) -> Vec<String> {
+    let mut rows: BTreeMap<u32, BTreeMap<&str, BTreeSet<&str>>> = BTreeMap::new();
+    for shader in shader::ALL {
+        let room = shader.name.strip_prefix("techniques/").unwrap_or(shader.name);
+        let room = room.split('/').next().unwrap_or(room);
+        for (number, name) in numbers(shader) {
+            rows.entry(number).or_default().entry(name).or_default().insert(room);
+        }
+    }
+    let names = |names: BTreeMap<&str, BTreeSet<&str>>| {
+        let named = |(name, rooms): (&str, BTreeSet<&str>)| {
+            format!("`{name}` ({})", rooms.into_iter().collect::<Vec<_>>().join(", "))
+        };
+        names.into_iter().map(named).collect::<Vec<_>>().join("; ")
+    };
+    rows.into_iter().map(|(number, all)| format!("| {number} | {} |", names(all))).collect()
+}
+
+/// A number has no meaning of its own: the page says which names it goes by, and where.
+#[test]
+fn the_page_of_shaders_has_every_binding_and_every_constant() {
+    let page = std::fs::read_to_string(root().join("glsl/README.md")).unwrap();
+    let (bindings, constants) = page.split_once("## Specialization constants").expect("the second half of the page");
+    let rows = |text: &str| -> Vec<String> {
+        let is_row =
+            |line: &&str| line.starts_with("| ") && line[2..].starts_with(|first: char| first.is_ascii_digit());
+        text.lines().filter(is_row).map(str::to_owned).collect()
+    };
+    let bound = numbered_rows(|shader| {
+        let own = shader.bindings.iter().filter(|binding| binding.set == 0);
+        own.map(|binding| (binding.binding, binding.name)).collect()
+    });
+    let specialized = numbered_rows(|shader| shader.constants.iter().map(|each| (each.id, each.name)).collect());
+    let is_shared =
+        |row: &&String| row[2..].split(' ').next().is_some_and(|number| number.parse::<u32>().unwrap() >= 60);
+    for row in specialized.iter().filter(is_shared) {
+        assert!(!row.contains("; "), "a constant from 60 on has one name: {row}");
+    }
+    for (what, found, expected) in
+        [("Bindings", rows(bindings), bound), ("Specialization constants", rows(constants), specialized)]
+    {
+        assert_eq!(found, expected, "glsl/README.md, {what}: its rows should be\n{}", expected.join("\n"));
+    }
 }

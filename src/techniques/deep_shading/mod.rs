@@ -65,6 +65,7 @@ mod indirect;
 mod lists;
 mod mid_exposure;
 mod modes;
+mod pass_inputs;
 mod passes;
 mod plan;
 mod primitives;
@@ -74,6 +75,7 @@ mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
+mod sample_colors;
 mod scene;
 mod separate;
 mod settings;
@@ -99,7 +101,7 @@ use crate::techniques::deep_shading::modes::shading::CONDITIONS;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
-use frame::DeepFrame;
+use frame::{DeepFrame, HostTables};
 use modes::layer_from::LayerFrom;
 use modes::polygon_from::PolygonFrom;
 use modes::shading::Shading;
@@ -271,7 +273,7 @@ impl Prepared for PreparedDeep {
             counters: BTreeMap::from([("lights", f64::from(light_count)), ("primitives", primitives.count as f64)]),
             light_counts: [light_count, 0],
             build: Box::new(move |gpu, inputs, scene, resources| {
-                let host = (primitives, traced, atlases);
+                let host = HostTables { primitives, traced, atlases };
                 Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, choices, host)?))
             }),
         })

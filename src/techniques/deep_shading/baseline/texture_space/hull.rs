@@ -11,7 +11,7 @@ use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::constants_of;
-use crate::techniques::deep_shading::visibility::samples::DrawInputs;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -64,11 +64,11 @@ impl Hulls {
     pub fn draw(
         &self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
+        inputs: DrawInputs<'_>,
         draws: &[DrawList],
         sets: &[Option<vk::DescriptorSet>],
     ) {
-        let DrawInputs { scene, primitives, .. } = drawn;
+        let DrawInputs { scene, primitives, .. } = inputs;
         cmd.begin_rendering(self.texture, &[], None);
         for (list, set) in draws.iter().zip(sets) {
             let Some(first) = list.calls().next() else { continue };
