@@ -8,6 +8,7 @@ use super::material_blocks;
 use super::structure::{self, SceneStructure};
 use crate::bvh::nodes::Nodes;
 use crate::bvh::{Bvh, Source};
+use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{
     BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock, TracedTangentsBlock,
@@ -65,12 +66,13 @@ pub enum Rays {
     Query { is_opaque: bool },
 }
 
-/// Levels of a texture that rays read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TexelLevels {
-    Finest,
-    /// All, by the width of the ray's cone.
-    Cone,
+choices! {
+    /// Levels of a texture that rays read (`--texture-level`).
+    pub enum TexelLevels {
+        "0" => Finest,
+        /// All, by the width of the ray's cone.
+        "cone" => Cone,
+    }
 }
 
 impl TexelLevels {

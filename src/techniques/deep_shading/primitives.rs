@@ -4,8 +4,9 @@ use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::shader::structs::DrawnParams;
 use crate::passes::blend;
-use crate::resident::{Coverage, DrawCall, DrawList, GeometryChoice, Raster, SceneGpu};
+use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu};
 use crate::scene::{AlphaMode, Scene};
+use crate::settings::GeometryChoice;
 use bytemuck::Zeroable;
 
 /// `scene_buffers.glsl`.

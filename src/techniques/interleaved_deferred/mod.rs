@@ -60,7 +60,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
-use choices::Choices;
+use choices::{Choices, Direct};
 use filter::Filtered;
 use frame::{FrameLights, InterleavedFrame};
 use road::Road;
@@ -128,14 +128,14 @@ impl Technique for InterleavedDeferred {
             // The surface that is seen scatters too.
             more => settings.extend([("transport", "full".to_owned()), ("bounces", (more + 1).to_string())]),
         }
-        match values.text("direct") {
+        match values.choice("direct") {
             // Joined to the subsets, direct light is diffuse.
-            "interleaved" => settings.push(("brdf", "lambert".to_owned())),
-            "none" => {
+            Direct::Interleaved => settings.push(("brdf", "lambert".to_owned())),
+            Direct::None => {
                 return Err(Error::request("--direct none: path tracing cannot leave out direct light")
                     .note("--direct full and interleaved have a reference"));
             }
-            _ => {}
+            Direct::Full => {}
         }
         Ok(settings)
     }
@@ -149,10 +149,7 @@ impl Technique for InterleavedDeferred {
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
         let values = inputs.values;
-        let emissive = match values.text("emissive") {
-            "auto" => !inputs.lights.has_punctual,
-            text => text == "on",
-        };
+        let emissive = values.unless_auto("emissive", Values::is_on).unwrap_or(!inputs.lights.has_punctual);
         let walk = vpl::Walk {
             count: choices.vpl_count,
             bounces: values.integer("vpl-bounces") as u32,
