@@ -2,6 +2,7 @@
 
 use crate::support;
 use quincunx::gpu::shader;
+use quincunx::techniques::settings_of;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -165,6 +166,29 @@ fn tests_lie_as_the_rooms_lie() {
         let is_of_room = folder.is_none_or(|folder| is_there(&root().join("src").join(folder)));
         assert!(is_of_room, "tests/{}: src/ has no such folder", file.display());
     }
+}
+
+/// Whoever reads a choice asks for its enum (`choices!`): no second list of its words stands in the code. A benchmark
+/// compares variants by their texts, whatever the setting.
+#[test]
+fn choices_are_read_as_enums() {
+    let settings = quincunx::techniques::ALL.iter().flat_map(|technique| settings_of(*technique));
+    let choices: BTreeSet<&str> =
+        settings.filter(|setting| setting.choices().is_some()).map(|setting| setting.key).collect();
+    let reads = |line: &str| {
+        let keys = line.split(".text(\"").skip(1).filter_map(|after| after.split('"').next());
+        keys.into_iter().any(|key| choices.contains(key))
+    };
+    let mut found = Vec::new();
+    for file in files("src").iter().filter(|file| file.extension().is_some_and(|extension| extension == "rs")) {
+        if file.starts_with("bench") {
+            continue;
+        }
+        let mut lines = code(file);
+        lines.retain(|line| reads(line) || line.contains("was checked") && !file.starts_with("settings"));
+        found.extend(lines.iter().map(|line| format!("src/{}: {}", file.display(), line.trim())));
+    }
+    assert_eq!(found, [] as [&str; 0]);
 }
 
 #[test]

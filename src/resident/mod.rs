@@ -24,7 +24,7 @@ pub use geometry::{Geometry, groups_of};
 pub use raster::{Coverage, Raster};
 pub use relief::advise;
 pub use textures::Textures;
-pub use visible::{DrawList, GeometryChoice};
+pub use visible::DrawList;
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;

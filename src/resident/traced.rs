@@ -8,6 +8,7 @@ use super::material_blocks;
 use super::structure::{self, SceneStructure};
 use crate::bvh::nodes::Nodes;
 use crate::bvh::{Bvh, Source};
+use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::gpu::shader::resident_traced::{
     ALPHA_IS_BLEND, ALPHA_IS_MASK, ALPHA_IS_OPAQUE, TEXELS_BETWEEN_LEVELS, TEXELS_LEVELS, TEXELS_NEAREST,
@@ -57,12 +58,13 @@ pub enum Rays {
     Query { is_opaque: bool },
 }
 
-/// Levels of a texture that rays read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TexelLevels {
-    Finest,
-    /// All, by the width of the ray's cone.
-    Cone,
+choices! {
+    /// Levels of a texture that rays read (`--texture-level`).
+    pub enum TexelLevels {
+        "0" => Finest,
+        /// All, by the width of the ray's cone.
+        "cone" => Cone,
+    }
 }
 
 impl TexelLevels {

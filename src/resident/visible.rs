@@ -15,27 +15,8 @@ use super::raster::{Coverage, Raster};
 use super::{Cluster, ClusteredCalls, DrawCall, SceneGpu};
 use crate::frame::View;
 use crate::scene::{AlphaMode, Bounds, Projection, Scene};
+use crate::settings::GeometryChoice;
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
-
-/// What is drawn of the solid draws, front to back (`--geometry`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GeometryChoice {
-    /// The clusters that the view may see.
-    Culled,
-    /// Every cluster: the oracle.
-    All,
-}
-
-impl GeometryChoice {
-    /// The value of `--geometry`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "culled" => Self::Culled,
-            "all" => Self::All,
-            other => panic!("--geometry {other} was checked"),
-        }
-    }
-}
 
 /// Rounding of a clip-space number that two products with a matrix made in 32 bits, as a part of the sum of its terms'
 /// magnitudes: eight roundings of 2^-24 each, doubled.

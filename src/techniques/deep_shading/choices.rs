@@ -10,12 +10,12 @@ use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
 use crate::passes::shadow_maps::MapLayout;
-use crate::resident::GeometryChoice;
-use crate::settings::Values;
+use crate::settings::{GeometryChoice, Values};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
+use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::is_looped;
 use crate::techniques::deep_shading::modes::shading::Shading;
@@ -85,8 +85,8 @@ impl Choices {
                 .within(NAME)
                 .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
         }
-        let has_lists = shading == Shading::Deep && values.text("lists") != "none";
-        let is_direct = has_lists && values.text("lists") == "direct";
+        let has_lists = shading == Shading::Deep && !values.is("lists", Lists::None);
+        let is_direct = has_lists && values.is("lists", Lists::Direct);
         require_direct(values)?;
         require_straight(values)?;
         require_spids(values)?;
@@ -124,13 +124,13 @@ impl Choices {
             has_lists,
             is_direct,
             has_stray_count: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
-            tolerates_duplicates: values.text("duplicates") == "tolerated",
+            tolerates_duplicates: values.is("duplicates", Duplicates::Tolerated),
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),
             has_addresses: has_lists && values.is_on("address-buffer"),
-            has_marks: has_lists && !is_direct && values.text("shaded-triangles") == "listed",
+            has_marks: has_lists && !is_direct && values.is("shaded-triangles", ShadedTriangles::Listed),
             cache_entries: cache_entries.unwrap_or(samples_of_set),
-            is_counted: values.text("instrument") != "off",
+            is_counted: values.unless_auto("instrument", Values::is_on).unwrap_or(true),
             is_by_address: false,
             sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
             is_reconstructed: values.is_on("reconstruct")
@@ -138,7 +138,7 @@ impl Choices {
             lens,
             middle,
             conservative: Conservative::of(values, inputs.caps),
-            geometry: GeometryChoice::from_setting(values.text("geometry")),
+            geometry: values.choice("geometry"),
         };
         choices.is_by_address = is_by_address(&choices, inputs);
         Ok(choices)
@@ -259,14 +259,12 @@ pub fn longest_bytes(choices: &Choices, frame: Extent) -> u64 {
 
 /// `--list-access`, `auto` resolved: whether addresses are taken.
 pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
-    match inputs.values.text("list-access") {
-        "descriptors" => false,
-        "addresses" => true,
-        _ => longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes,
-    }
+    let is_long = || longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes;
+    let asked = inputs.values.unless_auto("list-access", Values::choice);
+    asked.map_or_else(is_long, |access: ListAccess| access == ListAccess::Addresses)
 }
 
 /// How buffers are reached, in the report's words.
 pub fn list_access_name(is_by_address: bool) -> &'static str {
-    if is_by_address { "addresses" } else { "descriptors" }
+    if is_by_address { ListAccess::Addresses.name() } else { ListAccess::Descriptors.name() }
 }

@@ -96,8 +96,10 @@ use crate::plan::Plan;
 use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
+use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
 use crate::techniques::deep_shading::modes::shading::CONDITIONS;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
@@ -147,27 +149,29 @@ impl Technique for DeepShading {
             need("the visibility pass", Ability::FloatDepth, ""),
             need("the shading pass", Ability::FragmentAtomics, ""),
         ];
-        let visibility = Visibility::of(values);
-        let has_layers = matches!(values.text("shading"), "deep" | "indirect-gbuffer");
+        let visibility: Visibility = values.choice("visibility");
+        let shading: ShadingKind = values.choice("shading");
+        let has_layers = ShadingKind::OF_SPACE.contains(&shading);
         if has_layers && visibility.is_layered() {
             let ability = match LayerFrom::of(values, caps) {
                 LayerFrom::Vertex if visibility.has_layer_from() => Ability::LayerFromVertex,
                 _ => Ability::GeometryShader,
             };
-            let of = format!("--visibility {}", values.text("visibility"));
+            let of = format!("--visibility {}", visibility.name());
             needs.push(need(&of, ability, "--visibility repeat-frame works without it"));
         }
-        let has_polygons = visibility.has_polygons() && values.text("shading") != "msaa";
+        let has_polygons = visibility.has_polygons() && shading != ShadingKind::Msaa;
         if has_polygons && PolygonFrom::of(values, caps) == PolygonFrom::Geometry {
             let instead = "--polygon-from vertex works without it";
             needs.push(need("--polygon-from geometry", Ability::GeometryShader, instead));
         }
-        if has_layers && visibility == Visibility::Stochastic && values.text("sample-tests") == "loop" {
+        let is_looped = values.is("sample-tests", SampleTests::Loop);
+        if has_layers && visibility == Visibility::Stochastic && is_looped {
             let instead = "--sample-tests layers works without it";
             needs.push(need("--sample-tests loop", Ability::WideAtomics, instead));
         }
         match Conservative::of(values, caps) {
-            _ if values.text("shading") != "deep" => {}
+            _ if shading != ShadingKind::Deep => {}
             Conservative::Geometry => {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative geometry", Ability::GeometryShader, instead));

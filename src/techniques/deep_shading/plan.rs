@@ -188,7 +188,7 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     if choices.visibility.is_layered() && layers > most_drawn {
         return Err(Error::request(format!(
             "--visibility {}, {asked}: this device draws into {most_drawn} layers at once",
-            inputs.values.text("visibility")
+            choices.visibility.name()
         ))
         .within(NAME)
         .note("--visibility repeat-frame draws into one"));

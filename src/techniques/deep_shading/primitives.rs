@@ -5,8 +5,9 @@ use crate::frame::View;
 use crate::gpu::shader::structs::DrawnParams;
 use crate::gpu::shader::techniques::deep_shading::scene_buffers::{DRAWN_BLENDED, DRAWN_DOUBLE_SIDED, DRAWN_MIRRORED};
 use crate::passes::blend;
-use crate::resident::{Coverage, DrawCall, DrawList, GeometryChoice, Raster, SceneGpu};
+use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu};
 use crate::scene::{AlphaMode, Scene};
+use crate::settings::GeometryChoice;
 use bytemuck::Zeroable;
 
 /// Ids of a scene's triangles.
