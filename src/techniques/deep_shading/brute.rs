@@ -1,6 +1,5 @@
 //! Samples shaded where they are seen, each by itself, at their shading points: all of them (`--lists none`, the oracle), or
-//! those that shading space has no place for or whose list is full (pass `strays`). Shaders: those before fragments of
-//! visibility, brute.frag.
+//! the strays alone (pass of that name). Shaders: those before fragments of visibility, brute.frag.
 //! reads  the scene, its lights, visibility.spids, visibility.depth, the lists      writes  shade.colors
 
 use super::choices::Choices;

@@ -174,9 +174,8 @@ impl Choices {
         self.lens.is_some() || self.is_moving
     }
 
-    /// The name of the pass that shades samples where they are seen: all of them, or those that shading space has no place for,
-    /// which blur brings in from outside, and rounding where triangles are huge, edge-on or cut by the near plane; and those whose
-    /// lists are full.
+    /// The name of the pass that shades samples where they are seen: all of them, or strays, which blur brings in from
+    /// outside shading space, and rounding where triangles are huge, edge-on or cut by the near plane.
     pub fn brute_pass(&self) -> &'static str {
         if self.has_lists { "strays" } else { "brute" }
     }

@@ -1,4 +1,4 @@
-//! Lists: which triangles must be shaded at each pixel of shading space (Clarberg & Munkberg 2014, section 4.3).
+//! Lists of the triangles to shade, and the passes that make them (Clarberg & Munkberg 2014, section 4.3).
 //!
 //! Why lanes have samples of one tuple: neighbours in a layer are pixels apart and mostly have lists of their own; the samples
 //! of one pixel would all find one list empty at once.
