@@ -260,10 +260,10 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { shading, table, conservative, lens, visibility, layer_from, .. } = &self.choices;
+        let Choices { shading, table, visibility, raster, blur, .. } = &self.choices;
         let mut resolved = BTreeMap::from([
             ("tuples", table.tuples_of_eye().to_string()),
-            ("conservative", conservative.name().to_owned()),
+            ("conservative", raster.conservative.name().to_owned()),
         ]);
         if let Shading::Msaa { pass_samples } = shading {
             resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
@@ -275,24 +275,24 @@ impl Prepared for PreparedDeep {
         resolved.insert(INSTRUMENT.key, instrument.to_owned());
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
-            resolved.insert("layer-from", layer_from.name().to_owned());
+            resolved.insert("layer-from", raster.layer_from.name().to_owned());
         }
         if visibility.has_polygons() && !matches!(shading, Shading::Msaa { .. }) {
-            resolved.insert("polygon-from", self.choices.polygon_from.name().to_owned());
+            resolved.insert("polygon-from", raster.polygon_from.name().to_owned());
         }
         if *visibility == Visibility::Stochastic && matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
-            resolved.insert("sample-tests", sample_tests_name(self.choices.is_looped).to_owned());
+            resolved.insert("sample-tests", sample_tests_name(raster.is_looped).to_owned());
         }
-        if !self.choices.has_marks {
+        if !self.choices.lists.has_marks {
             resolved.insert("shaded-triangles", "all".to_owned());
         }
         if matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
             resolved.insert("list-access", list_access_name(self.choices.is_by_address).to_owned());
         }
-        if let Some(lens) = lens {
+        if let Some(lens) = blur.lens {
             resolved.insert("focus", format!("{}", lens.focus));
         }
-        if !self.choices.is_reconstructed {
+        if !blur.is_reconstructed {
             resolved.insert("reconstruct", "off".to_owned());
         }
         resolved

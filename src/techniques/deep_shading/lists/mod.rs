@@ -74,10 +74,10 @@ impl Lists {
         Self {
             begins: take(BEGINS),
             nodes: take(NODES),
-            linear: choices.is_compacted.then(|| take(LINEAR)),
-            addresses: choices.has_addresses.then(|| take(ADDRESSES)),
-            zmax: choices.has_zmax.then(|| take(ZMAX)),
-            marks: choices.has_marks.then(|| take(MARKS)),
+            linear: choices.lists.is_compacted.then(|| take(LINEAR)),
+            addresses: choices.lists.has_addresses.then(|| take(ADDRESSES)),
+            zmax: choices.lists.has_zmax.then(|| take(ZMAX)),
+            marks: choices.lists.has_marks.then(|| take(MARKS)),
         }
     }
 

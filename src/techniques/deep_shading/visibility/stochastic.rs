@@ -24,10 +24,10 @@ pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
 
 /// `tests`: the value of the shaders' axis.
 pub(super) fn stages(choices: &Choices, tests: &str) -> SampleStages {
-    if choices.polygon_from == PolygonFrom::Geometry {
+    if choices.raster.polygon_from == PolygonFrom::Geometry {
         return polygon::stages(tests);
     }
-    let side_count = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
+    let side_count = if choices.blur.is_moving { MOST_SIDES } else { STILL_SIDES };
     SampleStages {
         vertex: variant(VERT_VARIANTS, &[tests]),
         geometry: None,
