@@ -1,9 +1,8 @@
 //! Samples shaded where they are seen, each by itself, at their shading points: all of them (`--lists none`, the oracle), or
-//! those that shading space has no place for or whose list is full (pass `strays`). Shaders: those before fragments of
-//! visibility, brute.frag.
+//! the strays alone (pass of that name). Shaders: those before fragments of visibility, brute.frag.
 //! reads  the scene, its lights, visibility.spids, visibility.depth, the lists      writes  shade.colors
 
-use super::choices::Choices;
+use super::choices::{Choices, ListChoices};
 use super::lists::ListsEdge;
 use super::pass_inputs::{DrawInputs, ShadingEdges};
 use super::redraw::{self, TriangleRedraw};
@@ -35,8 +34,8 @@ impl BruteForce {
     ) -> Result<Self> {
         let samples = match choices {
             Choices { has_lists: false, .. } => "all",
-            Choices { is_direct: true, .. } => "direct",
-            Choices { is_compacted: true, .. } => "compact",
+            Choices { lists: ListChoices { is_direct: true, .. }, .. } => "direct",
+            Choices { lists: ListChoices { is_compacted: true, .. }, .. } => "compact",
             _ => "linked",
         };
         let shadows = shadow_maps::axis(choices.maps.is_some());

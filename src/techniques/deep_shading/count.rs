@@ -24,7 +24,7 @@ pub struct Count {
 
 impl Count {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
-        let lists = if choices.is_compacted { "compact" } else { "linked" };
+        let lists = if choices.lists.is_compacted { "compact" } else { "linked" };
         let shader = variant(COMP_VARIANTS, &[lists]);
         let pipeline = ComputePipeline::new(gpu, shader, &constants_of(choices, &[Some(shader)]))?;
         let lengths = resources.buffer(&full(super::resources::LENGTHS));

@@ -45,7 +45,7 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
         if !(choices.has_lists && choices.is_counted) {
             leave_out(LENGTHS, "lists are counted with --shading deep, --lists linked or direct, and --instrument on");
         }
-        if choices.is_direct {
+        if choices.lists.is_direct {
             leave_out(SPIDS, "--lists direct has no SPIDs; --lists linked makes them");
         }
     }
@@ -99,7 +99,7 @@ impl DeepFrame {
         let frame = inputs.view.extent;
         let list = primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred());
         primitives.set_order(scene, &list);
-        let reconstruct = match choices.is_reconstructed {
+        let reconstruct = match choices.blur.is_reconstructed {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
             false => None,
         };
@@ -230,7 +230,7 @@ impl Frame for DeepFrame {
     }
 
     fn explained_nan(&self) -> Option<[String; 2]> {
-        let conservative = self.choices.conservative.name();
+        let conservative = self.choices.raster.conservative.name();
         let (what, help) = match self.choices.shading {
             Shading::Deep if self.choices.has_lists => (
                 format!(
@@ -278,7 +278,9 @@ impl Frame for DeepFrame {
                 Ok(indirect::touched_bytes(&self.counted(gpu)?))
             }
             // Without lists colours are cleared whole, and what the host inserts is copied whole.
-            ShadingPasses::Separate(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
+            ShadingPasses::Separate(..) if !self.choices.has_lists || self.choices.lists.is_direct => {
+                Ok(BTreeMap::new())
+            }
             ShadingPasses::Separate(..) => {
                 Ok(self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes())
             }

@@ -72,7 +72,7 @@ impl TriangleRedraw {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        let stray_draws = if choices.has_stray_count {
+        let stray_draws = if choices.lists.has_stray_count {
             Some(StrayDraws::new(gpu, resources, scene, &stages, &repeats)?)
         } else {
             None

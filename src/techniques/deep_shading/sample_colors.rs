@@ -1,7 +1,7 @@
 //! Samples that have colours: where these are, and who touched what leads to them last.
 
 use super::baseline::Baseline;
-use super::choices::Choices;
+use super::choices::{Choices, ListChoices};
 use super::lists::ListsEdge;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Edge};
 use crate::techniques::deep_shading::modes::shading::Shading;
@@ -118,9 +118,9 @@ pub fn fetch(choices: &Choices) -> &'static str {
         Choices { shading: Shading::Msaa { .. }, .. } => "multisampled",
         Choices { shading: Shading::IndirectGbuffer, .. } => "pointer",
         Choices { has_lists: false, .. } => "own",
-        Choices { is_direct: true, .. } => "direct",
-        Choices { has_addresses: true, .. } => "address",
-        Choices { is_compacted: true, .. } => "compact",
+        Choices { lists: ListChoices { is_direct: true, .. }, .. } => "direct",
+        Choices { lists: ListChoices { has_addresses: true, .. }, .. } => "address",
+        Choices { lists: ListChoices { is_compacted: true, .. }, .. } => "compact",
         _ => "linked",
     }
 }

@@ -58,13 +58,13 @@ impl DeepScene {
         choices: &Choices,
         scene: &SceneGpu,
     ) -> Result<Self> {
-        let moved = choices.middle.as_ref();
+        let moved = choices.blur.mid_exposure.as_ref();
         let lights = direct::light_blocks(choices.lights(inputs), inputs.values);
         let bounds = inputs.scene.bounds();
         let background = inputs.values.color("background");
         let open = inputs.view.block(&bounds, background, inputs.lights.ambient, lights.len() as u32, 0);
         let middle = moved.map_or(open, |moved| moved.frame(inputs, &open));
-        let middle = seen_from(middle, choices.lens);
+        let middle = seen_from(middle, choices.blur.lens);
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?;
         let seed = inputs.values.integer("seed") as u32;

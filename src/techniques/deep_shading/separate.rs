@@ -100,12 +100,12 @@ impl SeparateShading {
             ),
         };
         let list_shading = if choices.has_lists {
-            let address = choices.is_compacted && choices.has_addresses;
+            let address = choices.lists.is_compacted && choices.lists.has_addresses;
             let insertion = match host_lists {
                 Some(direct) => Insertion::Host(direct),
                 None => Insertion::Device(Box::new(DeviceInsertion {
                     insert: Insert::new(gpu, choices)?,
-                    compact: if choices.is_compacted { Some(Compact::new(gpu, choices)?) } else { None },
+                    compact: if choices.lists.is_compacted { Some(Compact::new(gpu, choices)?) } else { None },
                     address: if address { Some(Address::new(gpu, choices)?) } else { None },
                 })),
             };

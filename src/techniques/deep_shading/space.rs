@@ -1,5 +1,5 @@
-//! Canonical shading space: the frame in the middle of the exposure, from the middle of the lens, with a guard band around it
-//! (Clarberg & Munkberg 2014, sections 3 and 6).
+//! Shading space: its size with the guard band, and where a place of the scene lies in it (Clarberg & Munkberg 2014,
+//! sections 3 and 6).
 
 use super::settings::LEAST_SCALE;
 use super::tuples::TupleTable;

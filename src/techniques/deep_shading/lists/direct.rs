@@ -45,7 +45,7 @@ struct Entry {
 
 impl HostLists {
     pub fn of(hits: &Hits, choices: &Choices) -> Self {
-        Self::with(hits, choices.space.extent, choices.is_compacted, choices.has_zmax)
+        Self::with(hits, choices.space.extent, choices.lists.is_compacted, choices.lists.has_zmax)
     }
 
     fn with(hits: &Hits, space: Extent, is_compacted: bool, has_zmax: bool) -> Self {
@@ -140,9 +140,9 @@ impl HostInsertion {
         let names = [
             Some(BEGINS),
             Some(NODES),
-            choices.is_compacted.then_some(LINEAR),
+            choices.lists.is_compacted.then_some(LINEAR),
             Some(ADDRESSES),
-            choices.has_zmax.then_some(ZMAX),
+            choices.lists.has_zmax.then_some(ZMAX),
         ];
         let staged = names.into_iter().flatten().map(|name| RefCell::new(resources.buffer(&staged_name(name))));
         Self { sets, staged: staged.collect(), staged_run: Cell::new(0) }

@@ -20,11 +20,11 @@ pub struct Insert {
 impl Insert {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let on = |is_on| if is_on { "on" } else { "off" };
-        let axes = [choices.has_zmax, choices.has_addresses, choices.has_marks].map(on);
+        let axes = [choices.lists.has_zmax, choices.lists.has_addresses, choices.lists.has_marks].map(on);
         let shader = variant(COMP_VARIANTS, &axes);
         let constants = [
-            ("TOLERATES_DUPLICATES", u32::from(choices.tolerates_duplicates)),
-            ("IS_COMPACTED", u32::from(choices.is_compacted)),
+            ("TOLERATES_DUPLICATES", u32::from(choices.lists.tolerates_duplicates)),
+            ("IS_COMPACTED", u32::from(choices.lists.is_compacted)),
             ("IS_COUNTED", u32::from(choices.is_counted)),
             ("BY_ADDRESS", u32::from(choices.is_by_address)),
             ("HAS_FENCES", u32::from(!gpu.caps.identity.barriers_end_threads())),

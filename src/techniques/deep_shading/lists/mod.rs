@@ -1,4 +1,4 @@
-//! Lists: which triangles must be shaded at each pixel of shading space (Clarberg & Munkberg 2014, section 4.3).
+//! Lists of the triangles to shade, and the passes that make them (Clarberg & Munkberg 2014, section 4.3).
 //!
 //! Why lanes have samples of one tuple: neighbours in a layer are pixels apart and mostly have lists of their own; the samples
 //! of one pixel would all find one list empty at once.
@@ -74,10 +74,10 @@ impl Lists {
         Self {
             begins: take(BEGINS),
             nodes: take(NODES),
-            linear: choices.is_compacted.then(|| take(LINEAR)),
-            addresses: choices.has_addresses.then(|| take(ADDRESSES)),
-            zmax: choices.has_zmax.then(|| take(ZMAX)),
-            marks: choices.has_marks.then(|| take(MARKS)),
+            linear: choices.lists.is_compacted.then(|| take(LINEAR)),
+            addresses: choices.lists.has_addresses.then(|| take(ADDRESSES)),
+            zmax: choices.lists.has_zmax.then(|| take(ZMAX)),
+            marks: choices.lists.has_marks.then(|| take(MARKS)),
         }
     }
 

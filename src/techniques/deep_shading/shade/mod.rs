@@ -46,9 +46,9 @@ pub struct Shade {
 
 impl Shade {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let lists = if choices.is_compacted { "compact" } else { "linked" };
-        let zmax = if choices.has_zmax { "on" } else { "off" };
-        let stages = choices.conservative.stages(if choices.has_marks { "on" } else { "off" });
+        let lists = if choices.lists.is_compacted { "compact" } else { "linked" };
+        let zmax = if choices.lists.has_zmax { "on" } else { "off" };
+        let stages = choices.raster.conservative.stages(if choices.lists.has_marks { "on" } else { "off" });
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];

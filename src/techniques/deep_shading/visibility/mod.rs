@@ -56,7 +56,7 @@ impl SampleRasterizer {
         choices: &Choices,
         primitives: &Primitives,
     ) -> Result<Self> {
-        Ok(match choices.is_looped {
+        Ok(match choices.raster.is_looped {
             true => Self::Loop(Box::new(LoopedSamples::new(gpu, scene, resources, choices, primitives)?)),
             false => Self::Layers(Box::new(TupleDraws::new(gpu, scene, choices)?)),
         })

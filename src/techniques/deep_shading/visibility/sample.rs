@@ -29,7 +29,7 @@ pub struct TupleDraws {
 
 impl TupleDraws {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let depth = if choices.has_zmax { "shading" } else { "none" };
+        let depth = if choices.lists.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = stages::stages(scene, choices, &repeats);
@@ -46,7 +46,7 @@ impl TupleDraws {
                     fragment: Some(fragment),
                     constants: &constants,
                     vertex_buffers: &[],
-                    color_formats: if choices.has_zmax { &formats } else { &formats[..1] },
+                    color_formats: if choices.lists.has_zmax { &formats } else { &formats[..1] },
                     samples: 1,
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),

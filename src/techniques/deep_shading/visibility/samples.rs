@@ -28,7 +28,7 @@ impl Samples {
             spids: resources.image(&full(SPIDS)),
             depth: choices.has_depth().then(|| resources.image(&full(DEPTH))),
             written: choices.visibility.writes(),
-            shading_depths: choices.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
+            shading_depths: choices.lists.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
         })
     }

@@ -39,9 +39,9 @@ impl Spids {
         choices: &Choices,
         primitives: &Primitives,
     ) -> Result<Self> {
-        let fragment = variant(FRAG_VARIANTS, &[if choices.has_zmax { "shading" } else { "none" }]);
+        let fragment = variant(FRAG_VARIANTS, &[if choices.lists.has_zmax { "shading" } else { "none" }]);
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
-        let formats = if choices.has_zmax { &formats[..] } else { &formats[..1] };
+        let formats = if choices.lists.has_zmax { &formats[..] } else { &formats[..1] };
         let constants = constants_of(choices, &[Some(fragment)]);
         let description = GraphicsDescription { constants: &constants, ..fullscreen::description(fragment, formats) };
         let ranges = resources.buffer(&full(RANGES));

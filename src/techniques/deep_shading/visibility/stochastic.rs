@@ -21,10 +21,10 @@ pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
 
 /// `tests`: the value of the shaders' axis.
 pub(super) fn stages(choices: &Choices, tests: &str) -> SampleStages {
-    if choices.polygon_from == PolygonFrom::Geometry {
+    if choices.raster.polygon_from == PolygonFrom::Geometry {
         return polygon::stages(tests);
     }
-    let side_count = if choices.is_moving { BOUND_MOST_SIDES } else { BOUND_STILL_SIDES };
+    let side_count = if choices.blur.is_moving { BOUND_MOST_SIDES } else { BOUND_STILL_SIDES };
     SampleStages {
         vertex: variant(VERT_VARIANTS, &[tests]),
         geometry: None,
