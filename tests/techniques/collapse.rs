@@ -54,13 +54,13 @@ fn require_every_road_is_branch(size: &str, patterns: &[&str]) {
 
 #[test]
 fn every_road_is_branch_for_every_pattern() {
-    require_every_road_is_branch("320x180", &["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"]);
+    require_every_road_is_branch("192x108", &["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"]);
 }
 
 /// The frame is divided by none of the patterns but the first, and by no SIMD width.
 #[test]
 fn every_road_is_branch_for_every_pattern_where_nothing_divides_the_frame() {
-    require_every_road_is_branch("319x179", &["1x1", "3x2", "5x7", "8x8"]);
+    require_every_road_is_branch("191x107", &["1x1", "3x2", "5x7", "8x8"]);
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn the_pattern_of_one_pixel_is_plain_deferred_shading() {
     let mut ways: Vec<Way> = splits().iter().map(|split| both(split, &[("pattern", "1x1")])).collect();
     ways.push(vec![("split", "none")]);
     ways.push(vec![("pattern", "1x1"), ("filter", "none")]);
-    for size in ["320x180", "321x181"] {
+    for size in ["192x108", "193x109"] {
         require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", size)], &changes(&ways));
     }
 }
@@ -310,7 +310,7 @@ fn shared_bytes_change_no_pixel() {
     require_one_hash(&watched, "deferred", &[("size", "161x91"), ("cull", "tiled")], &modes);
     for split in splits() {
         for filter in words(INTERLEAVED, "filter") {
-            let common = [("size", "161x91"), ("vpls", "64"), ("pattern", "3x2"), ("filter", filter)];
+            let common = [("size", "97x53"), ("vpls", "64"), ("pattern", "3x2"), ("filter", filter)];
             require_one_hash(&watched, INTERLEAVED, &both(&common, &split), &modes);
         }
     }
