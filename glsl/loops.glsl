@@ -1,5 +1,5 @@
-// A driver may end a loop after too many iterations, without an error (src/caps/mod.rs, `Identity::loop_turns`). What
-// was summed by then must not pass for a result: it becomes NaN, which fails the picture.
+// A driver may end a loop after too many iterations, without an error (src/caps/mod.rs, `Identity::max_loop_iterations`).
+// What was summed by then must not pass for a result: it becomes NaN, which fails the picture.
 #ifndef LOOPS_GLSL
 #define LOOPS_GLSL
 

@@ -179,7 +179,7 @@ impl Job {
         let picture = renderer.picture()?;
         let sums = renderer.sums()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let asked_ev = values.number_or_auto("exposure");
+        let asked_ev = values.unless_auto("exposure", Values::number);
         let auto_exposure_ev = if asked_ev.is_none() { exposure_for(&picture) } else { None };
         let exposure_ev = asked_ev.or(auto_exposure_ev).unwrap_or_default();
         if asked_ev.is_none() {
@@ -257,7 +257,7 @@ impl Job {
     /// `scene` with its textures as the request asks for them on a device of `caps`.
     pub fn with_texture_limit(&self, mut scene: Scene, caps: &Caps) -> Scene {
         let budget_bytes = self.values.bytes("memory-budget");
-        scene.texture_limit_px = match self.values.integer_or_auto("texture-limit") {
+        scene.texture_limit_px = match self.values.unless_auto("texture-limit", Values::integer) {
             Some(limit_px) => limit_px as u32,
             None => SceneStats::fitting_limit_px(&scene, caps, budget_bytes),
         };

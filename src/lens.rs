@@ -47,7 +47,8 @@ impl Lens {
     /// sees nothing, of the middle of the scene's box, and where that is not before the camera, half of the scene's diagonal.
     pub fn new(values: &Values, view: &View, scene: &Scene, bvh: &Bvh) -> Option<Self> {
         let (radius, eyes) = (0.5 * values.number("aperture") as f32, Eyes::of(values));
-        let focus = || values.number_or_auto("focus").map_or_else(|| seen(view, scene, bvh), |focus| focus as f32);
+        let focus =
+            || values.unless_auto("focus", Values::number).map_or_else(|| seen(view, scene, bvh), |focus| focus as f32);
         (radius > 0.0 || eyes != Eyes::One { aside: 0.0 }).then(|| Self { radius, focus: focus(), eyes })
     }
 

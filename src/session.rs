@@ -22,7 +22,7 @@ use crate::report::memory::MemoryTable;
 use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Sums, Technique, bindable, fitness, stages};
+use crate::techniques::{Frame, Inputs, Prepared, Sums, Technique, bindable, fitness, stages};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -126,8 +126,8 @@ impl Session {
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
         // It says itself what would fit.
-        let plan = frame_plan(technique, &self.inputs(&view, &lights, values), aovs)?;
-        self.make(technique, values, (view, lights, plan), aovs, recording).map_err(|error| {
+        let planned = Planned::new(technique, &self.inputs(&view, &lights, values), aovs)?;
+        self.make(technique, values, (view, lights, planned), aovs, recording).map_err(|error| {
             if error.kind() != ErrorKind::Memory {
                 return error;
             }
@@ -175,25 +175,26 @@ impl Session {
         &self,
         technique: &dyn Technique,
         values: &Values,
-        (view, lights, plan): (View, LightSet, Plan),
+        (view, lights, planned): (View, LightSet, Planned),
         aovs: &[String],
         recording: Recording,
     ) -> Result<Renderer> {
         let inputs = self.inputs(&view, &lights, values);
-        let prepared = technique.prepare(&inputs)?;
+        let Planned { prepared, plan } = planned;
+        let resolved = prepared.resolved();
+        let host = prepared.host_part(&inputs)?;
         let sharing = Sharing::of(&plan, inputs.requirements, &self.gpu.caps, values);
         let mut resources = Resources::make(&self.gpu, technique.name(), &plan, &sharing)?;
-        let [light_count, vpl_count] = prepared.light_counts();
+        let [light_count, vpl_count] = host.light_counts;
         let background = values.color("background");
         let numbers = view.block(&self.scene.bounds(), background, lights.ambient, light_count, vpl_count);
         let mut block = resources.buffer(&block_name(technique));
         block.mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
-        let (host_passes, resolved) = (prepared.host_passes(), prepared.resolved());
-        let mut counters = prepared.counters();
+        let (host_passes, mut counters) = (host.passes, host.counters);
         let blended = self.scene_gpu.calls.iter().filter(|call| call.alpha == AlphaMode::Blend);
         counters.insert("blended_draws", blended.count() as f64);
         let _stage = Stage::begin("compiling pipelines");
-        let frame = prepared.build(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
+        let frame = (host.build)(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         counters.extend(frame.drawn());
         let once_passes = frame.once();
         let mut cmd = Commands::begin(&self.gpu, technique.name(), recording)?;
@@ -241,30 +242,40 @@ pub(crate) fn require_triangle(scene: &Scene, name: &str) -> Result<()> {
     }
 }
 
-/// The whole plan of a frame: the technique's, the block of numbers that every technique has, and `aovs` kept until they
-/// are read back.
-///
-/// Errors: as `Technique::plan`; there is no such stage, or the settings leave it out (exit code 2); the device lacks what the
-/// settings need (3), or binds no buffer of a size that they need (4), or no image (2).
-pub fn frame_plan(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String]) -> Result<Plan> {
-    fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend)?;
-    stages::require_made(technique, inputs, aovs)?;
-    let mut plan = technique.plan(inputs)?;
-    plan.host_buffer("frame", block_name(technique), size_of::<FrameBlock>() as u64);
-    for aov in aovs {
-        // A resource, or a part of one such as `light.l_buffer.irradiance`.
-        let name = format!("{}.{aov}", technique.name());
-        let whole = name.rsplit_once('.').map_or("", |(whole, _)| whole);
-        assert!(plan.read_back(&name) || plan.read_back(whole), "{name} is neither planned nor left out");
+/// A technique whose choices are made, and the whole plan of its frame.
+pub struct Planned {
+    pub prepared: Box<dyn Prepared>,
+    /// The technique's, with the block of numbers that every technique has, and the stages that are read back kept until
+    /// then.
+    pub plan: Plan,
+}
+
+impl Planned {
+    /// `aovs`: the stages that are read back.
+    ///
+    /// Errors: as `Technique::prepare`; there is no such stage, or the settings leave it out (exit code 2); the device lacks
+    /// what the settings need (3), or binds no buffer of a size that they need (4), or no image (2).
+    pub fn new(technique: &dyn Technique, inputs: &Inputs<'_>, aovs: &[String]) -> Result<Self> {
+        fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend)?;
+        let prepared = technique.prepare(inputs)?;
+        stages::require_made(technique, &*prepared, inputs, aovs)?;
+        let mut plan = prepared.plan(inputs)?;
+        plan.host_buffer("frame", block_name(technique), size_of::<FrameBlock>() as u64);
+        for aov in aovs {
+            // A resource, or a part of one such as `light.l_buffer.irradiance`.
+            let name = format!("{}.{aov}", technique.name());
+            let whole = name.rsplit_once('.').map_or("", |(whole, _)| whole);
+            assert!(plan.read_back(&name) || plan.read_back(whole), "{name} is neither planned nor left out");
+        }
+        plan.check(&inputs.caps.limits).map_err(|error| bindable::advise(error, technique, inputs))?;
+        Ok(Self { prepared, plan })
     }
-    plan.check(&inputs.caps.limits).map_err(|error| bindable::advise(error, technique, inputs))?;
-    Ok(plan)
 }
 
 /// `--submit-ms`, `auto` resolved.
 fn submit_limit(values: &Values, caps: &Caps) -> Option<Duration> {
     let of_kind = if caps.identity.is_software() { 0.0 } else { GPU_SUBMIT_MS };
-    let milliseconds = values.number_or_auto("submit-ms").unwrap_or(of_kind);
+    let milliseconds = values.unless_auto("submit-ms", Values::number).unwrap_or(of_kind);
     (milliseconds > 0.0).then(|| Duration::from_secs_f64(milliseconds / 1e3))
 }
 
@@ -410,10 +421,10 @@ impl Renderer {
         let is_nan = picture.pixels.iter().flatten().any(|channel| channel.is_nan());
         let own = self.frame.explained_nan().filter(|_| is_nan);
         let error = own.into_iter().flatten().fold(error, Error::note);
-        match self.gpu.caps.identity.loop_turns() {
-            Some(turns) if is_nan => error
+        match self.gpu.caps.identity.max_loop_iterations() {
+            Some(iterations) if is_nan => error
                 .note(format!(
-                    "this driver ends a thread's loops after {turns} iterations, which may be lights times steps of \
+                    "this driver ends a thread's loops after {iterations} iterations, which may be lights times steps of \
                      shadow rays, or all steps of a path's rays"
                 ))
                 .note(

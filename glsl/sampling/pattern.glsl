@@ -1,5 +1,5 @@
 // Interleaved patterns: which of the n * m sample sets shades a pixel. Keller and Heidrich 2001, section 2; twin:
-// src/sampling/pattern.rs.
+// src/sampling/pattern/grid.rs.
 #ifndef SAMPLING_PATTERN_GLSL
 #define SAMPLING_PATTERN_GLSL
 

@@ -69,7 +69,7 @@ pub(super) fn rows(listed: &Listed) -> Vec<Row> {
         let is_listed = listed.has(*technique);
         for setting in technique.settings().iter().copied().flatten() {
             if let Some(known) = all.iter_mut().find(|known| known.setting.key == setting.key) {
-                if let (Kind::Choice(few), Kind::Choice(more)) = (known.setting.kind, setting.kind)
+                if let (Some(few), Some(more)) = (known.setting.choices(), setting.choices())
                     && more.len() > few.len()
                     && (is_listed || !known.is_listed)
                 {
@@ -112,11 +112,11 @@ pub fn flag(setting: &'static Setting) -> Arg {
 
 fn value_name(setting: &Setting) -> &'static str {
     match setting.kind {
+        Kind::Integer { .. } | Kind::Number { .. } if setting.auto => "auto|N",
         Kind::Integer { .. } | Kind::Number { .. } => "N",
-        Kind::IntegerOrAuto { .. } | Kind::NumberOrAuto { .. } => "auto|N",
         Kind::Choice(_) => "NAME",
+        Kind::Pair { .. } if setting.auto => "auto|NxM",
         Kind::Pair { .. } => "NxM",
-        Kind::PairOrAuto { .. } => "auto|NxM",
         Kind::Sides { .. } => "N|NxM",
         Kind::Length => "LENGTH",
         Kind::Bytes => "BYTES",

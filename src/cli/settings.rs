@@ -4,7 +4,7 @@ use super::job_args::{self, Row};
 use super::listed::Listed;
 use super::output;
 use crate::error::Result;
-use crate::settings::{COMMON, Kind, Setting};
+use crate::settings::{COMMON, Setting};
 use crate::techniques;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -71,9 +71,9 @@ fn section(text: &mut String, heading: &str, intro: &str, settings: &[Setting]) 
         "| setting | default | range or choices | unit | paper | what it is |\n| --- | --- | --- | --- | --- | --- |";
     writeln!(text, "\n## {heading}\n\n{intro}{head}").expect("writing to a string");
     for setting in settings {
-        let range = match setting.kind {
-            Kind::Choice(choices) => choices.iter().map(|choice| format!("`{choice}`")).collect::<Vec<_>>().join(", "),
-            _ => cell(&setting.range()),
+        let range = match setting.choices() {
+            Some(choices) => choices.iter().map(|choice| format!("`{choice}`")).collect::<Vec<_>>().join(", "),
+            None => cell(&setting.range()),
         };
         let Setting { key, default, unit, .. } = setting;
         let paper = [setting.symbol, setting.paper].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();

@@ -40,8 +40,14 @@ pub struct BlendLights<'a> {
     pub bvh_triangles: &'a Buffer,
     /// `ObjectLists::entries`.
     pub lists: &'a Buffer,
-    /// Where the pass was made with shadow maps; the material pass, or another of fragments, has asked them before.
-    pub shadow_maps: Option<&'a ShadowMaps>,
+    /// Where the pass was made with shadow maps.
+    pub shadow_maps: Option<Edge<'a, ShadowMaps>>,
+}
+
+/// The picture of what is solid, which the pass blends over.
+pub struct SolidPicture<'a> {
+    pub depth: Edge<'a, Image>,
+    pub color: Edge<'a, Image>,
 }
 
 /// What the pass needs of a device, where the scene has BLEND surfaces.
@@ -181,7 +187,9 @@ impl Blend {
         Ok(Some(Self { pipeline, calls, params, lights }))
     }
 
-    #[allow(clippy::too_many_arguments)]
+    /// Draws over `solid` what blends.
+    ///
+    /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -189,19 +197,17 @@ impl Blend {
         frame: &Buffer,
         scene: &SceneGpu,
         lights: &BlendLights<'_>,
-        depth: Edge<'_, Image>,
-        picture: Edge<'_, Image>,
+        solid: SolidPicture<'_>,
     ) -> Result<()> {
+        let SolidPicture { depth, color } = solid;
         let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
         cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
-            cmd.barriers([depth.to(Access::DepthTest), picture.to(Access::ColorWrite)]);
-            cmd.barriers(
-                lights.shadow_maps.and_then(|maps| maps.barrier(Access::FragmentSample, Access::FragmentSample)),
-            );
-            let extent = picture.resource.description.extent;
+            cmd.barriers([depth.to(Access::DepthTest), color.to(Access::ColorWrite)]);
+            cmd.barriers(lights.shadow_maps.and_then(|maps| maps.to(Access::FragmentSample)));
+            let extent = color.resource.description.extent;
             cmd.begin_rendering(
                 extent,
-                &[ColorTarget::new(picture.resource, None)],
+                &[ColorTarget::new(color.resource, None)],
                 Some((depth.resource, None, Access::DepthTest)),
             );
             mesh::bind_streams(cmd, scene);
@@ -215,7 +221,7 @@ impl Blend {
                 ("BvhTriangles", Bound::Buffer(lights.bvh_triangles)),
                 ("LightLists", Bound::Buffer(lights.lists)),
             ]);
-            bound.extend(lights.shadow_maps.iter().flat_map(|maps| maps.bound()));
+            bound.extend(lights.shadow_maps.iter().flat_map(|maps| maps.resource.bound()));
             cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&self.params), &bound)?;
             let mut lights = self.lights.iter();
             mesh::draw_each(cmd, &self.pipeline, scene, &self.calls, |_| {

@@ -110,18 +110,25 @@ pub struct MaskPipeline {
     pub by: CullBy,
 }
 
-/// Records the pass `TECHNIQUE.cull`. `frame`: of the surface's extent. `lights`: the punctual lights, and how many.
+/// The punctual lights that masks are made of.
+#[derive(Clone, Copy)]
+pub struct CullLights<'a> {
+    pub blocks: &'a Buffer,
+    pub count: u32,
+}
+
+/// Records the pass `TECHNIQUE.cull`. `frame`: of the surface's extent.
 pub fn record(
     cmd: &mut Commands,
     technique: &str,
     MaskPipeline { pipeline, by }: &MaskPipeline,
     surface: CullSurface<'_>,
     frame: &Buffer,
-    lights: (&Buffer, u32),
+    lights: CullLights<'_>,
     masks: &Buffer,
 ) -> Result<()> {
     let CullSurface { extent, texel_bytes, barriers, mut bound } = surface;
-    let (lights, light_count) = lights;
+    let light_count = lights.count;
     let threads = match (by, tiles(extent)) {
         (CullBy::Invocation, [x, y]) => [x * y, 1, 1],
         (CullBy::Workgroup, [x, y]) => [x * THREADS, y, 1],
@@ -137,7 +144,7 @@ pub fn record(
         cmd.barriers([masks.discard(Access::ComputeWrite)]);
         bound.extend([
             ("Frame", Bound::Buffer(frame)),
-            ("Lights", Bound::Buffer(lights)),
+            ("Lights", Bound::Buffer(lights.blocks)),
             ("LightMasks", Bound::Buffer(masks)),
         ]);
         let groups = pipeline.groups(threads);
@@ -156,14 +163,13 @@ impl Cull {
         Ok(Self { masks: MaskPipeline { pipeline: ComputePipeline::new(gpu, shader, &[])?, by } })
     }
 
-    /// `lights`: the punctual lights, and how many.
     pub fn record(
         &self,
         cmd: &mut Commands,
         technique: &str,
         gbuffer: Edge<'_, GBuffer>,
         frame: &Buffer,
-        lights: (&Buffer, u32),
+        lights: CullLights<'_>,
         masks: &Buffer,
     ) -> Result<()> {
         let surface = CullSurface {

@@ -2,7 +2,7 @@
 //! then serves all of them. The same bits for every count.
 //!
 //! Why there is a bound: lavapipe before Mesa 25 ends all loops of an invocation together after 65,535 iterations,
-//! without an error (`Identity::loop_turns`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as
+//! without an error (`Identity::max_loop_iterations`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as
 //! many pixels as its iterations suffice for. Where one pixel is too many, the shader reports it itself
 //! (glsl/loops.glsl).
 
@@ -13,7 +13,7 @@ use crate::settings::Values;
 #[derive(Clone, Copy, Debug)]
 pub struct Texels {
     most: u32,
-    loop_turns: Option<u32>,
+    max_loop_iterations: Option<u32>,
 }
 
 /// On the reference driver. Lavapipe reads a buffer lane by lane: 497 lights on every pixel of 1024x768 take
@@ -37,11 +37,11 @@ const UNLIT_TEXELS: u32 = 4;
 /// take 32.8 ms with 8 and 43.0 with 32, whose first frame takes 6.1 s to compile where 8 take 1.9.
 const WALKED_TEXELS: u32 = 8;
 
-/// Turns of a shadow ray's walk: eight lanes walk until the last is done. On kaos (28,230
+/// Iterations of a shadow ray's walk: eight lanes walk until the last is done. On kaos (28,230
 /// triangles, 188 lights) 8 pixels a thread were cut short and 4 were not: it takes between 43 and 87 a light there.
-const WALK_TURNS: u64 = 160;
-/// Turns of a walk that no lane needs: lavapipe runs a loop's body once, masked.
-const IDLE_WALK_TURNS: u64 = 3;
+const WALK_ITERATIONS: u64 = 160;
+/// Iterations of a walk that no lane needs: lavapipe runs a loop's body once, masked.
+const IDLE_ITERATIONS: u64 = 3;
 
 /// What the punctual lights of a thread's list ask of each of its pixels.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,7 +57,7 @@ impl Texels {
             "auto" => auto(&caps.identity),
             count => count.parse().expect("the settings table has numbers"),
         };
-        Self { most, loop_turns: caps.identity.loop_turns() }
+        Self { most, max_loop_iterations: caps.identity.max_loop_iterations() }
     }
 
     /// Pixels that have one list of lights.
@@ -68,11 +68,12 @@ impl Texels {
         }
         let (walks, most) = match load.casting_count {
             0 => (1, self.most),
-            _ => (IDLE_WALK_TURNS, self.most.min(WALKED_TEXELS)),
+            _ => (IDLE_ITERATIONS, self.most.min(WALKED_TEXELS)),
         };
-        let Some(turns) = self.loop_turns else { return most };
-        let turns_a_texel = load.light_count * walks + load.casting_count * WALK_TURNS;
-        let enough = (u64::from(turns) / turns_a_texel.max(1)).checked_ilog2().map_or(1, |power| 1 << power.min(5));
+        let Some(iterations) = self.max_loop_iterations else { return most };
+        let iterations_a_texel = load.light_count * walks + load.casting_count * WALK_ITERATIONS;
+        let enough =
+            (u64::from(iterations) / iterations_a_texel.max(1)).checked_ilog2().map_or(1, |power| 1 << power.min(5));
         most.min(enough)
     }
 
@@ -102,14 +103,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn turns_are_enough_for_the_pixels(light_count in 0u64..5000, casting in 0u64..5000, most in 0u32..6) {
+        fn iterations_are_enough_for_the_pixels(light_count in 0u64..5000, casting in 0u64..5000, most in 0u32..6) {
             let load = LightLoad { light_count, casting_count: casting.min(light_count) };
-            let texels = Texels { most: 1 << most, loop_turns: Some(65_535) };
+            let texels = Texels { most: 1 << most, max_loop_iterations: Some(65_535) };
             let count = texels.of_list(load);
             prop_assert!(count.is_power_of_two() && count <= 1 << most);
-            let turns = u64::from(count) * (light_count + load.casting_count * WALK_TURNS);
-            prop_assert!(count == 1 || turns <= 65_535);
-            let unbounded = Texels { loop_turns: None, ..texels };
+            let iterations = u64::from(count) * (light_count + load.casting_count * WALK_ITERATIONS);
+            prop_assert!(count == 1 || iterations <= 65_535);
+            let unbounded = Texels { max_loop_iterations: None, ..texels };
             prop_assert!(unbounded.of_list(load) >= count);
         }
     }

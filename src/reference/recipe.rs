@@ -123,7 +123,7 @@ impl Recipe {
     /// Samples a pixel; None where the technique counts none, or the settings say `auto`.
     pub fn samples(&self) -> Option<u64> {
         let has = settings_of(self.technique).iter().any(|setting| setting.key == SAMPLES);
-        has.then(|| self.values.integer_or_auto(SAMPLES)).flatten()
+        has.then(|| self.values.unless_auto(SAMPLES, Values::integer)).flatten()
     }
 
     /// BLAKE3, in hexadecimal, of all that its picture depends on: scene, camera, size, lights, settings, estimator.

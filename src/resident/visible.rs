@@ -53,10 +53,22 @@ pub struct DrawList {
     pub clusters_culled: u64,
 }
 
+/// Draw calls, and the clusters of triangles that they are made of.
+struct ClusteredCalls<'a> {
+    calls: &'a [DrawCall],
+    clusters: &'a [Cluster],
+    indices: &'a [u32],
+}
+
+impl<'a> ClusteredCalls<'a> {
+    fn of(resident: &'a SceneGpu, calls: &'a [DrawCall]) -> Self {
+        Self { calls, clusters: &resident.clusters, indices: &resident.host_indices }
+    }
+}
+
 impl DrawList {
     pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, raster: Raster, choice: GeometryChoice) -> Self {
-        let drawn = (&resident.calls[..], &resident.clusters[..], &resident.host_indices[..]);
-        Self::of(scene, drawn, view, raster, choice)
+        Self::of(scene, &ClusteredCalls::of(resident, &resident.calls), view, raster, choice)
     }
 
     /// What casts shadows into a map that is drawn from `view`: both sides of every triangle, as shadow rays meet both. `scene`:
@@ -65,16 +77,11 @@ impl DrawList {
         let both_sides = |call: &DrawCall| DrawCall { double_sided: true, ..*call };
         let calls: Vec<DrawCall> = resident.calls.iter().map(both_sides).collect();
         let raster = Raster { extent: view.extent, coverage: Coverage::Middle };
-        Self::of(scene, (&calls, &resident.clusters, &resident.host_indices), view, raster, choice)
+        Self::of(scene, &ClusteredCalls::of(resident, &calls), view, raster, choice)
     }
 
-    fn of(
-        scene: &Scene,
-        (calls, clusters, indices): (&[DrawCall], &[Cluster], &[u32]),
-        view: &View,
-        raster: Raster,
-        choice: GeometryChoice,
-    ) -> Self {
+    fn of(scene: &Scene, clustered: &ClusteredCalls<'_>, view: &View, raster: Raster, choice: GeometryChoice) -> Self {
+        let ClusteredCalls { calls, clusters, indices } = *clustered;
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
@@ -307,8 +314,9 @@ mod tests {
 
     fn list(scene: &Scene, view: &View, choice: GeometryChoice, coverage: Coverage) -> DrawList {
         let geometry = Geometry::of(scene);
-        let drawn = (&geometry.calls(scene)[..], &geometry.clusters[..], &geometry.indices[..]);
-        DrawList::of(scene, drawn, view, Raster { extent: view.extent, coverage }, choice)
+        let calls = geometry.calls(scene);
+        let clustered = ClusteredCalls { calls: &calls, clusters: &geometry.clusters, indices: &geometry.indices };
+        DrawList::of(scene, &clustered, view, Raster { extent: view.extent, coverage }, choice)
     }
 
     fn view(eye: Vec3, at: Vec3, projection: Projection) -> View {

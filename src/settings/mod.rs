@@ -26,6 +26,9 @@ use crate::units::{Bytes, Extent};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
+/// The word for a value that the program chooses, of settings with `Setting::auto`.
+const AUTO: &str = "auto";
+
 /// What a value may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
@@ -33,28 +36,13 @@ pub enum Kind {
         min: u64,
         max: u64,
     },
-    /// In the range, or `auto`.
-    IntegerOrAuto {
-        min: u64,
-        max: u64,
-    },
     Number {
-        min: f64,
-        max: f64,
-    },
-    /// In the range, or `auto`.
-    NumberOrAuto {
         min: f64,
         max: f64,
     },
     Choice(&'static [&'static str]),
     /// `NxM`, both in the range.
     Pair {
-        min: u32,
-        max: u32,
-    },
-    /// `NxM`, both in the range, or `auto`.
-    PairOrAuto {
         min: u32,
         max: u32,
     },
@@ -90,6 +78,8 @@ pub struct Setting {
     /// The paper's letter for it, or nothing.
     pub symbol: &'static str,
     pub kind: Kind,
+    /// Whether `auto` is possible too: the program chooses, as the help says.
+    pub auto: bool,
     pub default: &'static str,
     /// px, m, EV; nothing where it counts or chooses.
     pub unit: &'static str,
@@ -99,16 +89,31 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// The base of rows, with nothing that only some of them have: `Setting { key: .., ..Setting::ROW }`.
+    pub const ROW: Self =
+        Self { key: "", symbol: "", kind: Kind::Choice(&[]), auto: false, default: "", unit: "", paper: "", help: "" };
+
+    /// The words that a choice is one of, `auto` included; None of settings that are no choices.
+    pub fn choices(&self) -> Option<Vec<&'static str>> {
+        let Kind::Choice(words) = self.kind else { return None };
+        Some(self.auto.then_some(AUTO).into_iter().chain(words.iter().copied()).collect())
+    }
+
     /// The range or the choices, for help and errors.
     pub fn range(&self) -> String {
+        match self.choices() {
+            Some(choices) => choices.join("|"),
+            None if self.auto => format!("{AUTO} or {}", self.range_of_kind()),
+            None => self.range_of_kind(),
+        }
+    }
+
+    fn range_of_kind(&self) -> String {
         match self.kind {
             Kind::Integer { min, max } => format!("{min} to {max}"),
-            Kind::IntegerOrAuto { min, max } => format!("auto or {min} to {max}"),
             Kind::Number { min, max } => format!("{min} to {max}"),
-            Kind::NumberOrAuto { min, max } => format!("auto or {min} to {max}"),
-            Kind::Choice(choices) => choices.join("|"),
+            Kind::Choice(words) => words.join("|"),
             Kind::Pair { min, max } => format!("NxM, both {min} to {max}"),
-            Kind::PairOrAuto { min, max } => format!("auto or NxM, both {min} to {max}"),
             Kind::Sides { min, max } => format!("N or NxM, each {min} to {max}"),
             Kind::Length => "metres, or P% of the scene's diagonal".to_owned(),
             Kind::Bytes => {
@@ -130,21 +135,13 @@ impl Setting {
     fn check(&self, text: &str) -> Result<()> {
         let in_range = |pair: [u32; 2], min: u32, max: u32| pair.iter().all(|side| (min..=max).contains(side));
         let possible = match self.kind {
+            _ if self.auto && text == AUTO => true,
             Kind::Integer { min, max } => text.parse::<u64>().is_ok_and(|value| (min..=max).contains(&value)),
-            Kind::IntegerOrAuto { min, max } => {
-                parse_integer_or_auto(text).is_some_and(|value| value.is_none_or(|value| (min..=max).contains(&value)))
-            }
             Kind::Number { min, max } => {
                 text.parse::<f64>().is_ok_and(|value| value.is_finite() && (min..=max).contains(&value))
             }
-            Kind::NumberOrAuto { min, max } => {
-                parse_number_or_auto(text).is_some_and(|value| value.is_none_or(|value| (min..=max).contains(&value)))
-            }
             Kind::Choice(choices) => choices.contains(&text),
             Kind::Pair { min, max } => parse_pair(text).is_some_and(|pair| in_range(pair, min, max)),
-            Kind::PairOrAuto { min, max } => {
-                parse_pair_or_auto(text).is_some_and(|pair| pair.is_none_or(|pair| in_range(pair, min, max)))
-            }
             Kind::Sides { min, max } => parse_sides(text).is_some_and(|sides| in_range(sides, min, max)),
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Bytes => parse_bytes(text).is_some(),
@@ -169,30 +166,6 @@ impl Setting {
 fn parse_pair(text: &str) -> Option<[u32; 2]> {
     let (first, second) = text.split_once('x')?;
     Some([first.parse().ok()?, second.parse().ok()?])
-}
-
-/// Some(None) is `auto`.
-fn parse_integer_or_auto(text: &str) -> Option<Option<u64>> {
-    match text {
-        "auto" => Some(None),
-        text => text.parse().ok().map(Some),
-    }
-}
-
-/// Some(None) is `auto`.
-fn parse_number_or_auto(text: &str) -> Option<Option<f64>> {
-    match text {
-        "auto" => Some(None),
-        text => text.parse().ok().map(Some),
-    }
-}
-
-/// Some(None) is `auto`.
-fn parse_pair_or_auto(text: &str) -> Option<Option<[u32; 2]>> {
-    match text {
-        "auto" => Some(None),
-        text => parse_pair(text).map(Some),
-    }
 }
 
 fn parse_sides(text: &str) -> Option<[u32; 2]> {
@@ -273,31 +246,21 @@ impl Values {
         parse(text).unwrap_or_else(|| panic!("--{key} {text} was checked and cannot be read"))
     }
 
-    pub fn integer(&self, key: &str) -> u64 {
-        self.parsed(key, |text| text.parse().ok())
+    /// None: `auto`; else the value as `read` has it: `values.unless_auto("spp", Values::integer)`.
+    pub fn unless_auto<T>(&self, key: &str, read: impl FnOnce(&Self, &str) -> T) -> Option<T> {
+        (self.text(key) != AUTO).then(|| read(self, key))
     }
 
-    /// None: `auto`.
-    pub fn integer_or_auto(&self, key: &str) -> Option<u64> {
-        self.parsed(key, parse_integer_or_auto)
+    pub fn integer(&self, key: &str) -> u64 {
+        self.parsed(key, |text| text.parse().ok())
     }
 
     pub fn number(&self, key: &str) -> f64 {
         self.parsed(key, |text| text.parse().ok())
     }
 
-    /// None: `auto`.
-    pub fn number_or_auto(&self, key: &str) -> Option<f64> {
-        self.parsed(key, parse_number_or_auto)
-    }
-
     pub fn pair(&self, key: &str) -> [u32; 2] {
         self.parsed(key, parse_pair)
-    }
-
-    /// None: `auto`.
-    pub fn pair_or_auto(&self, key: &str) -> Option<[u32; 2]> {
-        self.parsed(key, parse_pair_or_auto)
     }
 
     /// Both sides of a `Kind::Sides` setting.
@@ -347,7 +310,7 @@ mod tests {
             default: "4x4",
             unit: "px",
             paper: "Segovia 2006, 3",
-            help: "",
+            ..Setting::ROW
         }
     }
 
@@ -369,12 +332,9 @@ mod tests {
     fn what_cannot_be_read_is_refused() {
         for (kind, wrong) in [
             (Kind::Pair { min: 1, max: 9 }, &["", "x", "3", "3x", "-1x2", "3x2x1", "99999999999x1"][..]),
-            (Kind::PairOrAuto { min: 1, max: 9 }, &["", "AUTO", "none", "3", "3x", "0x2", "3x10", "autoxauto"]),
             (Kind::Sides { min: 1, max: 9 }, &["", "x", "0", "10", "3x", "3x10", "3x2x1"]),
             (Kind::Integer { min: 0, max: 9 }, &["", "-1", "10", "1.5", "x"]),
-            (Kind::IntegerOrAuto { min: 0, max: 9 }, &["", "AUTO", "none", "-1", "10", "1.5"]),
             (Kind::Number { min: 0.0, max: 9.0 }, &["", "nan", "inf", "-1", "10"]),
-            (Kind::NumberOrAuto { min: 0.5, max: 9.0 }, &["", "AUTO", "nan", "inf", "0", "10"]),
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
             (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),
             (Kind::Bytes, &["", "0", "-1", "1.5", "64MB", "MiB", "64 M", "inf", "nanMiB", "99999999TiB", "None"]),
@@ -384,10 +344,33 @@ mod tests {
             ),
             (Kind::Color, &["", "1,2", "1,2,3,4", "-1", "nan"]),
         ] {
-            for text in wrong {
-                assert!(setting(kind).check(text).is_err(), "{kind:?} took {text:?}");
+            for auto in [false, true] {
+                for text in wrong.iter().chain(&["AUTO", "autoxauto", "auto,auto", "auto%"]) {
+                    assert!(Setting { auto, ..setting(kind) }.check(text).is_err(), "{kind:?} took {text:?}");
+                }
+                assert_eq!(Setting { auto, ..setting(kind) }.check("auto").is_ok(), auto, "{kind:?}");
             }
         }
+    }
+
+    #[test]
+    fn auto_is_a_value_of_every_kind_and_stands_first_in_its_range() {
+        for (kind, range) in [
+            (Kind::Integer { min: 0, max: 9 }, "auto or 0 to 9"),
+            (Kind::Number { min: 0.5, max: 9.0 }, "auto or 0.5 to 9"),
+            (Kind::Pair { min: 1, max: 9 }, "auto or NxM, both 1 to 9"),
+            (Kind::Choice(&["on", "off"]), "auto|on|off"),
+        ] {
+            let row = Setting { auto: true, default: "auto", ..setting(kind) };
+            assert_eq!(row.range(), range);
+            let mut values = Values::defaults(&[row]);
+            assert_eq!(values.unless_auto("pattern", Values::pair), None);
+            if let Kind::Pair { .. } = kind {
+                values.set(&row, "3x2").unwrap();
+                assert_eq!(values.unless_auto("pattern", Values::pair), Some([3, 2]));
+            }
+        }
+        assert_eq!(setting(Kind::Choice(&["on", "off"])).range(), "on|off");
     }
 
     #[test]

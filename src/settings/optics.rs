@@ -6,30 +6,29 @@ use crate::error::{Error, Result};
 /// How wide the lens is.
 pub const APERTURE: Setting = Setting {
     key: "aperture",
-    symbol: "",
     kind: Kind::Number { min: 0.0, max: 1e6 },
     default: "0",
     unit: "m",
     paper: "Clarberg 2014, table 3",
     help: "Diameter of the camera's thin lens, which blurs what is out of focus; 0: a pinhole, all is sharp",
+    ..Setting::ROW
 };
 
 /// Distance at which the lens makes a sharp picture.
 pub const FOCUS: Setting = Setting {
     key: "focus",
-    symbol: "",
-    kind: Kind::NumberOrAuto { min: 1e-6, max: 1e9 },
+    kind: Kind::Number { min: 1e-6, max: 1e9 },
+    auto: true,
     default: "auto",
     unit: "m",
-    paper: "",
     help: "Distance from the camera to the plane in focus, for --aperture and --stereo; auto: the surface at the \
            middle of the picture, or, where there is none, the middle of the scene",
+    ..Setting::ROW
 };
 
 /// How far two eyes are apart.
 pub const STEREO: Setting = Setting {
     key: "stereo",
-    symbol: "",
     kind: Kind::Number { min: 0.0, max: 1e6 },
     default: "0",
     unit: "m",
@@ -37,18 +36,18 @@ pub const STEREO: Setting = Setting {
     help: "Distance between two eyes, one to the left and one to the right of the camera, each with a lens of \
            --aperture; both see what lies at --focus in the same place of the picture, and the picture written is the \
            left eye's; 0: one eye, the camera's",
+    ..Setting::ROW
 };
 
 /// Which of the two eyes see.
 pub const STEREO_EYES: Setting = Setting {
     key: "stereo-eyes",
-    symbol: "",
     kind: Kind::Choice(&["both", "left", "right"]),
     default: "both",
-    unit: "",
     paper: "Clarberg 2014, 7",
     help: "Eyes of --stereo to draw: both, which deep_shading shades at once as seen from the midpoint between them, \
            with the right eye's picture in the stage stereo.right; or one eye alone, as seen by that eye",
+    ..Setting::ROW
 };
 
 /// Settings that are not read with a pinhole or with one eye.
@@ -66,37 +65,36 @@ pub const LENS_CONDITIONS: &[Condition] = &[
 /// How long the film is exposed.
 pub const SHUTTER: Setting = Setting {
     key: "shutter",
-    symbol: "",
     kind: Kind::PartsOrNone(&[Part { word: "OPEN", min: -1e9, max: 1e9 }, Part { word: "CLOSE", min: -1e9, max: 1e9 }]),
     default: "none",
     unit: "s",
     paper: "Keller 2001, 3.2",
     help: "Times at which the shutter opens and closes, relative to --time; what animations move in between is blurred \
            along straight lines from its place at opening to its place at closing; none: a single moment",
+    ..Setting::ROW
 };
 
 /// Whether a G-buffer holds how surfaces move on the screen.
 pub const MOTION_VECTORS: Setting = Setting {
     key: "motion-vectors",
-    symbol: "",
     kind: Kind::Choice(&["off", "on"]),
     default: "off",
-    unit: "",
     paper: "Kircher 2009, 2.1",
     help: "Write motion vectors in the geometry pass: how far each surface has moved on the screen since \
            --motion-interval before --time, in texels right and down, as two half floats in 4 bytes a texel (--aov \
            geometry.motion)",
+    ..Setting::ROW
 };
 
 /// How long before `--time` motion vectors begin.
 pub const MOTION_INTERVAL: Setting = Setting {
     key: "motion-interval",
-    symbol: "",
     kind: Kind::Number { min: 0.0, max: 1e6 },
     default: "0.0333333333",
     unit: "s",
     paper: "Kircher 2009, 2.1",
     help: "Time of one frame, over which --motion-vectors are measured; motion begins at 0 s at the earliest",
+    ..Setting::ROW
 };
 
 /// Settings that a geometry pass without motion vectors does not read.
@@ -133,7 +131,6 @@ pub fn exposure_s(values: &Values) -> Result<[f64; 2]> {
 /// A homogeneous medium that fills the scene.
 pub const MEDIUM: Setting = Setting {
     key: "medium",
-    symbol: "",
     kind: Kind::PartsOrNone(&[
         Part { word: "S", min: 0.0, max: 1e6 },
         Part { word: "A", min: 0.0, max: 1e6 },
@@ -144,4 +141,5 @@ pub const MEDIUM: Setting = Setting {
     paper: "Dubla 2009, 3.4",
     help: "Homogeneous medium: its coefficients of scattering (S) and absorption (A), and the mean cosine of the \
            scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
+    ..Setting::ROW
 };

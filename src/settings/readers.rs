@@ -102,15 +102,8 @@ mod tests {
     use super::*;
     use crate::settings::Kind;
 
-    const ROAD: Setting = Setting {
-        key: "road",
-        symbol: "",
-        kind: Kind::Choice(&["short", "long", "none"]),
-        default: "short",
-        unit: "",
-        paper: "",
-        help: "",
-    };
+    const ROAD: Setting =
+        Setting { key: "road", kind: Kind::Choice(&["short", "long", "none"]), default: "short", ..Setting::ROW };
     const WIDTH: Setting = Setting { key: "width", kind: Kind::Integer { min: 0, max: 9 }, default: "3", ..ROAD };
     const SIGNS: Setting = Setting { key: "signs", kind: Kind::Choice(&["off", "on"]), default: "off", ..ROAD };
     const ALL: [Setting; 3] = [ROAD, WIDTH, SIGNS];

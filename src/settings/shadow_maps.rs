@@ -10,76 +10,69 @@ use super::{Condition, Kind, Setting, Unread, Values};
 /// `DIRECT_SHADOW` with shadow maps among its choices.
 pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
     key: "direct-shadow",
-    symbol: "",
     kind: Kind::Choice(&["none", "sun", "ray", "map"]),
     default: "sun",
-    unit: "",
     paper: "map: Clarberg 2014, 6",
     help: "Lights that cast shadows, and how: none; directional lights by rays (sun); every punctual light by rays \
            (ray); or, with techniques that have them, every punctual light by shadow maps (map)",
+    ..Setting::ROW
 };
 
 /// How shadow maps are made and read.
 pub const SHADOW_MAPS: &[Setting] = &[
     Setting {
         key: "shadow-maps",
-        symbol: "",
         kind: Kind::Choice(&["frame", "once"]),
         default: "frame",
-        unit: "",
         paper: "Clarberg 2014, 6.2",
         help: "When shadow maps are drawn: anew in every frame and set of samples, as in the paper (frame), or once \
                before the first, with their time in a row of its own (once); the same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "shadow-map-size",
-        symbol: "",
         kind: Kind::Integer { min: 16, max: 8192 },
         default: "1024",
         unit: "px",
         paper: "Clarberg 2014, 6.2",
         help: "Width and height of a shadow map; spot and directional lights have one map each, point lights and spots \
                wider than 178 degrees six each",
+        ..Setting::ROW
     },
     Setting {
         key: "shadow-filter",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "nearest", "bilinear", "gather"]),
+        kind: Kind::Choice(&["nearest", "bilinear", "gather"]),
+        auto: true,
         default: "auto",
-        unit: "",
-        paper: "",
         help: "How a shadow map is read: by one comparison (nearest), or by four weighted by distance, in the device's \
                filter (bilinear) or, where depth formats cannot be filtered, in the shader (gather, the plain way to \
                the same picture); auto: bilinear where the device has it, gather elsewhere",
+        ..Setting::ROW
     },
     Setting {
         key: "shadow-bias",
-        symbol: "",
         kind: Kind::Length,
         default: "0.03%",
         unit: "m",
-        paper: "",
         help: "Distance by which a point moves towards the light before its shadow map is read, to cover rounding",
+        ..Setting::ROW
     },
     Setting {
         key: "shadow-slope-bias",
-        symbol: "",
         kind: Kind::Number { min: 0.0, max: 64.0 },
         default: "2",
         unit: "px",
-        paper: "",
         help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
                this many texels; 2 is the reach of four comparisons",
+        ..Setting::ROW
     },
     Setting {
         key: "shadow-casters",
-        symbol: "",
         kind: Kind::Choice(&["culled", "all"]),
         default: "culled",
-        unit: "",
-        paper: "",
         help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
                plain way to the same bits)",
+        ..Setting::ROW
     },
 ];
 

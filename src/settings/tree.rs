@@ -13,43 +13,36 @@ use super::{Kind, Setting};
 pub const TREE: &[Setting] = &[
     Setting {
         key: "node-width",
-        symbol: "",
         kind: Kind::Choice(&["2", "4"]),
         default: "4",
-        unit: "",
-        paper: "",
         help: "Children of a node of the tree that rays walk; nodes of 4 join nodes of 2, and one read tests all four",
+        ..Setting::ROW
     },
     Setting {
         key: "node-layout",
-        symbol: "",
         kind: Kind::Choice(&["depth-first", "breadth-first", "van-emde-boas"]),
         default: "depth-first",
-        unit: "",
-        paper: "",
         help: "Order of the tree's nodes in memory: each node before all below its first child (depth-first), before \
                all that are as deep as it (breadth-first), or the upper half of the levels before each tree of the \
                lower half, and so on within the halves (van-emde-boas)",
+        ..Setting::ROW
     },
     Setting {
         key: "stack",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "private", "shared", "short"]),
+        kind: Kind::Choice(&["private", "shared", "short"]),
+        auto: true,
         default: "auto",
-        unit: "",
-        paper: "",
         help: "Where a ray keeps the nodes that it has yet to visit: in private memory, in workgroup memory (shared), \
                or in a private stack of --stack-entries with a trail that finds from the root what did not fit \
                (short); auto: workgroup memory where it is large enough, private memory elsewhere",
+        ..Setting::ROW
     },
     Setting {
         key: "stack-entries",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 64 },
         default: "8",
-        unit: "",
-        paper: "",
         help: "Most nodes that wait in the stack of --stack short; the other stacks hold as many as the tree can make \
                wait",
+        ..Setting::ROW
     },
 ];

@@ -9,7 +9,7 @@ use crate::lights::LightSet;
 use crate::plan::{Plan, Requirements, Sharing};
 use crate::resident::SceneStats;
 use crate::scene::Scene;
-use crate::session::frame_plan;
+use crate::session::Planned;
 use crate::techniques::Inputs;
 
 /// A driver that is not there.
@@ -31,7 +31,7 @@ impl Plans {
     /// Errors: as `planned`.
     pub(super) fn new(job: &Job, scene: &Scene, bvh: &LazyBvh, driver: Driver<'_>) -> Result<Self> {
         with_inputs(job, scene, bvh, driver, |inputs| {
-            let frame = frame_plan(job.technique, inputs, &job.aovs)?;
+            let frame = Planned::new(job.technique, inputs, &job.aovs)?.plan;
             let sharing = Sharing::of(&frame, driver.requirements, driver.caps, &job.values);
             Ok(Self { scene: inputs.stats.plan(), frame, sharing })
         })

@@ -12,7 +12,7 @@ use crate::job::{Job, judge};
 use crate::memory::kinds::Kinds;
 use crate::plan::Requirements;
 use crate::report::memory::MemoryTable;
-use crate::session::frame_plan;
+use crate::session::Planned;
 use driver::{Driver, Plans, with_inputs};
 use std::collections::BTreeMap;
 
@@ -56,8 +56,7 @@ pub fn resolved(job: &Job, caps: &Caps) -> Result<BTreeMap<&'static str, String>
     let scene = job.with_texture_limit(job.load_scene()?, caps);
     let (bvh, rules) = (LazyBvh::default(), caps.rules());
     with_inputs(job, &scene, &bvh, Driver { caps, requirements: Requirements::Rules(&rules) }, |inputs| {
-        frame_plan(job.technique, inputs, &job.aovs)?;
-        Ok(job.technique.prepare(inputs)?.resolved())
+        Ok(Planned::new(job.technique, inputs, &job.aovs)?.prepared.resolved())
     })
 }
 

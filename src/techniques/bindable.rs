@@ -2,9 +2,10 @@
 //! planning.
 
 use super::{Inputs, Technique};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::lights::LightSet;
+use crate::plan::Plan;
 use crate::settings::Values;
 use crate::units::Extent;
 
@@ -16,7 +17,7 @@ const MOST_HALVINGS: u32 = 14;
 pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> Error {
     let fits = |inputs: &Inputs<'_>| {
         let is_able = super::fitness::require(technique, inputs.values, inputs.caps, inputs.stats.has_blend).is_ok();
-        is_able && technique.plan(inputs).and_then(|plan| plan.check(&inputs.caps.limits)).is_ok()
+        is_able && planned(technique, inputs).and_then(|plan| plan.check(&inputs.caps.limits)).is_ok()
     };
     let mut ways = shortened(technique, inputs.values, |values| fits(&Inputs { values, ..*inputs }));
     let extent = inputs.view.extent;
@@ -37,11 +38,15 @@ pub fn advise(error: Error, technique: &dyn Technique, inputs: &Inputs<'_>) -> E
 /// Changes that need less memory than the plan of `inputs`: settings of `Technique::shorter` that halve it, and a
 /// smaller picture.
 pub fn lessen(technique: &dyn Technique, inputs: &Inputs<'_>) -> String {
-    let bytes = |values: &Values| technique.plan(&Inputs { values, ..*inputs }).map(|plan| plan.bytes());
+    let bytes = |values: &Values| planned(technique, &Inputs { values, ..*inputs }).map(|plan| plan.bytes());
     let now = bytes(inputs.values).unwrap_or_default();
     let mut ways = shortened(technique, inputs.values, |values| bytes(values).is_ok_and(|bytes| bytes <= now / 2));
     ways.push("a smaller --size".to_owned());
     format!("{} would need less", joined(&ways))
+}
+
+fn planned(technique: &dyn Technique, inputs: &Inputs<'_>) -> Result<Plan> {
+    technique.prepare(inputs)?.plan(inputs)
 }
 
 /// Each of `Technique::shorter` that changes `values` to ones that `helps` takes, as on the command line.

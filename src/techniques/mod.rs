@@ -1,8 +1,9 @@
 //! The techniques: what each needs, and the table of all of them.
 //!
-//! A technique is asked in four steps, so that memory can be studied without a device: `plan` is arithmetic, `prepare`
-//! does the host's part, `Prepared::build` makes pipelines and takes the planned resources, and `Frame::record` writes
-//! the commands of one frame, in the order of the paper's overview figure.
+//! A technique is asked once, and what it answers goes on by itself: `prepare` makes its choices, `Prepared::plan` is
+//! arithmetic (so that memory can be studied without a device), `Prepared::host_part` does what the host computes,
+//! `HostPart::build` makes pipelines and takes the planned resources, and `Frame::record` writes the commands of one
+//! frame, in the order of the paper's overview figure.
 
 mod all;
 pub mod bindable;
@@ -91,13 +92,6 @@ pub trait Technique: Sync {
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
 
-    /// Those that these settings leave out, each with the reason, which names the setting.
-    ///
-    /// Errors: as `plan`.
-    fn stages_left_out(&self, _: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
-        Ok(Vec::new())
-    }
-
     /// Settings with values, each of which has shorter buffers, or none, where others have long ones: what is tried for advice
     /// where a device does not bind a buffer at once, or memory is spent.
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
@@ -105,7 +99,7 @@ pub trait Technique: Sync {
     }
 
     /// What these settings need of a device beyond Vulkan 1.3, met or not. `caps`: `auto` may depend on them. `has_blend`:
-    /// the scene has BLEND surfaces. Settings that contradict each other need nothing: `plan` refuses them.
+    /// the scene has BLEND surfaces. Settings that contradict each other need nothing: `prepare` refuses them.
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need>;
 
     /// Limits of its settings on a device: a setting, and its greatest value in words.
@@ -130,40 +124,46 @@ pub trait Technique: Sync {
         Vec::new()
     }
 
+    /// Its choices for these inputs: made here once, then planned, then built. No device is needed.
+    ///
+    /// Errors: settings that contradict each other, the scene or the device (exit code 2).
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>>;
+}
+
+/// A technique whose choices are made. Its methods are given the inputs of `Technique::prepare` again.
+pub trait Prepared {
     /// What a frame needs. Arithmetic, except for the tree of shadow rays, whose size is known only after building it.
     ///
     /// Errors: settings that contradict each other, the scene or the device (exit code 2).
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan>;
 
-    /// The host's part.
-    ///
-    /// Errors: as `plan`.
-    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>>;
-}
-
-/// A technique whose host part is done.
-pub trait Prepared {
-    /// Host passes with their time in nanoseconds; the same names as other passes have.
-    fn host_passes(&self) -> Vec<(String, u64)>;
-
-    /// Numbers for the report's `counters` that the host's part knows.
-    fn counters(&self) -> BTreeMap<&'static str, f64>;
+    /// Stages (`Technique::aovs`) that these settings leave out, each with the reason, which names the setting.
+    fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
 
     /// Settings whose text does not say all: the values of `auto` and of percentages.
     fn resolved(&self) -> BTreeMap<&'static str, String>;
 
-    /// Punctual and virtual point lights that shaders loop over, for the frame's block.
-    fn light_counts(&self) -> [u32; 2];
-
-    /// Pipelines, and the planned resources taken out.
-    fn build(
-        self: Box<Self>,
-        gpu: &Arc<Gpu>,
-        inputs: &Inputs<'_>,
-        scene: &SceneGpu,
-        resources: &mut Resources,
-    ) -> Result<Box<dyn Frame>>;
+    /// What the host computes before a frame.
+    ///
+    /// Errors: as `plan`; the user has asked to stop (exit code 130).
+    fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart>;
 }
+
+/// A technique whose host part is done.
+pub struct HostPart {
+    /// Host passes with their time in nanoseconds; the same names as other passes have.
+    pub passes: Vec<(String, u64)>,
+    /// Numbers for the report's `counters` that the host knows before a frame.
+    pub counters: BTreeMap<&'static str, f64>,
+    /// Punctual and virtual point lights that shaders loop over, for the frame's block.
+    pub light_counts: [u32; 2],
+    pub build: Build,
+}
+
+/// Makes the pipelines and takes the planned resources out. The inputs are those of `Technique::prepare`.
+pub type Build = Box<dyn FnOnce(&Arc<Gpu>, &Inputs<'_>, &SceneGpu, &mut Resources) -> Result<Box<dyn Frame>>>;
 
 /// Samples that a technique sums up from run to run, one a pixel each run.
 pub struct Sums<'a> {
@@ -179,7 +179,7 @@ pub trait Frame {
     /// Records one frame. `frame`: the block of glsl/frame.glsl.
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()>;
 
-    /// Passes that `Prepared::build` has run on the device, and whose results are kept: with their time in nanoseconds.
+    /// Passes that `HostPart::build` has run on the device, and whose results are kept: with their time in nanoseconds.
     fn once(&self) -> Vec<(String, u64)> {
         Vec::new()
     }
@@ -231,7 +231,7 @@ pub trait Frame {
         Ok(BTreeMap::new())
     }
 
-    /// One intermediate result, read back after a frame; none that `Technique::stages_left_out` names.
+    /// One intermediate result, read back after a frame; none that `Prepared::stages_left_out` names.
     ///
     /// Errors: memory for the copy (exit code 4).
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>;

@@ -1,7 +1,7 @@
 //! Stages that `--aov` names: what a technique does not have at all, and what it does not make with these settings, is refused
 //! before anything is drawn.
 
-use super::{Inputs, Technique};
+use super::{Inputs, Prepared, Technique};
 use crate::error::{Error, Result};
 
 /// Errors: `technique` has no stage of one of these names (exit code 2).
@@ -15,13 +15,18 @@ pub fn require_known(technique: &dyn Technique, asked: &[String]) -> Result<()> 
     }
 }
 
-/// Errors: as `require_known`, and the settings leave one of them out (exit code 2); as `Technique::plan`.
-pub fn require_made(technique: &dyn Technique, inputs: &Inputs<'_>, asked: &[String]) -> Result<()> {
+/// Errors: as `require_known`, and the settings that `prepared` was made with leave one of them out (exit code 2).
+pub fn require_made(
+    technique: &dyn Technique,
+    prepared: &dyn Prepared,
+    inputs: &Inputs<'_>,
+    asked: &[String],
+) -> Result<()> {
     require_known(technique, asked)?;
     if asked.is_empty() {
         return Ok(());
     }
-    let left_out = technique.stages_left_out(inputs)?;
+    let left_out = prepared.stages_left_out(inputs);
     let found = asked.iter().find_map(|asked| left_out.iter().find(|(stage, _)| stage == asked));
     let Some((stage, why)) = found else { return Ok(()) };
     let is_made = |known: &&str| left_out.iter().all(|(stage, _)| stage != known);

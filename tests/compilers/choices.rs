@@ -1,7 +1,7 @@
 //! Every choice of every setting plans, compiles and records, or is refused by name.
 
 use super::{FAMILIES, Null, is_refused};
-use quincunx::settings::{Kind, Setting, Values, readers};
+use quincunx::settings::{Setting, Values, readers};
 use quincunx::techniques::{self, Technique, settings_of};
 
 /// A setting's key and its value.
@@ -43,10 +43,7 @@ struct Asked {
 fn choices(technique: &dyn Technique) -> Vec<Asked> {
     let settings = settings_of(technique);
     let of = |setting: &Setting| -> Vec<Change> {
-        match setting.kind {
-            Kind::Choice(words) => words.iter().map(|word| (setting.key, *word)).collect(),
-            _ => Vec::new(),
-        }
+        setting.choices().into_iter().flatten().map(|word| (setting.key, word)).collect()
     };
     let own: Vec<Change> = settings.iter().flat_map(of).collect();
     let has = |key: &str| settings.iter().any(|setting| setting.key == key);
@@ -144,10 +141,7 @@ fn each_choice_of_each_technique_has_settings_that_read_it() {
         for asked in &choices {
             assert!(!asked.ways.is_empty(), "{}: nothing reads {:?}", technique.name(), asked.choice);
         }
-        let all: usize = settings_of(*technique)
-            .iter()
-            .map(|setting| if let Kind::Choice(words) = setting.kind { words.len() } else { 0 })
-            .sum();
+        let all: usize = settings_of(*technique).iter().filter_map(Setting::choices).map(|words| words.len()).sum();
         let mut asked: Vec<Change> = choices.iter().map(|asked| asked.choice).collect();
         asked.sort_unstable();
         asked.dedup();

@@ -1,4 +1,4 @@
-//! A driver that ends long loops without a word must not be believed: `Identity::loop_turns`, glsl/loops.glsl.
+//! A driver that ends long loops without a word must not be believed: `Identity::max_loop_iterations`, glsl/loops.glsl.
 
 use crate::support;
 use crate::support::difference::require_same;
@@ -11,19 +11,19 @@ fn a_sum_that_the_driver_ends_early_is_no_picture() {
     let watched = Watched::open("cornell");
     let changes = [("size", "16x16"), ("lights", "65536"), ("direct-shadow", "none"), ("cull", "none")];
     let picture = watched.render("deferred", &changes).picture();
-    match watched.session.gpu.caps.identity.loop_turns() {
+    match watched.session.gpu.caps.identity.max_loop_iterations() {
         None => drop(picture.unwrap()),
-        Some(turns) => {
+        Some(iterations) => {
             let error = picture.unwrap_err();
             assert_eq!(error.exit_code(), 1, "{error}");
-            assert!(error.to_string().contains(&format!("after {turns} iterations")), "{error}");
+            assert!(error.to_string().contains(&format!("after {iterations} iterations")), "{error}");
         }
     }
 }
 
 /// 1,663 lights, one of which casts shadow rays, on up to 32 pixels a thread; and 188 that all do.
 #[test]
-fn as_many_pixels_as_a_thread_may_have_turns_for() {
+fn as_many_pixels_as_a_thread_may_have_iterations_for() {
     let Some(folder) = shared_scenes() else { return };
     for (map, technique, changes) in [
         ("oa_thor", "interleaved_deferred", [("split", "none"), ("direct", "interleaved")]),

@@ -10,6 +10,7 @@ use crate::support::watched::{Changes, Watched, both};
 use glam::{DVec3, Mat4, Quat, Vec3, dvec3, vec3};
 use quincunx::bvh::Bvh;
 use quincunx::lights::vpl;
+use quincunx::sampling::pattern::Pattern;
 use quincunx::scene::{Camera, Draw, Light, LightKind, Material, Mesh, Projection, Scene};
 use quincunx::session::Renderer;
 use quincunx::shading::light::vpl_irradiance;
@@ -343,7 +344,8 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
         let walk = vpl::Walk { count, bounces: 1, emissive: false, seed: 5 };
         let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;
         let mapping = mapping(renderer.view.extent, pattern, pattern);
-        let subsets = subsets(pattern, pattern, count, 0);
+        let grid = Pattern::grid(pattern);
+        let subsets = subsets(&grid, &grid, count, 0);
         let diagonal = session.scene.bounds().diagonal();
         let found = watched.rgb(&renderer, "shade.irradiance");
         let normals = watched.rgb(&renderer, "gbuffer.normal");

@@ -2,16 +2,16 @@
 // Pass: src/techniques/deep_shading/brute.rs.
 // variants: SAMPLES=all|linked|compact|direct VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
-#include "techniques/deep_shading/again.glsl"
+#include "techniques/deep_shading/redraw.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
 // As in shade.frag.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
 
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 #ifdef SAMPLES_DIRECT
 layout(std430, set = 0, binding = 24) readonly buffer Addresses { uint addresses[]; };
 READS_WORDS(address_of, addresses)

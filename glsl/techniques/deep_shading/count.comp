@@ -2,7 +2,7 @@
 // (--instrument; section 4.1). Pass: src/techniques/deep_shading/count.rs.
 // variants: LISTS=linked|compact
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -16,7 +16,7 @@ layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 #endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 30) writeonly buffer Lengths { uint lengths[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 
 READS_WORDS(begin_of, begins)
 READS_PAIRS(node_of, nodes)

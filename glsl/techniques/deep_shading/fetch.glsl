@@ -19,7 +19,7 @@ layout(set = 0, binding = 27) uniform sampler2DMSArray drawn;
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 #endif
 layout(std430, set = 0, binding = 22) readonly buffer Colors { uvec2 colors[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 READS_PAIRS(kept_color, colors)
 // 1: a sample without a colour makes its pixel NaN, which fails the picture.
 layout(constant_id = 102) const uint MISSING_FAILS = 0;

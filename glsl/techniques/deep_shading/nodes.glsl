@@ -6,7 +6,7 @@
 //
 // After compaction the node that `begins` points to holds where the list's colours begin, and the first of the linked rest.
 //
-// The including shader declares begin_of, node_of and, with LISTS=compact, row_id of reach.glsl.
+// The including shader declares begin_of, node_of and, with LISTS=compact, row_id of buffer_addresses.glsl.
 #ifndef DEEP_SHADING_NODES_GLSL
 #define DEEP_SHADING_NODES_GLSL
 

@@ -4,7 +4,7 @@
 // variants: FETCH=own|address|direct|linked|compact|pointer|layers|passes|multisampled
 #version 460
 #include "frame.glsl"
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 

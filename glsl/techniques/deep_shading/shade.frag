@@ -2,7 +2,7 @@
 // Pass: src/techniques/deep_shading/shade/mod.rs.
 // variants: LISTS=linked|compact ZMAX=off|on VERTEX=plain|extended SHADOWS=traced|mapped
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
 #include "techniques/deep_shading/counters.glsl"
@@ -17,7 +17,7 @@ layout(location = 0) flat in uint in_primitive;
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 
 READS_WORDS(begin_of, begins)
 READS_PAIRS(node_of, nodes)

@@ -36,7 +36,7 @@ struct DeepBlock {
     uint sample_count;
     uint tuple_count;
     // 0, which no compiler knows.
-    uint nothing;
+    uint opaque_zero;
     // How much coarser shading space is towards its rim (warp.glsl); 0: nowhere.
     float warp_falloff;
 };

@@ -186,7 +186,7 @@ void stand_at(uint primitive, Place place) {
 // A colour as an attachment of half floats holds it to the bit, however the driver rounds: numbers that are half floats already.
 // Mesa 25.0.7 takes unpacking for the inverse of packing, and lavapipe then cuts the numbers off by itself.
 vec4 attached_color(uvec2 words) {
-    words ^= deep.nothing;
+    words ^= deep.opaque_zero;
     return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
 }
 

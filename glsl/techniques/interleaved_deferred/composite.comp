@@ -15,7 +15,7 @@ struct CompositeParams {
     uint direct_full;
     // Always 0, which compilers cannot know: one that sees halves packed and unpacked together rounds otherwise (Mesa
     // 25).
-    uint nothing;
+    uint opaque_zero;
     uint _unused;
 };
 
@@ -36,7 +36,7 @@ void read_column(uvec2 first) {
 
 uvec2 received_at(uint i, uvec2 pixel) {
 #ifdef FILTER_COLUMNS
-    return walked(params.walk, i) ^ params.nothing;
+    return walked(params.walk, i) ^ params.opaque_zero;
 #else
     return irradiance[pixel.y * params.row_pitch + pixel.x];
 #endif

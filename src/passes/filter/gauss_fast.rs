@@ -2,13 +2,13 @@
 //! section 4.5 and figure 4b. Shader: gauss_fast.comp; gauss_pack.comp makes its image.
 //! reads  an irradiance buffer and flags      writes  two images between, then the target buffer
 
-use super::Kernel;
 use super::gauss_pack::GaussPack;
+use super::{Kernel, StopBits};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::filter::gauss_fast as shader;
-use crate::gpu::shader::structs::GaussFastParams;
+use crate::gpu::shader::structs::{GaussFastParams, GaussPackParams};
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::units::Extent;
 use ash::vk;
@@ -69,15 +69,10 @@ impl GaussFast {
                 half_way.discard(Access::ComputeWrite),
                 target.discard(Access::ComputeWrite),
             ]);
-            self.pack.record(
-                cmd,
-                self.extent,
-                self.row_pitch,
-                self.kernel.stop_bits,
-                source.resource,
-                flags.resource,
-                packed,
-            )?;
+            let StopBits { x: stop_bits_x, y: stop_bits_y } = self.kernel.stop_bits;
+            let Extent { width: width_px, height: height_px } = self.extent;
+            let params = GaussPackParams { width_px, height_px, row_pitch: self.row_pitch, stop_bits_x, stop_bits_y };
+            self.pack.record(cmd, &params, source.resource, flags.resource, packed)?;
             cmd.barriers([packed.from(Access::ComputeWrite).to(Access::ComputeSample)]);
             let sampled = |image| Bound::Sampled(image, self.linear.handle, Access::ComputeSample);
             let groups = self.horizontal.groups([self.extent.width, self.extent.height, 1]);

@@ -36,7 +36,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::shadow_maps::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::structs::ShadowMapsParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Image, Layers, Traffic, upload};
+use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic, upload};
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
@@ -213,10 +213,9 @@ impl ShadowMaps {
         })
     }
 
-    /// Barriers of a pass whose fragments, or threads, read the maps: `to`. `from`: what touched them last,
-    /// `Access::DepthWrite` or another such pass. Of maps that are kept nothing.
-    pub fn barrier(&self, from: Access, to: Access) -> Option<Barrier> {
-        (!self.is_once).then(|| self.depth.from(from).to(to))
+    /// Names the access that touched them last: `Access::DepthWrite`, where they are drawn, or that of a pass that reads them.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
     }
 
     /// What shadow_maps.glsl declares.
@@ -229,6 +228,14 @@ impl ShadowMaps {
     pub fn counters(&self) -> BTreeMap<&'static str, f64> {
         let triangles: u64 = self.layers.iter().map(|layer| layer.casters.triangles_drawn()).sum();
         BTreeMap::from([("shadow_maps", self.layers.len() as f64), ("shadow_map_triangles_drawn", triangles as f64)])
+    }
+}
+
+impl Edge<'_, ShadowMaps> {
+    /// Barrier of a pass whose fragments, or threads, read the maps. Maps that are drawn once need none.
+    pub fn to(self, access: Access) -> Option<Barrier> {
+        let maps = self.resource;
+        (!maps.is_once).then(|| maps.depth.from(self.from).to(access))
     }
 }
 

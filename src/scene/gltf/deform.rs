@@ -44,7 +44,8 @@ impl Deform {
         primitive: &gltf::Primitive<'_>,
         mesh_index: usize,
         is_skinned: bool,
-        (mesh, corners): (&Mesh, &[u32]),
+        mesh: &Mesh,
+        corners: &[u32],
     ) -> Result<Self> {
         let vertex_count = primitive.get(&Semantic::Positions).map_or(0, |accessor| accessor.count());
         let origins = origins(mesh, corners);

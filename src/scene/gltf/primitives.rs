@@ -229,7 +229,7 @@ fn read_primitive(
     normal_groups::assign(&mut mesh);
     let deform = shown
         .is_bent
-        .then(|| Deform::read(document, buffers, primitive, mesh_index, shown.is_skinned, (&mesh, &corners)));
+        .then(|| Deform::read(document, buffers, primitive, mesh_index, shown.is_skinned, &mesh, &corners));
     let deform = deform.transpose()?;
     let piece = Box::new(Piece { mesh, deform });
     Ok(Outcome::Piece { piece, left_over_indices: triangles.left_over, repaired_normals, clamped_colors })

@@ -3,10 +3,10 @@
 //! visibility, brute.frag.
 //! reads  the scene, its lights, visibility.spids, visibility.depth, the lists      writes  shade.colors
 
-use super::again::{self, Again};
 use super::choices::Choices;
 use super::lists::Lists;
 use super::primitives::Primitives;
+use super::redraw::{self, TriangleRedraw};
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::brute::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
@@ -19,12 +19,12 @@ use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
 use std::sync::Arc;
 
-pub struct Brute {
-    again: Again,
+pub struct BruteForce {
+    redraw: TriangleRedraw,
     name: &'static str,
 }
 
-impl Brute {
+impl BruteForce {
     /// `frame`: its extent.
     pub fn new(
         gpu: &Arc<Gpu>,
@@ -40,8 +40,11 @@ impl Brute {
             _ => "linked",
         };
         let shadows = shadow_maps::axis(choices.maps.is_some());
-        let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows, again::axis(choices)]);
-        Ok(Self { again: Again::new(gpu, scene, resources, choices, frame, fragment)?, name: choices.brute_pass() })
+        let fragment = variant(FRAG_VARIANTS, &[samples, mesh::vertex_name(scene), shadows, redraw::axis(choices)]);
+        Ok(Self {
+            redraw: TriangleRedraw::new(gpu, scene, resources, choices, frame, fragment)?,
+            name: choices.brute_pass(),
+        })
     }
 
     /// The lists of which these are the strays; the barrier of the shadow maps.
@@ -59,15 +62,15 @@ impl Brute {
         counters: &Buffer,
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: self.again.read_bytes(cmd.gpu(), scene, list, samples),
+            read_bytes: self.redraw.read_bytes(cmd.gpu(), scene, list, samples),
             // Counted after the frame.
             written_bytes: 0,
             invocations: None,
         };
         cmd.pass(&full(self.name), traffic, |cmd| {
             cmd.barriers(maps);
-            match self.again.gate() {
-                Some(gate) => gate.record(cmd, counters),
+            match self.redraw.stray_draws() {
+                Some(stray_draws) => stray_draws.record(cmd, counters),
                 None => cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]),
             }
             if let Some(lists) = lists {
@@ -93,7 +96,7 @@ impl Brute {
             let mut bound = bound.to_vec();
             bound.extend(lists.map(Lists::bound).into_iter().flatten());
             bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
-            self.again.record(cmd, scene, list, primitives, samples, bound)
+            self.redraw.record(cmd, scene, list, primitives, samples, bound)
         })
     }
 }

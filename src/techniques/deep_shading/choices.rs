@@ -1,8 +1,8 @@
 //! The choices that the settings make.
 
-use super::middle::Middle;
+use super::mid_exposure::MidExposure;
 use super::space::ShadingSpace;
-use super::tuples::Table;
+use super::tuples::TupleTable;
 use crate::error::{Error, Result};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
@@ -11,6 +11,7 @@ use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
 use crate::passes::shadow_maps::MapLayout;
 use crate::resident::GeometryChoice;
+use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
@@ -35,7 +36,7 @@ pub struct Choices {
     pub is_looped: bool,
     /// Layers that are drawn together reach beyond the frame.
     pub has_padding: bool,
-    pub table: Table,
+    pub table: TupleTable,
     /// Sets of samples that the picture is the mean of.
     pub run_count: u32,
     pub space: ShadingSpace,
@@ -47,7 +48,7 @@ pub struct Choices {
     /// The host inserts into them, and samples have no SPIDs.
     pub is_direct: bool,
     /// The device draws strays only where there are some.
-    pub is_gated: bool,
+    pub has_stray_count: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
     pub has_zmax: bool,
@@ -66,7 +67,7 @@ pub struct Choices {
     pub conservative: Conservative,
     pub geometry: GeometryChoice,
     /// The scene where it is shaded; None: nothing moves.
-    pub middle: Option<Middle>,
+    pub middle: Option<MidExposure>,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
 }
@@ -78,7 +79,7 @@ impl Choices {
         let values = inputs.values;
         let samples = values.integer("spp") as u32;
         let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
-        let tuples = values.integer_or_auto("tuples").map_or(4 * samples, |tuples| tuples as u32);
+        let tuples = values.unless_auto("tuples", Values::integer).map_or(4 * samples, |tuples| tuples as u32);
         if !tuples.is_multiple_of(samples) {
             return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
                 .within(NAME)
@@ -96,16 +97,16 @@ impl Choices {
         } else {
             None
         };
-        let middle = Middle::new(inputs)?;
+        let middle = MidExposure::new(inputs)?;
         let (scene, lights) =
             middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
-        let (table, visibility) = (Table::new(samples, tuples), shading.visibility(values)?);
-        let table = Table { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
+        let (table, visibility) = (TupleTable::new(samples, tuples), shading.visibility(values)?);
+        let table = TupleTable { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
         let space =
             ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
-        let cache_entries = values.integer_or_auto("shading-cache");
+        let cache_entries = values.unless_auto("shading-cache", Values::integer);
         let mut choices = Self {
             shading,
             maps: maps.map_err(|error| error.within(NAME))?,
@@ -122,7 +123,7 @@ impl Choices {
             is_moving: middle.is_some(),
             has_lists,
             is_direct,
-            is_gated: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
+            has_stray_count: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
             tolerates_duplicates: values.text("duplicates") == "tolerated",
             is_compacted,
             has_zmax: has_lists && values.is_on("zmax"),

@@ -1,6 +1,6 @@
 //! What a frame counts in its shaders, for the report.
 
-use super::touched::Entries;
+use super::touched::TouchedEntries;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use std::collections::BTreeMap;
@@ -10,9 +10,9 @@ use std::sync::Arc;
 pub const COUNT: u64 = 21;
 
 /// Numbers that a frame left, as counters.glsl has them.
-pub struct Counted([u32; COUNT as usize]);
+pub struct FrameCounts([u32; COUNT as usize]);
 
-impl Counted {
+impl FrameCounts {
     /// Those of the last frame, in `counters`.
     ///
     /// Errors: memory for the copy (exit code 4).
@@ -100,9 +100,9 @@ impl Counted {
     }
 
     /// How much of the buffers of one entry a sample was used, with lists of `begins` shading pixels.
-    pub fn entries(&self, begins: u64) -> Entries {
+    pub fn entries(&self, begins: u64) -> TouchedEntries {
         let [_, strays, _, _, listed, duplicates, _, _, _, samples, .., nodes, row_ids, _, _, _, _, _] =
             self.0.map(u64::from);
-        Entries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples, begins }
+        TouchedEntries { nodes, colors: listed + duplicates + strays, row_ids, addresses: samples, begins }
     }
 }

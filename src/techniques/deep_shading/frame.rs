@@ -1,18 +1,18 @@
 //! A frame of deep shading on the device: the passes in the order of figure 3, or those of a baseline.
 
-use super::apart::Apart;
 use super::baseline::Baseline;
 use super::baseline::texture_space::atlases::Atlases;
+use super::buffer_addresses::BufferAddresses;
 use super::choices::Choices;
-use super::counters::Counted;
+use super::counters::FrameCounts;
 use super::indirect;
 use super::primitives::{self, Primitives};
-use super::reach::Reach;
 use super::reconstruct::Reconstruct;
-use super::resolve::{Resolve, Shaded};
+use super::resolve::{Resolve, SampleColors};
 use super::scene::DeepScene;
+use super::separate::SeparateShading;
 use super::stereo::{self, RightEye};
-use super::visibility::ray::Traced;
+use super::visibility::ray::TracedSamples;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::passes::accumulate::Accumulate;
@@ -22,7 +22,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, SPIDS, full};
-use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
+use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
 use crate::techniques::{Frame, Inputs};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -53,9 +53,9 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
 }
 
 /// From the scene to samples that have colours.
-enum Shader {
-    Apart(Box<Apart>, Reach),
-    AsDrawn(Box<Baseline>),
+enum ShadingPasses {
+    Separate(Box<SeparateShading>, BufferAddresses),
+    Baseline(Box<Baseline>),
 }
 
 pub struct DeepFrame {
@@ -64,7 +64,7 @@ pub struct DeepFrame {
     list: DrawList,
     scene: DeepScene,
     maps_once: Option<(String, u64)>,
-    shader: Shader,
+    shader: ShadingPasses,
     resolve: Resolve,
     reconstruct: Option<Reconstruct>,
     accumulate: Option<Accumulate>,
@@ -81,7 +81,7 @@ impl DeepFrame {
         scene: &SceneGpu,
         resources: &mut Resources,
         choices: Choices,
-        (mut primitives, traced, atlases): (Primitives, Option<Traced>, Option<Atlases>),
+        (mut primitives, traced, atlases): (Primitives, Option<TracedSamples>, Option<Atlases>),
     ) -> Result<Self> {
         let frame = inputs.view.extent;
         let list = primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred());
@@ -92,12 +92,12 @@ impl DeepFrame {
         };
         let shader = match choices.shading {
             Shading::Deep | Shading::IndirectGbuffer => {
-                let apart = Apart::new(gpu, scene, resources, &choices, frame, traced, &primitives)?;
-                let buffers = apart.buffers().chain(reconstruct.iter().flat_map(Reconstruct::buffers));
-                let reach = Reach::new(gpu, resources, choices.is_by_address, buffers)?;
-                Shader::Apart(Box::new(apart), reach)
+                let separate = SeparateShading::new(gpu, scene, resources, &choices, frame, traced, &primitives)?;
+                let buffers = separate.buffers().chain(reconstruct.iter().flat_map(Reconstruct::buffers));
+                let buffer_addresses = BufferAddresses::new(gpu, resources, choices.is_by_address, buffers)?;
+                ShadingPasses::Separate(Box::new(separate), buffer_addresses)
             }
-            _ => Shader::AsDrawn(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
+            _ => ShadingPasses::Baseline(Box::new(Baseline::new(gpu, resources, scene, &choices, atlases.as_ref())?)),
         };
         let deep_scene = DeepScene::new(gpu, inputs, resources, &choices, scene)?;
         Ok(Self {
@@ -116,10 +116,10 @@ impl DeepFrame {
         })
     }
 
-    fn apart(&self) -> Option<&Apart> {
+    fn separate(&self) -> Option<&SeparateShading> {
         match &self.shader {
-            Shader::Apart(apart, _) => Some(apart),
-            Shader::AsDrawn(_) => None,
+            ShadingPasses::Separate(separate, _) => Some(separate),
+            ShadingPasses::Baseline(_) => None,
         }
     }
 
@@ -135,8 +135,8 @@ impl DeepFrame {
         self.reconstruct.as_ref().map_or(&self.color, |reconstruct| &reconstruct.color)
     }
 
-    fn counted(&self, gpu: &Arc<Gpu>) -> Result<Counted> {
-        Counted::read(gpu, &self.counters, Access::ComputeWrite)
+    fn counted(&self, gpu: &Arc<Gpu>) -> Result<FrameCounts> {
+        FrameCounts::read(gpu, &self.counters, Access::ComputeWrite)
     }
 
     /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
@@ -156,21 +156,21 @@ impl Frame for DeepFrame {
         let eyes: Vec<&Image> = [color].into_iter().chain(right.iter().map(|right| &right.color)).collect();
         let mut bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
-        let drawn = Drawn { scene, list, primitives, table: &self.choices.table, frame: color.description.extent };
+        let drawn = DrawInputs { scene, list, primitives, table: &self.choices.table, frame: color.description.extent };
         match &self.shader {
-            Shader::Apart(apart, reach) => {
-                bound.push(reach.bound());
-                let shaded = apart.record(cmd, &self.scene, drawn, &bound, counters)?;
+            ShadingPasses::Separate(separate, buffer_addresses) => {
+                bound.push(buffer_addresses.bound());
+                let shaded = separate.record(cmd, &self.scene, drawn, &bound, counters)?;
                 self.resolve.record(cmd, &bound, shaded, counters, &eyes)?;
                 if let Some(reconstruct) = &self.reconstruct {
                     reconstruct.record(cmd, &bound, shaded, color)?;
                 }
-                apart.record_count(cmd, &bound, counters)?;
+                separate.record_count(cmd, &bound, counters)?;
             }
-            Shader::AsDrawn(baseline) => {
+            ShadingPasses::Baseline(baseline) => {
                 let maps = self.scene.maps_barrier(Access::DepthWrite, Access::FragmentSample);
                 baseline.record(cmd, drawn, &bound, maps, counters)?;
-                self.resolve.record(cmd, &bound, Shaded::Drawn(baseline), counters, &eyes)?;
+                self.resolve.record(cmd, &bound, SampleColors::Baseline(baseline), counters, &eyes)?;
             }
         }
         if let Some(accumulate) = &self.accumulate {
@@ -183,8 +183,8 @@ impl Frame for DeepFrame {
     }
 
     fn begin_run(&self, run: u32) {
-        if let Some(apart) = self.apart() {
-            apart.begin_run(run);
+        if let Some(separate) = self.separate() {
+            separate.begin_run(run);
         }
     }
 
@@ -241,7 +241,7 @@ impl Frame for DeepFrame {
             Shading::TextureSpace(_) => counters.extend(counted.of_textures()),
             Shading::Ssaa | Shading::Msaa { .. } => {}
         }
-        if let Some(direct) = self.apart().and_then(Apart::host_lists) {
+        if let Some(direct) = self.separate().and_then(SeparateShading::host_lists) {
             counters.extend(direct.stray_counts());
         }
         Ok(counters)
@@ -250,13 +250,15 @@ impl Frame for DeepFrame {
     fn touched_bytes(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<String, u64>> {
         match &self.shader {
             _ if !self.choices.is_counted => Ok(BTreeMap::new()),
-            Shader::AsDrawn(baseline) => baseline.touched_bytes(gpu, &self.list),
-            Shader::Apart(..) if self.choices.shading == Shading::IndirectGbuffer => {
+            ShadingPasses::Baseline(baseline) => baseline.touched_bytes(gpu, &self.list),
+            ShadingPasses::Separate(..) if self.choices.shading == Shading::IndirectGbuffer => {
                 Ok(indirect::touched_bytes(&self.counted(gpu)?))
             }
             // Without lists colours are cleared whole, and what the host inserts is copied whole.
-            Shader::Apart(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
-            Shader::Apart(..) => Ok(self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes()),
+            ShadingPasses::Separate(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
+            ShadingPasses::Separate(..) => {
+                Ok(self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes())
+            }
         }
     }
 
@@ -265,11 +267,11 @@ impl Frame for DeepFrame {
         if name == stereo::RIGHT {
             return self.right.as_ref().expect(REFUSED).stage(gpu);
         }
-        let apart = self.apart().expect(REFUSED);
+        let separate = self.separate().expect(REFUSED);
         if name == SPIDS {
-            return self.first_primitives(gpu, apart.samples().expect(REFUSED));
+            return self.first_primitives(gpu, separate.samples().expect(REFUSED));
         }
-        let count = apart.count().expect(REFUSED);
+        let count = separate.count().expect(REFUSED);
         let bytes = readback::buffer(gpu, &count.lengths, count.lengths.bytes, Access::ComputeWrite)?;
         let lengths: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         Ok(self.of_pixels(name, |at| lengths[self.choices.space.index_under(at)]))

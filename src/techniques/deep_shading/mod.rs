@@ -52,47 +52,45 @@
 //! to the bit on software drivers, and so does every order of `--visibility`; `--conservative none` alone leaves samples
 //! without a colour. Without blur it is `forward --supersample` with samples in other places.
 
-mod again;
-mod apart;
 mod baseline;
 mod brute;
+mod buffer_addresses;
 mod choices;
 mod contradictions;
 mod count;
 mod counters;
 mod eyes;
 mod frame;
-mod gate;
 mod indirect;
 mod lists;
-mod middle;
+mod mid_exposure;
 mod modes;
 mod passes;
 mod plan;
 mod primitives;
 mod ranges;
-mod reach;
 mod reconstruct;
+mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
 mod scene;
+mod separate;
 mod settings;
 mod shade;
 mod space;
 mod stereo;
+mod stray_draws;
 mod touched;
 mod tuples;
 mod visibility;
 
-use super::{Frame, Inputs, Prepared, Rival, Technique, light_visibility};
+use super::{HostPart, Inputs, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
-use crate::gpu::Gpu;
 use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
-use crate::plan::{Plan, Resources};
-use crate::resident::SceneGpu;
+use crate::plan::Plan;
 use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
@@ -108,8 +106,7 @@ use modes::shading::Shading;
 use modes::visibility::Visibility;
 use primitives::Primitives;
 use std::collections::BTreeMap;
-use std::sync::Arc;
-use visibility::ray::Traced;
+use visibility::ray::TracedSamples;
 
 pub struct DeepShading;
 
@@ -136,10 +133,6 @@ impl Technique for DeepShading {
 
     fn aovs(&self) -> &'static [&'static str] {
         frame::AOVS
-    }
-
-    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
-        Ok(frame::left_out(&Choices::new(inputs)?))
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
@@ -206,43 +199,22 @@ impl Technique for DeepShading {
         rivals::rivals()
     }
 
-    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        plan::plan(&Choices::new(inputs)?, inputs)
-    }
-
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let (choices, primitives) = (Choices::new(inputs)?, Primitives::new(inputs.scene)?);
-        let is_traced = choices.visibility == Visibility::Ray;
-        let traced = if is_traced { Some(Traced::new(inputs, &choices, &primitives)?) } else { None };
-        let atlases = match choices.shading {
-            Shading::TextureSpace(size) => Some(Atlases::of(inputs.scene, size.side_px)?),
-            _ => None,
-        };
-        Ok(Box::new(PreparedDeep {
-            choices,
-            primitives,
-            traced,
-            atlases,
-            light_count: inputs.lights.lights.len() as u32,
-        }))
+        Ok(Box::new(PreparedDeep { choices: Choices::new(inputs)? }))
     }
 }
 
 struct PreparedDeep {
     choices: Choices,
-    primitives: Primitives,
-    traced: Option<Traced>,
-    atlases: Option<Atlases>,
-    light_count: u32,
 }
 
 impl Prepared for PreparedDeep {
-    fn host_passes(&self) -> Vec<(String, u64)> {
-        self.traced.iter().map(|traced| (full("visibility.rays"), traced.time_ns)).collect()
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&self.choices, inputs)
     }
 
-    fn counters(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([("lights", f64::from(self.light_count)), ("primitives", self.primitives.count as f64)])
+    fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        frame::left_out(&self.choices)
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -284,18 +256,24 @@ impl Prepared for PreparedDeep {
         resolved
     }
 
-    fn light_counts(&self) -> [u32; 2] {
-        [self.light_count, 0]
-    }
-
-    fn build(
-        self: Box<Self>,
-        gpu: &Arc<Gpu>,
-        inputs: &Inputs<'_>,
-        scene: &SceneGpu,
-        resources: &mut Resources,
-    ) -> Result<Box<dyn Frame>> {
-        let host = (self.primitives, self.traced, self.atlases);
-        Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, self.choices, host)?))
+    fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart> {
+        let choices = self.choices;
+        let primitives = Primitives::new(inputs.scene)?;
+        let is_traced = choices.visibility == Visibility::Ray;
+        let traced = if is_traced { Some(TracedSamples::new(inputs, &choices, &primitives)?) } else { None };
+        let atlases = match choices.shading {
+            Shading::TextureSpace(size) => Some(Atlases::of(inputs.scene, size.side_px)?),
+            _ => None,
+        };
+        let light_count = inputs.lights.lights.len() as u32;
+        Ok(HostPart {
+            passes: traced.iter().map(|traced| (full("visibility.rays"), traced.time_ns)).collect(),
+            counters: BTreeMap::from([("lights", f64::from(light_count)), ("primitives", primitives.count as f64)]),
+            light_counts: [light_count, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| {
+                let host = (primitives, traced, atlases);
+                Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, choices, host)?))
+            }),
+        })
     }
 }

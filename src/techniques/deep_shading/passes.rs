@@ -2,7 +2,7 @@
 
 use super::choices::Choices;
 use super::visibility::looped;
-use super::{gate, indirect, reconstruct, stereo};
+use super::{indirect, reconstruct, stereo, stray_draws};
 use crate::gpu::Access;
 use crate::plan::Plan;
 use crate::techniques::deep_shading::modes::shading::Shading;
@@ -113,7 +113,7 @@ fn brute(choices: &Choices) -> Touches {
         false => vec![touch(COLORS, Access::TransferWrite)],
     });
     brute.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
-    brute.extend(choices.is_gated.then(gate::touches).into_iter().flatten());
+    brute.extend(choices.has_stray_count.then(stray_draws::touches).into_iter().flatten());
     brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
     brute
 }

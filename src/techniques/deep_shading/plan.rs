@@ -6,9 +6,9 @@ use super::baseline::texture_space;
 use super::choices::Choices;
 use super::counters;
 use super::lists::direct;
-use super::tuples::Table;
+use super::tuples::TupleTable;
 use super::visibility::{looped, ray};
-use super::{gate, indirect, passes, reach, reconstruct, stereo};
+use super::{buffer_addresses, indirect, passes, reconstruct, stereo, stray_draws};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -57,7 +57,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
         reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
     }
     if matches!(choices.shading, Shading::Deep | Shading::IndirectGbuffer) {
-        reach::plan(&mut plan, choices.is_by_address);
+        buffer_addresses::plan(&mut plan, choices.is_by_address);
     }
     if choices.run_count > 1 {
         stored(&mut plan, run, extent);
@@ -144,8 +144,8 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
         }
     }
-    if choices.is_gated {
-        gate::plan(plan, inputs.stats.draw_count);
+    if choices.has_stray_count {
+        stray_draws::plan(plan, inputs.stats.draw_count);
     }
 }
 
@@ -178,7 +178,7 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
 fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let (layers, most_layers) = (choices.table.tuple_count(), inputs.caps.limits.max_image_layers);
     let asked = match choices.table {
-        Table { eyes: 1, .. } => format!("--tuples {layers}"),
+        TupleTable { eyes: 1, .. } => format!("--tuples {layers}"),
         table => format!("--tuples {} of {} eyes", table.tuples_of_eye(), table.eyes),
     };
     if !matches!(choices.shading, Shading::Msaa { .. }) && layers > most_layers {
@@ -197,7 +197,7 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         looped::require_fitting(choices.samples_of(inputs.view.extent), &inputs.caps.limits)?;
     }
     match choices.shading {
-        Shading::Deep | Shading::IndirectGbuffer => reach::require_fitting(choices, inputs),
+        Shading::Deep | Shading::IndirectGbuffer => buffer_addresses::require_fitting(choices, inputs),
         Shading::TextureSpace(size) => size.require_fitting(inputs),
         // They have images alone.
         Shading::Ssaa | Shading::Msaa { .. } => Ok(()),

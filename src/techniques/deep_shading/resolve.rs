@@ -20,9 +20,9 @@ use std::sync::Arc;
 
 /// Samples whose colours are there.
 #[derive(Clone, Copy)]
-pub enum Shaded<'a> {
+pub enum SampleColors<'a> {
     /// What samples see, and its colours, apart.
-    Apart {
+    Separate {
         /// Where they have SPIDs: what read those, and what wrote them if compute shaders have not waited for it yet.
         samples: Option<(&'a Samples, AccessSet)>,
         lists: Option<&'a Lists>,
@@ -35,21 +35,21 @@ pub enum Shaded<'a> {
         pointers: &'a Buffer,
         colors: &'a Buffer,
     },
-    Drawn(&'a Baseline),
+    Baseline(&'a Baseline),
 }
 
-impl<'a> Shaded<'a> {
+impl<'a> SampleColors<'a> {
     /// Bytes of all that says what samples' colours are.
     pub fn bytes(self) -> u64 {
         match self {
-            Self::Apart { samples, lists, colors, .. } => {
+            Self::Separate { samples, lists, colors, .. } => {
                 let addresses = lists.and_then(|lists| lists.addresses.as_ref());
                 let spids = samples.map_or(0, |(samples, _)| samples.spids.description.bytes());
                 spids + addresses.map_or(0, |buffer| buffer.bytes) + colors.bytes
             }
             // Colours are counted after the frame: only those that exist.
             Self::Pointed { samples: (samples, _), pointers, .. } => samples.spids.description.bytes() + pointers.bytes,
-            Self::Drawn(baseline) => baseline.colors.description.bytes(),
+            Self::Baseline(baseline) => baseline.colors.description.bytes(),
         }
     }
 
@@ -60,7 +60,7 @@ impl<'a> Shaded<'a> {
 
     fn to_compute(self, cmd: &mut Commands) {
         match self {
-            Self::Apart { samples, lists, colors } => {
+            Self::Separate { samples, lists, colors } => {
                 match lists {
                     Some(Lists { addresses: Some(addresses), .. }) => {
                         let left = Access::ComputeWrite | Access::GraphicsRead;
@@ -79,7 +79,7 @@ impl<'a> Shaded<'a> {
                     colors.from(Access::ComputeWrite).to(Access::ComputeRead),
                 ]);
             }
-            Self::Drawn(baseline) => {
+            Self::Baseline(baseline) => {
                 cmd.barriers([baseline.colors.from(Access::ColorWrite).to(Access::ComputeSample)]);
             }
         }
@@ -87,7 +87,7 @@ impl<'a> Shaded<'a> {
 
     /// For the next compute shader that reads the same: it has been waited for.
     pub fn stay_in_compute(self, cmd: &mut Commands) {
-        let Self::Apart { samples, lists, colors } = self else { return };
+        let Self::Separate { samples, lists, colors } = self else { return };
         let read = Access::ComputeRead | Access::GraphicsRead;
         match lists {
             Some(Lists { addresses: Some(addresses), .. }) => {
@@ -104,7 +104,7 @@ impl<'a> Shaded<'a> {
     /// The same, by the names that shaders have for it.
     pub fn bound(self) -> Vec<(&'static str, Bound<'a>)> {
         match self {
-            Self::Apart { samples, lists, colors, .. } => {
+            Self::Separate { samples, lists, colors, .. } => {
                 let mut bound: Vec<_> = lists.map(Lists::bound).into_iter().flatten().collect();
                 let spids = samples.map(|(samples, _)| samples.sampled(&samples.spids, Access::ComputeSample));
                 bound.push(("Colors", Bound::Buffer(colors)));
@@ -116,7 +116,7 @@ impl<'a> Shaded<'a> {
                 ("Pointers", Bound::Buffer(pointers)),
                 ("Colors", Bound::Buffer(colors)),
             ],
-            Self::Drawn(baseline) => vec![("drawn", baseline.sampled())],
+            Self::Baseline(baseline) => vec![("drawn", baseline.sampled())],
         }
     }
 }
@@ -152,7 +152,7 @@ impl Resolve {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        shaded: Shaded<'_>,
+        shaded: SampleColors<'_>,
         counters: &Buffer,
         eyes: &[&Image],
     ) -> Result<()> {

@@ -30,13 +30,13 @@ pub struct DeepScene {
 
 /// A moment of the scene as buffers hold it; empty where there is no such moment.
 #[derive(Default)]
-struct Placed {
+struct MomentBytes {
     positions: Vec<u8>,
     attributes: Vec<u8>,
     draws: Vec<u8>,
 }
 
-impl Placed {
+impl MomentBytes {
     fn of(scene: &Scene) -> Self {
         let geometry = Geometry::of(scene);
         Self {
@@ -72,7 +72,7 @@ impl DeepScene {
         let tuples: Vec<_> =
             (0..choices.run_count).flat_map(|run| choices.table.tuples(inputs.view.extent, seed, run, &eyes)).collect();
         let space = choices.deep_block(inputs);
-        let close = inputs.scene.closing.as_deref().map(Placed::of).unwrap_or_default();
+        let close = inputs.scene.closing.as_deref().map(MomentBytes::of).unwrap_or_default();
         let maps = choices.maps.as_ref().map(|layout| {
             let posed = moved.map_or(inputs.scene, |moved| &moved.scene);
             ShadowMaps::new(gpu, resources, NAME, layout, posed, scene)
@@ -86,7 +86,7 @@ impl DeepScene {
         let casters = match moved.filter(|_| maps.is_some()) {
             None => None,
             Some(moved) => {
-                let Placed { positions, draws, .. } = Placed::of(&moved.scene);
+                let MomentBytes { positions, draws, .. } = MomentBytes::of(&moved.scene);
                 let positions = sent("middle.positions", &positions, Access::VertexRead.into())?;
                 Some([sent("middle.draws", &draws, Access::GraphicsRead.into())?, positions])
             }
@@ -124,7 +124,7 @@ impl DeepScene {
 
     /// What a pass waits for that lights, after the one that touched the shadow maps last.
     pub fn maps_barrier(&self, from: Access, to: Access) -> Option<Barrier> {
-        self.maps.as_ref().and_then(|maps| maps.barrier(from, to))
+        self.maps.as_ref().and_then(|maps| maps.from(from).to(to))
     }
 
     /// Everything that a shader of the technique may read of it, by name.

@@ -13,10 +13,8 @@ pub const LEAST_SCALE: f64 = 0.05;
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "shading",
-        symbol: "",
         kind: Kind::Choice(&["deep", "ssaa", "msaa", "indirect-gbuffer", "texture-space"]),
         default: "deep",
-        unit: "",
         paper: "Clarberg 2014, 6",
         help: "What is shaded: the triangles in the lists (deep); or, as a baseline, every sample that is drawn \
                (ssaa); each triangle once for the samples of a pixel that see it, by stochastic rasterisation, which \
@@ -24,254 +22,240 @@ pub const SETTINGS: &[Setting] = &[
                buffer that samples point to (indirect-gbuffer; Liktor and Dachsbacher 2012); or the texels of a \
                texture of each draw, which is then drawn with that texture (texture-space; Andersson et al. 2014; \
                meshes need atlases)",
+        ..Setting::ROW
     },
     Setting {
         key: "shading-textures",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 16 },
         default: "8",
-        unit: "",
         paper: "Clarberg 2014, 6",
         help: "Number of textures of --shading texture-space, which is how many draws are shaded and drawn at a time; \
                the same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "shading-texture-size",
-        symbol: "",
         kind: Kind::Choice(&["256", "512", "1024", "2048", "4096", "8192"]),
         default: "2048",
         unit: "px",
         paper: "Clarberg 2014, 6",
         help: "Texels along a side of the finest level of each texture of --shading texture-space: the most with which \
                a mesh's atlas is shaded",
+        ..Setting::ROW
     },
     Setting {
         key: "shading-cache",
-        symbol: "",
-        kind: Kind::IntegerOrAuto { min: 1, max: 1 << 26 },
+        kind: Kind::Integer { min: 1, max: 1 << 26 },
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 2",
         help: "Entries of the cache in which --shading indirect-gbuffer finds what has been seen before; what a full \
                cache forgets is shaded again, to the same picture; auto: as many as samples",
+        ..Setting::ROW
     },
     Setting {
         key: "pass-samples",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "1", "4", "8"]),
+        kind: Kind::Choice(&["1", "4", "8"]),
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 6",
         help: "Samples a pixel that --shading msaa draws at once; --spp takes as many passes as it needs; auto: the \
                most of these that the device has and that divide --spp",
+        ..Setting::ROW
     },
     Setting {
         key: "visibility",
-        symbol: "",
         kind: Kind::Choice(&["repeat-frame", "repeat-draw", "instancing", "replicate", "stochastic", "ray"]),
         default: "repeat-frame",
-        unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "How samples find the triangle that they see: the frame is drawn once for each tuple (repeat-frame); \
                each draw is (repeat-draw); each draw has an instance for each tuple (instancing); a geometry shader \
                makes a triangle for each tuple (replicate); a polygon around each triangle's blur is drawn, and a \
                shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples",
+        ..Setting::ROW
     },
     Setting {
         key: "layer-from",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "vertex", "geometry"]),
+        kind: Kind::Choice(&["vertex", "geometry"]),
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "Stage that writes the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a \
                geometry shader that passes triangles through; the same samples; auto: vertex where the device can",
+        ..Setting::ROW
     },
     Setting {
         key: "polygon-from",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "geometry", "vertex"]),
+        kind: Kind::Choice(&["geometry", "vertex"]),
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "Stage that makes the polygon around a triangle's blur with --visibility stochastic (and around strays \
                with ray): a geometry shader, once for the polygon, or vertex shaders, each corner for itself; the same \
                samples; auto: geometry where the device can",
+        ..Setting::ROW
     },
     Setting {
         key: "sample-tests",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "loop", "layers"]),
+        kind: Kind::Choice(&["loop", "layers"]),
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "How --visibility stochastic tests samples: the polygon around a triangle's blur is drawn once, and each \
                fragment tests all samples of its pixel, of which 64-bit atomics keep the nearest (loop); or it is \
                drawn into a layer for each tuple, where a pixel is a sample (layers); the same picture; auto: loop \
                where the device can",
+        ..Setting::ROW
     },
     Setting {
         key: "spp",
         symbol: "n",
         kind: Kind::Integer { min: 1, max: 64 },
         default: "8",
-        unit: "",
         paper: "Clarberg 2014, 6",
         help: "Samples a pixel in one set of buffers, for each eye with --stereo",
+        ..Setting::ROW
     },
     Setting {
         key: "tuples",
         symbol: "N",
-        kind: Kind::IntegerOrAuto { min: 1, max: 2048 },
+        kind: Kind::Integer { min: 1, max: 2048 },
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 4.2",
         help: "Number of tuples, places in a pixel, on the lens and in time, that all samples share, spread over a \
                table of N/n pixels; a multiple of --spp; for each eye with --stereo; auto: four times --spp",
+        ..Setting::ROW
     },
     Setting {
         key: "accumulate",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 4096 },
         default: "1",
-        unit: "",
-        paper: "",
         help: "Number of sets of --spp samples a pixel that are averaged to the picture, each with tuples of its own",
+        ..Setting::ROW
     },
     Setting {
         key: "guard-band",
-        symbol: "",
         kind: Kind::Integer { min: 0, max: MOST_GUARD_PX },
         default: "64",
         unit: "px",
         paper: "Clarberg 2014, 6",
         help: "Width of the border of shading space around the frame, for what blur brings in; samples that are \
                farther out are shaded one by one",
+        ..Setting::ROW
     },
     Setting {
         key: "shading-scale",
-        symbol: "",
         kind: Kind::Number { min: LEAST_SCALE, max: 4.0 },
         default: "1",
-        unit: "",
         paper: "Clarberg 2014, 6",
         help: "Pixels of shading space along one pixel of the frame; below 1, shading is coarser than the frame",
+        ..Setting::ROW
     },
     Setting {
         key: "shading-warp",
-        symbol: "",
         kind: Kind::Choice(&["even", "foveated"]),
         default: "even",
-        unit: "",
         paper: "Clarberg 2014, 7",
         help: "Where shading space is finer: nowhere (even), or in its middle, which is as fine as an even one \
                (foveated); visibility stays as fine",
+        ..Setting::ROW
     },
     Setting {
         key: "warp-falloff",
-        symbol: "",
         kind: Kind::Number { min: 0.01, max: 16.0 },
         default: "1",
-        unit: "",
-        paper: "",
         help: "Falloff c of --shading-warp foveated: at r, from 0 in the middle to 1 at the rim, a pixel of shading \
                space is 1 + c r times as wide across and (1 + c r)^2 times as long towards the rim; shading space then \
                has 1/(1 + c)^2 of the pixels",
+        ..Setting::ROW
     },
     Setting {
         key: "lists",
-        symbol: "",
         kind: Kind::Choice(&["linked", "direct", "none"]),
         default: "linked",
-        unit: "",
         paper: "Clarberg 2014, 4.3",
         help: "How the triangles to shade at each pixel of shading space are listed: in linked lists (linked); in \
                lists that rays fill at once, without a SPID a sample, with --visibility ray (direct); or not, each \
                sample being shaded where it is seen, at its shading point (none, the plain way to the same picture)",
+        ..Setting::ROW
     },
     Setting {
         key: "list-access",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "descriptors", "addresses"]),
+        kind: Kind::Choice(&["descriptors", "addresses"]),
+        auto: true,
         default: "auto",
-        unit: "",
-        paper: "",
         help: "How shaders reach what is kept of each sample and shading pixel (lists and colours, what --reconstruct \
                filters, the buffers of --shading indirect-gbuffer): through descriptors, within the longest range that \
                the device binds, or by the buffers' addresses, at any length; the same picture; auto: addresses where \
                a buffer is longer than that range",
+        ..Setting::ROW
     },
     Setting {
         key: "duplicates",
-        symbol: "",
         kind: Kind::Choice(&["avoided", "tolerated"]),
         default: "avoided",
-        unit: "",
         paper: "Clarberg 2014, 4.3",
         help: "What an insertion does when another one has changed the list first: it looks through the nodes added \
                since, so that no triangle is listed twice (avoided), or it does not (tolerated, the paper's way); the \
                same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "compaction",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
         paper: "Clarberg 2014, 4.3",
         help: "Sort the lists and store their first M = 16 triangles in a row; the same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "zmax",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
         paper: "Clarberg 2014, 3.1",
         help: "Leave out, before a list is read, triangles that lie behind all that samples saw at that pixel of \
                shading space; the same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "address-buffer",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
         paper: "Clarberg 2014, 4.3",
         help: "Keep the address of each sample's colour; off: find it again by following links; the same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "conservative",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "geometry", "vertex", "hardware", "none"]),
+        kind: Kind::Choice(&["geometry", "vertex", "hardware", "none"]),
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Clarberg 2014, 4.4",
         help: "How every pixel that a triangle touches gets drawn: its hull is drawn, from a geometry shader \
                (geometry) or from vertex shaders (vertex), or the device rasterises conservatively (hardware, which \
                has not been seen to run yet); the same picture, or an error that says how many samples have no colour; \
                auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
                triangle covers, to measure what the others cost and how much has no colour then",
+        ..Setting::ROW
     },
     Setting {
         key: "shaded-triangles",
-        symbol: "",
         kind: Kind::Choice(&["listed", "all"]),
         default: "listed",
-        unit: "",
         paper: "all: Clarberg 2014, 4.4",
         help: "Triangles that are drawn into shading space: those that are in a list, for which insertion marks one \
                bit each (listed), or all of the scene, as in the paper and with --lists direct (all); the same picture",
+        ..Setting::ROW
     },
     Setting {
         key: "reconstruct",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "off",
-        unit: "",
         paper: "Clarberg 2014, 4.5",
         help: "Filter what is blurred, in layers of depth, as far as its blur allows (not the paper's filter); off: \
                take the mean of each pixel's own samples",
+        ..Setting::ROW
     },
     INSTRUMENT,
     APERTURE,

@@ -2,7 +2,7 @@
 //! (Clarberg & Munkberg 2014, sections 3 and 6).
 
 use super::settings::LEAST_SCALE;
-use super::tuples::Table;
+use super::tuples::TupleTable;
 use crate::caps::Limits;
 use crate::error::{Error, Result};
 use crate::frame::View;
@@ -98,7 +98,7 @@ impl ShadingSpace {
     /// The shaders' block: shading space, the cameras at both ends of the exposure, and the samples.
     ///
     /// It is seen from the middle of the lens, or from the midpoint between two eyes.
-    pub fn block(&self, open: &View, close: Option<&View>, lens: Option<Lens>, table: &Table) -> DeepBlock {
+    pub fn block(&self, open: &View, close: Option<&View>, lens: Option<Lens>, table: &TupleTable) -> DeepBlock {
         let close = close.unwrap_or(open);
         let layer = table.layer(open.extent);
         let [open_clip, close_clip] = [open, close].map(View::clip_from_world);
@@ -126,7 +126,7 @@ impl ShadingSpace {
             table_height_px: table.cells[1],
             sample_count: table.samples,
             tuple_count: table.tuple_count(),
-            nothing: 0,
+            opaque_zero: 0,
             warp_falloff: self.warp_falloff as f32,
         }
     }

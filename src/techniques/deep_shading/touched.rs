@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// Entries that shaders counted, and those of all lists.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Entries {
+pub struct TouchedEntries {
     /// Written by insertion.
     pub nodes: u64,
     /// Colours of listed triangles, of triangles that are in a list twice, and of strays.
@@ -21,7 +21,7 @@ pub struct Entries {
     pub begins: u64,
 }
 
-impl Entries {
+impl TouchedEntries {
     /// Bytes by full name; a frame has only some of these buffers.
     pub fn bytes(&self) -> BTreeMap<String, u64> {
         let of = |name: &str, count: u64, entry_bytes: u64| (full(name), count * entry_bytes);
@@ -44,7 +44,8 @@ mod tests {
     #[test]
     fn what_the_paper_s_frame_touches_is_about_25_mib() {
         let executions = 1280 * 720 * 3 / 2;
-        let entries = Entries { nodes: executions, colors: executions, begins: 1408 * 848, ..Entries::default() };
+        let entries =
+            TouchedEntries { nodes: executions, colors: executions, begins: 1408 * 848, ..TouchedEntries::default() };
         let touched = entries.bytes().values().sum::<u64>();
         assert_eq!(touched, 26_894_336);
         assert_eq!(format!("{:.1}", touched as f64 / f64::from(1 << 20)), "25.6");

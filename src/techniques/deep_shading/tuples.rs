@@ -8,12 +8,12 @@
 //! the lens and in time, with the lens at another place.
 
 use crate::gpu::shader::structs::TupleBlock;
-use crate::sampling::sobol;
+use crate::sampling::pattern::{Pattern, Sample};
 use crate::units::Extent;
 
 /// How samples are spread over pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Table {
+pub struct TupleTable {
     /// Pixels that have tuples of their own.
     pub cells: [u32; 2],
     /// Samples a pixel, of one eye.
@@ -22,7 +22,7 @@ pub struct Table {
     pub eyes: u32,
 }
 
-impl Table {
+impl TupleTable {
     /// For one eye. `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
     pub fn new(samples: u32, tuples: u32) -> Self {
         let cells = tuples / samples;
@@ -89,44 +89,36 @@ impl Table {
         eyes.iter().flat_map(|eye| of_middle.iter().map(|tuple| beside(*eye, tuple))).collect()
     }
 
+    /// The tuples of one eye as a pattern over the table's cells. `run`: as for `tuples`.
+    pub fn pattern(&self, seed: u32, run: u32) -> Pattern {
+        Pattern::nets(self.cells, self.samples, seed, run)
+    }
+
     /// Those of one eye whose lens is the unit disk.
     fn of_eye(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
-        let count = self.tuples_of_eye();
-        // Aligned stretches of the sequence are nets: a cell's tuples are as well spread as all of them.
-        let of = |index: u32, purpose: u32| {
-            sobol::pair(
-                run.wrapping_mul(count).wrapping_add(index),
-                sobol::pair_seed(sobol::pixel_seed([0, 0], seed), purpose),
-            )
-        };
         let layer = self.layer(frame);
-        (0..count)
-            .map(|index| {
-                let cell = index / self.samples;
-                // A single sample a pixel is its middle.
-                let place = if count == 1 && run == 0 { [0.5, 0.5] } else { of(index, 0) };
-                let [radius, turn] = of(index, 1);
-                let [time, _] = of(index, 2);
-                let (radius, turn) = (radius.sqrt(), turn * std::f32::consts::TAU);
-                let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
-                    let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
-                    let offset = f64::from(cell) + f64::from(place);
-                    let scale = pixels / (cells * side);
-                    let shift = (pixels / cells + 1.0 - 2.0 * offset / cells) / side - 1.0;
-                    [scale as f32, shift as f32]
-                };
-                let [width, height] = self.cells;
-                let x = axis(frame.width, layer.width, width, cell % width, place[0]);
-                let y = axis(frame.height, layer.height, height, cell / width, place[1]);
-                TupleBlock {
-                    scale: [x[0], y[0]],
-                    shift: [x[1], y[1]],
-                    lens: [radius * turn.cos(), radius * turn.sin()],
-                    time,
-                    eye: 0.0,
-                }
-            })
-            .collect()
+        let block = |(cell, sample): ([u32; 2], &Sample)| {
+            let [time, radius, turn] = sample.further;
+            let (radius, turn) = (radius.sqrt(), turn * std::f32::consts::TAU);
+            let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
+                let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
+                let offset = f64::from(cell) + f64::from(place);
+                let scale = pixels / (cells * side);
+                let shift = (pixels / cells + 1.0 - 2.0 * offset / cells) / side - 1.0;
+                [scale as f32, shift as f32]
+            };
+            let [width, height] = self.cells;
+            let x = axis(frame.width, layer.width, width, cell[0], sample.place_px[0]);
+            let y = axis(frame.height, layer.height, height, cell[1], sample.place_px[1]);
+            TupleBlock {
+                scale: [x[0], y[0]],
+                shift: [x[1], y[1]],
+                lens: [radius * turn.cos(), radius * turn.sin()],
+                time,
+                eye: 0.0,
+            }
+        };
+        self.pattern(seed, run).placed().map(block).collect()
     }
 }
 
@@ -139,22 +131,22 @@ mod tests {
         for (samples, tuples, cells) in
             [(8, 32, [2, 2]), (8, 8, [1, 1]), (4, 64, [4, 4]), (4, 32, [4, 2]), (2, 6, [3, 1]), (1, 12, [4, 3])]
         {
-            assert_eq!(Table::new(samples, tuples), Table { cells, samples, eyes: 1 });
-            assert_eq!(Table::new(samples, tuples).tuple_count(), tuples);
+            assert_eq!(TupleTable::new(samples, tuples), TupleTable { cells, samples, eyes: 1 });
+            assert_eq!(TupleTable::new(samples, tuples).tuple_count(), tuples);
         }
     }
 
     #[test]
     fn a_frame_that_the_table_does_not_divide_has_layers_that_cover_it() {
-        let layer = Table::new(8, 32).layer(Extent::new(101, 31));
+        let layer = TupleTable::new(8, 32).layer(Extent::new(101, 31));
         assert_eq!((layer.width, layer.height), (51, 16));
-        let inside = [0, 8, 16, 24].map(|tuple| Table::new(8, 32).inside(Extent::new(101, 31), tuple));
+        let inside = [0, 8, 16, 24].map(|tuple| TupleTable::new(8, 32).inside(Extent::new(101, 31), tuple));
         assert_eq!(inside.map(|part| (part.width, part.height)), [(51, 16), (50, 16), (51, 15), (50, 15)]);
     }
 
     #[test]
     fn a_pixel_s_first_sample_lies_in_its_cell_s_first_layer() {
-        let (table, frame) = (Table::new(8, 32), Extent::new(101, 31));
+        let (table, frame) = (TupleTable::new(8, 32), Extent::new(101, 31));
         // A layer has 51 x 16 entries.
         let places = [[0, 0], [1, 0], [2, 1], [100, 30]].map(|pixel| table.first_sample(frame, pixel));
         assert_eq!(places, [0, 8 * 816, 16 * 816 + 1, 15 * 51 + 50]);
@@ -163,7 +155,7 @@ mod tests {
     /// What the transform puts into the middle of a layer's pixel is the tuple's place in the frame's pixel.
     #[test]
     fn the_middle_of_a_layer_s_pixel_is_the_tuple_s_place() {
-        let (table, frame) = (Table::new(4, 16), Extent::new(30, 17));
+        let (table, frame) = (TupleTable::new(4, 16), Extent::new(30, 17));
         let layer = table.layer(frame);
         for (index, tuple) in table.tuples(frame, 1, 0, &[0.0]).iter().enumerate() {
             let cell = index as u32 / 4;
@@ -181,13 +173,13 @@ mod tests {
                 assert!(place.iter().all(|place| (-1e-3..1.001).contains(place)), "{place:?}");
             }
         }
-        let alone = Table::new(1, 1).tuples(frame, 1, 0, &[0.0])[0];
+        let alone = TupleTable::new(1, 1).tuples(frame, 1, 0, &[0.0])[0];
         assert_eq!((alone.scale, alone.shift), ([1.0; 2], [0.0; 2]));
     }
 
     #[test]
     fn lens_and_time_are_evenly_spread_and_runs_differ() {
-        let (table, frame) = (Table::new(8, 32), Extent::new(64, 64));
+        let (table, frame) = (TupleTable::new(8, 32), Extent::new(64, 64));
         let tuples = table.tuples(frame, 7, 0, &[0.0]);
         let inside = tuples.iter().filter(|tuple| tuple.lens[0].hypot(tuple.lens[1]) < 0.5f32.sqrt()).count();
         assert_eq!(inside, 16, "half of the disk's area");
@@ -200,8 +192,8 @@ mod tests {
     /// Lenses of a quarter of the disk's radius that touch its rim.
     #[test]
     fn both_eyes_have_the_same_tuples_with_lenses_of_their_own() {
-        let (frame, one) = (Extent::new(101, 31), Table::new(8, 32));
-        let two = Table { eyes: 2, ..one };
+        let (frame, one) = (Extent::new(101, 31), TupleTable::new(8, 32));
+        let two = TupleTable { eyes: 2, ..one };
         let (alone, both) = (one.tuples(frame, 7, 1, &[0.0]), two.tuples(frame, 7, 1, &[-0.75, 0.75]));
         assert_eq!((both.len(), two.sample_count(frame)), (64, 2 * one.sample_count(frame)));
         for (index, tuple) in both.iter().enumerate() {

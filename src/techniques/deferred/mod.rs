@@ -5,16 +5,16 @@
 
 pub mod shade;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::lights::object_lists::ObjectLists;
-use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::cull;
-use crate::passes::cull::Cull;
+use crate::passes::cull::{Cull, CullLights};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::picture::Aov;
@@ -78,14 +78,30 @@ impl Technique for Deferred {
         ])
     }
 
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let settings = ShadingSettings::new(inputs.values, inputs.lights, inputs.scene, inputs.caps);
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        let blended = blend::lists(inputs.scene, &lights, inputs.values, inputs.caps)?;
+        Ok(Box::new(PreparedDeferred { settings, lights, blended }))
+    }
+}
+
+struct PreparedDeferred {
+    settings: ShadingSettings,
+    lights: Vec<LightBlock>,
+    /// The lists of what blends.
+    blended: ObjectLists,
+}
+
+impl Prepared for PreparedDeferred {
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        let settings = settings(inputs);
+        let settings = &self.settings;
         let (extent, position, has_emissive) = (inputs.view.extent, settings.position, inputs.stats.has_emissive);
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
         gbuffer::plan(&mut plan, NAME, extent, position, has_emissive);
         let tree = settings.direct.tree(inputs.bvh, inputs.scene)?;
-        direct::plan_with_masks(&mut plan, NAME, light_count, &settings, tree, extent);
+        direct::plan_with_masks(&mut plan, NAME, light_count, settings, tree, extent);
         // No virtual lights: what blended surfaces bind in their place.
         plan.buffer("lights", "deferred.vpls", 0);
         plan.picture(COLOR, extent);
@@ -100,41 +116,10 @@ impl Technique for Deferred {
         shaded.push((COLOR.to_owned(), Access::ComputeWrite));
         plan.pass(format!("{NAME}.shade"), shaded);
         if inputs.stats.has_blend {
-            blend::plan_lists(&mut plan, NAME, &blended(inputs)?);
+            blend::plan_lists(&mut plan, NAME, &self.blended);
             plan.pass(format!("{NAME}.blend"), blend::touches(&gbuffer::depth(NAME), COLOR));
         }
         Ok(plan)
-    }
-
-    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let lights = direct::light_blocks(inputs.lights, inputs.values);
-        Ok(Box::new(PreparedDeferred { settings: settings(inputs), lights, blended: blended(inputs)? }))
-    }
-}
-
-/// The lists of what blends.
-fn blended(inputs: &Inputs<'_>) -> Result<ObjectLists> {
-    let lights = direct::light_blocks(inputs.lights, inputs.values);
-    blend::lists(inputs.scene, &lights, inputs.values, inputs.caps)
-}
-
-fn settings(inputs: &Inputs<'_>) -> ShadingSettings {
-    ShadingSettings::new(inputs.values, inputs.lights, inputs.scene, inputs.caps)
-}
-
-struct PreparedDeferred {
-    settings: ShadingSettings,
-    lights: Vec<LightBlock>,
-    blended: ObjectLists,
-}
-
-impl Prepared for PreparedDeferred {
-    fn host_passes(&self) -> Vec<(String, u64)> {
-        Vec::new()
-    }
-
-    fn counters(&self) -> BTreeMap<&'static str, f64> {
-        [("lights", self.lights.len() as f64)].into_iter().chain(blend::counters(&self.blended)).collect()
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -142,12 +127,23 @@ impl Prepared for PreparedDeferred {
         BTreeMap::from([("cull-by", self.settings.cull_by.name().to_owned()), ("texels", texels.to_string())])
     }
 
-    fn light_counts(&self) -> [u32; 2] {
-        [self.lights.len() as u32, 0]
+    fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
+        Ok(HostPart {
+            passes: Vec::new(),
+            counters: [("lights", self.lights.len() as f64)]
+                .into_iter()
+                .chain(blend::counters(&self.blended))
+                .collect(),
+            light_counts: [self.lights.len() as u32, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| self.build(gpu, inputs, scene, resources)),
+        })
     }
+}
 
+impl PreparedDeferred {
+    /// The frame on the device.
     fn build(
-        self: Box<Self>,
+        self,
         gpu: &Arc<Gpu>,
         inputs: &Inputs<'_>,
         scene: &SceneGpu,
@@ -203,7 +199,7 @@ impl Frame for DeferredFrame {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
         let mut written = Access::ColorWrite;
         if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
-            let lights = (&self.direct.lights, self.direct.light_count);
+            let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
             cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
             written = Access::ComputeSample;
         }
@@ -218,9 +214,11 @@ impl Frame for DeferredFrame {
                 lists,
                 shadow_maps: None,
             };
-            let picture = self.color.from(Access::ComputeWrite);
-            let depth = gbuffer.depth_edge(Access::ComputeSample);
-            blend.record(cmd, NAME, frame, scene, &lights, depth, picture)?;
+            let solid = SolidPicture {
+                depth: gbuffer.depth_edge(Access::ComputeSample),
+                color: self.color.from(Access::ComputeWrite),
+            };
+            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
         }
         Ok(())
     }

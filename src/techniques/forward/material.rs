@@ -11,7 +11,7 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MaterialParams;
 use crate::gpu::shader::techniques::forward::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Traffic};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::lights::object_lists::ObjectLights;
 use crate::passes::shadow_maps::{self, ShadowMaps};
 use crate::passes::{depth_prepass, mesh};
@@ -72,16 +72,13 @@ impl Material {
         Ok(Self { opaque, mask, has_prepass, objects: objects.to_vec(), background })
     }
 
-    /// `lit`: the lights, their lists, the tree. `maps`: just drawn.
-    #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
         scene: &SceneGpu,
         list: &DrawList,
-        lit: &[(&'static str, Bound<'_>)],
-        maps: Option<&ShadowMaps>,
+        lights: &MaterialLights<'_>,
         targets: &Targets,
     ) -> Result<()> {
         let (depth, color) = (&targets.depth, &targets.drawn);
@@ -92,11 +89,11 @@ impl Material {
             invocations: None,
         };
         let mut bound = mesh::bound(frame, scene);
-        bound.extend_from_slice(lit);
-        bound.extend(maps.iter().flat_map(|maps| maps.bound()));
+        bound.extend_from_slice(lights.bound);
+        bound.extend(lights.maps.iter().flat_map(|maps| maps.resource.bound()));
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
-            cmd.barriers(maps.and_then(|maps| maps.barrier(Access::DepthWrite, Access::FragmentSample)));
+            cmd.barriers(lights.maps.and_then(|maps| maps.to(Access::FragmentSample)));
             let depth = depth_prepass::attach(cmd, depth, self.has_prepass);
             let clear = vk::ClearColorValue { float32: self.background.extend(0.0).to_array() };
             cmd.begin_rendering(color.description.extent, &[ColorTarget::new(color, Some(clear))], Some(depth));
@@ -134,6 +131,13 @@ impl Material {
         });
         Ok(())
     }
+}
+
+/// What the draws are lit by.
+pub struct MaterialLights<'a> {
+    /// The lights, their lists, the tree.
+    pub bound: &'a [(&'static str, Bound<'a>)],
+    pub maps: Option<Edge<'a, ShadowMaps>>,
 }
 
 /// Targets of the draws.

@@ -25,7 +25,7 @@ mod plan;
 mod resources;
 mod settings;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
@@ -33,7 +33,7 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, readback, upload};
 use crate::lights::LightSet;
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::accumulate::Accumulate;
-use crate::passes::blend::{self, Blend, BlendLights, BlendTarget};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::direct::DirectGpu;
 use crate::passes::resolve;
@@ -43,7 +43,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::settings::{Condition, LIGHT_LISTS, MULTISAMPLE, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::techniques::forward::choices::Choices;
-use crate::techniques::forward::material::Targets;
+use crate::techniques::forward::material::{MaterialLights, Targets};
 use crate::techniques::forward::resources::NAME;
 use glam::Vec2;
 use material::Material;
@@ -80,12 +80,6 @@ impl Technique for Forward {
         &[DEPTH_STAGE]
     }
 
-    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
-        let samples = resolve::samples(inputs.values);
-        let why = format!("with --msaa {samples} a pixel has several depths; --msaa 1 makes it");
-        Ok(Vec::from_iter((samples > 1).then_some((DEPTH_STAGE, why))))
-    }
-
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
         &[("light-lists", "none"), ("direct-shadow", "none")]
     }
@@ -110,12 +104,6 @@ impl Technique for Forward {
         ])
     }
 
-    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        let choices = Choices::new(inputs)?;
-        let (_, lists) = choices.lists(inputs)?;
-        plan::plan(&choices, inputs, &lists)
-    }
-
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
         let began = Instant::now();
@@ -133,20 +121,14 @@ struct PreparedForward {
 }
 
 impl Prepared for PreparedForward {
-    fn host_passes(&self) -> Vec<(String, u64)> {
-        vec![(format!("{NAME}.lights"), self.lists_ns)]
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&self.choices, inputs, &self.lists)
     }
 
-    fn counters(&self) -> BTreeMap<&'static str, f64> {
-        let [mean, most] = self.lists.lights_per_object();
-        let mut counters = BTreeMap::from([
-            ("lights", self.lights.len() as f64),
-            ("lights_per_object", mean),
-            ("lights_per_object_most", most),
-            ("objects", self.lists.objects.len() as f64),
-        ]);
-        counters.extend(blend::counters(&self.lists));
-        counters
+    fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        let samples = self.choices.samples;
+        let why = format!("with --msaa {samples} a pixel has several depths; --msaa 1 makes it");
+        Vec::from_iter((samples > 1).then_some((DEPTH_STAGE, why)))
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -155,18 +137,34 @@ impl Prepared for PreparedForward {
         [("light-buffer", buffer.to_owned())].into_iter().chain(maps).collect()
     }
 
-    fn light_counts(&self) -> [u32; 2] {
-        [self.lights.len() as u32, 0]
+    fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
+        let [mean, most] = self.lists.lights_per_object();
+        let mut counters = BTreeMap::from([
+            ("lights", self.lights.len() as f64),
+            ("lights_per_object", mean),
+            ("lights_per_object_most", most),
+            ("objects", self.lists.objects.len() as f64),
+        ]);
+        counters.extend(blend::counters(&self.lists));
+        Ok(HostPart {
+            passes: vec![(format!("{NAME}.lights"), self.lists_ns)],
+            counters,
+            light_counts: [self.lights.len() as u32, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| self.build(gpu, inputs, scene, resources)),
+        })
     }
+}
 
+impl PreparedForward {
+    /// The frame on the device.
     fn build(
-        self: Box<Self>,
+        self,
         gpu: &Arc<Gpu>,
         inputs: &Inputs<'_>,
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        let Self { choices, lights, lists, .. } = *self;
+        let Self { choices, lights, lists, .. } = self;
         let Choices { samples, runs_per_side, has_prepass, .. } = choices;
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
         let list_buffer = resources.buffer(resources::LISTS);
@@ -239,7 +237,9 @@ impl Frame for ForwardFrame {
             lit.push(("Lights", Bound::Buffer(uniform)));
         }
         lit.push(("LightLists", Bound::Buffer(&self.lists)));
-        self.material.record(cmd, frame, scene, &self.list, &lit, self.maps.as_ref(), &self.targets)?;
+        let maps = self.maps.as_ref();
+        let lights = MaterialLights { bound: &lit, maps: maps.map(|maps| maps.from(Access::DepthWrite)) };
+        self.material.record(cmd, frame, scene, &self.list, &lights, &self.targets)?;
         if let Some(blend) = &self.blend {
             let lights = BlendLights {
                 lights: &self.direct.lights,
@@ -248,10 +248,11 @@ impl Frame for ForwardFrame {
                 bvh_nodes: &self.direct.bvh_nodes,
                 bvh_triangles: &self.direct.bvh_triangles,
                 lists: &self.lists,
-                shadow_maps: self.maps.as_ref(),
+                shadow_maps: maps.map(|maps| maps.from(Access::FragmentSample)),
             };
             let tested = depth_prepass::access(self.depth.is_some());
-            blend.record(cmd, NAME, frame, scene, &lights, depth.from(tested), drawn.from(Access::ColorWrite))?;
+            let solid = SolidPicture { depth: depth.from(tested), color: drawn.from(Access::ColorWrite) };
+            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
         }
         if let Some(plain) = resolved {
             resolve::record(cmd, NAME, drawn.from(Access::ColorWrite), plain)?;

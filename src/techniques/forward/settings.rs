@@ -5,23 +5,20 @@ use crate::settings::{BRDF, DEPTH_PREPASS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW,
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "light-buffer",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "uniform", "storage"]),
+        kind: Kind::Choice(&["uniform", "storage"]),
+        auto: true,
         default: "auto",
-        unit: "",
-        paper: "",
         help: "Buffer from which solid surfaces read the lights: a uniform buffer, which holds 1024, or a storage \
                buffer; the same picture; auto: uniform where they fit",
+        ..Setting::ROW
     },
     DEPTH_PREPASS,
     Setting {
         key: "supersample",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 8 },
         default: "1",
-        unit: "",
-        paper: "",
         help: "Draw and average N x N frames, each moved by a part of a pixel: the reference for edges",
+        ..Setting::ROW
     },
     BRDF,
     GEOMETRY,

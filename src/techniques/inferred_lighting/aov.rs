@@ -9,6 +9,7 @@ use super::motion;
 use super::survivors::{Lit, Survivors};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::passes::cull::CullLights;
 use crate::picture::{Aov, AovChannels};
 use crate::resident::SceneGpu;
 use crate::settings::Values;
@@ -136,7 +137,7 @@ impl Frame for InferredFrame {
         self.geometry_pass.record(cmd, &self.light_frame, scene, geometry)?;
         let mut written = Access::DepthWrite;
         if let (Some(cull), Some(masks)) = (&self.cull, &self.lights.masks) {
-            let lights = (&self.lights.lights, self.lights.light_count);
+            let lights = CullLights { blocks: &self.lights.lights, count: self.lights.light_count };
             cull.record(cmd, geometry.from(written), &self.light_frame, lights, masks)?;
             written = Access::ComputeSample;
         }

@@ -1,4 +1,7 @@
-//! How stippled surfaces get their layers.
+//! The stipple, and how stippled surfaces get their layers.
+
+use crate::sampling::pattern::Pattern;
+use crate::settings::Values;
 
 /// How layers are given out (`--assignment`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +26,13 @@ impl Assignment {
     }
 }
 
-/// Layers of a stipple of `side` texels a side that BLEND draws can have.
-pub fn layer_count(side: u32) -> u32 {
-    side * side - 1
+/// The square of texels of `--stipple`, each a layer; layer 0 is the solid surfaces'.
+pub fn stipple(values: &Values) -> Pattern {
+    let side = if values.text("stipple") == "4x4" { 4 } else { 2 };
+    Pattern::grid([side; 2])
+}
+
+/// Layers of a stipple that BLEND draws can have.
+pub fn layer_count(stipple: &Pattern) -> u32 {
+    stipple.subset_count() - 1
 }

@@ -9,9 +9,10 @@ use crate::lights::shadow_casters;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::PositionStorage;
 use crate::passes::resolve;
+use crate::sampling::pattern::Pattern;
 use crate::shading::brdf::Brdf;
 use crate::techniques::Inputs;
-use crate::techniques::inferred_lighting::assignment::Assignment;
+use crate::techniques::inferred_lighting::assignment::{self, Assignment};
 use crate::units::Extent;
 use ash::vk;
 use std::collections::BTreeMap;
@@ -74,7 +75,7 @@ pub struct Choices {
     pub packing: Packing,
     pub depth_threshold: f32,
     pub tests_alpha: bool,
-    pub stipple_side: u32,
+    pub stipple: Pattern,
     /// Samples a pixel of the material pass.
     pub samples: u32,
     /// The material pass shades what a pre-pass of its size sees.
@@ -102,7 +103,8 @@ impl Choices {
             return Err(Error::request(format!("--shadow-volumes {casting_count} with --volumes tiled: {why}"))
                 .note("--volumes scissor draws a light at a time, as quad, stencil, both and auto do"));
         }
-        let stipple_side = if values.text("stipple") == "4x4" { 4 } else { 2 };
+        let stipple = assignment::stipple(values);
+        let [stipple_side, _] = stipple.period_px();
         let cone_radius = match values.text("alpha-filter") {
             "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
             _ => 0.0,
@@ -110,7 +112,7 @@ impl Choices {
         let assignment = Assignment::from_setting(values.text("assignment"));
         let named = values.text("stipple-layers");
         let named_layers = match assignment {
-            Assignment::Static => layer_names::layers(inputs.scene, named, stipple_side)?,
+            Assignment::Static => layer_names::layers(inputs.scene, named, &stipple)?,
             _ if named == layer_names::NONE => BTreeMap::new(),
             _ => {
                 let (assignment, error) = (values.text("assignment"), "layers are given out otherwise");
@@ -138,13 +140,18 @@ impl Choices {
             packing: Packing::from_settings(values),
             depth_threshold: values.number("depth-threshold") as f32,
             tests_alpha: values.text("alpha") == "test",
-            stipple_side,
+            stipple,
             samples: resolve::samples(values),
             has_prepass: values.is_on("depth-prepass"),
             assignment,
             named_layers,
             cone_radius,
         })
+    }
+
+    /// Texels of a side of the stipple.
+    pub fn stipple_side(&self) -> u32 {
+        self.stipple.period_px()[0]
     }
 
     /// Whether the light pass counts into a stencil.

@@ -8,7 +8,7 @@ use crate::gpu::shader::techniques::inferred_lighting::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::cull;
-use crate::passes::cull::{CullBy, CullSurface, MaskPipeline};
+use crate::passes::cull::{CullBy, CullLights, CullSurface, MaskPipeline};
 use crate::techniques::inferred_lighting::resources::NAME;
 use std::sync::Arc;
 
@@ -22,13 +22,13 @@ impl Cull {
         Ok(Self { masks: MaskPipeline { pipeline: ComputePipeline::new(gpu, shader, &[])?, by } })
     }
 
-    /// `frame`: the block of the light buffer's extent. `lights`: the punctual lights, and how many.
+    /// `frame`: the block of the light buffer's extent.
     pub fn record(
         &self,
         cmd: &mut Commands,
         geometry: Edge<'_, LowGeometry>,
         frame: &Buffer,
-        lights: (&Buffer, u32),
+        lights: CullLights<'_>,
         masks: &Buffer,
     ) -> Result<()> {
         let surface = CullSurface {

@@ -9,7 +9,7 @@ use super::light::store::Store;
 use super::light::tiled::Tiled;
 use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, Volumes};
-use super::material::{FilterSettings, Material};
+use super::material::{FilterSettings, Material, MaterialDraws};
 use super::motion::Earlier;
 use super::stipple::{self, Shares};
 use super::survivors::Survivors;
@@ -128,7 +128,8 @@ impl InferredFrame {
             }
         };
         let survivors = (!stippled.is_empty()).then(|| {
-            Survivors::new(inputs.scene, inputs.view, &stippled, choices.stipple_side, choices.packing, depth_range_m)
+            let stipple = choices.stipple.clone();
+            Survivors::new(inputs.scene, inputs.view, &stippled, stipple, choices.packing, depth_range_m)
         });
         let earlier = choices.has_motion.then(|| Earlier::new(gpu, inputs, resources)).transpose()?;
         let filter = FilterSettings {
@@ -136,17 +137,18 @@ impl InferredFrame {
             depth_range_m,
             depth_threshold: choices.depth_threshold,
             light_extent,
-            stipple_side: choices.stipple_side,
+            stipple_side: choices.stipple_side(),
             samples: choices.samples,
             has_prepass: choices.has_prepass,
         };
+        let draws = MaterialDraws { solid: list, stippled: stippled.clone() };
         let material_constants = choices.material_constants();
         Ok(Self {
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, choices.shading.cull_by)).transpose()?,
             road,
             geometry: LowGeometry::new(gpu, resources, choices)?,
-            geometry_pass: Geometry::new(gpu, scene, low_list, stippled.clone(), depth_range_m, choices, earlier)?,
-            material: Material::new(gpu, resources, scene, list, stippled, filter, &material_constants, background)?,
+            geometry_pass: Geometry::new(gpu, scene, low_list, stippled, depth_range_m, choices, earlier)?,
+            material: Material::new(gpu, resources, scene, draws, filter, &material_constants, background)?,
             l_buffer: resources.image(&light::l_buffer()),
             depth_range_m,
             lights: direct,

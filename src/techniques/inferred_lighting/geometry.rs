@@ -239,7 +239,7 @@ impl Geometry {
             blend: pipeline("blend")?,
             list,
             stippled,
-            stipple_side: choices.stipple_side,
+            stipple_side: choices.stipple_side(),
             packing: choices.packing,
             earlier,
             depth_range_m,

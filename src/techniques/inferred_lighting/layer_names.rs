@@ -5,6 +5,7 @@
 
 use super::assignment;
 use crate::error::{Error, Result};
+use crate::sampling::pattern::Pattern;
 use crate::scene::gltf::label;
 use crate::scene::gltf::marks::STIPPLE_LAYER;
 use crate::scene::{AlphaMode, Material, Scene};
@@ -22,17 +23,17 @@ struct Blended<'a> {
     material: &'a Material,
 }
 
-/// The layers of draws that have one, by draw. `text`: of `--stipple-layers`. `side`: of the stipple.
+/// The layers of draws that have one, by draw. `text`: of `--stipple-layers`.
 ///
 /// Errors: a name that no BLEND surface has, a name twice, a layer that the stipple does not have (exit code 2).
-pub fn layers(scene: &Scene, text: &str, side: u32) -> Result<BTreeMap<u32, u32>> {
+pub fn layers(scene: &Scene, text: &str, stipple: &Pattern) -> Result<BTreeMap<u32, u32>> {
     let blended: Vec<Blended<'_>> = blended(scene).collect();
     let names: BTreeSet<&str> = blended
         .iter()
         .flat_map(|one| [one.node_name, one.material.name.as_str()])
         .filter(|name| !name.is_empty())
         .collect();
-    let asked = asked(text, side)?;
+    let asked = asked(text, stipple)?;
     if let Some(name) = asked.keys().find(|name| !names.contains(*name)) {
         return Err(Error::request(format!(
             "--stipple-layers {}: no BLEND surface has a node or a material of that name",
@@ -48,7 +49,7 @@ pub fn layers(scene: &Scene, text: &str, side: u32) -> Result<BTreeMap<u32, u32>
         let of_flag = [one.node_name, one.material.name.as_str()].into_iter().find_map(|name| asked.get(name));
         let of_file = one.node_layer.or(one.material.stipple_layer);
         if let (None, Some(layer)) = (of_flag, of_file) {
-            require_layer(layer, side).map_err(|error| {
+            require_layer(layer, stipple).map_err(|error| {
                 let (kind, name) =
                     if one.node_layer.is_some() { ("node", one.node_name) } else { ("material", &*one.material.name) };
                 error.within(format!("{STIPPLE_LAYER} of {kind} {:?}", label::shown(name)))
@@ -74,7 +75,7 @@ fn blended(scene: &Scene) -> impl Iterator<Item = Blended<'_>> {
 }
 
 /// What `--stipple-layers` says of names: `NAME=LAYER,NAME=LAYER`.
-fn asked(text: &str, side: u32) -> Result<BTreeMap<&str, u32>> {
+fn asked<'a>(text: &'a str, stipple: &Pattern) -> Result<BTreeMap<&'a str, u32>> {
     let mut asked = BTreeMap::new();
     for part in text.split(',').filter(|_| text != NONE) {
         let refused = |why: &str| Error::request(format!("--stipple-layers {}: {why}", label::shown(part)));
@@ -83,7 +84,8 @@ fn asked(text: &str, side: u32) -> Result<BTreeMap<&str, u32>> {
             return Err(refused("it is not NAME=LAYER"));
         };
         let layer = layer.parse().map_err(|_| refused("its layer is not a whole number"))?;
-        require_layer(layer, side).map_err(|error| error.within(format!("--stipple-layers {}", label::shown(part))))?;
+        require_layer(layer, stipple)
+            .map_err(|error| error.within(format!("--stipple-layers {}", label::shown(part))))?;
         if asked.insert(name, layer).is_some() {
             return Err(refused("its name has a layer already"));
         }
@@ -91,8 +93,8 @@ fn asked(text: &str, side: u32) -> Result<BTreeMap<&str, u32>> {
     Ok(asked)
 }
 
-fn require_layer(layer: u32, side: u32) -> Result<()> {
-    let most = assignment::layer_count(side);
+fn require_layer(layer: u32, stipple: &Pattern) -> Result<()> {
+    let (most, [side, _]) = (assignment::layer_count(stipple), stipple.period_px());
     if (1..=most).contains(&layer) {
         return Ok(());
     }
@@ -123,20 +125,20 @@ mod tests {
 
     #[test]
     fn the_flag_goes_before_the_file_and_a_node_before_a_material() {
-        let mut scene = scene();
-        assert_eq!(layers(&scene, NONE, 2).unwrap(), BTreeMap::new());
+        let (mut scene, two) = (scene(), Pattern::grid([2, 2]));
+        assert_eq!(layers(&scene, NONE, &two).unwrap(), BTreeMap::new());
         scene.materials[1].stipple_layer = Some(3);
         scene.materials[2].stipple_layer = Some(2);
-        assert_eq!(layers(&scene, NONE, 2).unwrap(), BTreeMap::from([(1, 3), (2, 2)]));
+        assert_eq!(layers(&scene, NONE, &two).unwrap(), BTreeMap::from([(1, 3), (2, 2)]));
         scene.nodes[2].stipple_layer = Some(1);
-        assert_eq!(layers(&scene, NONE, 2).unwrap(), BTreeMap::from([(1, 3), (2, 1)]));
-        assert_eq!(layers(&scene, "amber=1,right=3", 2).unwrap(), BTreeMap::from([(1, 1), (2, 3)]));
-        assert_eq!(layers(&scene, "blue=3,right=2", 2).unwrap(), BTreeMap::from([(1, 3), (2, 2)]));
+        assert_eq!(layers(&scene, NONE, &two).unwrap(), BTreeMap::from([(1, 3), (2, 1)]));
+        assert_eq!(layers(&scene, "amber=1,right=3", &two).unwrap(), BTreeMap::from([(1, 1), (2, 3)]));
+        assert_eq!(layers(&scene, "blue=3,right=2", &two).unwrap(), BTreeMap::from([(1, 3), (2, 2)]));
     }
 
     #[test]
     fn what_cannot_be_is_refused_with_what_can() {
-        let mut scene = scene();
+        let (mut scene, [two, four]) = (scene(), [2, 4].map(|side| Pattern::grid([side; 2])));
         for (text, side, said) in [
             ("green=1", 2, "there are amber, blue, left, right"),
             ("wall=1", 2, "no BLEND surface"),
@@ -147,14 +149,14 @@ mod tests {
             ("amber=16", 4, "layers 1 to 15"),
             ("amber=1,amber=2", 2, "has a layer already"),
         ] {
-            let error = layers(&scene, text, side).unwrap_err();
+            let error = layers(&scene, text, &Pattern::grid([side; 2])).unwrap_err();
             assert_eq!(error.exit_code(), 2);
             assert!(error.to_string().contains(said), "{text}: {error}");
         }
         scene.materials[1].stipple_layer = Some(7);
-        let error = layers(&scene, NONE, 2).unwrap_err();
+        let error = layers(&scene, NONE, &two).unwrap_err();
         assert!(error.to_string().contains("of material \"amber\""), "{error}");
-        assert_eq!(layers(&scene, NONE, 4).unwrap(), BTreeMap::from([(1, 7)]));
-        assert_eq!(layers(&scene, "amber=2", 2).unwrap(), BTreeMap::from([(1, 2)]), "the file's is not asked");
+        assert_eq!(layers(&scene, NONE, &four).unwrap(), BTreeMap::from([(1, 7)]));
+        assert_eq!(layers(&scene, "amber=2", &two).unwrap(), BTreeMap::from([(1, 2)]), "the file's is not asked");
     }
 }

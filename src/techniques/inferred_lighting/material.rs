@@ -94,12 +94,19 @@ pub struct FilterSettings {
     pub has_prepass: bool,
 }
 
+/// What the pass draws.
+pub struct MaterialDraws {
+    pub solid: DrawList,
+    /// All others, farthest first.
+    pub stippled: Vec<Stippled>,
+}
+
 pub struct Material {
     prepass: Option<DepthPrepass>,
     opaque: GraphicsPipeline,
     mask: GraphicsPipeline,
     blend: GraphicsPipeline,
-    list: DrawList,
+    solid: DrawList,
     stippled: Vec<Stippled>,
     filter: FilterSettings,
     background: Vec3,
@@ -111,19 +118,17 @@ pub struct Material {
 }
 
 impl Material {
-    /// `list`: the solid surfaces. `stippled`: the others, farthest first. `constants`: BRDF_KIND, SURFACE_EXTRAS and
-    /// light_filter.glsl's.
-    #[allow(clippy::too_many_arguments)]
+    /// `constants`: BRDF_KIND, SURFACE_EXTRAS and light_filter.glsl's.
     pub fn new(
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
         scene: &SceneGpu,
-        list: DrawList,
-        stippled: Vec<Stippled>,
+        draws: MaterialDraws,
         filter: FilterSettings,
         constants: &[(&str, u32)],
         background: Vec3,
     ) -> Result<Self> {
+        let MaterialDraws { solid, stippled } = draws;
         let guide = if filter.kind.reads_normals() { "normals" } else { "ids" };
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
@@ -154,7 +159,7 @@ impl Material {
             opaque: pipeline("opaque")?,
             mask: pipeline("mask")?,
             blend: pipeline("blend")?,
-            list,
+            solid,
             stippled,
             filter,
             background,
@@ -194,14 +199,14 @@ impl Material {
         let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
             // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
-            read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
+            read_bytes: mesh::read_bytes(scene, self.solid.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
             written_bytes: extent.pixel_count()
                 * u64::from(self.filter.samples)
                 * if self.prepass.is_some() { 16 } else { 20 },
             invocations: None,
         };
         if let Some(prepass) = &self.prepass {
-            prepass.record(cmd, NAME, frame, scene, &self.list, &self.depth)?;
+            prepass.record(cmd, NAME, frame, scene, &self.solid, &self.depth)?;
         }
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([self.rejections.discard(Access::TransferWrite)]);
@@ -229,7 +234,7 @@ impl Material {
             if self.filter.kind.reads_normals() {
                 bound.push(("geometry_normal", geometry.sampled(&geometry.normal, Access::FragmentSample)));
             }
-            for (pipeline, calls) in [(&self.mask, &self.list.mask), (&self.opaque, &self.list.opaque)] {
+            for (pipeline, calls) in [(&self.mask, &self.solid.mask), (&self.opaque, &self.solid.opaque)] {
                 let Some(first) = calls.last() else { continue };
                 let first = self.params(scene, first.material);
                 cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &bound)?;

@@ -30,16 +30,15 @@ mod settings;
 mod stipple;
 mod survivors;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
+use crate::gpu::Access;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
-use crate::gpu::{Access, Gpu};
 use crate::lights::LightSet;
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::{blend, cull as light_masks, direct, resolve};
-use crate::plan::{Plan, Resources};
-use crate::resident::SceneGpu;
+use crate::plan::Plan;
 use crate::settings::{Condition, MOTION_CONDITIONS, MULTISAMPLE, Setting, Values};
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
 use choices::Choices;
@@ -47,7 +46,6 @@ use encoding::Loss;
 use frame::InferredFrame;
 use light::{Volumes, shadow_volumes};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
 pub struct InferredLighting;
@@ -75,10 +73,6 @@ impl Technique for InferredLighting {
 
     fn aovs(&self) -> &'static [&'static str] {
         aov::AOVS
-    }
-
-    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
-        Ok(aov::left_out(inputs.values))
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
@@ -140,11 +134,30 @@ impl Technique for InferredLighting {
         ])
     }
 
-    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
+        let lights = direct::light_blocks(inputs.lights, inputs.values);
+        let started = Instant::now();
+        let casters = ShadowCasters::of(inputs.scene, &inputs.lights.lights, &choices.casting_lights)?;
+        let casters_ns = started.elapsed().as_nanos() as u64;
+        Ok(Box::new(PreparedInferred { choices, lights, casters, casters_ns }))
+    }
+}
+
+struct PreparedInferred {
+    choices: Choices,
+    lights: Vec<LightBlock>,
+    /// What the lights of `--shadow-volumes` cast.
+    casters: ShadowCasters,
+    casters_ns: u64,
+}
+
+impl Prepared for PreparedInferred {
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        let choices = &self.choices;
         let light_count = inputs.lights.lights.len();
         let mut plan = Plan::default();
-        geometry::plan(&mut plan, &choices);
+        geometry::plan(&mut plan, choices);
         if choices.has_motion {
             motion::plan(&mut plan, inputs.stats);
         }
@@ -153,14 +166,14 @@ impl Technique for InferredLighting {
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
         light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves, choices.store);
         if !choices.casting_lights.is_empty() {
-            shadow_volumes::plan(&mut plan, &casters(inputs, &choices)?);
+            shadow_volumes::plan(&mut plan, &self.casters);
         }
         material::plan(&mut plan, inputs.view.extent, choices.samples);
         if inputs.stats.has_blend && !choices.tests_alpha {
             // The texels that are left of BLEND draws are counted.
             plan.read_back(&geometry::filtered(false)[0].0);
         }
-        plan.pass(format!("{NAME}.geometry"), geometry::written(&choices));
+        plan.pass(format!("{NAME}.geometry"), geometry::written(choices));
         let masks = choices.shading.culls(light_count);
         if masks {
             let written = light_masks::masks(NAME, Access::ComputeWrite);
@@ -183,38 +196,39 @@ impl Technique for InferredLighting {
                 plan.pass(format!("{NAME}.pack"), touches);
             }
         }
-        material::plan_passes(&mut plan, &choices);
+        material::plan_passes(&mut plan, choices);
         Ok(plan)
     }
 
-    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let choices = Choices::new(inputs)?;
-        let lights = direct::light_blocks(inputs.lights, inputs.values);
-        let started = Instant::now();
-        let casters = casters(inputs, &choices)?;
-        let casters_ns = started.elapsed().as_nanos() as u64;
-        Ok(Box::new(PreparedInferred { choices, lights, casters, casters_ns }))
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        aov::left_out(inputs.values)
     }
-}
 
-/// What the lights of `--shadow-volumes` cast.
-fn casters(inputs: &Inputs<'_>, choices: &Choices) -> Result<ShadowCasters> {
-    ShadowCasters::of(inputs.scene, &inputs.lights.lights, &choices.casting_lights)
-}
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let shading = &self.choices.shading;
+        let texels = shading.texels.of_column(shading.direct.load(self.lights.len()));
+        BTreeMap::from([
+            ("cull-by", shading.cull_by.name().to_owned()),
+            ("light-size", self.choices.light_extent.to_string()),
+            ("texels", texels.to_string()),
+        ])
+    }
 
-struct PreparedInferred {
-    choices: Choices,
-    lights: Vec<LightBlock>,
-    casters: ShadowCasters,
-    casters_ns: u64,
-}
-
-impl Prepared for PreparedInferred {
-    fn host_passes(&self) -> Vec<(String, u64)> {
+    fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
         let has_casters = !self.choices.casting_lights.is_empty();
-        has_casters.then(|| (shadow_volumes::pass(), self.casters_ns)).into_iter().collect()
+        Ok(HostPart {
+            passes: has_casters.then(|| (shadow_volumes::pass(), self.casters_ns)).into_iter().collect(),
+            counters: self.counters(),
+            light_counts: [self.lights.len() as u32, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| {
+                let Self { choices, lights, casters, .. } = *self;
+                Ok(Box::new(InferredFrame::new(gpu, inputs, scene, resources, &choices, &lights, &casters)?))
+            }),
+        })
     }
+}
 
+impl PreparedInferred {
     fn counters(&self) -> BTreeMap<&'static str, f64> {
         let loss = Loss::of(self.choices.packing);
         let mut counters = BTreeMap::from([
@@ -231,29 +245,5 @@ impl Prepared for PreparedInferred {
             counters.insert("shadow_casters_not_closed", self.casters.open_count as f64);
         }
         counters
-    }
-
-    fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let shading = &self.choices.shading;
-        let texels = shading.texels.of_column(shading.direct.load(self.lights.len()));
-        BTreeMap::from([
-            ("cull-by", shading.cull_by.name().to_owned()),
-            ("light-size", self.choices.light_extent.to_string()),
-            ("texels", texels.to_string()),
-        ])
-    }
-
-    fn light_counts(&self) -> [u32; 2] {
-        [self.lights.len() as u32, 0]
-    }
-
-    fn build(
-        self: Box<Self>,
-        gpu: &Arc<Gpu>,
-        inputs: &Inputs<'_>,
-        scene: &SceneGpu,
-        resources: &mut Resources,
-    ) -> Result<Box<dyn Frame>> {
-        Ok(Box::new(InferredFrame::new(gpu, inputs, scene, resources, &self.choices, &self.lights, &self.casters)?))
     }
 }

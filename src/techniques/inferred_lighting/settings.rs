@@ -19,60 +19,57 @@ pub const SETTINGS: &[Setting] = &[
     NORMAL_THRESHOLD,
     Setting {
         key: "light-size",
-        symbol: "",
-        kind: Kind::PairOrAuto { min: 1, max: 16384 },
+        kind: Kind::Pair { min: 1, max: 16384 },
+        auto: true,
         default: "auto",
         unit: "px",
         paper: "Kircher 2009, 2.2",
         help: "Width and height of the geometry pass and the light pass; auto: 0.625 of the frame, so 800x450 for \
                1280x720",
+        ..Setting::ROW
     },
     Setting {
         key: "extras",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
         paper: "Kircher 2009, 2.1",
         help: "Write roughness and material id in the geometry pass, 4 bytes a texel; off: every highlight is as wide \
                as --light-roughness says",
+        ..Setting::ROW
     },
     Setting {
         key: "light-roughness",
-        symbol: "",
         kind: Kind::Number { min: 0.0, max: 1.0 },
         default: "0.5",
-        unit: "",
         paper: "Kircher 2009, 2.2",
         help: "Roughness of every surface in the light pass with --extras off",
+        ..Setting::ROW
     },
     MOTION_VECTORS,
     MOTION_INTERVAL,
     Setting {
         key: "volumes",
-        symbol: "",
         kind: Kind::Choice(&["tiled", "quad", "scissor", "stencil", "both", "auto"]),
         default: "tiled",
-        unit: "",
         paper: "Kircher 2009, 2.2",
         help: "How texels find their lights: by a list of lights for each tile, in one dispatch (tiled); or by one \
                draw for each light, over the whole frame (quad), within the rectangle that bounds its reach (scissor), \
                where its volume meets a surface (stencil, depth-fail), or within both limits (both); auto: both, but \
                without the stencil for lights smaller than --stencil-least",
+        ..Setting::ROW
     },
     Setting {
         key: "stencil-least",
-        symbol: "",
         kind: Kind::Integer { min: 0, max: 1 << 28 },
         default: "4096",
         unit: "texels",
         paper: "Kircher 2009, 2.2",
         help: "Number of texels in a light's rectangle from which --volumes auto draws it with the stencil (lavapipe: \
                the stencil pays from some 16384 on, and below makes no difference)",
+        ..Setting::ROW
     },
     Setting {
         key: "shadow-volumes",
-        symbol: "",
         kind: Kind::Integer { min: 0, max: 65_536 },
         default: "0",
         unit: "lights",
@@ -80,138 +77,129 @@ pub const SETTINGS: &[Setting] = &[
         help: "Number of lights that cast stencil shadow volumes of all closed opaque and MASK surfaces, instead of \
                the rays of --direct-shadow: directional lights first, then those of most flux; not with --volumes \
                tiled",
+        ..Setting::ROW
     },
     Setting {
         key: "l-buffer",
-        symbol: "",
         kind: Kind::Choice(&["float", "half", "fixed"]),
         default: "float",
-        unit: "",
         paper: "Kircher 2009, 2.2, 5.1",
         help: "How the L-buffer sums up light: in 32 bits and packed once, to half floats (float) or to 16 bits of \
                fixed point (fixed); or blended in half floats, as in the paper (half)",
+        ..Setting::ROW
     },
     Setting {
         key: "light-range",
-        symbol: "",
         kind: Kind::Number { min: 0.001, max: 65504.0 },
         default: "32",
         unit: "lx",
         paper: "Kircher 2009, 5.1",
         help: "Most light that --l-buffer fixed can hold; brighter texels are clamped to it, and counted",
+        ..Setting::ROW
     },
     Setting {
         key: "packing",
-        symbol: "",
         kind: Kind::Choice(&["words", "rgba8", "fixed"]),
         default: "words",
-        unit: "",
         paper: "Kircher 2009, 5",
         help: "Format in which the geometry pass writes a texel's two 16-bit numbers: one word (words), the bytes of \
                four channels (rgba8), or two channels of fixed point (fixed)",
+        ..Setting::ROW
     },
     Setting {
         key: "fixed-range",
-        symbol: "",
         kind: Kind::Number { min: 1.0, max: FIXED_LIMIT },
         default: "32",
-        unit: "",
         paper: "Kircher 2009, 5.1",
         help: "Factor by which --packing fixed scales numbers from -1 to 1 into its format, which goes from -32 to 32; \
                32 uses every step of it, 1 a 32nd of them",
+        ..Setting::ROW
     },
     Setting {
         key: "light-filter",
-        symbol: "",
         kind: Kind::Choice(&["dsf", "bilinear", "nearest", "bilateral", "discontinuity"]),
         default: "dsf",
-        unit: "",
         paper: "Kircher 2009, 3",
         help: "How four texels of the light buffer become the light of a pixel: by the discontinuity sensitive filter, \
                which takes those of the pixel's object and normal group (dsf); whatever they show, bilinear or the \
                nearest one; or by normal and distance from the tangent plane, with weights that fall off (bilateral, a \
                joint bilateral filter) or that are 0 or 1 (discontinuity: Segovia 2006, 4.5)",
+        ..Setting::ROW
     },
     Setting {
         key: "light-fetch",
-        symbol: "",
         kind: Kind::Choice(&["texels", "sampler"]),
         default: "texels",
-        unit: "",
         paper: "Kircher 2009, 7.1",
         help: "How the four texels of a solid surface's pixel are read where all of them belong to that surface: one \
                by one (texels), or blended by the sampler in a single fetch, with the device's precision of position \
                (sampler)",
+        ..Setting::ROW
     },
     Setting {
         key: "depth-threshold",
-        symbol: "",
         kind: Kind::Number { min: 0.0, max: 1.0 },
         default: "0.05",
-        unit: "",
         paper: "Kircher 2009, 3.1",
         help: "Most by which a sample of the filter may differ, as a part of the pixel's depth: in depth, or, where \
                normals decide, in distance from the tangent plane",
+        ..Setting::ROW
     },
     Setting {
         key: "alpha",
-        symbol: "",
         kind: Kind::Choice(&["blend", "test"]),
         default: "blend",
-        unit: "",
         paper: "Kircher 2009, 4, 6",
         help: "How BLEND surfaces are drawn: stippled into the light buffer and blended (blend), or as solid surfaces \
                where their alpha is at least 0.5 (test)",
+        ..Setting::ROW
     },
     Setting {
         key: "stipple",
-        symbol: "",
         kind: Kind::Choice(&["2x2", "4x4"]),
         default: "2x2",
         unit: "px",
         paper: "Kircher 2009, 4",
         help: "Texels at which BLEND surfaces are lit: one in four (2x2, which leaves 3 layers over the solid one) or \
                one in sixteen (4x4, 15 layers)",
+        ..Setting::ROW
     },
     Setting {
         key: "assignment",
-        symbol: "",
         kind: Kind::Choice(&["overlap", "depth", "static"]),
         default: "overlap",
-        unit: "",
         paper: "Kircher 2009, 4, 7.1",
         help: "How BLEND surfaces share the layers of the stipple: those that overlap on the screen get different \
                ones, nearest first (overlap, not the paper's); in rotation from the nearest on (depth); or as \
                --stipple-layers says, the rest in rotation in the order of the file (static)",
+        ..Setting::ROW
     },
     Setting {
         key: "stipple-layers",
-        symbol: "",
         kind: Kind::Text("NAME=LAYER,...|none"),
         default: layer_names::NONE,
-        unit: "",
         paper: "Kircher 2009, 4",
         help: "Layers of the stipple for --assignment static, 1 to 3 or 15, for BLEND surfaces by the name of their \
                node or material; these go before quincunx_stipple_layer in the extras of a file's nodes and materials",
+        ..Setting::ROW
     },
     Setting {
         key: "alpha-filter",
-        symbol: "",
         kind: Kind::Choice(&["cone", "bilinear"]),
         default: "cone",
-        unit: "",
         paper: "Kircher 2009, 4",
         help: "Weights of the four samples nearest to a fragment of a BLEND surface: falling to 0 at --cone-radius \
                (cone), or bilinear",
+        ..Setting::ROW
     },
     Setting {
         key: "cone-radius",
-        symbol: "",
         kind: Kind::Number { min: 0.1, max: 64.0 },
         default: "2",
         unit: "texels",
         paper: "Kircher 2009, 4",
         help: "Radius of --alpha-filter cone, in texels of the light buffer; it is doubled with --stipple 4x4",
+        ..Setting::ROW
     },
 ];
 

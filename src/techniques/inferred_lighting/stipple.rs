@@ -100,7 +100,7 @@ pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choice
         Assignment::Static => calls.iter().map(static_place).collect(),
         _ => Vec::new(),
     };
-    let layers = layers(&footprints, &places, layer_count(choices.stipple_side), choices.assignment);
+    let layers = layers(&footprints, &places, layer_count(&choices.stipple), choices.assignment);
     let shares = shares(&footprints, &layers);
     let all = calls.into_iter().zip(layers).zip(on_screen);
     let stippled = |((call, layer), is_on_screen): ((DrawCall, u32), bool)| Stippled { call, layer, is_on_screen };

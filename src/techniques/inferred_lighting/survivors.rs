@@ -8,6 +8,7 @@
 use super::encoding::Packing;
 use super::stipple::Stippled;
 use crate::frame::View;
+use crate::sampling::pattern::Pattern;
 use crate::scene::{Bounds, Scene, object_ids};
 use crate::units::Extent;
 use glam::{Mat4, Vec2, Vec3};
@@ -28,7 +29,7 @@ pub struct Survivors {
     world_from_clip: Mat4,
     eye_ws: Vec3,
     forward_ws: Vec3,
-    side: u32,
+    stipple: Pattern,
     packing: Packing,
     depth_range_m: [f32; 2],
 }
@@ -45,12 +46,12 @@ pub struct Lit {
 }
 
 impl Survivors {
-    /// `side`: of the stipple. `depth_range_m`: linear depth of the first step, and of all of them.
+    /// `depth_range_m`: linear depth of the first step, and of all of them.
     pub fn new(
         scene: &Scene,
         view: &View,
         stippled: &[Stippled],
-        side: u32,
+        stipple: Pattern,
         packing: Packing,
         depth_range_m: [f32; 2],
     ) -> Self {
@@ -67,7 +68,7 @@ impl Survivors {
             world_from_clip: view.clip_from_world().inverse(),
             eye_ws: view.eye(),
             forward_ws: -view.camera.world_from_view.z_axis.truncate(),
-            side,
+            stipple,
             packing,
             depth_range_m,
         }
@@ -82,8 +83,8 @@ impl Survivors {
         let mut lit = BTreeSet::new();
         for (index, word) in words.enumerate() {
             let (x, y) = (index as u32 % extent.width, index as u32 / extent.width);
-            let layer = y % self.side * self.side + x % self.side;
-            let Some(rivals) = of_layer.get(&layer) else { continue };
+            let rivals = self.stipple.subset_of([x, y]).and_then(|layer| of_layer.get(&layer));
+            let Some(rivals) = rivals else { continue };
             let Some(depth_m) = self.packing.depth_m(word, self.depth_range_m) else { continue };
             let mut same = rivals.iter().filter(|rival| self.may_be(word, &self.candidates[**rival])).peekable();
             if same.peek().is_some() {

@@ -11,6 +11,7 @@ use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Kernel, StopBits};
 use crate::passes::gbuffer::PositionStorage;
+use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -41,9 +42,11 @@ pub struct Choices {
     pub direct_interleaved: bool,
     /// Blended surfaces have the virtual point lights of their pixel's subset, not all.
     pub blend_subsets: bool,
-    /// The pattern that these are dealt out over, i x j: it divides the split's. 1x1 where none are joined and where every
-    /// light is summed: no pixel lacks any of them.
-    pub direct_pattern: [u32; 2],
+    /// The pattern that virtual point lights are dealt out over, n x m; 1x1 where every light is summed.
+    pub light_pattern: Pattern,
+    /// The pattern that the joined lights are dealt out over, i x j: it divides the split's. 1x1 where none are joined and
+    /// where every light is summed: no pixel lacks any of them.
+    pub direct_pattern: Pattern,
     /// Virtual point lights.
     pub vpl_count: u32,
     /// The scene's own lights that this frame has.
@@ -76,6 +79,7 @@ impl Choices {
         let direct = values.text("direct");
         let direct_pattern =
             if road.sums_all() || direct != "interleaved" { [1, 1] } else { direct_pattern(values, pattern)? };
+        let light_pattern = if road.sums_all() { [1, 1] } else { pattern };
         let choices = Self {
             shading: ShadingSettings::new(values, lights, scene, caps),
             road,
@@ -86,7 +90,8 @@ impl Choices {
             direct_full: direct == "full",
             direct_interleaved: direct == "interleaved",
             blend_subsets: values.text("blend-lights") == "subset",
-            direct_pattern,
+            light_pattern: Pattern::grid(light_pattern),
+            direct_pattern: Pattern::grid(direct_pattern),
             vpl_count: values.integer("vpls") as u32,
             direct_count: if direct == "none" { 0 } else { lights.lights.len() as u32 },
         };
@@ -163,7 +168,7 @@ impl Choices {
 
     /// Values after `auto` and rounding, for the settings that the split reads.
     pub fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let [i, j] = self.direct_pattern;
+        let [i, j] = self.direct_pattern.period_px();
         let mut resolved = BTreeMap::from([
             ("direct-pattern", format!("{i}x{j}")),
             ("cull-by", self.shading.cull_by.name().to_owned()),
@@ -211,19 +216,14 @@ impl Choices {
         }
     }
 
-    /// The pattern that virtual point lights are dealt out over; 1x1 where every light is summed.
-    fn light_pattern(&self) -> [u32; 2] {
-        if self.road.sums_all() { [1, 1] } else { [self.mapping.pattern_x, self.mapping.pattern_y] }
-    }
-
     /// Light subsets: those of the pattern, n * m, or one.
     pub fn subset_count(&self) -> u32 {
-        self.light_pattern().iter().product()
+        self.light_pattern.subset_count()
     }
 
     /// Subsets of the punctual lights among them: i * j.
     pub fn direct_subset_count(&self) -> u32 {
-        self.direct_pattern.iter().product()
+        self.direct_pattern.subset_count()
     }
 
     /// The constants of irradiance.glsl that every split sets.
@@ -251,7 +251,7 @@ impl Choices {
 
     /// Each subset's lights.
     pub fn subsets(&self) -> Vec<SubsetBlock> {
-        subsets(self.light_pattern(), self.direct_pattern, self.vpl_count, self.joined_count())
+        subsets(&self.light_pattern, &self.direct_pattern, self.vpl_count, self.joined_count())
     }
 }
 
@@ -280,7 +280,7 @@ pub fn bounds(caps: &Caps) -> Vec<(&'static str, String)> {
 ///
 /// Errors: it does not divide the pattern, so that no clusters of sub-buffers make it (exit code 2).
 fn direct_pattern(values: &Values, pattern: [u32; 2]) -> Result<[u32; 2]> {
-    let direct = values.pair_or_auto("direct-pattern").unwrap_or(pattern);
+    let direct = values.unless_auto("direct-pattern", Values::pair).unwrap_or(pattern);
     if [0, 1].into_iter().all(|axis| pattern[axis].is_multiple_of(direct[axis])) {
         return Ok(direct);
     }

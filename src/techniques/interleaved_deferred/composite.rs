@@ -37,7 +37,7 @@ impl Composite {
             walk: kernel.walk(false),
             row_pitch: mapping.row_pitch(),
             direct_full: u32::from(choices.direct_full),
-            nothing: 0,
+            opaque_zero: 0,
             _unused: 0,
         };
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })

@@ -26,6 +26,8 @@ pub struct FrameLights<'a> {
     pub direct: &'a [LightBlock],
     /// Lists of those for what blends.
     pub blended: &'a ObjectLists,
+    /// Least distance at which a virtual point light is evaluated.
+    pub vpl_clamp_m: f32,
 }
 
 pub struct InterleavedFrame {
@@ -54,14 +56,14 @@ impl InterleavedFrame {
         lights: &FrameLights<'_>,
     ) -> Result<Self> {
         let Choices { shading, mapping, .. } = choices;
-        let FrameLights { subsets, direct: direct_lights, blended } = *lights;
+        let FrameLights { subsets, direct: direct_lights, blended, vpl_clamp_m } = *lights;
         let has_emissive = inputs.stats.has_emissive;
         let tree = shading.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading.culls(direct_lights.len()), tree)?;
-        let least = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
+        let least_squared = vpl_clamp_m * vpl_clamp_m;
         let params = ShadeParams {
             mapping: *mapping,
-            least_squared: least * least,
+            least_squared,
             cluster_size: choices.cluster_size() as f32,
             weight: choices.direct_subset_count() as f32,
             subset_first: 0,
@@ -85,7 +87,7 @@ impl InterleavedFrame {
                 gpu,
                 scene,
                 inputs.view,
-                choices.blend_params(least * least),
+                choices.blend_params(least_squared),
                 &shading.direct.light_constants(),
                 &BlendTarget::plain(blended),
             )?,

@@ -2,7 +2,7 @@
 //! the three orders: pixels of the padded frame, block texels, texels of sub-buffers as [x, y, number of the sub-buffer].
 
 use crate::gpu::shader::structs::MappingParams;
-use crate::sampling::pattern;
+use crate::sampling::pattern::grid;
 use crate::units::Extent;
 
 /// The mapping of one frame, pattern and block.
@@ -85,7 +85,7 @@ impl MappingParams {
 
     /// Which of the n * m subsets shades a pixel: 0..n*m, row-major inside the pattern.
     pub fn subset_of(&self, pixel: [u32; 2]) -> u32 {
-        pattern::subset_of([self.pattern_x, self.pattern_y], pixel)
+        grid::subset_of([self.pattern_x, self.pattern_y], pixel)
     }
 
     /// Split in one pass: pixel (x, y) goes to (x / n, y / m) of sub-buffer (x mod n, y mod m).
@@ -169,6 +169,7 @@ fn spread(length: u32, pattern: u32) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::pattern::{Pattern, Sample};
     use proptest::prelude::*;
     use std::collections::HashSet;
 
@@ -183,6 +184,18 @@ mod tests {
     }
 
     proptest! {
+        /// The shaders' arithmetic deals pixels out as the host's pattern does.
+        #[test]
+        fn subsets_are_those_of_the_grid(mapping in any_mapping()) {
+            let grid = Pattern::grid([mapping.pattern_x, mapping.pattern_y]);
+            prop_assert_eq!(grid.subset_count(), mapping.subset_count());
+            for pixel in places(mapping.padded()) {
+                prop_assert_eq!(grid.subset_of(pixel), Some(mapping.subset_of(pixel)));
+            }
+            let first = |(pixel, sample): ([u32; 2], &Sample)| mapping.pixel_of_texel([0, 0, sample.subset]) == pixel;
+            prop_assert!(grid.placed().all(first));
+        }
+
         #[test]
         fn split_then_gather_is_the_identity(mapping in any_mapping()) {
             let mut texels = HashSet::new();

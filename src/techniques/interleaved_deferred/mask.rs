@@ -8,7 +8,7 @@ use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline, StencilUse};
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::mask::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Commands, Gpu, Image, Traffic};
+use crate::gpu::{Access, AccessSet, Barrier, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -60,7 +60,19 @@ pub struct Mask {
     pipeline: GraphicsPipeline,
 }
 
+impl Edge<'_, Mask> {
+    /// Barrier of a pass that tests the mask.
+    pub fn to(self, access: Access) -> Barrier {
+        self.resource.image.from(self.from).to(access)
+    }
+}
+
 impl Mask {
+    /// Names the access that touched it last.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, kind: MaskKind) -> Result<Self> {
         let description = GraphicsDescription {
             depth_format: Some(kind.format()),

@@ -46,17 +46,18 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
-use crate::passes::blend::{self, BlendLights};
+use crate::passes::blend::{self, BlendLights, SolidPicture};
+use crate::passes::cull::CullLights;
 use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
-use crate::plan::{Plan, Resources};
+use crate::plan::Plan;
 use crate::resident::SceneGpu;
 use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -94,10 +95,6 @@ impl Technique for InterleavedDeferred {
 
     fn aovs(&self) -> &'static [&'static str] {
         aov::AOVS
-    }
-
-    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Result<Vec<(&'static str, String)>> {
-        Ok(aov::left_out(&Choices::new(inputs)?, inputs.values))
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
@@ -140,117 +137,89 @@ impl Technique for InterleavedDeferred {
         Ok(settings)
     }
 
-    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        let choices = Choices::new(inputs)?;
-        let blended = blended(inputs, &direct_lights(&choices, inputs))?;
-        plan::plan(&choices, inputs, &blended)
-    }
-
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
-        let values = inputs.values;
-        let emissive = match values.text("emissive") {
+        let mut direct_lights = direct::light_blocks(inputs.lights, inputs.values);
+        direct_lights.truncate(choices.direct_count as usize);
+        let blended = blend::lists(inputs.scene, &direct_lights, inputs.values, inputs.caps)?;
+        let emissive = match inputs.values.text("emissive") {
             "auto" => !inputs.lights.has_punctual,
             text => text == "on",
         };
+        // What lights reach in one frame of an animation, they reach in all of them.
+        let vpl_clamp_m = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
+        Ok(Box::new(PreparedInterleaved { choices, direct_lights, blended, emissive, vpl_clamp_m }))
+    }
+}
+
+struct PreparedInterleaved {
+    choices: Choices,
+    /// The scene's own lights that a frame has.
+    direct_lights: Vec<LightBlock>,
+    /// The lists of what blends.
+    blended: ObjectLists,
+    /// Light walks start on emissive surfaces too.
+    emissive: bool,
+    /// Least distance at which a virtual point light is evaluated.
+    vpl_clamp_m: f32,
+}
+
+impl Prepared for PreparedInterleaved {
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&self.choices, inputs, &self.blended)
+    }
+
+    fn stages_left_out(&self, inputs: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        aov::left_out(&self.choices, inputs.values)
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let mut resolved = self.choices.resolved();
+        resolved.insert("emissive", if self.emissive { "on" } else { "off" }.to_owned());
+        resolved.insert("vpl-clamp", format!("{}", self.vpl_clamp_m));
+        resolved
+    }
+
+    fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart> {
+        let Self { choices, direct_lights, blended, emissive, vpl_clamp_m } = *self;
         let walk = vpl::Walk {
             count: choices.vpl_count,
-            bounces: values.integer("vpl-bounces") as u32,
+            bounces: inputs.values.integer("vpl-bounces") as u32,
             emissive,
-            seed: values.integer("seed") as u32,
+            seed: inputs.values.integer("seed") as u32,
         };
         let bvh = inputs.bvh.over(inputs.scene)?;
         let started = Instant::now();
         let found = vpl::walk(inputs.scene, bvh, &inputs.lights.lights, &walk);
         let walk_ns = started.elapsed().as_nanos() as u64;
-        let direct_lights = direct_lights(&choices, inputs);
         let joined: &[LightBlock] = if choices.direct_interleaved { &direct_lights } else { &[] };
         // The order depends on the pattern: dealt for the whole, then cut.
-        let bounds = inputs.scene.bounds();
-        let lights = SubsetLights {
+        let subsets = SubsetLights {
             subsets: choices.subsets(),
-            lights: subsets::dealt(joined, &bounds, choices.direct_subset_count()),
+            lights: subsets::dealt(joined, &inputs.scene.bounds(), choices.direct_subset_count()),
             vpls: found.vpls,
         };
-        let clamp = values.length("vpl-clamp", bounds.diagonal());
-        let mut resolved = choices.resolved();
-        resolved.insert("emissive", if emissive { "on" } else { "off" }.to_owned());
-        resolved.insert("vpl-clamp", format!("{clamp}"));
-        Ok(Box::new(PreparedInterleaved {
-            blended: blended(inputs, &direct_lights)?,
-            choices,
-            lights,
-            direct_lights,
-            walk_ns,
-            walk_count: found.walk_count,
-            found_count: found.found_count,
-            resolved,
-        }))
-    }
-}
-
-/// The scene's own lights that a frame has.
-fn direct_lights(choices: &Choices, inputs: &Inputs<'_>) -> Vec<LightBlock> {
-    let mut lights = direct::light_blocks(inputs.lights, inputs.values);
-    lights.truncate(choices.direct_count as usize);
-    lights
-}
-
-/// The lists of what blends.
-fn blended(inputs: &Inputs<'_>, direct_lights: &[LightBlock]) -> Result<ObjectLists> {
-    blend::lists(inputs.scene, direct_lights, inputs.values, inputs.caps)
-}
-
-struct PreparedInterleaved {
-    choices: Choices,
-    lights: SubsetLights,
-    direct_lights: Vec<LightBlock>,
-    blended: ObjectLists,
-    walk_ns: u64,
-    walk_count: u32,
-    found_count: u32,
-    resolved: BTreeMap<&'static str, String>,
-}
-
-impl Prepared for PreparedInterleaved {
-    fn host_passes(&self) -> Vec<(String, u64)> {
-        vec![(format!("{NAME}.vpls"), self.walk_ns)]
-    }
-
-    fn counters(&self) -> BTreeMap<&'static str, f64> {
         let mean = |count: usize, subset_count: u32| count as f64 / f64::from(subset_count);
-        let vpls = mean(self.lights.vpls.len(), self.choices.subset_count());
-        let joined = mean(self.lights.lights.len(), self.choices.direct_subset_count());
+        let vpls = mean(subsets.vpls.len(), choices.subset_count());
+        let joined = mean(subsets.lights.len(), choices.direct_subset_count());
         let mut counters = BTreeMap::from([
-            ("lights", self.direct_lights.len() as f64),
-            ("vpls", self.lights.vpls.len() as f64),
-            ("vpls_found", f64::from(self.found_count)),
-            ("light_walks", f64::from(self.walk_count)),
-            ("shaded_pixels", self.choices.shaded_pixel_count() as f64),
+            ("lights", direct_lights.len() as f64),
+            ("vpls", subsets.vpls.len() as f64),
+            ("vpls_found", f64::from(found.found_count)),
+            ("light_walks", f64::from(found.walk_count)),
+            ("shaded_pixels", choices.shaded_pixel_count() as f64),
             ("subset_lights_per_pixel", vpls + joined),
         ]);
-        counters.extend(blend::counters(&self.blended));
-        counters
-    }
-
-    fn resolved(&self) -> BTreeMap<&'static str, String> {
-        self.resolved.clone()
-    }
-
-    fn light_counts(&self) -> [u32; 2] {
-        [self.direct_lights.len() as u32, self.lights.vpls.len() as u32]
-    }
-
-    fn build(
-        self: Box<Self>,
-        gpu: &Arc<Gpu>,
-        inputs: &Inputs<'_>,
-        scene: &SceneGpu,
-        resources: &mut Resources,
-    ) -> Result<Box<dyn Frame>> {
-        let Self { choices, lights, direct_lights, blended, .. } = *self;
-        let lights = FrameLights { subsets: &lights, direct: &direct_lights, blended: &blended };
-        Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights)?))
+        counters.extend(blend::counters(&blended));
+        Ok(HostPart {
+            passes: vec![(format!("{NAME}.vpls"), walk_ns)],
+            counters,
+            light_counts: [direct_lights.len() as u32, subsets.vpls.len() as u32],
+            build: Box::new(move |gpu, inputs, scene, resources| {
+                let lights = FrameLights { subsets: &subsets, direct: &direct_lights, blended: &blended, vpl_clamp_m };
+                Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights)?))
+            }),
+        })
     }
 }
 
@@ -260,7 +229,7 @@ impl Frame for InterleavedFrame {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
         let mut surface = AccessSet::from(Access::ColorWrite);
         if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
-            let lights = (&self.direct.lights, self.direct.light_count);
+            let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
             cull.record(cmd, NAME, gbuffer.from(surface), frame, lights, masks)?;
             surface = surface.after(Access::ComputeSample);
         }
@@ -293,8 +262,9 @@ impl Frame for InterleavedFrame {
                 lists,
                 shadow_maps: None,
             };
-            let picture = self.color.from(Access::ComputeWrite);
-            blend.record(cmd, NAME, frame, scene, &lights, gbuffer.depth_edge(surface), picture)?;
+            let solid =
+                SolidPicture { depth: gbuffer.depth_edge(surface), color: self.color.from(Access::ComputeWrite) };
+            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
         }
         Ok(())
     }

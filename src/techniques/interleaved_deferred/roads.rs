@@ -7,7 +7,7 @@ use super::rendered::Rendered;
 use super::road::{Copies, Road};
 use super::shade::ShadeGpu;
 use super::shade::branch::ShadeBranch;
-use super::shade::masked::ShadeMasked;
+use super::shade::masked::{Masked, ShadeMasked};
 use super::shade::strided::{Dispatches, ShadeStrided};
 use super::shade::sub_buffers::ShadeSubBuffers;
 use super::shade::subsample::ShadeSubsample;
@@ -154,7 +154,8 @@ impl Roads {
             }
             Self::Masked { mask, shade, irradiance } => {
                 mask.record(cmd, mapping)?;
-                shade.record(cmd, frame, lights, direct, gbuffer, mask, irradiance)?;
+                let masked = Masked { mask: mask.from(Access::DepthWrite), irradiance };
+                shade.record(cmd, frame, lights, direct, gbuffer, masked)?;
                 (irradiance, Access::TransferWrite, Stage::Fragment)
             }
             Self::SubBuffers(SubBuffers { copies, split, surface, shade, shaded, gather, gathered }) => {

@@ -12,10 +12,10 @@ pub const SETTINGS: &[Setting] = &[
         unit: "px",
         paper: "Segovia 2006, 3",
         help: "Size of the interleaved pattern; each of its pixels has a light subset of its own",
+        ..Setting::ROW
     },
     Setting {
         key: "split",
-        symbol: "",
         kind: Kind::Choice(&[
             "none",
             "subsample",
@@ -31,7 +31,6 @@ pub const SETTINGS: &[Setting] = &[
             "fragment",
         ]),
         default: "one-pass",
-        unit: "",
         paper: "Segovia 2006, 3.1-3.3, 4.2",
         help: "How pixels get the light subset of their place in the pattern. Without subsets: every light on every \
                pixel (none), or all lights at one pixel of each pattern (subsample). Without a copy: one draw for each \
@@ -40,26 +39,25 @@ pub const SETTINGS: &[Setting] = &[
                all (remap). With a copy into n x m sub-buffers and back: in one pass (one-pass), in two passes by \
                blocks (two-pass), through workgroup memory (tile), into the layers of an image (layered), or by \
                fragment programs and look-up textures (fragment)",
+        ..Setting::ROW
     },
     Setting {
         key: "storage",
-        symbol: "",
-        kind: Kind::Choice(&["auto", "buffer", "image"]),
+        kind: Kind::Choice(&["buffer", "image"]),
+        auto: true,
         default: "auto",
-        unit: "",
         paper: "Segovia 2006, figure 3",
         help: "Where sub-buffers lie: in storage buffers, two texels a thread, or tiled in images; auto: images where \
                --split knows nothing else, otherwise buffers on software drivers and images elsewhere",
+        ..Setting::ROW
     },
     Setting {
         key: "copy",
-        symbol: "",
         kind: Kind::Choice(&["pull", "push"]),
         default: "pull",
-        unit: "",
-        paper: "",
         help: "What a thread of a copy stands for: a texel that it writes (pull) or a texel that it reads (push), or a \
                pair of such texels in buffers",
+        ..Setting::ROW
     },
     Setting {
         key: "block",
@@ -70,127 +68,119 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 3.3",
         help: "Size of a block for --split two-pass and tile, and for fragment in two passes; rounded up to whole \
                patterns",
+        ..Setting::ROW
     },
     Setting {
         key: "fragment-passes",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 2 },
         default: "2",
-        unit: "",
         paper: "Segovia 2006, 3.2, 4.2",
         help: "Passes of --split fragment: 1 uses one look-up texture, 2 splits into blocks and then translates the \
                blocks",
+        ..Setting::ROW
     },
     Setting {
         key: "vpls",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 65_536 },
         default: "256",
-        unit: "",
         paper: "Segovia 2006, 6",
         help: "Number of virtual point lights, made by Instant Radiosity",
+        ..Setting::ROW
     },
     Setting {
         key: "vpl-bounces",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 16 },
         default: "1",
-        unit: "",
         paper: "Segovia 2006, 6.2",
         help: "Most surfaces that one light walk lands on",
+        ..Setting::ROW
     },
     VPL_CLAMP,
     EMISSIVE,
     Setting {
         key: "direct",
-        symbol: "",
         kind: Kind::Choice(&["full", "interleaved", "none"]),
         default: "full",
-        unit: "",
         paper: "Segovia 2006, 4.6",
         help: "How the scene's own lights are shaded: on every pixel by --brdf (full), in the subsets as diffuse light \
                (interleaved), or not at all (none)",
+        ..Setting::ROW
     },
     Setting {
         key: "blend-lights",
-        symbol: "",
         kind: Kind::Choice(&["subset", "all"]),
         default: "subset",
-        unit: "",
-        paper: "",
         help: "Virtual point lights that shade BLEND surfaces, which no filter smooths: those of the pixel's subset, \
                or all",
+        ..Setting::ROW
     },
     Setting {
         key: "direct-pattern",
         symbol: "i x j",
-        kind: Kind::PairOrAuto { min: 1, max: 64 },
+        kind: Kind::Pair { min: 1, max: 64 },
+        auto: true,
         default: "auto",
         unit: "px",
         paper: "Segovia 2006, 4.6",
         help: "Pattern of the scene's own lights with --direct interleaved; it divides --pattern and is made of \
                clusters of its sub-buffers; with fewer pixels to share the lights, each has more of them; auto: \
                --pattern",
+        ..Setting::ROW
     },
     Setting {
         key: "filter",
-        symbol: "",
         kind: Kind::Choice(&["gauss", "gauss-fast", "none"]),
         default: "gauss",
-        unit: "",
         paper: "Segovia 2006, 4.5",
         help: "Filter of the interleaved irradiance; a picture that is not interleaved (--split none, or pattern 1x1) \
                is not filtered",
+        ..Setting::ROW
     },
     Setting {
         key: "kernel",
-        symbol: "",
         kind: Kind::Integer { min: 5, max: 17 },
         default: "5",
         unit: "px",
         paper: "Segovia 2006, tables 2 and 3",
         help: "Taps of the filter in one direction, an odd number",
+        ..Setting::ROW
     },
     Setting {
         key: "fuse",
-        symbol: "",
         kind: Kind::Choice(&["off", "on"]),
         default: "off",
-        unit: "",
-        paper: "",
         help: "Merge passes of --filter gauss: the composite runs over the filter's columns, and a one-pass gather \
                that pulls over its rows; the same pixels with fewer passes, and fewer stages to time and to look at",
+        ..Setting::ROW
     },
     Setting {
         key: "sigma",
-        symbol: "",
         kind: Kind::Number { min: 0.0, max: 64.0 },
         default: "0",
         unit: "px",
-        paper: "",
         help: "Standard deviation of the filter; 0: a third of the kernel, which weighs the pixels of a 4x4 pattern \
                most evenly",
+        ..Setting::ROW
     },
     Setting {
         key: "discontinuity",
-        symbol: "",
         kind: Kind::Choice(&["directional", "any"]),
         default: "directional",
-        unit: "",
         paper: "Segovia 2006, 4.5",
         help: "Discontinuity at which the filter stops: one in the direction of the filter (directional), or one in \
                any of the three directions (any, the paper's single flag, which leaves pixels along an edge \
                unfiltered)",
+        ..Setting::ROW
     },
     NORMAL_THRESHOLD,
     Setting {
         key: "position-threshold",
-        symbol: "",
         kind: Kind::Length,
         default: "0.5%",
         unit: "m",
         paper: "Segovia 2006, 4.5",
         help: "Distance from a pixel's tangent plane above which a neighbour lies across a discontinuity",
+        ..Setting::ROW
     },
 ];
 

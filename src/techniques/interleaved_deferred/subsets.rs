@@ -7,21 +7,22 @@
 //! such order: they are sorted along a curve through the scene and dealt out like cards.
 
 use crate::gpu::shader::structs::{LightBlock, SubsetBlock};
+use crate::sampling::pattern::Pattern;
 use crate::scene::Bounds;
 use glam::{Vec3, Vec4};
 
-/// Stretches of the two lists for each of the n * m sub-buffers, row-major inside the pattern.
+/// Stretches of the two lists for each of the n * m sub-buffers, in the order of the subsets of `pattern`.
 ///
-/// `direct_pattern` divides `pattern`. Virtual lights give their odd ones to the first subsets, punctual lights to the last,
+/// `direct_pattern` divides `pattern`: both are grids. Virtual lights give their odd ones to the first subsets, punctual lights to the last,
 /// so that with one pattern for both the sums differ by at most one too.
-pub fn subsets(pattern: [u32; 2], direct_pattern: [u32; 2], vpl_count: u32, light_count: u32) -> Vec<SubsetBlock> {
-    let ([n, m], [i, j]) = (pattern, direct_pattern);
-    assert!(n.is_multiple_of(i) && m.is_multiple_of(j), "{direct_pattern:?} does not divide {pattern:?}");
-    let vpl_odd = vpl_count % (n * m);
-    let vpls = stretches(n * m, |subset| vpl_count / (n * m) + u32::from(subset < vpl_odd));
-    let lights = light_stretches(i * j, light_count);
-    let places = (0..m).flat_map(|y| (0..n).map(move |x| [x, y]));
-    let clusters = places.map(|[x, y]| lights[(y % j * i + x % i) as usize]);
+pub fn subsets(pattern: &Pattern, direct_pattern: &Pattern, vpl_count: u32, light_count: u32) -> Vec<SubsetBlock> {
+    let [[n, m], [i, j]] = [pattern, direct_pattern].map(Pattern::period_px);
+    assert!(n.is_multiple_of(i) && m.is_multiple_of(j), "{i}x{j} does not divide {n}x{m}");
+    let (count, lights) = (pattern.subset_count(), light_stretches(direct_pattern.subset_count(), light_count));
+    let vpl_odd = vpl_count % count;
+    let vpls = stretches(count, |subset| vpl_count / count + u32::from(subset < vpl_odd));
+    let cluster = |pixel| direct_pattern.subset_of(pixel).expect("a pixel of a grid uses one subset");
+    let clusters = pattern.placed().map(|(pixel, _)| lights[cluster(pixel) as usize]);
     vpls.into_iter()
         .zip(clusters)
         .map(|([vpl_first, vpl_count], [light_first, light_count])| SubsetBlock {
@@ -107,7 +108,7 @@ mod tests {
     proptest! {
         #[test]
         fn every_light_is_in_one_subset((pattern, direct) in any_patterns(), vpls in 0u32..500, lights in 0u32..200) {
-            let blocks = subsets(pattern, direct, vpls, lights);
+            let blocks = subsets(&Pattern::grid(pattern), &Pattern::grid(direct), vpls, lights);
             let of_vpls: Vec<_> = blocks.iter().map(|block| [block.vpl_first, block.vpl_count]).collect();
             require_whole(&of_vpls, vpls)?;
             // The first i * j places are one of each cluster.
@@ -126,7 +127,8 @@ mod tests {
 
         #[test]
         fn with_one_pattern_the_sums_differ_by_at_most_one(n in 1u32..9, m in 1u32..9, vpls in 0u32..500, lights in 0u32..200) {
-            let blocks = subsets([n, m], [n, m], vpls, lights);
+            let grid = Pattern::grid([n, m]);
+            let blocks = subsets(&grid, &grid, vpls, lights);
             let sizes = || blocks.iter().map(|block| block.vpl_count + block.light_count);
             prop_assert!(sizes().max().unwrap() - sizes().min().unwrap() <= 1);
         }

@@ -43,7 +43,7 @@ pub mod sample;
 pub mod settings;
 
 use super::closing::Closing;
-use super::{Frame, Inputs, Prepared, Sums, Technique};
+use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
 use crate::caps::{Ability, Caps, Need};
@@ -65,7 +65,7 @@ use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
-use sample::{Choices, SUM_BYTES, Sample};
+use sample::{Choices, PathLights, PathTree, SUM_BYTES, Sample};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -107,24 +107,6 @@ impl Technique for PathTraced {
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
-    }
-
-    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        Air::new(inputs)?;
-        let bvh = inputs.bvh.whole(inputs.scene)?;
-        let sources = Sources::new(inputs, bvh)?;
-        let mut plan = Plan::default();
-        layout(inputs, bvh)?.plan(&mut plan, NAME, inputs.requirements)?;
-        let of = |count: usize, size: usize| count as u64 * size as u64;
-        let light_count = sources.all_lights().count();
-        plan.buffer("lights", format!("{NAME}.lights"), of(light_count, size_of::<LightBlock>()));
-        plan.buffer("lights", format!("{NAME}.sources"), of(sources.all().len(), size_of::<SourceBlock>()));
-        let frame_count = usize::from(sources.closing.is_some());
-        plan.buffer("frame", format!("{NAME}.frame.closing"), of(frame_count, size_of::<FrameBlock>()));
-        plan.buffer("accumulation", SUMS, inputs.view.extent.pixel_count() * SUM_BYTES);
-        plan.picture(COLOR, inputs.view.extent);
-        plan.pass(format!("{NAME}.sample"), [(COLOR.to_owned(), Access::ComputeWrite)]);
-        Ok(plan)
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
@@ -261,15 +243,20 @@ struct PreparedPaths {
 }
 
 impl Prepared for PreparedPaths {
-    fn host_passes(&self) -> Vec<(String, u64)> {
-        Vec::new()
-    }
-
-    fn counters(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::from([
-            ("lights", self.sources.lights.lights.len() as f64),
-            ("emitters", self.sources.emitter_count() as f64),
-        ])
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        let sources = &self.sources;
+        let mut plan = Plan::default();
+        self.layout.plan(&mut plan, NAME, inputs.requirements)?;
+        let of = |count: usize, size: usize| count as u64 * size as u64;
+        let light_count = sources.all_lights().count();
+        plan.buffer("lights", format!("{NAME}.lights"), of(light_count, size_of::<LightBlock>()));
+        plan.buffer("lights", format!("{NAME}.sources"), of(sources.all().len(), size_of::<SourceBlock>()));
+        let frame_count = usize::from(sources.closing.is_some());
+        plan.buffer("frame", format!("{NAME}.frame.closing"), of(frame_count, size_of::<FrameBlock>()));
+        plan.buffer("accumulation", SUMS, inputs.view.extent.pixel_count() * SUM_BYTES);
+        plan.picture(COLOR, inputs.view.extent);
+        plan.pass(format!("{NAME}.sample"), [(COLOR.to_owned(), Access::ComputeWrite)]);
+        Ok(plan)
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -288,17 +275,23 @@ impl Prepared for PreparedPaths {
         resolved
     }
 
-    fn light_counts(&self) -> [u32; 2] {
-        [self.sources.lights.lights.len() as u32, 0]
+    fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
+        let light_count = self.sources.lights.lights.len();
+        Ok(HostPart {
+            passes: Vec::new(),
+            counters: BTreeMap::from([
+                ("lights", light_count as f64),
+                ("emitters", self.sources.emitter_count() as f64),
+            ]),
+            light_counts: [light_count as u32, 0],
+            build: Box::new(move |gpu, inputs, _, resources| self.build(gpu, inputs, resources)),
+        })
     }
+}
 
-    fn build(
-        self: Box<Self>,
-        gpu: &Arc<Gpu>,
-        inputs: &Inputs<'_>,
-        _: &SceneGpu,
-        resources: &mut Resources,
-    ) -> Result<Box<dyn Frame>> {
+impl PreparedPaths {
+    /// The frame on the device.
+    fn build(self, gpu: &Arc<Gpu>, inputs: &Inputs<'_>, resources: &mut Resources) -> Result<Box<dyn Frame>> {
         let bvh = inputs.bvh.whole(inputs.scene)?;
         let mut lights = direct::light_blocks(&self.sources.lights, inputs.values);
         if let Some(closing) = &self.sources.closing {
@@ -308,12 +301,13 @@ impl Prepared for PreparedPaths {
         let density_of =
             |material: &Material| self.sources.emitters.as_ref().map_or(0.0, |emitters| emitters.density_of(material));
         let (sources, layout) = (self.sources.all(), &self.layout);
-        let lit = (&lights[..], &sources[..], &closing[..]);
+        let lights = PathLights { blocks: &lights, sources: &sources, closing: &closing };
         let mut tree = vec![("triangles_traced", bvh.sources.len() as f64)];
         if let Some(nodes) = layout.nodes() {
             tree.extend([("tree_nodes", nodes.count() as f64), ("stack_entries", nodes.stack_entries().into())]);
         }
-        let sample = Sample::new(gpu, inputs, resources, &self.choices, lit, (bvh, layout), density_of)?;
+        let sample =
+            Sample::new(gpu, inputs, resources, &self.choices, &lights, &PathTree { bvh, layout }, density_of)?;
         Ok(Box::new(PathFrame {
             sample,
             sample_count: self.sample_count,

@@ -45,6 +45,21 @@ pub struct Choices {
     pub params: SampleParams,
 }
 
+/// The lights that paths find, as buffers hold them.
+pub struct PathLights<'a> {
+    /// When the shutter opens, and behind them when it closes, where the scene moves.
+    pub blocks: &'a [LightBlock],
+    pub sources: &'a [SourceBlock],
+    /// The frame's numbers when the shutter closes, where the scene moves.
+    pub closing: &'a [FrameBlock],
+}
+
+/// What rays meet.
+pub struct PathTree<'a> {
+    pub bvh: &'a Bvh,
+    pub layout: &'a Layout,
+}
+
 pub struct Sample {
     pipeline: ComputePipeline,
     params: SampleParams,
@@ -64,10 +79,11 @@ impl Sample {
         inputs: &Inputs<'_>,
         resources: &mut Resources,
         choices: &Choices,
-        (lights, sources, closing): (&[LightBlock], &[SourceBlock], &[FrameBlock]),
-        (bvh, layout): (&Bvh, &Layout),
+        lights: &PathLights<'_>,
+        tree: &PathTree<'_>,
         density_of: impl Fn(&crate::scene::Material) -> f32,
     ) -> Result<Self> {
+        let PathTree { bvh, layout } = *tree;
         let alpha = if choices.is_tested { "tested" } else { "opaque" };
         let own = [
             ("WORKGROUP_X", choices.workgroup[0]),
@@ -98,9 +114,9 @@ impl Sample {
             pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha, layout.variant()]), &constants)?,
             params: choices.params,
             traced,
-            lights: filled("lights", bytemuck::cast_slice(lights))?,
-            sources: filled("sources", bytemuck::cast_slice(sources))?,
-            closing: filled("frame.closing", bytemuck::cast_slice(closing))?,
+            lights: filled("lights", bytemuck::cast_slice(lights.blocks))?,
+            sources: filled("sources", bytemuck::cast_slice(lights.sources))?,
+            closing: filled("frame.closing", bytemuck::cast_slice(lights.closing))?,
             sums: resources.buffer(SUMS),
             color: resources.image(COLOR),
         })

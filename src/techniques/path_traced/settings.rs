@@ -17,115 +17,97 @@ pub fn until_error(values: &Values) -> Option<f64> {
 /// Paths a pixel, at most where `until_error` ends them.
 pub fn sample_count(values: &Values) -> u32 {
     let auto = if until_error(values).is_some() { MOST_SAMPLES } else { DEFAULT_SAMPLES };
-    values.integer_or_auto("spp").map_or(auto, |count| count as u32)
+    values.unless_auto("spp", Values::integer).map_or(auto, |count| count as u32)
 }
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "spp",
-        symbol: "",
-        kind: Kind::IntegerOrAuto { min: 1, max: MOST_SAMPLES as u64 },
+        kind: Kind::Integer { min: 1, max: MOST_SAMPLES as u64 },
+        auto: true,
         default: "auto",
-        unit: "",
-        paper: "",
         help: "Paths a pixel, one each time the frame is run; with --until-error, the most; auto: 64, with \
                --until-error 65536",
+        ..Setting::ROW
     },
     Setting {
         key: "until-error",
-        symbol: "",
         kind: Kind::Number { min: 0.0, max: 1.0 },
         default: "0",
-        unit: "",
-        paper: "",
         help: "Estimated relative standard error of the pixels (root of the mean square) at which rendering stops, if \
                --spp is not reached before; 0: never, all of --spp is used",
+        ..Setting::ROW
     },
     Setting {
         key: "transport",
-        symbol: "",
         kind: Kind::Choice(&["direct", "one-bounce", "single-scatter", "full"]),
         default: "full",
-        unit: "",
-        paper: "",
         help: "Light that is counted: what reaches the visible surfaces straight from lights (direct), or by one \
                surface more too (one-bounce); what is scattered once, by a surface or by --medium (single-scatter); or \
                what is scattered by either as often as --bounces says (full). The first two are dimmed by --medium, \
                and lose what it scatters",
+        ..Setting::ROW
     },
     Setting {
         key: "bounces",
-        symbol: "",
         kind: Kind::Integer { min: 1, max: 64 },
         default: "16",
-        unit: "",
-        paper: "",
         help: "Most surfaces, or places of --medium, that scatter a path with --transport full; from the fourth on it \
                may end by chance, unbiased",
+        ..Setting::ROW
     },
     Setting {
         key: "light-visibility",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
-        paper: "",
         help: "Whether the scene's own lights cast shadows; off: they shine through everything",
+        ..Setting::ROW
     },
     Setting {
         key: "vpl-visibility",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
         paper: "Segovia 2006, 6.2",
         help: "Whether light between surfaces is stopped by what stands between them; off: the light that infinitely \
                many virtual point lights without shadows would give, diffuse and with --vpl-clamp, from a separate \
                light walk for each pixel",
+        ..Setting::ROW
     },
     Setting {
         key: "ambient-visibility",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
-        paper: "",
         help: "Light surfaces from all around by --ambient and --background, as light that other surfaces stop and \
                scatter; off: as in all other techniques, each visible surface reflects all of --ambient, which goes no \
                further, and --background is seen but lights nothing",
+        ..Setting::ROW
     },
     Setting {
         key: "punctual",
-        symbol: "",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
-        unit: "",
-        paper: "",
         help: "Whether point, spot and directional lights shine; off: emissive triangles light the scene even where \
                --emissive is auto",
+        ..Setting::ROW
     },
     Setting {
         key: "rays",
-        symbol: "",
         kind: Kind::Choice(&["tree", "query"]),
         default: "tree",
-        unit: "",
-        paper: "",
         help: "What rays are traced through: a tree built by this program and walked by the shader (tree); or the \
                driver's own acceleration structure, by ray queries, where the device has them (query). The same \
                picture, except for rays that graze an edge",
+        ..Setting::ROW
     },
     Setting {
         key: "texture-level",
-        symbol: "",
         kind: Kind::Choice(&["0", "cone"]),
         default: "0",
-        unit: "",
-        paper: "",
         help: "Mip level of textures that rays read: 0, the finest, which the paths of a pixel average; or the one \
                whose texels are as wide as the ray's cone, which needs fewer paths, blurs surfaces seen at a slant, \
                and takes a third more memory",
+        ..Setting::ROW
     },
     APERTURE,
     FOCUS,

@@ -2,10 +2,10 @@
 // compact geometry buffer. Pass: src/techniques/deep_shading/indirect/gbuffer.rs.
 // variants: VERTEX=plain|extended VISIBILITY=interleaved|stochastic
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
-#include "techniques/deep_shading/again.glsl"
+#include "techniques/deep_shading/redraw.glsl"
 #include "techniques/deep_shading/counters.glsl"
 #include "techniques/deep_shading/indirect/pointers.glsl"
 
@@ -15,7 +15,7 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 layout(set = 0, binding = 27) uniform usampler2DArray spids;
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 layout(std430, set = 0, binding = 34) writeonly buffer Pointers { uint pointers[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 WRITES_WORDS(set_pointer, pointers)
 
 #define ENTRY_ACCESS writeonly

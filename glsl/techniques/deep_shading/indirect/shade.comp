@@ -1,7 +1,7 @@
 // All entries of the compact geometry buffer, each once. Pass: src/techniques/deep_shading/indirect/shade.rs.
 // variants: SHADOWS=traced|mapped
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "frame.glsl"
 #include "bvh.glsl"
 #include "loops.glsl"
@@ -25,7 +25,7 @@ layout(std430, set = 0, binding = 6) readonly buffer BvhTriangles { BvhTriangleB
 layout(std430, set = 0, binding = 17) readonly buffer Middle { FrameBlock frame; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 WRITES_PAIRS(set_color, colors)
 
 #define ENTRY_ACCESS readonly

@@ -1,7 +1,7 @@
 // Where each sample's colour will be, looked up once, after compaction has moved them (section 4.3: the indirect frame
 // buffer). Pass: src/techniques/deep_shading/lists/address.rs.
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 
 layout(local_size_x = 64) in;
@@ -12,7 +12,7 @@ layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 layout(std430, set = 0, binding = 24) writeonly buffer Addresses { uint addresses[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 
 READS_WORDS(begin_of, begins)
 READS_PAIRS(node_of, nodes)

@@ -1,7 +1,7 @@
 // Each list sorted and without what stands in it again; the first ids in a row (section 4.3). A thread has a list to itself.
 // Pass: src/techniques/deep_shading/lists/compact.rs.
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -13,7 +13,7 @@ layout(std430, set = 0, binding = 21) buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 23) buffer Linear { uint linear[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 
 READS_WORDS(begin_of, begins)
 WRITES_WORDS(set_begin, begins)

@@ -2,7 +2,7 @@
 // Pass: src/techniques/deep_shading/lists/insert.rs.
 // variants: ZMAX=off|on ADDRESSES=off|on MARKS=off|on
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
 
@@ -26,7 +26,7 @@ layout(std430, set = 0, binding = 20) coherent buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) coherent buffer Nodes { uvec2 nodes[]; };
 layout(std430, set = 0, binding = 22) writeonly buffer Colors { uvec2 colors[]; };
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 #ifdef ADDRESSES_ON
 layout(std430, set = 0, binding = 24) writeonly buffer Addresses { uint addresses[]; };
 WRITES_WORDS(set_address, addresses)

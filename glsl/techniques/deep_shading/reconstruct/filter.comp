@@ -2,7 +2,7 @@
 // behind it hides; layers are put over each other from front to back. What has no blur keeps the mean of its pixel's samples.
 // Pass: src/techniques/deep_shading/reconstruct/filter.rs.
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/reconstruct/blur.glsl"
@@ -19,7 +19,7 @@ layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 34) readonly buffer SampleColors { uvec2 sample_colors[]; };
 layout(std430, set = 0, binding = 35) readonly buffer SampleVectors { uvec2 sample_vectors[]; };
 layout(std430, set = 0, binding = 36) readonly buffer Tiles { TileBlock tiles[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 layout(set = 0, binding = 29, rgba32f) readonly uniform image2D resolved;
 layout(set = 0, binding = 30, rgba32f) writeonly uniform image2D color;
 

@@ -1,7 +1,7 @@
 // The depths at which the surfaces in and around a tile are parted into layers, each filtered by itself: between layers blur
 // differs, within a layer as little as four allow. Pass: src/techniques/deep_shading/reconstruct/layers.rs.
 #version 460
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "frame.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/reconstruct/blur.glsl"
@@ -25,7 +25,7 @@ layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 34) readonly buffer SampleColors { uvec2 sample_colors[]; };
 layout(std430, set = 0, binding = 35) readonly buffer SampleVectors { uvec2 sample_vectors[]; };
 layout(std430, set = 0, binding = 36) writeonly buffer Tiles { TileBlock tiles[]; };
-layout(std430, set = 0, binding = 39) readonly buffer Reach { ReachBlock reach; };
+layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
 
 READS_PAIRS(colors_of, sample_colors)
 READS_PAIRS(vectors_of, sample_vectors)

@@ -4,7 +4,7 @@
 // variants: FETCH=own|address|linked|compact
 #version 460
 #define DRAW_OF_TRIANGLE
-#include "techniques/deep_shading/reach.glsl"
+#include "techniques/deep_shading/buffer_addresses.glsl"
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"

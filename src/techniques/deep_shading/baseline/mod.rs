@@ -16,7 +16,7 @@ use super::choices::Choices;
 use super::stereo;
 use super::visibility;
 use super::visibility::repeat_frame;
-use super::visibility::sample::{Sample, Sets};
+use super::visibility::sample::{PipelineSets, TupleDraws};
 use crate::caps::Need;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -34,8 +34,8 @@ use crate::techniques::deep_shading::modes::pass_samples;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::resources;
 use crate::techniques::deep_shading::resources::{COUNTERS, DEPTH_FORMAT, full};
-use crate::techniques::deep_shading::visibility::draw::Stages;
-use crate::techniques::deep_shading::visibility::samples::{Drawn, begin_counters};
+use crate::techniques::deep_shading::visibility::draw::SampleStages;
+use crate::techniques::deep_shading::visibility::samples::{DrawInputs, begin_counters};
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
 use std::collections::BTreeMap;
@@ -96,7 +96,7 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
 }
 
 pub struct Baseline {
-    sample: Sample,
+    sample: TupleDraws,
     pub colors: Image,
     depth: Image,
     /// Texels are fetched: it only has to be there.
@@ -129,7 +129,7 @@ impl Baseline {
         };
         let pipeline = |alpha| pipeline(gpu, scene, choices, &stages, fragment(scene, choices, alpha));
         Ok(Self {
-            sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
+            sample: TupleDraws::of([pipeline("opaque")?, pipeline("tested")?], stages),
             colors: resources.image(&full(COLORS)),
             depth: resources.image(&full(DEPTH)),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
@@ -154,7 +154,7 @@ impl Baseline {
     pub fn record(
         &self,
         cmd: &mut Commands,
-        drawn: Drawn<'_>,
+        drawn: DrawInputs<'_>,
         bound: &[(&'static str, Bound<'_>)],
         maps: Option<Barrier>,
         counters: &Buffer,
@@ -194,7 +194,7 @@ impl Baseline {
     }
 
     /// Each of `lists` with its sets into every layer, which begins empty where they are the first.
-    fn draw(&self, cmd: &mut Commands, drawn: Drawn<'_>, lists: &[(&DrawList, &Sets)], is_first: bool) {
+    fn draw(&self, cmd: &mut Commands, drawn: DrawInputs<'_>, lists: &[(&DrawList, &PipelineSets)], is_first: bool) {
         let description = self.colors.description;
         for layer in 0..description.layers() {
             // Alpha is 1 where something is.
@@ -211,7 +211,7 @@ impl Baseline {
             };
             for (list, sets) in lists {
                 let repeats = repeat_frame::repeats(first_tuple);
-                self.sample.draw(cmd, Drawn { list, ..drawn }, sets, &repeats);
+                self.sample.draw(cmd, DrawInputs { list, ..drawn }, sets, &repeats);
             }
             cmd.end_rendering();
         }
@@ -222,7 +222,7 @@ fn pipeline(
     gpu: &Arc<Gpu>,
     scene: &SceneGpu,
     choices: &Choices,
-    stages: &Stages,
+    stages: &SampleStages,
     fragment: &'static Shader,
 ) -> Result<GraphicsPipeline> {
     let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);

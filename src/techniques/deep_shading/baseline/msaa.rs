@@ -25,11 +25,11 @@ use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::Sides;
 use crate::passes::{mesh, shadow_maps};
 use crate::resident::SceneGpu;
-use crate::techniques::deep_shading::visibility::draw::Stages;
+use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
-pub(super) fn stages() -> Stages {
+pub(super) fn stages() -> SampleStages {
     // The shader tells sides apart: what is drawn has none.
-    Stages { vertex: &VERT, geometry: None, sides: Sides::Both, vertex_count: 3 }
+    SampleStages { vertex: &VERT, geometry: None, sides: Sides::Both, vertex_count: 3 }
 }
 
 /// `alpha`: the value of the shader's axis.

@@ -3,9 +3,9 @@
 //! reads   the scene, visibility.spids, visibility.depth
 //! writes  indirect.pointers, indirect.cache, indirect.places, .normals, .base_colors, .radiances
 
-use super::super::again::{self, Again};
 use super::super::choices::Choices;
 use super::super::primitives::Primitives;
+use super::super::redraw::{self, TriangleRedraw};
 use super::entries::Entries;
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::indirect::gbuffer::FRAG_VARIANTS;
@@ -19,7 +19,7 @@ use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
 use std::sync::Arc;
 
-pub struct Gbuffer(Again);
+pub struct Gbuffer(TriangleRedraw);
 
 impl Gbuffer {
     /// `frame`: its extent.
@@ -30,8 +30,8 @@ impl Gbuffer {
         choices: &Choices,
         frame: Extent,
     ) -> Result<Self> {
-        let fragment = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), again::axis(choices)]);
-        Ok(Self(Again::new(gpu, scene, resources, choices, frame, fragment)?))
+        let fragment = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), redraw::axis(choices)]);
+        Ok(Self(TriangleRedraw::new(gpu, scene, resources, choices, frame, fragment)?))
     }
 
     /// The scene, what of it is drawn, and its ids.

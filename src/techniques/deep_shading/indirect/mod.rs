@@ -22,7 +22,7 @@ pub mod gbuffer;
 pub mod shade;
 
 use super::choices::Choices;
-use super::counters::Counted;
+use super::counters::FrameCounts;
 use super::primitives::Primitives;
 use super::stereo;
 use crate::error::Result;
@@ -76,7 +76,7 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
 }
 
 /// Bytes that a frame touches of buffers that are as long as the worst case; what is cleared is touched whole and not listed.
-pub fn touched_bytes(counted: &Counted) -> BTreeMap<String, u64> {
+pub fn touched_bytes(counted: &FrameCounts) -> BTreeMap<String, u64> {
     let entries = counted.entry_count();
     let of = |(name, _): (&str, &str)| (full(name), entries * ENTRY_BYTES);
     ENTRIES.map(of).into_iter().chain([(full(COLORS), entries * COLOR_BYTES)]).collect()

@@ -132,14 +132,14 @@ fn staged_name(name: &str) -> String {
 }
 
 /// Lists on their way to the device.
-pub struct Direct {
+pub struct HostInsertion {
     sets: Vec<HostLists>,
     /// Staging buffers of the buffers in `Lists::all`, in that order.
     staged: Vec<RefCell<Buffer>>,
     staged_run: Cell<u32>,
 }
 
-impl Direct {
+impl HostInsertion {
     pub fn new(resources: &mut Resources, choices: &Choices, sets: Vec<HostLists>) -> Self {
         let names = [
             Some(BEGINS),

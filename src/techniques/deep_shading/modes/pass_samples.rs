@@ -11,7 +11,7 @@ pub const MULTIPLE: [(u32, Ability); 2] = [(8, Ability::EightSamples), (4, Abili
 ///
 /// Errors: `spp` is no multiple of them (exit code 2).
 pub fn pass_samples(values: &Values, caps: &Caps, spp: u32) -> Result<u32> {
-    let Some(samples) = values.integer_or_auto("pass-samples") else {
+    let Some(samples) = values.unless_auto("pass-samples", Values::integer) else {
         let fits = |(samples, ability): &&(u32, Ability)| spp.is_multiple_of(*samples) && ability.is_there(caps);
         return Ok(MULTIPLE.iter().find(fits).map_or(1, |(samples, _)| *samples));
     };

@@ -7,7 +7,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::filter::COMP;
 use crate::gpu::{Access, Bound, Commands, Edge, Gpu, Image, Traffic};
 use crate::techniques::deep_shading::choices::{Choices, constants_of};
-use crate::techniques::deep_shading::reconstruct::reconstructed::Reconstructed;
+use crate::techniques::deep_shading::reconstruct::filter_buffers::FilterBuffers;
 use crate::techniques::deep_shading::resources::full;
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl Filter {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        reconstructed: &Reconstructed,
+        reconstructed: &FilterBuffers,
         resolved: Edge<'_, Image>,
         color: &Image,
     ) -> Result<()> {
@@ -39,7 +39,7 @@ impl Filter {
             invocations: Some(extent.pixel_count()),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {
-            let Reconstructed { colors, vectors, tiles } = reconstructed;
+            let FilterBuffers { colors, vectors, tiles } = reconstructed;
             cmd.barriers([colors, vectors].map(|buffer| buffer.from(Access::ComputeRead).to(Access::ComputeRead)));
             cmd.barriers([tiles.from(Access::ComputeWrite).to(Access::ComputeRead)]);
             cmd.barriers([resolved.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);

@@ -7,7 +7,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::layers::COMP;
 use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
 use crate::techniques::deep_shading::choices::{Choices, constants_of};
-use crate::techniques::deep_shading::reconstruct::reconstructed::Reconstructed;
+use crate::techniques::deep_shading::reconstruct::filter_buffers::FilterBuffers;
 use crate::techniques::deep_shading::resources::full;
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl Layers {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        reconstructed: &Reconstructed,
+        reconstructed: &FilterBuffers,
         [across, down]: [u32; 2],
     ) -> Result<()> {
         // A tile and the eight around it, twice.
@@ -37,7 +37,7 @@ impl Layers {
             invocations: Some(u64::from(across) * u64::from(down) * u64::from(self.pipeline.workgroup[0])),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {
-            let Reconstructed { colors, vectors, tiles } = reconstructed;
+            let FilterBuffers { colors, vectors, tiles } = reconstructed;
             cmd.barriers([colors, vectors].map(|buffer| buffer.from(Access::ComputeWrite).to(Access::ComputeRead)));
             cmd.barriers([tiles.discard(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();

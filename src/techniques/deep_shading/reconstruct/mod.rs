@@ -15,20 +15,20 @@
 //! of over 56, keeps noise.
 
 pub(super) mod filter;
+mod filter_buffers;
 pub(super) mod layers;
-mod reconstructed;
 pub(super) mod samples;
 
 use super::choices::Choices;
 use super::primitives::Primitives;
 use super::ranges;
-use super::resolve::{Shaded, fetch};
+use super::resolve::{SampleColors, fetch};
 use crate::error::Result;
 use crate::gpu::shader::structs::TileBlock;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::techniques::deep_shading::reconstruct::reconstructed::{RANGES, Reconstructed};
+use crate::techniques::deep_shading::reconstruct::filter_buffers::{FilterBuffers, RANGES};
 use crate::techniques::deep_shading::resources::{SAMPLE_BYTES, SAMPLE_COLORS, SAMPLE_VECTORS, full};
 use crate::units::Extent;
 use filter::Filter;
@@ -72,7 +72,7 @@ pub struct Reconstruct {
     gather: Gather,
     layers: Layers,
     filter: Filter,
-    reconstructed: Reconstructed,
+    reconstructed: FilterBuffers,
     /// The picture.
     pub color: Image,
 }
@@ -90,7 +90,7 @@ impl Reconstruct {
             gather: Gather::new(gpu, resources, scene, primitives, choices, fetch(choices))?,
             layers: Layers::new(gpu, choices)?,
             filter: Filter::new(gpu, choices)?,
-            reconstructed: Reconstructed {
+            reconstructed: FilterBuffers {
                 colors: resources.buffer(&full(SAMPLE_COLORS)),
                 vectors: resources.buffer(&full(SAMPLE_VECTORS)),
                 tiles: resources.buffer(&full(TILES)),
@@ -109,7 +109,7 @@ impl Reconstruct {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        shaded: Shaded<'_>,
+        shaded: SampleColors<'_>,
         resolved: &Image,
     ) -> Result<()> {
         self.gather.record(cmd, bound, shaded, &self.reconstructed, resolved.description.extent)?;

@@ -8,7 +8,7 @@
 
 use super::super::primitives::Primitives;
 use super::super::ranges;
-use super::super::resolve::Shaded;
+use super::super::resolve::SampleColors;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::samples::COMP_VARIANTS;
@@ -17,7 +17,7 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::{Choices, constants_of};
-use crate::techniques::deep_shading::reconstruct::reconstructed::{RANGES, Reconstructed};
+use crate::techniques::deep_shading::reconstruct::filter_buffers::{FilterBuffers, RANGES};
 use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
 use std::sync::Arc;
@@ -57,8 +57,8 @@ impl Gather {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        shaded: Shaded<'_>,
-        reconstructed: &Reconstructed,
+        shaded: SampleColors<'_>,
+        reconstructed: &FilterBuffers,
         frame: Extent,
     ) -> Result<()> {
         let traffic = Traffic {
@@ -68,7 +68,7 @@ impl Gather {
         };
         cmd.pass(&full(PASS), traffic, |cmd| {
             shaded.stay_in_compute(cmd);
-            let Reconstructed { colors, vectors, .. } = reconstructed;
+            let FilterBuffers { colors, vectors, .. } = reconstructed;
             cmd.barriers([colors, vectors].map(|buffer| buffer.discard(Access::ComputeWrite)));
             let mut bound = bound.to_vec();
             bound.extend(shaded.bound());

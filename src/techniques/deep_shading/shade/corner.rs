@@ -3,9 +3,9 @@
 
 use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::techniques::deep_shading::shade::stages::Stages;
+use crate::techniques::deep_shading::shade::stages::SpaceStages;
 
 /// `marks`: the value of the shader's axis.
-pub(super) fn stages(is_conservative: bool, marks: &str) -> Stages {
-    Stages { vertex: variant(VERT_VARIANTS, &[marks]), geometry: None, is_conservative, vertex_count: 3 }
+pub(super) fn stages(is_conservative: bool, marks: &str) -> SpaceStages {
+    SpaceStages { vertex: variant(VERT_VARIANTS, &[marks]), geometry: None, is_conservative, vertex_count: 3 }
 }

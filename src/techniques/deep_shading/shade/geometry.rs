@@ -2,10 +2,10 @@
 
 use crate::gpu::shader::techniques::deep_shading::shade::{corner::VERT_VARIANTS, geometry::GEOM_VARIANTS};
 use crate::gpu::shader::variant;
-use crate::techniques::deep_shading::shade::stages::Stages;
+use crate::techniques::deep_shading::shade::stages::SpaceStages;
 
 /// `marks`: the value of the geometry shader's axis; corners are made of all triangles.
-pub(super) fn stages(marks: &str) -> Stages {
+pub(super) fn stages(marks: &str) -> SpaceStages {
     let geometry = Some(variant(GEOM_VARIANTS, &[marks]));
-    Stages { vertex: variant(VERT_VARIANTS, &["off"]), geometry, is_conservative: false, vertex_count: 3 }
+    SpaceStages { vertex: variant(VERT_VARIANTS, &["off"]), geometry, is_conservative: false, vertex_count: 3 }
 }

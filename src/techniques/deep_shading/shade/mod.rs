@@ -22,13 +22,13 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::resources::full;
-use crate::techniques::deep_shading::shade::stages::Stages;
+use crate::techniques::deep_shading::shade::stages::SpaceStages;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
 impl Conservative {
-    fn stages(self, marks: &str) -> Stages {
+    fn stages(self, marks: &str) -> SpaceStages {
         match self {
             Self::Hardware => corner::stages(true, marks),
             Self::Geometry => geometry::stages(marks),
@@ -40,7 +40,7 @@ impl Conservative {
 
 pub struct Shade {
     pipeline: GraphicsPipeline,
-    stages: Stages,
+    stages: SpaceStages,
     space: Extent,
 }
 

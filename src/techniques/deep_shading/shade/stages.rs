@@ -3,7 +3,7 @@
 use crate::gpu::shader::Shader;
 
 /// The pipelines that a method draws with.
-pub struct Stages {
+pub struct SpaceStages {
     pub(super) vertex: &'static Shader,
     pub(super) geometry: Option<&'static Shader>,
     pub(super) is_conservative: bool,

@@ -3,14 +3,14 @@
 
 use crate::gpu::shader::techniques::deep_shading::shade::vertex::VERT_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::techniques::deep_shading::shade::stages::Stages;
+use crate::techniques::deep_shading::shade::stages::SpaceStages;
 
 /// HULL_VERTICES of hull.glsl.
 pub const HULL_VERTICES: u32 = 18;
 
 /// `marks`: the value of the shader's axis.
-pub(super) fn stages(marks: &str) -> Stages {
-    Stages {
+pub(super) fn stages(marks: &str) -> SpaceStages {
+    SpaceStages {
         vertex: variant(VERT_VARIANTS, &[marks]),
         geometry: None,
         is_conservative: false,

@@ -26,7 +26,7 @@ impl Repeats {
 }
 
 /// Shader stages that triangles are drawn with.
-pub struct Stages {
+pub struct SampleStages {
     pub vertex: &'static Shader,
     pub geometry: Option<&'static Shader>,
     pub sides: Sides,
@@ -34,7 +34,7 @@ pub struct Stages {
     pub vertex_count: u32,
 }
 
-impl Stages {
+impl SampleStages {
     /// Stages that draw triangles as one tuple sees them.
     pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
         Self { vertex, geometry, sides: Sides::AsDrawn, vertex_count: 3 }
@@ -55,7 +55,7 @@ pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str) -> &'stat
 /// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
 pub fn draw<'a>(
     cmd: &Commands,
-    (pipeline, stages): (&GraphicsPipeline, &Stages),
+    (pipeline, stages): (&GraphicsPipeline, &SampleStages),
     scene: &SceneGpu,
     primitives: &Primitives,
     calls: impl IntoIterator<Item = &'a DrawCall>,

@@ -7,13 +7,13 @@ use crate::passes::mesh;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::visibility::draw;
-use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
+use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages};
 
 impl LayerFrom {
     /// For draws that repeat so.
-    pub(super) fn stages(self, scene: &SceneGpu, repeats: &Repeats) -> Stages {
+    pub(super) fn stages(self, scene: &SceneGpu, repeats: &Repeats) -> SampleStages {
         let layer = if self == Self::Vertex { "vertex" } else { "none" };
         let geometry = (self == Self::Geometry).then(|| variant(GEOM_VARIANTS, &[mesh::vertex_name(scene)]));
-        Stages::sharp(draw::vertex_shader(scene, repeats, layer), geometry)
+        SampleStages::sharp(draw::vertex_shader(scene, repeats, layer), geometry)
     }
 }

@@ -11,8 +11,8 @@
 
 use super::super::choices::Choices;
 use super::super::primitives::Primitives;
-use super::super::tuples::Table;
-use super::sample::Sample;
+use super::super::tuples::TupleTable;
+use super::sample::TupleDraws;
 use super::spids::Spids;
 use super::stochastic;
 use crate::caps::Limits;
@@ -27,7 +27,7 @@ use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::{NAME, NEAREST_BYTES, full};
 use crate::techniques::deep_shading::visibility::draw::Repeats;
-use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
+use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
 use std::sync::Arc;
 
 const NEAREST: &str = "visibility.nearest";
@@ -56,14 +56,14 @@ pub fn touches() -> [(String, Access); 3] {
     [Access::TransferWrite, Access::FragmentWrite, Access::GraphicsRead].map(|access| (full(NEAREST), access))
 }
 
-pub struct Looped {
-    sample: Sample,
+pub struct LoopedSamples {
+    sample: TupleDraws,
     nearest: Buffer,
     spids: Spids,
-    table: Table,
+    table: TupleTable,
 }
 
-impl Looped {
+impl LoopedSamples {
     /// `primitives`: numbered in the order of what is drawn.
     ///
     /// Errors: memory for the upload (exit code 4).
@@ -89,7 +89,7 @@ impl Looped {
             GraphicsPipeline::new(gpu, &description)
         };
         Ok(Self {
-            sample: Sample::of([pipeline("opaque")?, pipeline("tested")?], stages),
+            sample: TupleDraws::of([pipeline("opaque")?, pipeline("tested")?], stages),
             nearest: resources.buffer(&full(NEAREST)),
             spids: Spids::new(gpu, scene, resources, choices, primitives)?,
             table: choices.table,
@@ -97,7 +97,7 @@ impl Looped {
     }
 
     /// Bytes read of vertices, and all that is written on the way.
-    pub(super) fn traffic_bytes(&self, drawn: Drawn<'_>) -> [u64; 2] {
+    pub(super) fn traffic_bytes(&self, drawn: DrawInputs<'_>) -> [u64; 2] {
         let vertices = u64::from(self.table.eyes) * mesh::read_bytes(drawn.scene, drawn.list.calls());
         [vertices + self.nearest.bytes, self.nearest.bytes]
     }
@@ -106,7 +106,7 @@ impl Looped {
     pub(super) fn record<'a>(
         &'a self,
         cmd: &mut Commands,
-        drawn: Drawn<'_>,
+        drawn: DrawInputs<'_>,
         mut bound: Vec<(&'static str, Bound<'a>)>,
         samples: &Samples,
     ) -> Result<()> {

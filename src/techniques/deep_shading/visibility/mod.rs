@@ -31,20 +31,20 @@ use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::NAME;
-use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples, begin_counters};
-use looped::Looped;
-use sample::Sample;
+use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples, begin_counters};
+use looped::LoopedSamples;
+use sample::TupleDraws;
 use std::sync::Arc;
 
 /// What draws triangles.
-pub enum Drawer {
+pub enum SampleRasterizer {
     /// Each tuple into its layer.
-    Layers(Box<Sample>),
+    Layers(Box<TupleDraws>),
     /// All samples at once.
-    Loop(Box<Looped>),
+    Loop(Box<LoopedSamples>),
 }
 
-impl Drawer {
+impl SampleRasterizer {
     /// `primitives`: numbered in the order of what is drawn.
     ///
     /// Errors: memory for uploads (exit code 4).
@@ -56,12 +56,12 @@ impl Drawer {
         primitives: &Primitives,
     ) -> Result<Self> {
         Ok(match choices.is_looped {
-            true => Self::Loop(Box::new(Looped::new(gpu, scene, resources, choices, primitives)?)),
-            false => Self::Layers(Box::new(Sample::new(gpu, scene, choices)?)),
+            true => Self::Loop(Box::new(LoopedSamples::new(gpu, scene, resources, choices, primitives)?)),
+            false => Self::Layers(Box::new(TupleDraws::new(gpu, scene, choices)?)),
         })
     }
 
-    fn traffic(&self, cmd: &Commands, drawn: Drawn<'_>, samples: &Samples, visibility: Visibility) -> Traffic {
+    fn traffic(&self, cmd: &Commands, drawn: DrawInputs<'_>, samples: &Samples, visibility: Visibility) -> Traffic {
         let layers = samples.spids.description.layers();
         let [read, written] = match self {
             Self::Loop(looped) => looped.traffic_bytes(drawn),
@@ -78,23 +78,23 @@ impl Drawer {
 /// Finds what every sample sees: what of each layer is in the frame.
 pub fn record(
     cmd: &mut Commands,
-    drawer: &Drawer,
-    drawn: Drawn<'_>,
+    rasterizer: &SampleRasterizer,
+    drawn: DrawInputs<'_>,
     bound: &[(&'static str, Bound<'_>)],
     samples: &Samples,
     counters: &Buffer,
     visibility: Visibility,
 ) -> Result<()> {
-    let traffic = drawer.traffic(cmd, drawn, samples, visibility);
+    let traffic = rasterizer.traffic(cmd, drawn, samples, visibility);
     cmd.pass(&format!("{NAME}.visibility"), traffic, |cmd| {
         cmd.barriers(samples.colors().map(|image| image.discard(Access::ColorWrite)));
         cmd.barriers(samples.depth.iter().map(|depth| depth.discard(Access::DepthWrite)));
         begin_counters(cmd, counters);
         let mut bound = bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
-        let sample = match drawer {
-            Drawer::Loop(looped) => return looped.record(cmd, drawn, bound, samples),
-            Drawer::Layers(sample) => sample,
+        let sample = match rasterizer {
+            SampleRasterizer::Loop(looped) => return looped.record(cmd, drawn, bound, samples),
+            SampleRasterizer::Layers(sample) => sample,
         };
         let layers = samples.spids.description.layers();
         let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);

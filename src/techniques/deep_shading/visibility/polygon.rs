@@ -4,10 +4,15 @@
 use crate::gpu::shader::techniques::deep_shading::visibility::polygon::{GEOM_VARIANTS, VERT};
 use crate::gpu::shader::variant;
 use crate::passes::mesh::Sides;
-use crate::techniques::deep_shading::visibility::draw::Stages;
+use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
 /// `tests`: the value of the shader's axis.
-pub(super) fn stages(tests: &str) -> Stages {
+pub(super) fn stages(tests: &str) -> SampleStages {
     // As in stochastic.rs.
-    Stages { vertex: &VERT, geometry: Some(variant(GEOM_VARIANTS, &[tests])), sides: Sides::Both, vertex_count: 3 }
+    SampleStages {
+        vertex: &VERT,
+        geometry: Some(variant(GEOM_VARIANTS, &[tests])),
+        sides: Sides::Both,
+        vertex_count: 3,
+    }
 }

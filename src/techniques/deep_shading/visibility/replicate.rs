@@ -9,7 +9,7 @@ use crate::gpu::shader::techniques::deep_shading::visibility::replicate::{GEOM_V
 use crate::gpu::shader::variant;
 use crate::passes::mesh;
 use crate::resident::SceneGpu;
-use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
+use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages};
 
 /// Components of a vertex that replicate.geom gives out: place 4, layer 1, place in shading space 4, triangle 1, weights 3,
 /// coordinates 2, tuple 1; then colour 4 and second coordinates 2.
@@ -33,10 +33,10 @@ pub fn repeats(scene: &SceneGpu, limits: &Limits, tuple_count: u32) -> Repeats {
 }
 
 /// `repeats`: of the same scene.
-pub(super) fn stages(scene: &SceneGpu, repeats: &Repeats) -> Stages {
+pub(super) fn stages(scene: &SceneGpu, repeats: &Repeats) -> SampleStages {
     let tuples = if repeats.step == MORE { "16" } else { "8" };
     let vertex = mesh::vertex_name(scene);
-    Stages::sharp(variant(VERT_VARIANTS, &[vertex]), Some(variant(GEOM_VARIANTS, &[vertex, tuples])))
+    SampleStages::sharp(variant(VERT_VARIANTS, &[vertex]), Some(variant(GEOM_VARIANTS, &[vertex, tuples])))
 }
 
 #[cfg(test)]

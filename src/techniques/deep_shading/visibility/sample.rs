@@ -13,21 +13,21 @@ use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
-use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages, draw};
-use crate::techniques::deep_shading::visibility::samples::Drawn;
+use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages, draw};
+use crate::techniques::deep_shading::visibility::samples::DrawInputs;
 use ash::vk;
 use std::sync::Arc;
 
 /// Sets of both pipelines.
-pub struct Sets([Option<vk::DescriptorSet>; 2]);
+pub struct PipelineSets([Option<vk::DescriptorSet>; 2]);
 
-pub struct Sample {
+pub struct TupleDraws {
     opaque: GraphicsPipeline,
     tested: GraphicsPipeline,
-    stages: Stages,
+    stages: SampleStages,
 }
 
-impl Sample {
+impl TupleDraws {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
         let depth = if choices.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
@@ -64,21 +64,27 @@ impl Sample {
     }
 
     /// Pipelines of solid surfaces, and of surfaces with an alpha.
-    pub fn of([opaque, tested]: [GraphicsPipeline; 2], stages: Stages) -> Self {
+    pub fn of([opaque, tested]: [GraphicsPipeline; 2], stages: SampleStages) -> Self {
         Self { opaque, tested, stages }
     }
 
     /// One set for all tuples. `bound`: what shaders of the technique may read.
     ///
     /// Errors: the driver has no more room for sets (exit code 4).
-    pub fn sets(&self, cmd: &mut Commands, bound: &[(&'static str, Bound<'_>)]) -> Result<Sets> {
+    pub fn sets(&self, cmd: &mut Commands, bound: &[(&'static str, Bound<'_>)]) -> Result<PipelineSets> {
         let mut set = |pipeline: &GraphicsPipeline| cmd.set_for(pipeline, &pipeline.interface.own(bound));
-        Ok(Sets([set(&self.opaque)?, set(&self.tested)?]))
+        Ok(PipelineSets([set(&self.opaque)?, set(&self.tested)?]))
     }
 
     /// All draws, inside rendering.
-    pub fn draw(&self, cmd: &mut Commands, drawn: Drawn<'_>, Sets([opaque, tested]): &Sets, repeats: &Repeats) {
-        let Drawn { scene, list, primitives, .. } = drawn;
+    pub fn draw(
+        &self,
+        cmd: &mut Commands,
+        drawn: DrawInputs<'_>,
+        PipelineSets([opaque, tested]): &PipelineSets,
+        repeats: &Repeats,
+    ) {
+        let DrawInputs { scene, list, primitives, .. } = drawn;
         for (pipeline, set, calls) in [(&self.opaque, opaque, &list.opaque), (&self.tested, tested, &list.mask)] {
             if let Some(first) = calls.first() {
                 let params = primitives.params(scene, first);

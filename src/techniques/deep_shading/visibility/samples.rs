@@ -8,7 +8,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::Choices;
 use crate::techniques::deep_shading::primitives::Primitives;
 use crate::techniques::deep_shading::resources::{DEPTH, SHADING_DEPTHS, SPIDS, full};
-use crate::techniques::deep_shading::tuples::Table;
+use crate::techniques::deep_shading::tuples::TupleTable;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -66,11 +66,11 @@ impl Samples {
 
 /// What is drawn, and where.
 #[derive(Clone, Copy)]
-pub struct Drawn<'a> {
+pub struct DrawInputs<'a> {
     pub scene: &'a SceneGpu,
     pub list: &'a DrawList,
     pub primitives: &'a Primitives,
-    pub table: &'a Table,
+    pub table: &'a TupleTable,
     pub frame: Extent,
 }
 

@@ -15,7 +15,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::{SHADING_DEPTH_FORMAT, SPID_FORMAT, full};
-use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
+use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
 use std::sync::Arc;
 
 const RANGES: &str = "visibility.draws";
@@ -53,7 +53,7 @@ impl Spids {
     pub(super) fn record(
         &self,
         cmd: &mut Commands,
-        drawn: Drawn<'_>,
+        drawn: DrawInputs<'_>,
         bound: &[(&'static str, Bound<'_>)],
         samples: &Samples,
     ) -> Result<()> {

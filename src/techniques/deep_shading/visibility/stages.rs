@@ -5,7 +5,7 @@ use crate::gpu::Layers;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::Choices;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
+use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages};
 use crate::techniques::deep_shading::visibility::{draw, instancing, repeat_draw, repeat_frame, replicate, stochastic};
 
 impl Visibility {
@@ -36,9 +36,9 @@ impl Visibility {
 
 /// Before fragments: whatever draws the samples' triangles again needs the same stages, as drivers may round otherwise after a
 /// geometry shader. `repeats`: of the same visibility.
-pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> Stages {
+pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> SampleStages {
     match choices.visibility {
-        Visibility::RepeatFrame => Stages::sharp(draw::vertex_shader(scene, repeats, "none"), None),
+        Visibility::RepeatFrame => SampleStages::sharp(draw::vertex_shader(scene, repeats, "none"), None),
         Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
         Visibility::Replicate => replicate::stages(scene, repeats),
         Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices, "layer"),

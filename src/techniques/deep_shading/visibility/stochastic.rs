@@ -14,7 +14,7 @@ use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_
 use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::Sides;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
-use crate::techniques::deep_shading::visibility::draw::Stages;
+use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
 /// BOUND_MOST_SIDES and BOUND_STILL_SIDES of bound.glsl.
 const MOST_SIDES: u32 = 12;
@@ -23,12 +23,12 @@ const STILL_SIDES: u32 = 7;
 pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
 
 /// `tests`: the value of the shaders' axis.
-pub(super) fn stages(choices: &Choices, tests: &str) -> Stages {
+pub(super) fn stages(choices: &Choices, tests: &str) -> SampleStages {
     if choices.polygon_from == PolygonFrom::Geometry {
         return polygon::stages(tests);
     }
     let side_count = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
-    Stages {
+    SampleStages {
         vertex: variant(VERT_VARIANTS, &[tests]),
         geometry: None,
         // The shader tells sides apart: polygons have none.

@@ -21,6 +21,12 @@ use crate::techniques::interleaved_deferred::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
 
+/// Which pixels a draw shades, and what it leaves of them.
+pub struct Masked<'a> {
+    pub mask: Edge<'a, Mask>,
+    pub irradiance: &'a Buffer,
+}
+
 pub struct ShadeMasked {
     pipeline: GraphicsPipeline,
     rendered: Rendered,
@@ -45,7 +51,6 @@ impl ShadeMasked {
         Ok(Self { pipeline, rendered: Rendered::new(resources, "shade") })
     }
 
-    #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -53,11 +58,11 @@ impl ShadeMasked {
         shade: &ShadeGpu,
         direct: &DirectGpu,
         gbuffer: Edge<'_, GBuffer>,
-        mask: &Mask,
-        irradiance: &Buffer,
+        masked: Masked<'_>,
     ) -> Result<()> {
+        let Masked { mask, irradiance } = masked;
         let (mapping, pixels) = (shade.mapping(), gbuffer.resource.extent().pixel_count());
-        let tested_bytes = u64::from(mapping.subset_count()) * pixels * mask.kind.tested_bytes();
+        let tested_bytes = u64::from(mapping.subset_count()) * pixels * mask.resource.kind.tested_bytes();
         let traffic = Traffic {
             // Every draw tests every pixel; each pixel is shaded once.
             read_bytes: pixels * gbuffer.resource.surface_bytes() + tested_bytes + self.rendered.bytes(),
@@ -66,14 +71,14 @@ impl ShadeMasked {
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to(Access::FragmentSample));
-            cmd.barriers([mask.image.from(Access::DepthWrite).to(Access::DepthTest)]);
+            cmd.barriers([mask.to(Access::DepthTest)]);
             let mut bound = shade.bound(frame, direct);
             bound.extend(gbuffer.resource.bound_surface());
-            let depth = Some((&mask.image, None, Access::DepthTest));
+            let depth = Some((&mask.resource.image, None, Access::DepthTest));
             self.rendered.record(cmd, mapping, depth, irradiance, |cmd| {
                 cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound)?;
                 for subset in 0..mapping.subset_count() {
-                    if mask.kind == MaskKind::Stencil {
+                    if mask.resource.kind == MaskKind::Stencil {
                         cmd.set_stencil(subset, 0);
                     }
                     fullscreen::draw(cmd, subset);

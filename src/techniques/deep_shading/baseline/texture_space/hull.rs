@@ -11,7 +11,7 @@ use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::constants_of;
-use crate::techniques::deep_shading::visibility::samples::Drawn;
+use crate::techniques::deep_shading::visibility::samples::DrawInputs;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -61,8 +61,14 @@ impl Hulls {
     }
 
     /// Each of `draws` into the texture of its place, whose set is in `sets`.
-    pub fn draw(&self, cmd: &mut Commands, drawn: Drawn<'_>, draws: &[DrawList], sets: &[Option<vk::DescriptorSet>]) {
-        let Drawn { scene, primitives, .. } = drawn;
+    pub fn draw(
+        &self,
+        cmd: &mut Commands,
+        drawn: DrawInputs<'_>,
+        draws: &[DrawList],
+        sets: &[Option<vk::DescriptorSet>],
+    ) {
+        let DrawInputs { scene, primitives, .. } = drawn;
         cmd.begin_rendering(self.texture, &[], None);
         for (list, set) in draws.iter().zip(sets) {
             let Some(first) = list.calls().next() else { continue };

@@ -26,7 +26,7 @@ pub mod pool;
 pub mod shade;
 
 use super::super::choices::Choices;
-use super::super::visibility::sample::{Sample, Sets};
+use super::super::visibility::sample::{PipelineSets, TupleDraws};
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
 use crate::passes::mesh;
@@ -35,7 +35,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::modes::pool_size::PoolSize;
 use crate::techniques::deep_shading::resources::full;
-use crate::techniques::deep_shading::visibility::samples::Drawn;
+use crate::techniques::deep_shading::visibility::samples::DrawInputs;
 use ash::vk;
 use atlases::Atlases;
 use hull::Hulls;
@@ -73,7 +73,7 @@ fn draws_of(list: &DrawList) -> Vec<DrawList> {
 struct SlotSets {
     claim: Option<vk::DescriptorSet>,
     shade: Option<vk::DescriptorSet>,
-    apply: Sets,
+    apply: PipelineSets,
 }
 
 pub struct TextureSpace {
@@ -118,10 +118,10 @@ impl TextureSpace {
     pub fn record(
         &self,
         cmd: &mut Commands,
-        drawn: Drawn<'_>,
+        drawn: DrawInputs<'_>,
         bound: &[(&'static str, Bound<'_>)],
-        sample: &Sample,
-        mut draw: impl FnMut(&mut Commands, &[(&DrawList, &Sets)], bool),
+        sample: &TupleDraws,
+        mut draw: impl FnMut(&mut Commands, &[(&DrawList, &PipelineSets)], bool),
     ) -> Result<()> {
         let mut sets = Vec::new();
         for texture in self.pool.bound() {
@@ -160,7 +160,7 @@ impl TextureSpace {
     }
 
     /// Bytes of vertices and texels that claims and shading read and write, but for shading itself, which is counted after the frame.
-    pub fn traffic(&self, drawn: Drawn<'_>) -> [u64; 2] {
+    pub fn traffic(&self, drawn: DrawInputs<'_>) -> [u64; 2] {
         let read = 2 * mesh::read_bytes(drawn.scene, drawn.list.calls());
         let chunks = draws_of(drawn.list).len() as u64;
         [read, chunks * self.pool.owner_bytes()]

@@ -82,18 +82,18 @@ impl PoolSize {
 }
 
 /// One texture, the owners of its texels, and which of them were shaded.
-struct Slot {
+struct PoolTexture {
     texels: Buffer,
     owners: Buffer,
     touched: Buffer,
 }
 
 /// The textures of the next chunk of draws: all that touches them, in its order, is one round.
-pub struct Pool(Vec<Slot>);
+pub struct Pool(Vec<PoolTexture>);
 
 impl Pool {
     pub fn new(resources: &mut Resources, size: PoolSize) -> Self {
-        let slot = |index| Slot {
+        let slot = |index| PoolTexture {
             texels: resources.buffer(&texture(index)),
             owners: resources.buffer(&owners(index)),
             touched: resources.buffer(&touched(index)),
@@ -107,7 +107,7 @@ impl Pool {
 
     /// Buffers of each texture that shaders bind.
     pub fn bound(&self) -> impl Iterator<Item = [(&'static str, Bound<'_>); 3]> {
-        self.0.iter().map(|Slot { texels, owners, touched }| {
+        self.0.iter().map(|PoolTexture { texels, owners, touched }| {
             [("Texels", texels), ("Owners", owners), ("Touched", touched)]
                 .map(|(name, buffer)| (name, Bound::Buffer(buffer)))
         })

@@ -69,18 +69,18 @@ pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<(
 }
 
 /// What all sets of a picture see.
-pub enum Sets {
+pub enum TracedSets {
     Samples(Vec<Hits>),
     /// With `--lists direct`.
     Lists(Vec<HostLists>),
 }
 
-pub struct Traced {
-    pub sets: Sets,
+pub struct TracedSamples {
+    pub sets: TracedSets,
     pub time_ns: u64,
 }
 
-impl Traced {
+impl TracedSamples {
     /// Errors: more triangles than a tree is built over (exit code 2); Ctrl-C (130).
     pub fn new(inputs: &Inputs<'_>, choices: &Choices, primitives: &Primitives) -> Result<Self> {
         let started = Instant::now();
@@ -91,9 +91,9 @@ impl Traced {
             tracer.trace(run)
         });
         let sets = if choices.is_direct {
-            Sets::Lists(traced.map(|hits| Ok(HostLists::of(&hits?, choices))).collect::<Result<_>>()?)
+            TracedSets::Lists(traced.map(|hits| Ok(HostLists::of(&hits?, choices))).collect::<Result<_>>()?)
         } else {
-            Sets::Samples(traced.collect::<Result<_>>()?)
+            TracedSets::Samples(traced.collect::<Result<_>>()?)
         };
         Ok(Self { sets, time_ns: started.elapsed().as_nanos() as u64 })
     }

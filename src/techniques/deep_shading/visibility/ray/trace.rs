@@ -3,8 +3,8 @@
 use super::super::super::choices::Choices;
 use super::super::super::primitives::Primitives;
 use super::super::super::space::ShadingSpace;
-use super::super::super::tuples::Table;
-use super::tree::{End, Met, Ray, SweptTree, corners_ws};
+use super::super::super::tuples::TupleTable;
+use super::tree::{End, Ray, RayHit, SweptTree, corners_ws};
 use crate::error::Result;
 use crate::gpu::shader::structs::{DeepBlock, TupleBlock};
 use crate::interrupt;
@@ -40,7 +40,7 @@ pub struct Tracer<'a> {
     scene: &'a Scene,
     deep: DeepBlock,
     ends: [End; 2],
-    table: Table,
+    table: TupleTable,
     eyes: Vec<f32>,
     space: ShadingSpace,
     frame: Extent,
@@ -123,7 +123,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// sample.frag's sides and alpha.glsl's thresholds. `number`: of the tuple among all sets'.
-    fn is_seen(&self, met: &Met, [x, y]: [u32; 2], number: u32) -> bool {
+    fn is_seen(&self, met: &RayHit, [x, y]: [u32; 2], number: u32) -> bool {
         let draw = &self.scene.draws[met.draw as usize];
         let mesh = &self.scene.meshes[draw.mesh];
         let material = &self.scene.materials[mesh.material];
@@ -142,7 +142,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    fn entry(&self, met: &Met) -> (Spid, u32) {
+    fn entry(&self, met: &RayHit) -> (Spid, u32) {
         let clip_at = |moment: &Scene, end: &End| {
             let [a, b, c] = corners_ws(moment, met.draw, met.vertices).map(|corner| end.clip(corner));
             let Vec3 { x, y, z } = met.weights;

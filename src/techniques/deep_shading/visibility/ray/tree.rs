@@ -50,7 +50,7 @@ pub fn corners_ws(moment: &Scene, draw: u32, vertices: [u32; 3]) -> [Vec3; 3] {
 
 /// A ray's hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Met {
+pub struct RayHit {
     pub primitive: u32,
     pub draw: u32,
     /// Vertices of the draw's mesh.
@@ -126,8 +126,8 @@ impl SweptTree {
     }
 
     /// The first hit of a ray between two depths; among hits at one depth the least id. `accept` may let it pass.
-    pub fn first(&self, ray: &Ray, [near, far]: [f32; 2], accept: impl Fn(&Met) -> bool) -> Option<Met> {
-        let mut first: Option<Met> = None;
+    pub fn first(&self, ray: &Ray, [near, far]: [f32; 2], accept: impl Fn(&RayHit) -> bool) -> Option<RayHit> {
+        let mut first: Option<RayHit> = None;
         boxes::walk(&self.nodes, ray.origin, ray.direction, far, |index, limit| {
             let met = self.swept[index].met(ray).filter(|met| met.depth >= near && met.depth <= limit)?;
             let is_behind = first.is_some_and(|held| (held.depth, held.primitive) < (met.depth, met.primitive));
@@ -144,7 +144,7 @@ impl SweptTree {
 impl Swept {
     /// Neighbours compute the areas at their edge from the same corners, which differ by the sign alone: no ray falls between
     /// them (the test of covers.glsl; Woop et al. 2013).
-    fn met(&self, ray: &Ray) -> Option<Met> {
+    fn met(&self, ray: &Ray) -> Option<RayHit> {
         let [a, b, c] = [0, 1, 2].map(|corner| {
             let [open, close] = [self.corners[0][corner], self.corners[1][corner]];
             let at = open * (1.0 - ray.time) + close * ray.time - ray.origin;
@@ -159,6 +159,6 @@ impl Swept {
         let weights = areas / area;
         let depth = weights.dot(Vec3::new(a.z, b.z, c.z));
         let Self { primitive, draw, vertices, .. } = *self;
-        Some(Met { primitive, draw, vertices, depth, weights, is_front: area < 0.0 })
+        Some(RayHit { primitive, draw, vertices, depth, weights, is_front: area < 0.0 })
     }
 }

@@ -13,14 +13,14 @@ use crate::techniques::closing::Closing;
 use glam::{Vec3, Vec4};
 
 /// Half of the way through the exposure.
-pub struct Middle {
+pub struct MidExposure {
     /// Meshes, draws and lights; no pictures of its own.
     pub scene: Scene,
     pub lights: LightSet,
     pub closing: Closing,
 }
 
-impl Middle {
+impl MidExposure {
     /// None: nothing moves.
     ///
     /// Errors: as of the scene's own camera and lights.

@@ -5,13 +5,13 @@ use crate::gpu::{Bound, Buffer};
 pub const RANGES: &str = "reconstruct.samples.draws";
 
 /// One entry a sample of the frame, and one a tile.
-pub struct Reconstructed {
+pub struct FilterBuffers {
     pub(super) colors: Buffer,
     pub(super) vectors: Buffer,
     pub(super) tiles: Buffer,
 }
 
-impl Reconstructed {
+impl FilterBuffers {
     pub(super) fn bound(&self) -> [(&'static str, Bound<'_>); 3] {
         [
             ("SampleColors", Bound::Buffer(&self.colors)),

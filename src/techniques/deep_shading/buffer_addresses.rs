@@ -1,11 +1,11 @@
 //! How shaders reach buffers that have an entry a sample, or more (`--list-access`): lists and colours, what a
 //! reconstruction keeps, a compact geometry buffer. Through descriptors, whose range a device limits
 //! (maxStorageBufferRange) and the validation layers check, or by the buffers' addresses, however long they are.
-//! Shaders' half: reach.glsl.
+//! Shaders' half: buffer_addresses.glsl.
 
 use super::choices::Choices;
 use crate::error::{Error, Result};
-use crate::gpu::shader::structs::ReachBlock;
+use crate::gpu::shader::structs::BufferAddressBlock;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
@@ -78,7 +78,7 @@ pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
 }
 
 /// The buffers, by their names in the plan, and where in `block` shaders find the address of each.
-pub(super) fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]); 15] {
+pub(super) fn addresses(block: &mut BufferAddressBlock) -> [(&'static str, &mut [u32; 2]); 15] {
     let [places, normals, base_colors, radiances] = resources::ENTRIES.map(|(name, _)| name);
     [
         (BEGINS, &mut block.begins),
@@ -101,20 +101,20 @@ pub(super) fn addresses(block: &mut ReachBlock) -> [(&'static str, &mut [u32; 2]
 
 /// After those buffers.
 pub fn plan(plan: &mut Plan, is_by_address: bool) {
-    plan.buffer("frame", full("reach"), size_of::<ReachBlock>() as u64);
+    plan.buffer("frame", full("reach"), size_of::<BufferAddressBlock>() as u64);
     if is_by_address {
-        for (name, _) in addresses(&mut ReachBlock::zeroed()) {
+        for (name, _) in addresses(&mut BufferAddressBlock::zeroed()) {
             plan.addressed(&full(name));
         }
     }
 }
 
 /// The addresses, where shaders find them.
-pub struct Reach {
+pub struct BufferAddresses {
     block: Buffer,
 }
 
-impl Reach {
+impl BufferAddresses {
     /// `buffers`: all that the frame has of them.
     ///
     /// Errors: memory for the upload (exit code 4).
@@ -124,7 +124,7 @@ impl Reach {
         is_by_address: bool,
         buffers: impl Iterator<Item = &'a Buffer>,
     ) -> Result<Self> {
-        let mut found = ReachBlock::zeroed();
+        let mut found = BufferAddressBlock::zeroed();
         for buffer in buffers.filter(|_| is_by_address) {
             let own = addresses(&mut found).into_iter().find(|(name, _)| full(name) == buffer.name);
             let (_, words) = own.unwrap_or_else(|| panic!("{} has no place in the block", buffer.name));
@@ -137,6 +137,6 @@ impl Reach {
     }
 
     pub fn bound(&self) -> (&'static str, Bound<'_>) {
-        ("Reach", Bound::Buffer(&self.block))
+        ("BufferAddresses", Bound::Buffer(&self.block))
     }
 }

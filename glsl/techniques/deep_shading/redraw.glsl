@@ -1,9 +1,9 @@
 // The triangles of samples, drawn once more by the stages that drew them for visibility: what comes in of them, and where on its
-// triangle a sample is. Pass: src/techniques/deep_shading/again.rs.
+// triangle a sample is. Pass: src/techniques/deep_shading/redraw.rs.
 //
 // After place.glsl and corners.glsl; with the axis VISIBILITY.
-#ifndef DEEP_SHADING_AGAIN_GLSL
-#define DEEP_SHADING_AGAIN_GLSL
+#ifndef DEEP_SHADING_REDRAW_GLSL
+#define DEEP_SHADING_REDRAW_GLSL
 
 layout(location = 1) flat in uint in_primitive;
 #ifdef VISIBILITY_STOCHASTIC

@@ -8,7 +8,7 @@ use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::resources::{COUNTERS, full};
-use crate::techniques::deep_shading::visibility::draw::{Repeats, Stages};
+use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages};
 use ash::vk;
 use std::sync::Arc;
 
@@ -35,12 +35,12 @@ pub fn touches() -> [(String, Access); 3] {
     [touch(COUNTERS, Access::TransferRead), touch(COUNT, Access::TransferWrite), touch(COUNT, Access::IndirectRead)]
 }
 
-pub struct Gate {
+pub struct StrayDraws {
     draws: Buffer,
     count: Buffer,
 }
 
-impl Gate {
+impl StrayDraws {
     /// Commands for all of the scene's calls, in the order of its draws.
     ///
     /// Errors: memory for the upload (exit code 4).
@@ -48,7 +48,7 @@ impl Gate {
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
         scene: &SceneGpu,
-        (stages, repeats): (&Stages, &Repeats),
+        (stages, repeats): (&SampleStages, &Repeats),
     ) -> Result<Self> {
         let mut commands = vec![[0u32; 4]; scene.calls.len()];
         for call in &scene.calls {

@@ -1,11 +1,11 @@
 //! The triangles that samples see, drawn once more by the stages that drew them for visibility: every sample is found
 //! once, by the triangle that it sees, and the shader that follows says what is done with it. Shaders: those before
-//! fragments of visibility, again.glsl.
+//! fragments of visibility, redraw.glsl.
 //! reads  the scene, visibility.spids, visibility.depth
 
 use super::choices::Choices;
-use super::gate::Gate;
 use super::primitives::Primitives;
+use super::stray_draws::StrayDraws;
 use super::visibility;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
@@ -23,10 +23,10 @@ use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
-pub struct Again {
+pub struct TriangleRedraw {
     pipeline: GraphicsPipeline,
-    stages: draw::Stages,
-    gate: Option<Gate>,
+    stages: draw::SampleStages,
+    stray_draws: Option<StrayDraws>,
     visibility: Visibility,
     /// One, and how many of them.
     layers: (Extent, u32),
@@ -38,7 +38,7 @@ pub fn axis(choices: &Choices) -> &'static str {
     if choices.visibility.has_polygons() { "stochastic" } else { "interleaved" }
 }
 
-impl Again {
+impl TriangleRedraw {
     /// `frame`: its extent; `fragment`: what is done with a sample.
     pub fn new(
         gpu: &Arc<Gpu>,
@@ -72,14 +72,18 @@ impl Again {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        let gate = if choices.is_gated { Some(Gate::new(gpu, resources, scene, (&stages, &repeats))?) } else { None };
+        let stray_draws = if choices.has_stray_count {
+            Some(StrayDraws::new(gpu, resources, scene, (&stages, &repeats))?)
+        } else {
+            None
+        };
         let layers = (choices.table.layer(frame), choices.table.tuple_count());
-        Ok(Self { pipeline, stages, gate, visibility: choices.visibility, layers })
+        Ok(Self { pipeline, stages, stray_draws, visibility: choices.visibility, layers })
     }
 
     /// Whether draws depend on a count.
-    pub fn gate(&self) -> Option<&Gate> {
-        self.gate.as_ref()
+    pub fn stray_draws(&self) -> Option<&StrayDraws> {
+        self.stray_draws.as_ref()
     }
 
     /// Bytes of vertices and of what says what samples see.
@@ -115,10 +119,10 @@ impl Again {
             let depth = depth.map(|depth| (depth, None, Access::DepthTest));
             cmd.begin_layers(layer, at, &[], depth);
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
-            if let Some(gate) = &self.gate {
+            if let Some(stray_draws) = &self.stray_draws {
                 let drawn = (&self.pipeline, self.stages.sides);
                 draw::draw_by(cmd, drawn, scene, primitives, &scene.calls, repeats, |call| {
-                    gate.draw(cmd, call.draw);
+                    stray_draws.draw(cmd, call.draw);
                 });
             } else {
                 draw::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);

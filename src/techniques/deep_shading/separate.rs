@@ -1,34 +1,34 @@
 //! Visibility first, then shading of what it has seen: figure 3, from samples to their colours, and the counting of
 //! lists after the resolve.
 
-use super::brute::Brute;
+use super::brute::BruteForce;
 use super::choices::Choices;
 use super::count::Count;
 use super::indirect::Indirect;
 use super::lists::address::Address;
 use super::lists::compact::Compact;
-use super::lists::direct::Direct;
+use super::lists::direct::HostInsertion;
 use super::lists::insert::Insert;
 use super::lists::{self, Lists};
 use super::primitives::Primitives;
-use super::resolve::Shaded;
+use super::resolve::SampleColors;
 use super::scene::DeepScene;
 use super::shade::Shade;
 use super::visibility;
-use super::visibility::Drawer;
-use super::visibility::ray::{Rays, Sets, Traced};
+use super::visibility::SampleRasterizer;
+use super::visibility::ray::{Rays, TracedSamples, TracedSets};
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::visibility::samples::{Drawn, Samples};
+use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
 use crate::units::Extent;
 use std::sync::Arc;
 
 /// What builds the deep shading buffer and shades it.
-struct Listed {
+struct ListShading {
     lists: Lists,
     insertion: Insertion,
     shade: Shade,
@@ -37,42 +37,42 @@ struct Listed {
 
 /// What puts triangles into lists.
 enum Insertion {
-    Device(Box<Inserted>),
-    Host(Direct),
+    Device(Box<DeviceInsertion>),
+    Host(HostInsertion),
 }
 
 /// Insertion by compute shaders.
-struct Inserted {
+struct DeviceInsertion {
     insert: Insert,
     compact: Option<Compact>,
     address: Option<Address>,
 }
 
 /// What finds the triangles that samples see.
-enum Seen {
-    Drawn(Samples, Drawer),
-    Traced(Samples, Box<Rays>),
+enum TriangleFinder {
+    Rasterizer(Samples, SampleRasterizer),
+    Rays(Samples, Box<Rays>),
     /// With `--lists direct` only the lists hold it.
-    Listed,
+    HostLists,
 }
 
 /// What shades samples that are in no list.
-enum Rest {
-    Alone(Box<Brute>),
+enum Unlisted {
+    BruteForce(Box<BruteForce>),
     /// All of them.
     Indirect(Box<Indirect>),
 }
 
-pub struct Apart {
-    seen: Seen,
-    listed: Option<Listed>,
-    rest: Rest,
+pub struct SeparateShading {
+    finder: TriangleFinder,
+    list_shading: Option<ListShading>,
+    unlisted: Unlisted,
     colors: Buffer,
     visibility: Visibility,
     space: Extent,
 }
 
-impl Apart {
+impl SeparateShading {
     /// `frame`: its extent; `traced`: with `--visibility ray`; `primitives`: numbered in the order of what is drawn.
     pub fn new(
         gpu: &Arc<Gpu>,
@@ -80,32 +80,35 @@ impl Apart {
         resources: &mut Resources,
         choices: &Choices,
         frame: Extent,
-        traced: Option<Traced>,
+        traced: Option<TracedSamples>,
         primitives: &Primitives,
     ) -> Result<Self> {
         let samples = |resources: &mut Resources| Samples::new(gpu, resources, choices);
         let mut host_lists = None;
-        let seen = match traced.map(|traced| traced.sets) {
-            Some(Sets::Lists(sets)) => {
-                host_lists = Some(Direct::new(resources, choices, sets));
-                Seen::Listed
+        let finder = match traced.map(|traced| traced.sets) {
+            Some(TracedSets::Lists(sets)) => {
+                host_lists = Some(HostInsertion::new(resources, choices, sets));
+                TriangleFinder::HostLists
             }
-            Some(Sets::Samples(sets)) => {
-                Seen::Traced(samples(resources)?, Box::new(Rays::new(resources, choices, sets)))
+            Some(TracedSets::Samples(sets)) => {
+                TriangleFinder::Rays(samples(resources)?, Box::new(Rays::new(resources, choices, sets)))
             }
-            None => Seen::Drawn(samples(resources)?, Drawer::new(gpu, scene, resources, choices, primitives)?),
+            None => TriangleFinder::Rasterizer(
+                samples(resources)?,
+                SampleRasterizer::new(gpu, scene, resources, choices, primitives)?,
+            ),
         };
-        let listed = if choices.has_lists {
+        let list_shading = if choices.has_lists {
             let address = choices.is_compacted && choices.has_addresses;
             let insertion = match host_lists {
                 Some(direct) => Insertion::Host(direct),
-                None => Insertion::Device(Box::new(Inserted {
+                None => Insertion::Device(Box::new(DeviceInsertion {
                     insert: Insert::new(gpu, choices)?,
                     compact: if choices.is_compacted { Some(Compact::new(gpu, choices)?) } else { None },
                     address: if address { Some(Address::new(gpu, choices)?) } else { None },
                 })),
             };
-            Some(Listed {
+            Some(ListShading {
                 lists: Lists::new(resources, choices),
                 insertion,
                 shade: Shade::new(gpu, scene, choices)?,
@@ -114,15 +117,15 @@ impl Apart {
         } else {
             None
         };
-        let rest = if choices.shading == Shading::IndirectGbuffer {
-            Rest::Indirect(Box::new(Indirect::new(gpu, scene, resources, choices, frame)?))
+        let unlisted = if choices.shading == Shading::IndirectGbuffer {
+            Unlisted::Indirect(Box::new(Indirect::new(gpu, scene, resources, choices, frame)?))
         } else {
-            Rest::Alone(Box::new(Brute::new(gpu, scene, resources, choices, frame)?))
+            Unlisted::BruteForce(Box::new(BruteForce::new(gpu, scene, resources, choices, frame)?))
         };
         Ok(Self {
-            seen,
-            listed,
-            rest,
+            finder,
+            list_shading,
+            unlisted,
             colors: lists::colors(resources),
             visibility: choices.visibility,
             space: choices.space.extent,
@@ -131,38 +134,40 @@ impl Apart {
 
     /// None: `--lists direct`.
     pub fn samples(&self) -> Option<&Samples> {
-        match &self.seen {
-            Seen::Drawn(samples, _) | Seen::Traced(samples, _) => Some(samples),
-            Seen::Listed => None,
+        match &self.finder {
+            TriangleFinder::Rasterizer(samples, _) | TriangleFinder::Rays(samples, _) => Some(samples),
+            TriangleFinder::HostLists => None,
         }
     }
 
     /// Lists that the host has made.
-    pub fn host_lists(&self) -> Option<&Direct> {
-        match &self.listed.as_ref()?.insertion {
+    pub fn host_lists(&self) -> Option<&HostInsertion> {
+        match &self.list_shading.as_ref()?.insertion {
             Insertion::Host(direct) => Some(direct),
             Insertion::Device(_) => None,
         }
     }
 
     pub fn count(&self) -> Option<&Count> {
-        self.listed.as_ref()?.count.as_ref()
+        self.list_shading.as_ref()?.count.as_ref()
     }
 
     /// The buffers of lists, of a compact geometry buffer, and of colours.
     pub fn buffers(&self) -> impl Iterator<Item = &Buffer> {
-        let listed = self.listed.iter();
-        let lists = listed.flat_map(|listed| listed.lists.all().chain(listed.count.iter().map(|count| &count.lengths)));
-        let indirect = match &self.rest {
-            Rest::Indirect(indirect) => Some(indirect.buffers()),
-            Rest::Alone(_) => None,
+        let list_shading = self.list_shading.iter();
+        let lists = list_shading.flat_map(|list_shading| {
+            list_shading.lists.all().chain(list_shading.count.iter().map(|count| &count.lengths))
+        });
+        let indirect = match &self.unlisted {
+            Unlisted::Indirect(indirect) => Some(indirect.buffers()),
+            Unlisted::BruteForce(_) => None,
         };
         lists.chain(indirect.into_iter().flatten()).chain([&self.colors])
     }
 
     /// Puts what the host has made of a run where the frame takes it from.
     pub fn begin_run(&self, run: u32) {
-        if let Seen::Traced(_, rays) = &self.seen {
+        if let TriangleFinder::Rays(_, rays) = &self.finder {
             rays.stage(run);
         }
         if let Some(direct) = self.host_lists() {
@@ -175,35 +180,39 @@ impl Apart {
         &self,
         cmd: &mut Commands,
         deep: &DeepScene,
-        drawn: Drawn<'_>,
+        drawn: DrawInputs<'_>,
         bound: &[(&'static str, Bound<'_>)],
         counters: &Buffer,
-    ) -> Result<Shaded<'_>> {
-        let Drawn { scene, list, primitives, .. } = drawn;
-        match &self.seen {
-            Seen::Listed => {}
-            Seen::Traced(samples, rays) => rays.record(cmd, samples, counters)?,
-            Seen::Drawn(samples, drawer) => {
-                visibility::record(cmd, drawer, drawn, bound, samples, counters, self.visibility)?;
+    ) -> Result<SampleColors<'_>> {
+        let DrawInputs { scene, list, primitives, .. } = drawn;
+        match &self.finder {
+            TriangleFinder::HostLists => {}
+            TriangleFinder::Rays(samples, rays) => rays.record(cmd, samples, counters)?,
+            TriangleFinder::Rasterizer(samples, rasterizer) => {
+                visibility::record(cmd, rasterizer, drawn, bound, samples, counters, self.visibility)?;
             }
         }
-        if let Some(listed) = &self.listed {
-            let links_left = self.record_insertion(cmd, listed, bound, counters)?;
+        if let Some(list_shading) = &self.list_shading {
+            let links_left = self.record_insertion(cmd, list_shading, bound, counters)?;
             let maps = deep.maps_barrier(Access::DepthWrite, Access::FragmentSample);
-            let left = (&listed.lists, links_left, maps);
-            listed.shade.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
+            let left = (&list_shading.lists, links_left, maps);
+            list_shading.shade.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
         }
-        let brute = match &self.rest {
-            Rest::Alone(brute) => brute,
-            Rest::Indirect(indirect) => {
+        let brute = match &self.unlisted {
+            Unlisted::BruteForce(brute) => brute,
+            Unlisted::Indirect(indirect) => {
                 let samples = self.samples().expect("there are no lists");
                 let left = (samples, deep.maps_barrier(Access::DepthWrite, Access::ComputeSample));
                 indirect.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
                 let samples = (samples, samples.written | Access::FragmentSample);
-                return Ok(Shaded::Pointed { samples, pointers: &indirect.entries.pointers, colors: &self.colors });
+                return Ok(SampleColors::Pointed {
+                    samples,
+                    pointers: &indirect.entries.pointers,
+                    colors: &self.colors,
+                });
             }
         };
-        let lists = self.listed.as_ref().map(|listed| &listed.lists);
+        let lists = self.list_shading.as_ref().map(|list_shading| &list_shading.lists);
         let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
         let left = (lists, deep.maps_barrier(maps_left, Access::FragmentSample));
         brute.record(cmd, scene, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
@@ -211,19 +220,19 @@ impl Apart {
             let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };
             (samples, seen_by | Access::FragmentSample)
         });
-        Ok(Shaded::Apart { samples, lists, colors: &self.colors })
+        Ok(SampleColors::Separate { samples, lists, colors: &self.colors })
     }
 
     /// Returns how the links were touched last.
     fn record_insertion(
         &self,
         cmd: &mut Commands,
-        listed: &Listed,
+        list_shading: &ListShading,
         bound: &[(&'static str, Bound<'_>)],
         counters: &Buffer,
     ) -> Result<Access> {
-        let (lists, colors) = (&listed.lists, &self.colors);
-        let Inserted { insert, compact, address } = match &listed.insertion {
+        let (lists, colors) = (&list_shading.lists, &self.colors);
+        let DeviceInsertion { insert, compact, address } = match &list_shading.insertion {
             Insertion::Device(inserted) => &**inserted,
             Insertion::Host(direct) => {
                 direct.record(cmd, lists, colors, counters)?;
@@ -247,8 +256,8 @@ impl Apart {
         bound: &[(&'static str, Bound<'_>)],
         counters: &Buffer,
     ) -> Result<()> {
-        let Some(listed) = &self.listed else { return Ok(()) };
-        let Some(count) = &listed.count else { return Ok(()) };
-        count.record(cmd, bound, &listed.lists, counters)
+        let Some(list_shading) = &self.list_shading else { return Ok(()) };
+        let Some(count) = &list_shading.count else { return Ok(()) };
+        count.record(cmd, bound, &list_shading.lists, counters)
     }
 }
