@@ -1,6 +1,7 @@
 //! A file that says nothing of its camera and its light is seen all the same; and where nothing is to be seen, it is said why.
 
 use crate::support;
+use crate::support::choices;
 use crate::support::gltf_file::GltfFile;
 use crate::support::program::Program;
 use quincunx::frame::View;
@@ -12,9 +13,6 @@ use quincunx::techniques::settings_of;
 use quincunx::units::Extent;
 use serde_json::{Value, json};
 
-/// Every technique: what is said of a picture depends on none.
-const TECHNIQUES: [&str; 6] =
-    ["forward", "deferred", "interleaved_deferred", "inferred_lighting", "deep_shading", "path_traced"];
 const SMALL: [&str; 4] = ["--size", "32x18", "--json", "--technique"];
 
 /// A triangle with these corners, alone in its file.
@@ -120,7 +118,8 @@ fn where_nothing_is_seen_a_note_says_why_and_what_would_help() {
         folder(&file)
     };
     let (onward, around) = ([0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]);
-    for technique in TECHNIQUES {
+    // What is said of a picture depends on no technique.
+    for technique in choices::techniques() {
         for (rotation, z, more, said) in [
             (around, 3.0, &[][..], &["no surface is in view: camera door looks past", "--camera framing"][..]),
             (around, 3.0, &["--background", "0.5,0.6,0.7"], &["no surface is in view"]),

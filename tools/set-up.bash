@@ -17,6 +17,11 @@ fail() {
     exit 1
 }
 
+# phase SECONDS NAME...: adds a line to the table that .ci/run ends with: the file that QUINCUNX_PHASES names, where it is set.
+phase() {
+    [ -z "${QUINCUNX_PHASES:-}" ] || printf '%6d s  %s\n' "$1" "${*:2}" >>"$QUINCUNX_PHASES"
+}
+
 # The Rust toolchain, at least as new as Cargo.toml wants it. Ends the script where it is not.
 need_rust() {
     # Just installed by rustup, and the shell not opened anew.

@@ -1,6 +1,7 @@
 //! What the G-buffer says of each pixel beside its surface: the material's id (Segovia 2006, section 4.1).
 
 use crate::support::boxes::{camera, rectangle};
+use crate::support::choices::words;
 use crate::support::placing_steps;
 use crate::support::seen::{self, Seen};
 use crate::support::watched::{Watched, both};
@@ -77,7 +78,7 @@ fn each_pixel_has_the_id_of_the_material_that_it_shows() {
     };
     let common = [("size", "150x90")];
     let plain = Watched::with_scene(tiles(|_, _| {}));
-    for position in ["half", "unorm16", "depth", "float"] {
+    for position in words("deferred", "position") {
         let changes = both(&common, &[("position", position)]);
         assert!(require_ids(&plain, "deferred", &changes) > 256, "more than eight bits tell apart are seen");
     }

@@ -3,6 +3,7 @@
 
 use crate::support;
 use crate::support::boxes::{camera, closed_box, rectangle};
+use crate::support::choices::words;
 use crate::support::difference::require_same;
 use crate::support::moving::moving;
 use crate::support::watched::{Changes, Watched, both};
@@ -200,7 +201,7 @@ fn blended_surfaces_are_in_shadow_and_cast_none() {
     let mut scene = table(glass, lamp);
     rectangle(&mut scene, vec3(0.25, 2.0, 0.0), 0.2 * Vec3::X, -0.2 * Vec3::Z, gray());
     let watched = Watched::with_scene(scene);
-    for lists in ["object", "none"] {
+    for lists in words(FORWARD, "light-lists") {
         let picture = |shadow| watched.picture(FORWARD, &both(PLAIN, &[shadow, ("light-lists", lists)]));
         let (plain, rays, maps) = (picture(NONE), picture(RAY), picture(MAP));
         let (unshadowed, mapped) = (differing(&plain, &rays), differing(&maps, &rays));

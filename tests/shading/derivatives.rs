@@ -2,6 +2,7 @@
 //!
 //! A checkerboard whose texels are two pixels wide is seen at its finest level everywhere; every other level is grey.
 
+use crate::support::choices::techniques;
 use crate::support::square::{matt, picture, square};
 use crate::support::watched::{Changes, Watched};
 use crate::support::{self, Feature};
@@ -52,11 +53,10 @@ fn the_finest_level_is_seen_on_every_edge() {
         ("a second set of coordinates", Placement { uv_set: 1, ..Placement::default() }, false, false),
         ("a texture transform", Placement { uv_set: 0, picture_from_uv: moved }, false, true),
     ];
-    let mut techniques = vec!["forward", "deferred", "inferred_lighting", "interleaved_deferred"];
-    // Its samples find their shading points through placed vertices.
-    if support::has(&support::driver(), Feature::ExactPositions) {
-        techniques.push("deep_shading");
-    }
+    // Rays have no quads; samples of deep shading find their shading points through placed vertices.
+    let are_placed = support::has(&support::driver(), Feature::ExactPositions);
+    let mut techniques: Vec<&str> = techniques().filter(|name| *name != "path_traced").collect();
+    techniques.retain(|name| *name != "deep_shading" || are_placed);
     for (case, placement, has_colors, is_swapped) in cases {
         for alpha in [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend] {
             let watched = Watched::with_scene(board(placement, has_colors, alpha));

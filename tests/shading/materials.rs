@@ -1,6 +1,7 @@
 //! What materials and vertices say, from the file to the pixel: each rule against its closed form, or against the twin
 //! that the host looks materials up with.
 
+use crate::support::choices::words;
 use crate::support::gltf_file::{GltfFile, U8, U16};
 use crate::support::square::{matt, picture, square};
 use crate::support::watched::{Changes, Watched, both};
@@ -238,7 +239,7 @@ fn an_unlit_surface_shows_its_colour_and_takes_no_light() {
         direction: Vec3::NEG_Z,
         range: None,
     }];
-    for brdf in ["lambert", "blinn-phong", "ggx"] {
+    for brdf in words("deferred", "brdf") {
         for (alpha, bound) in [(AlphaMode::Opaque, HALF), (AlphaMode::Blend, 1e-6)] {
             scene.materials[0].alpha = alpha;
             let expected = color.truncate() * if alpha == AlphaMode::Blend { 0.5 } else { 1.0 };

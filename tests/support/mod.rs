@@ -2,6 +2,7 @@
 
 pub mod benched;
 pub mod boxes;
+pub mod choices;
 pub mod counted;
 pub mod difference;
 pub mod failing;

@@ -1,6 +1,7 @@
 //! Baselines of deep shading: on the same samples supersampling gives the lists' picture, exactly where a triangle has
 //! one colour; multisampling to nearly the same; and what both shade is counted.
 
+use super::visibilities;
 use crate::support::boxes::{camera, rectangle};
 use crate::support::difference::{require_same, rmse};
 use crate::support::moving::{moving, unlit};
@@ -33,7 +34,7 @@ fn supersampled_colours_of_triangles_are_the_lists_to_the_bit() {
     let sets = [("size", "97x55"), ("spp", "4"), ("accumulate", "2")];
     let lens = both(&sets, &[("aperture", "0.1"), ("focus", "4"), ("camera", "rotor")]);
     let watched = Watched::with_scene(unlit(rotor(), false));
-    for visibility in ["repeat-frame", "stochastic"] {
+    for visibility in visibilities(SSAA.1) {
         let seen = both(&lens, &[("visibility", visibility)]);
         let supersampled = both(&seen, &[SSAA]);
         let [one, other] = [&supersampled, &seen].map(|changes| watched.picture(DEEP, changes));
@@ -70,7 +71,7 @@ fn one_sample_in_the_middle_has_the_textures_of_the_lists() {
     let watched = Watched::open("hall:triangles=8000");
     let common = [SIZE, ("spp", "1"), ("tuples", "1")];
     let deep = watched.picture(DEEP, &common);
-    for visibility in ["repeat-frame", "stochastic"] {
+    for visibility in visibilities(SSAA.1) {
         let supersampled = watched.picture(DEEP, &both(&common, &[SSAA, ("visibility", visibility)]));
         let far = rmse(&supersampled, &deep);
         println!("{visibility}: {far}");

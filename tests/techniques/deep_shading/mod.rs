@@ -10,6 +10,7 @@ mod stereo;
 mod texture_space;
 mod visibility;
 
+use crate::support::choices::{is_possible, words};
 use crate::support::difference::require_same;
 use crate::support::moving::{moving, unlit};
 use crate::support::program::Program;
@@ -40,6 +41,12 @@ const ROADS: [Changes<'_>; 11] = [
     &[("list-access", "addresses")],
     &[("list-access", "addresses"), ("compaction", "off"), ("address-buffer", "off")],
 ];
+
+/// Kinds of `--visibility` that go with a `--shading`.
+fn visibilities(shading: &str) -> Vec<&'static str> {
+    let goes = |kind: &&str| is_possible(DEEP, &[("shading", shading), ("visibility", kind)]);
+    words(DEEP, "visibility").into_iter().filter(goes).collect()
+}
 
 /// Both software methods of conservative rasterisation, where the driver has them.
 fn conservative(watched: &Watched) -> Vec<&'static str> {

@@ -2,6 +2,7 @@
 //! one colour stays one colour, and what is sharp takes nothing from what is behind it.
 
 use crate::support::boxes::{camera, panel, rectangle};
+use crate::support::choices::words_but;
 use crate::support::difference::{require_same, rmse};
 use crate::support::moving::moving;
 use crate::support::program::Program;
@@ -106,7 +107,7 @@ fn every_kind_of_visibility_comes_to_one_picture_as_far_as_its_samples_agree() {
         }
         if watched.session.scene.closing.is_some() && has(&watched.session.gpu.caps, Feature::GeometryShader) {
             let hash = filtered.hash().unwrap();
-            for kind in ["repeat-draw", "instancing", "replicate"] {
+            for kind in words_but(DEEP, "visibility", &["repeat-frame", "stochastic", "ray"]) {
                 assert_eq!(picture(kind, "on").hash().unwrap(), hash, "{kind}");
             }
         }

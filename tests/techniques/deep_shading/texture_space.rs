@@ -2,6 +2,7 @@
 //! supersampling's bits where a draw has one colour, and near the lists' picture elsewhere, the nearer the finer it
 //! shades; every sample finds its texels, however many textures there are.
 
+use super::visibilities;
 use crate::support::boxes::{camera, rectangle};
 use crate::support::difference::{require_same, rmse};
 use crate::support::moving::{moving, unlit};
@@ -30,7 +31,7 @@ fn draws_of_one_colour_are_supersampling_to_the_bit() {
     let lens = [SIZE, ("spp", "2"), ("accumulate", "2"), ("aperture", "0.1"), ("focus", "4"), ("camera", "rotor")];
     // Long charts of cables have as many texels as their lengths: in small textures they are few.
     let textures = [TEXTURES[0], ("shading-texture-size", "256")];
-    for visibility in ["repeat-frame", "stochastic"] {
+    for visibility in visibilities("texture-space") {
         let seen = both(&lens, &[("visibility", visibility)]);
         let supersampled = watched.render(DEEP, &both(&seen, &[("shading", "ssaa")]));
         let textured = watched.render(DEEP, &both(&seen, &textures));

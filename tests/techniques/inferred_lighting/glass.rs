@@ -1,6 +1,7 @@
 //! BLEND surfaces in inferred lighting (Kircher 2009, section 4): each is lit by its own texels of the stipple.
 
 use crate::support::boxes::{camera, point_light, rectangle};
+use crate::support::choices::words;
 use crate::support::difference::greatest_part;
 use crate::support::gltf_file::GltfFile;
 use crate::support::watched::{Watched, both};
@@ -46,9 +47,9 @@ fn glass_is_lit_as_forward_lights_it() {
             let watched = Watched::with_scene(glass(count, lit));
             let forward = watched.picture("deferred", &common);
             let brightest = |pixel: &[f32; 3]| pixel.iter().fold(0f32, |most, channel| most.max(*channel));
-            for stipple in ["2x2", "4x4"] {
-                for assignment in ["overlap", "depth", "static"] {
-                    for filter in ["cone", "bilinear"] {
+            for stipple in words(NAME, "stipple") {
+                for assignment in words(NAME, "assignment") {
+                    for filter in words(NAME, "alpha-filter") {
                         let changes = [("stipple", stipple), ("alpha-filter", filter), ("assignment", assignment)];
                         let size = [("light-size", "160x120")];
                         let picture = watched.picture(NAME, &both(&both(&common, &changes), &size));
@@ -199,7 +200,7 @@ fn a_decal_is_lit_by_its_own_normal() {
     let pictures = [-1.0, 0.0, 1.0].map(|lean| {
         let watched = Watched::with_scene(scene(lean));
         let forward = watched.picture("forward", &common);
-        for stipple in ["2x2", "4x4"] {
+        for stipple in words(NAME, "stipple") {
             let picture = watched.picture(NAME, &both(&common, &[("light-size", "160x120"), ("stipple", stipple)]));
             let found = greatest_part(&picture, &forward);
             println!("normal leans by {lean}, {stipple}: {found}");

@@ -1,9 +1,10 @@
 //! Split then gather is the identity on the device, seen in the stages that a frame leaves (Segovia 2006, figure 3).
 
+use super::{copies, splits_in_blocks};
+use crate::support::choices::{is_possible, words};
 use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use quincunx::gpu::commands::Submits;
-use quincunx::selftest::cases::SPLITS;
 use quincunx::techniques::interleaved_deferred::mapping::mapping;
 use quincunx::units::Extent;
 
@@ -19,9 +20,6 @@ fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32;
     }
     pixels
 }
-
-/// Every way to copy into sub-buffers and back: method, storage, form. The first five methods copy nothing.
-const COPIES: &[Changes<'_>] = SPLITS.split_at(5).1;
 
 /// Splits, gathers and compares; `changes` beside size and pattern.
 fn require_identity(watched: &Watched, extent: Extent, pattern: [u32; 2], changes: Changes<'_>) {
@@ -58,6 +56,7 @@ fn every_sub_buffer_comes_back_where_it_was() {
 #[test]
 fn every_copy_brings_every_sub_buffer_back() {
     let watched = Watched::open("cornell");
+    let copies = copies();
     for (extent, pattern) in [
         (Extent::new(160, 90), [1, 1]),
         (Extent::new(161, 91), [5, 7]),
@@ -66,7 +65,7 @@ fn every_copy_brings_every_sub_buffer_back() {
         (Extent::new(9, 7), [16, 16]),
         (Extent::new(1, 1), [2, 2]),
     ] {
-        for copies in COPIES {
+        for copies in &copies {
             require_identity(&watched, extent, pattern, copies);
         }
     }
@@ -75,15 +74,13 @@ fn every_copy_brings_every_sub_buffer_back() {
 #[test]
 fn every_block_brings_every_sub_buffer_back() {
     let watched = Watched::open("cornell");
+    let copies = splits_in_blocks();
     for (extent, pattern) in [(Extent::new(97, 53), [3, 2]), (Extent::new(65, 40), [4, 4])] {
         // Smaller than the pattern, odd sub-blocks, flat, tall, larger than the frame where that is possible.
         for block in ["1", "9x3", "48x2", "5x33", "300"] {
-            for copies in COPIES.iter().filter(|copies| ["two-pass", "fragment"].contains(&copies[0].1)) {
+            // A tile as large does not fit into workgroup memory, and is refused.
+            for copies in copies.iter().filter(|copies| copies[0].1 != "tile" || block != "300") {
                 require_identity(&watched, extent, pattern, &both(copies, &[("block", block)]));
-            }
-            for storage in ["buffer", "image"].into_iter().filter(|_| block != "300") {
-                let tile = [("split", "tile"), ("storage", storage), ("block", block)];
-                require_identity(&watched, extent, pattern, &tile);
             }
         }
     }
@@ -106,22 +103,21 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
     let filtered = ["discontinuity.flags", "filter.irradiance"];
     let split = ["split.normal", "gather.irradiance"];
     let upscaled = ["upscale.irradiance"];
-    for (change, missing) in [
-        (("split", "none"), [&split[..], &filtered, &upscaled].concat()),
-        (("split", "subsample"), [split, filtered].concat()),
-        (("split", "branch"), [&split[..], &upscaled].concat()),
-        (("split", "indirect"), [&split[..], &upscaled].concat()),
-        (("split", "remap"), [&split[..], &upscaled].concat()),
-        (("split", "stencil"), [&split[..], &upscaled].concat()),
-        (("split", "depth"), [&split[..], &upscaled].concat()),
-        (("split", "two-pass"), upscaled.to_vec()),
-        (("split", "tile"), upscaled.to_vec()),
-        (("split", "layered"), upscaled.to_vec()),
-        (("split", "fragment"), upscaled.to_vec()),
+    // What copies reads --storage.
+    let copies = |word| is_possible(TECHNIQUE, &[("split", word), ("storage", "image")]);
+    let left_out_by = |word| match word {
+        "none" => [&split[..], &filtered, &upscaled].concat(),
+        "subsample" => [split, filtered].concat(),
+        _ if copies(word) => upscaled.to_vec(),
+        _ => [&split[..], &upscaled].concat(),
+    };
+    let by_split = words(TECHNIQUE, "split").into_iter().map(|word| (("split", word), left_out_by(word)));
+    let by_others = [
         (("filter", "none"), [&filtered[..], &upscaled].concat()),
         (("pattern", "1x1"), [&filtered[..], &upscaled].concat()),
         (("pattern", "2x2"), upscaled.to_vec()),
-    ] {
+    ];
+    for (change, missing) in by_split.chain(by_others) {
         let changes = both(&common, &[change]);
         let (without, with): (Vec<&str>, Vec<&str>) = stages.iter().partition(|name| missing.contains(name));
         let renderer = watched.render_stages(TECHNIQUE, &changes, &with);
