@@ -62,6 +62,7 @@ mod ray_query;
 mod rays;
 mod reference;
 mod rooms;
+mod sampling_verb;
 mod scene_verbs;
 mod seen;
 mod self_test;

@@ -85,7 +85,7 @@ mod touched;
 mod tuples;
 mod visibility;
 
-use super::{Frame, Inputs, Prepared, Rival, Technique, light_visibility};
+use super::{Frame, Inputs, NamedPattern, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::Gpu;
@@ -204,6 +204,10 @@ impl Technique for DeepShading {
 
     fn rivals(&self) -> Vec<Rival> {
         rivals::rivals()
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        tuples::PATTERNS
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

@@ -30,7 +30,7 @@ mod settings;
 mod stipple;
 mod survivors;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
@@ -138,6 +138,10 @@ impl Technique for InferredLighting {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        assignment::PATTERNS
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

@@ -46,7 +46,7 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
-use super::{Frame, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
@@ -138,6 +138,10 @@ impl Technique for InterleavedDeferred {
             _ => {}
         }
         Ok(settings)
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        choices::PATTERNS
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
