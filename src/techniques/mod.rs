@@ -15,6 +15,7 @@ pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
 pub mod path_traced;
+pub mod patterns;
 pub mod stages;
 
 pub use all::{ALL, find};
@@ -28,6 +29,7 @@ use crate::lights::LightSet;
 use crate::picture::Aov;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
+use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
 use crate::settings::{COMMON, Condition, DirectShadow, INSTRUMENT, Setting, Values};
 use glam::Vec2;
@@ -67,6 +69,20 @@ pub struct Rival {
     /// How the bytes come out, in words.
     pub formula: String,
     pub bytes: u64,
+}
+
+/// A pattern of samples that settings of a technique choose.
+pub struct NamedPattern {
+    /// Its name on the command line, different from every other pattern's.
+    pub name: &'static str,
+    /// One line for the list.
+    pub summary: &'static str,
+    /// Keys of those settings.
+    pub keys: &'static [&'static str],
+    /// The pattern.
+    ///
+    /// Errors: the settings contradict each other (exit code 2).
+    pub make: fn(&Values) -> Result<Pattern>,
 }
 
 /// One way of making a picture.
@@ -121,6 +137,11 @@ pub trait Technique: Sync {
     /// Methods whose memory its paper compares with.
     fn rivals(&self) -> Vec<Rival> {
         Vec::new()
+    }
+
+    /// Patterns of samples that its settings choose.
+    fn patterns(&self) -> &'static [NamedPattern] {
+        &[]
     }
 
     /// Its choices for these inputs: made here once, then planned, then built. No device is needed.

@@ -99,7 +99,7 @@ mod touched;
 mod tuples;
 mod visibility;
 
-use super::{HostPart, Inputs, Prepared, Rival, Technique, light_visibility};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::lights::LightSet;
@@ -215,6 +215,10 @@ impl Technique for DeepShading {
 
     fn rivals(&self) -> Vec<Rival> {
         rivals::rivals()
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        tuples::PATTERNS
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -30,7 +30,7 @@ mod settings;
 mod stipple;
 mod survivors;
 
-use super::{HostPart, Inputs, Prepared, Technique, light_visibility};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::Access;
@@ -135,6 +135,10 @@ impl Technique for InferredLighting {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        assignment::PATTERNS
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

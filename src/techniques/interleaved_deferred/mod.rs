@@ -46,7 +46,7 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
-use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
@@ -135,6 +135,10 @@ impl Technique for InterleavedDeferred {
             Direct::Full => {}
         }
         Ok(settings)
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        choices::PATTERNS
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
