@@ -28,7 +28,7 @@ use crate::picture::Aov;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
 use crate::scene::Scene;
-use crate::settings::{COMMON, Condition, DirectShadow, INSTRUMENT, Setting, Values};
+use crate::settings::{COMMON, DirectShadow, INSTRUMENT, Setting, Values};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -81,11 +81,6 @@ pub trait Technique: Sync {
 
     /// Tables of the settings that it reads beside the common ones.
     fn settings(&self) -> &'static [&'static [Setting]];
-
-    /// When its settings are read, of those that not every value of others reads.
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[]
-    }
 
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
