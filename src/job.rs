@@ -211,8 +211,7 @@ impl Job {
 
     /// Errors: a setting is changed that the others leave unread (exit code 2).
     pub(crate) fn require_read(&self) -> Result<()> {
-        let conditions = self.technique.conditions().iter().copied().flatten();
-        readers::require_read(conditions, &settings_of(self.technique), &self.values)
+        readers::require_read(&settings_of(self.technique), &self.values)
             .map_err(|error| error.within(self.technique.name()))
     }
 

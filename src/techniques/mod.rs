@@ -31,7 +31,7 @@ use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
 use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
-use crate::settings::{COMMON, Condition, DirectShadow, INSTRUMENT, Setting, Values};
+use crate::settings::{COMMON, DirectShadow, INSTRUMENT, Setting, Values};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -98,11 +98,6 @@ pub trait Technique: Sync {
 
     /// Tables of the settings that it reads beside the common ones.
     fn settings(&self) -> &'static [&'static [Setting]];
-
-    /// When its settings are read, of those that not every value of others reads.
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[]
-    }
 
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];

@@ -20,7 +20,7 @@ use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, SceneGpu};
-use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -46,10 +46,6 @@ impl Technique for Deferred {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[SHADING, LIGHT_LISTS]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[CULL_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

@@ -41,7 +41,7 @@ use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
-use crate::settings::{Condition, LIGHT_LISTS, MULTISAMPLE, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
+use crate::settings::{LIGHT_LISTS, MULTISAMPLE, SHADOW_MAPS, Setting, Values};
 use crate::techniques::forward::choices::Choices;
 use crate::techniques::forward::material::{MaterialLights, Targets};
 use crate::techniques::forward::resources::NAME;
@@ -70,10 +70,6 @@ impl Technique for Forward {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, LIGHT_LISTS, SHADOW_MAPS, MULTISAMPLE]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[SHADOW_MAP_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

@@ -39,7 +39,7 @@ use crate::lights::LightSet;
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::{blend, cull as light_masks, direct, resolve};
 use crate::plan::Plan;
-use crate::settings::{Condition, MOTION_CONDITIONS, MULTISAMPLE, Setting, Values};
+use crate::settings::{MULTISAMPLE, Setting, Values};
 use crate::techniques::inferred_lighting::encoding::PackingFormat;
 use crate::techniques::inferred_lighting::light::store::Sums;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
@@ -67,10 +67,6 @@ impl Technique for InferredLighting {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, MULTISAMPLE]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS, MOTION_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

@@ -59,7 +59,7 @@ use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
-use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::{Choices, Direct};
 use filter::Filtered;
@@ -86,11 +86,7 @@ impl Technique for InterleavedDeferred {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, SHADING, LIGHT_LISTS]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS, CULL_CONDITIONS]
+        &[settings::SETTINGS, settings::SHADING, LIGHT_LISTS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

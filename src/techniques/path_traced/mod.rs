@@ -59,7 +59,7 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays, Reads};
 use crate::scene::{AlphaMode, Light, Material};
-use crate::settings::{Brdf, Condition, LENS_CONDITIONS, Setting, TREE, Values};
+use crate::settings::{Brdf, Setting, TREE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::{RaySource, Transport};
 use airlight::Air;
@@ -89,10 +89,6 @@ impl Technique for PathTraced {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, TREE]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS, LENS_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
