@@ -60,6 +60,7 @@ mod progress;
 mod progressive;
 mod ray_query;
 mod rays;
+mod read_back;
 mod reference;
 mod rooms;
 mod scene_verbs;

@@ -8,6 +8,7 @@ pub mod readers;
 mod shadow_maps;
 mod tables;
 mod tree;
+pub mod written;
 
 pub use optics::{
     APERTURE, FOCUS, LENS_CONDITIONS, MEDIUM, MOTION_CONDITIONS, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO,

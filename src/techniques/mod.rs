@@ -13,6 +13,7 @@ pub mod fitness;
 pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
+pub mod notes;
 pub mod path_traced;
 pub mod stages;
 
@@ -30,6 +31,7 @@ use crate::resident::{Coverage, DrawList, GeometryChoice, Raster, SceneGpu, Scen
 use crate::scene::Scene;
 use crate::settings::{COMMON, Condition, INSTRUMENT, Setting, Values};
 use glam::Vec2;
+use notes::Figures;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -127,6 +129,11 @@ pub trait Technique: Sync {
 
     /// Methods whose memory its paper compares with.
     fn rivals(&self) -> Vec<Rival> {
+        Vec::new()
+    }
+
+    /// What a report says of its figures, a line an entry.
+    fn notes(&self, _: &Figures<'_>) -> Vec<String> {
         Vec::new()
     }
 
