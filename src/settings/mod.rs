@@ -8,6 +8,7 @@ pub mod readers;
 mod shadow_maps;
 mod tables;
 mod tree;
+pub mod written;
 
 pub use optics::{
     APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes, earlier_s,

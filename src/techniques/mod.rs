@@ -14,6 +14,7 @@ pub mod fitness;
 pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
+pub mod notes;
 pub mod path_traced;
 pub mod patterns;
 pub mod stages;
@@ -33,6 +34,7 @@ use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
 use crate::settings::{COMMON, DirectShadow, INSTRUMENT, Setting, Values};
 use glam::Vec2;
+use notes::Figures;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -131,6 +133,11 @@ pub trait Technique: Sync {
 
     /// Methods whose memory its paper compares with.
     fn rivals(&self) -> Vec<Rival> {
+        Vec::new()
+    }
+
+    /// What a report says of its figures, a line an entry.
+    fn notes(&self, _: &Figures<'_>) -> Vec<String> {
         Vec::new()
     }
 

@@ -5,6 +5,7 @@
 
 pub mod shade;
 
+use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
@@ -72,6 +73,10 @@ impl Technique for Deferred {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        Vec::from_iter(notes::direct_light(figures, Some("deferred.shade")))
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

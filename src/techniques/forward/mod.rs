@@ -25,6 +25,7 @@ mod plan;
 mod resources;
 mod settings;
 
+use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
@@ -98,6 +99,10 @@ impl Technique for Forward {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        Vec::from_iter(notes::direct_light(figures, None))
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

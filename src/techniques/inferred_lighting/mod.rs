@@ -30,6 +30,7 @@ mod settings;
 mod stipple;
 mod survivors;
 
+use super::notes::{self, Figures};
 use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
@@ -131,6 +132,13 @@ impl Technique for InferredLighting {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        let open = figures.counter("shadow_casters_not_closed").filter(|open| *open > 0.0);
+        let open = open
+            .map(|open| format!("  note: draws without shadow volumes, because their meshes are not closed: {open}"));
+        open.into_iter().chain(notes::direct_light(figures, None)).collect()
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {

@@ -46,6 +46,7 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
+use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
@@ -131,6 +132,17 @@ impl Technique for InterleavedDeferred {
             Direct::Full => {}
         }
         Ok(settings)
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        let vpls = figures.counter("vpls_found").zip(figures.counter("vpls"));
+        let dark = vpls.filter(|(found, wanted)| found < wanted).map(|(found, wanted)| {
+            format!(
+                "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
+            )
+        });
+        let composite = format!("{NAME}.composite");
+        dark.into_iter().chain(notes::direct_light(figures, Some(&composite))).collect()
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {
