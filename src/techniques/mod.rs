@@ -14,6 +14,7 @@ pub mod fitness;
 pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
+pub mod own_pass;
 pub mod path_traced;
 pub mod stages;
 
