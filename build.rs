@@ -2,13 +2,17 @@
 //!
 //! Reads   every file below glsl/: .vert .geom .frag .comp are entry points, .glsl is only included.
 //! Writes  $OUT_DIR/shaders.rs: modules that mirror glsl/, each entry point a `Shader`, each struct named ...Params or
-//!         ...Block a `#[repr(C)]` struct with its offsets asserted; and one .spv file beside it per variant.
-//! Stops   with file:line:col at a GLSL error, at an entry point without its Rust file, at a struct name used twice.
+//!         ...Block a `#[repr(C)]` struct with its offsets asserted, each `const uint` or `const float` that is a number
+//!         a Rust constant of the same name; and one .spv file beside it per variant.
+//! Stops   with file:line:col at a GLSL error, at an entry point without its Rust file, at a struct name used twice,
+//!         at a constant with two values in one module.
 //!
 //! One definition, one direction: numbers of sets, bindings, constants and offsets are typed in GLSL only.
 
 #[path = "tools/build/compile.rs"]
 mod compile;
+#[path = "tools/build/constants.rs"]
+mod constants;
 #[path = "tools/build/structs.rs"]
 mod structs;
 #[path = "tools/build/table.rs"]
@@ -55,6 +59,7 @@ fn commit() -> String {
 fn generate(root: &Path, out: &Path) -> Result<(), Faults> {
     let sources = compile::Sources::read(root)?;
     let structs = structs::Structs::find(&sources)?;
+    let constants = constants::Constants::find(&sources)?;
     let mut table = table::Table::default();
     let mut faults = Faults::new();
     for entry in sources.entry_points() {
@@ -85,7 +90,7 @@ fn generate(root: &Path, out: &Path) -> Result<(), Faults> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let text = table::write(&table, &structs);
+    let text = table::write(&table, &structs, &constants);
     std::fs::write(out.join("shaders.rs"), text).map_err(|error| vec![format!("writing shaders.rs: {error}")])
 }
 

@@ -27,6 +27,9 @@ const uint MATERIAL_EMISSIVE_TEXTURE = 8u;
 const uint MATERIAL_DOUBLE_SIDED = 16u;
 const uint MATERIAL_OCCLUSION_TEXTURE = 32u;
 const uint MATERIAL_UNLIT = 64u;
+// Above the bits, a byte each: the code of the dielectric F0, and the strength of occlusion.
+const uint MATERIAL_F0_SHIFT = 8u;
+const uint MATERIAL_OCCLUSION_SHIFT = 16u;
 
 struct MaterialBlock {
     vec4 base_color;

@@ -30,7 +30,9 @@ struct TexelsBlock {
     uint flags;
 };
 
-// Bits 0 and 1: the buffer. 2 and 3: how u is wrapped, 4 and 5: how v is (WRAP_).
+// Bits 0 and 1: the buffer. Two bits each from here on: how u is wrapped, and how v is (WRAP_).
+const uint TEXELS_WRAP_U_SHIFT = 2u;
+const uint TEXELS_WRAP_V_SHIFT = 4u;
 const uint TEXELS_NEAREST = 64u;
 const uint TEXELS_SRGB = 128u;
 // The sampler chooses among levels, blends two of them, takes the nearest texel of a level that is not the finest.

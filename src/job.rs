@@ -8,10 +8,9 @@ use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::interrupt;
-use crate::memory::Strategy;
 use crate::memory::ledger::Snapshot;
 use crate::picture::image_file::{ExrPrecision, WriteOptions, write};
-use crate::picture::tonemap::{ToneMap, exposure_for};
+use crate::picture::tonemap::exposure_for;
 use crate::picture::visible::visible;
 use crate::picture::{Aov, Picture};
 use crate::reference::Asked;
@@ -277,7 +276,7 @@ impl Job {
 
     /// The device that the request names.
     pub fn device_request(&self) -> DeviceRequest {
-        let strategy = Strategy::from_setting(self.values.text("allocation")).expect("the table holds its words");
+        let strategy = self.values.choice("allocation");
         let budget_bytes = self.values.bytes("memory-budget");
         DeviceRequest {
             selector: self.device.clone(),
@@ -345,8 +344,8 @@ impl Job {
         let is_exr = is_exr(path);
         let mut options = WriteOptions {
             exposure_ev,
-            tone_map: ToneMap::parse(self.values.text("tonemap"))?,
-            exr_precision: if self.values.text("exr") == "half" { ExrPrecision::Half } else { ExrPrecision::Float },
+            tone_map: self.values.choice("tonemap"),
+            exr_precision: self.values.choice("exr"),
             aovs: &[],
             attributes: report.attributes(),
         };

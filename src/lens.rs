@@ -7,7 +7,7 @@
 use crate::bvh::Bvh;
 use crate::frame::View;
 use crate::scene::{Projection, Scene};
-use crate::settings::Values;
+use crate::settings::{StereoEyes, Values};
 
 /// A lens that is open, or that is not where the camera is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,11 +31,11 @@ pub enum Eyes {
 impl Eyes {
     fn of(values: &Values) -> Self {
         let aside = 0.5 * values.number("stereo") as f32;
-        match values.text("stereo-eyes") {
-            "left" => Self::One { aside: -aside },
-            "right" => Self::One { aside },
-            _ if aside > 0.0 => Self::Two { aside },
-            _ => Self::One { aside: 0.0 },
+        match values.choice("stereo-eyes") {
+            StereoEyes::Left => Self::One { aside: -aside },
+            StereoEyes::Right => Self::One { aside },
+            StereoEyes::Both if aside > 0.0 => Self::Two { aside },
+            StereoEyes::Both => Self::One { aside: 0.0 },
         }
     }
 }

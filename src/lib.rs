@@ -48,6 +48,7 @@
 pub mod bench;
 pub mod bvh;
 pub mod caps;
+pub mod choice;
 pub mod cli;
 pub mod earlier;
 pub mod error;

@@ -2,7 +2,8 @@
 
 use crate::support;
 use quincunx::gpu::shader;
-use std::collections::BTreeSet;
+use quincunx::techniques::settings_of;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -167,14 +168,37 @@ fn tests_lie_as_the_rooms_lie() {
     }
 }
 
+/// Whoever reads a choice asks for its enum (`choices!`): no second list of its words stands in the code. A benchmark
+/// compares variants by their texts, whatever the setting.
+#[test]
+fn choices_are_read_as_enums() {
+    let settings = quincunx::techniques::ALL.iter().flat_map(|technique| settings_of(*technique));
+    let choices: BTreeSet<&str> =
+        settings.filter(|setting| setting.choices().is_some()).map(|setting| setting.key).collect();
+    let reads = |line: &str| {
+        let keys = line.split(".text(\"").skip(1).filter_map(|after| after.split('"').next());
+        keys.into_iter().any(|key| choices.contains(key))
+    };
+    let mut found = Vec::new();
+    for file in files("src").iter().filter(|file| file.extension().is_some_and(|extension| extension == "rs")) {
+        if file.starts_with("bench") {
+            continue;
+        }
+        let mut lines = code(file);
+        lines.retain(|line| reads(line) || line.contains("was checked") && !file.starts_with("settings"));
+        found.extend(lines.iter().map(|line| format!("src/{}: {}", file.display(), line.trim())));
+    }
+    assert_eq!(found, [] as [&str; 0]);
+}
+
 #[test]
 fn every_file_says_why_it_exists() {
     for file in files("src").iter().filter(|file| file.extension().is_some_and(|extension| extension == "rs")) {
         let text = std::fs::read_to_string(root().join("src").join(file)).unwrap();
         assert!(text.starts_with("//! "), "src/{} has no header", file.display());
     }
-    for file in files("glsl") {
-        let text = std::fs::read_to_string(root().join("glsl").join(&file)).unwrap();
+    for file in files("glsl").iter().filter(|file| file.extension().is_some_and(|extension| extension != "md")) {
+        let text = std::fs::read_to_string(root().join("glsl").join(file)).unwrap();
         assert!(text.starts_with("// "), "glsl/{} has no header", file.display());
     }
 }
@@ -184,8 +208,8 @@ fn every_file_says_why_it_exists() {
 #[test]
 fn levels_of_textures_are_chosen_by_inputs_alone() {
     let mut found = Vec::new();
-    for file in files("glsl") {
-        let text = std::fs::read_to_string(root().join("glsl").join(&file)).unwrap();
+    for file in files("glsl").iter().filter(|file| file.extension().is_some_and(|extension| extension != "md")) {
+        let text = std::fs::read_to_string(root().join("glsl").join(file)).unwrap();
         for (number, line) in (1..).zip(text.lines()) {
             let code = line.split("//").next().unwrap();
             let arguments = |name: &str| -> Vec<&str> {
@@ -202,6 +226,33 @@ fn levels_of_textures_are_chosen_by_inputs_alone() {
         }
     }
     assert_eq!(found, [] as [&str; 0]);
+}
+
+/// A number that host and device share is typed in GLSL, and `build.rs` hands it to the host.
+#[test]
+fn numbers_of_shaders_are_typed_once() {
+    /// The name in `const NAME...`, where what follows its `=` begins with a digit.
+    fn typed(line: &str) -> Option<&str> {
+        let (before, value) = line.trim_start().split_once(" = ")?;
+        let (_, declared) = before.rsplit_once("const ")?;
+        let name = declared.split(':').next()?.rsplit(' ').next()?;
+        value.starts_with(|first: char| first.is_ascii_digit()).then_some(name)
+    }
+    let text_of = |folder: &str, file: &Path| std::fs::read_to_string(root().join(folder).join(file)).unwrap();
+    let mut shared = BTreeSet::new();
+    for file in files("glsl") {
+        let text = text_of("glsl", &file);
+        shared.extend(text.lines().filter(|line| line.starts_with("const ")).filter_map(typed).map(str::to_owned));
+    }
+    assert!(shared.len() > 100 && shared.contains("TILE_PX"), "{} numbers were found", shared.len());
+    let mut twice = Vec::new();
+    // A scene's file has its number too, below the room of shaders: a test of shading compares the two.
+    for file in files("src").into_iter().filter(|file| !file.starts_with("scene")) {
+        let text = text_of("src", &file);
+        let copies = (1..).zip(text.lines()).filter(|(_, line)| typed(line).is_some_and(|name| shared.contains(name)));
+        twice.extend(copies.map(|(number, line)| format!("src/{}:{number}: {}", file.display(), line.trim())));
+    }
+    assert_eq!(twice, [] as [&str; 0]);
 }
 
 #[test]
@@ -338,4 +389,51 @@ fn comments_say_what_they_are_about_and_name_pages_that_a_reader_has() {
         refused.extend(complaints.map(|(number, why)| format!("{file}:{number}: {why}")));
     }
     assert!(refused.is_empty(), "{}", refused.join("\n"));
+}
+
+/// Rows of glsl/README.md's tables, `| number | names (where they are) |`, as the table of shaders has them: what stands at
+/// each binding of the first set, and at each number of a specialization constant.
+fn numbered_rows(numbers: impl Fn(&shader::Shader) -> Vec<(u32, &'static str)>) -> Vec<String> {
+    let mut rows: BTreeMap<u32, BTreeMap<&str, BTreeSet<&str>>> = BTreeMap::new();
+    for shader in shader::ALL {
+        let room = shader.name.strip_prefix("techniques/").unwrap_or(shader.name);
+        let room = room.split('/').next().unwrap_or(room);
+        for (number, name) in numbers(shader) {
+            rows.entry(number).or_default().entry(name).or_default().insert(room);
+        }
+    }
+    let names = |names: BTreeMap<&str, BTreeSet<&str>>| {
+        let named = |(name, rooms): (&str, BTreeSet<&str>)| {
+            format!("`{name}` ({})", rooms.into_iter().collect::<Vec<_>>().join(", "))
+        };
+        names.into_iter().map(named).collect::<Vec<_>>().join("; ")
+    };
+    rows.into_iter().map(|(number, all)| format!("| {number} | {} |", names(all))).collect()
+}
+
+/// A number has no meaning of its own: the page says which names it goes by, and where.
+#[test]
+fn the_page_of_shaders_has_every_binding_and_every_constant() {
+    let page = std::fs::read_to_string(root().join("glsl/README.md")).unwrap();
+    let (bindings, constants) = page.split_once("## Specialization constants").expect("the second half of the page");
+    let rows = |text: &str| -> Vec<String> {
+        let is_row =
+            |line: &&str| line.starts_with("| ") && line[2..].starts_with(|first: char| first.is_ascii_digit());
+        text.lines().filter(is_row).map(str::to_owned).collect()
+    };
+    let bound = numbered_rows(|shader| {
+        let own = shader.bindings.iter().filter(|binding| binding.set == 0);
+        own.map(|binding| (binding.binding, binding.name)).collect()
+    });
+    let specialized = numbered_rows(|shader| shader.constants.iter().map(|each| (each.id, each.name)).collect());
+    let is_shared =
+        |row: &&String| row[2..].split(' ').next().is_some_and(|number| number.parse::<u32>().unwrap() >= 60);
+    for row in specialized.iter().filter(is_shared) {
+        assert!(!row.contains("; "), "a constant from 60 on has one name: {row}");
+    }
+    for (what, found, expected) in
+        [("Bindings", rows(bindings), bound), ("Specialization constants", rows(constants), specialized)]
+    {
+        assert_eq!(found, expected, "glsl/README.md, {what}: its rows should be\n{}", expected.join("\n"));
+    }
 }

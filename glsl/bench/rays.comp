@@ -26,7 +26,8 @@ struct RaysParams {
     uint kind;
 };
 
-layout(local_size_x = 64) in;
+const uint THREADS = 64u;
+layout(local_size_x = THREADS) in;
 
 layout(push_constant) uniform Push { RaysParams params; };
 #ifdef WALK_QUERY

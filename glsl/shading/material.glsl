@@ -127,10 +127,10 @@ vec3 emissive_at(MaterialBlock material) {
 uint extras_at(MaterialBlock material) {
     float openness = 1.0;
     if ((material.flags & MATERIAL_OCCLUSION_TEXTURE) != 0u) {
-        float strength = float((material.flags >> 16) & 0xffu) / 255.0;
+        float strength = float((material.flags >> MATERIAL_OCCLUSION_SHIFT) & 0xffu) / 255.0;
         openness += strength * (TEXEL(occlusion_texture, TEXTURE_OCCLUSION).r - 1.0);
     }
-    return pack_extras((material.flags >> 8) & 0xffu, openness);
+    return pack_extras((material.flags >> MATERIAL_F0_SHIFT) & 0xffu, openness);
 }
 
 // Unit shading normal, on the viewer's side where the material is double-sided.

@@ -51,8 +51,8 @@ vec4 filtered(TexelsBlock texels, vec2 place, bool is_nearest) {
     at = clamp(at, vec2(-1e9), vec2(1e9));
     vec2 low = floor(at);
     vec2 fraction = is_nearest ? vec2(0.0) : at - low;
-    uint wrap_u = (texels.flags >> 2) & 3u;
-    uint wrap_v = (texels.flags >> 4) & 3u;
+    uint wrap_u = (texels.flags >> TEXELS_WRAP_U_SHIFT) & 3u;
+    uint wrap_v = (texels.flags >> TEXELS_WRAP_V_SHIFT) & 3u;
     int x0 = wrapped(wrap_u, int(low.x), int(texels.width_px));
     int x1 = wrapped(wrap_u, int(low.x) + 1, int(texels.width_px));
     int y0 = wrapped(wrap_v, int(low.y), int(texels.height_px));

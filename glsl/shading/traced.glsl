@@ -161,14 +161,14 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws, floa
     point.is_unlit = (material.flags & MATERIAL_UNLIT) != 0u;
     point.is_back = !is_front && !is_double_sided;
     if (SURFACE_EXTRAS != 0u) {
-        point.surface.dielectric_f0 = f0_of_code((material.flags >> 8) & 0xffu);
+        point.surface.dielectric_f0 = f0_of_code((material.flags >> MATERIAL_F0_SHIFT) & 0xffu);
     }
     point.emitted = textured(vec4(material.emissive.rgb, 1.0), traced.emissive, corners.uvs, FINEST).rgb;
     point.emitted = point.is_unlit ? base_color : point.emitted;
     point.emitter_density = traced.emitter_density;
     point.openness = 1.0;
     if (HAS_OCCLUSION != 0u && (material.flags & MATERIAL_OCCLUSION_TEXTURE) != 0u) {
-        float strength = float((material.flags >> 16) & 0xffu) / 255.0;
+        float strength = float((material.flags >> MATERIAL_OCCLUSION_SHIFT) & 0xffu) / 255.0;
         point.openness += strength * (texel_of(traced.occlusion, corners.uvs, footprints).r - 1.0);
     }
     if (MOVES != 0u) {

@@ -9,6 +9,7 @@ pub mod flat;
 pub mod nodes;
 
 use crate::error::{Error, Result};
+use crate::gpu::shader::bvh::{TRIANGLE_MIRRORED, TRIANGLE_SINGLE_SIDED, TRIANGLE_TESTED};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
 use crate::progress::Stage;
 use crate::scene::{AlphaMode, Draw, Material, Scene};
@@ -28,12 +29,6 @@ pub struct Bvh {
     /// Where each of `triangles` comes from.
     pub sources: Vec<Source>,
 }
-
-/// glsl/bvh.glsl's bits: alpha decides whether a ray meets it (MASK, BLEND); its back is not drawn; its front is the side
-/// from which its corners run clockwise, because its draw mirrors.
-const TRIANGLE_TESTED: u32 = 1;
-const TRIANGLE_SINGLE_SIDED: u32 = 2;
-const TRIANGLE_MIRRORED: u32 = 4;
 
 /// A scene's tree, built when the first ray asks for it: pictures without rays do not wait for it.
 pub struct LazyBvh {

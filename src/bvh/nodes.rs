@@ -5,25 +5,15 @@
 use super::Bvh;
 use crate::caps::Limits;
 use crate::error::{Error, Result};
+use crate::gpu::shader::bvh::LEAF_SHIFT;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhWideBlock};
-use crate::settings::Values;
+use crate::settings::{NodeOrder, StackPlace, Values};
 use crate::units::Bytes;
 use bytemuck::cast_slice;
 use std::collections::VecDeque;
 
-/// A wide node's bits for a child's number of triangles begin here: bvh.glsl's LEAF_SHIFT.
-const LEAF_SHIFT: u32 = 26;
 /// Bits of a word of the trail: glsl/bvh_stack.glsl.
 const WORD_BITS: u32 = 32;
-
-/// What lies behind what in memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    DepthFirst,
-    BreadthFirst,
-    /// Prokop, Cache-Oblivious Algorithms, 1999: halves of the levels, each ordered in the same way.
-    VanEmdeBoas,
-}
 
 /// Where waiting nodes are kept; the number is the shader's STACK_IS_.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +28,9 @@ impl Stack {
     /// As settings have it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Private => "private",
-            Self::Shared => "shared",
-            Self::Short(_) => "short",
+            Self::Private => StackPlace::Private.name(),
+            Self::Shared => StackPlace::Shared.name(),
+            Self::Short(_) => StackPlace::Short.name(),
         }
     }
 }
@@ -50,7 +40,7 @@ impl Stack {
 pub struct Walk {
     /// Children of a node at most: 2 or 4.
     pub width: usize,
-    pub order: Order,
+    pub order: NodeOrder,
     /// None: the workgroup's memory where that is enough, else a ray's own.
     pub stack: Option<Stack>,
 }
@@ -59,18 +49,13 @@ impl Walk {
     /// `values` have the settings of `settings::TREE`.
     pub fn from_values(values: &Values) -> Self {
         Self {
-            width: if values.text("node-width") == "4" { 4 } else { 2 },
-            order: match values.text("node-layout") {
-                "breadth-first" => Order::BreadthFirst,
-                "van-emde-boas" => Order::VanEmdeBoas,
-                _ => Order::DepthFirst,
-            },
-            stack: match values.text("stack") {
-                "private" => Some(Stack::Private),
-                "shared" => Some(Stack::Shared),
-                "short" => Some(Stack::Short(values.integer("stack-entries") as u32)),
-                _ => None,
-            },
+            width: values.integer("node-width") as usize,
+            order: values.choice("node-layout"),
+            stack: values.unless_auto("stack", Values::choice).map(|place| match place {
+                StackPlace::Private => Stack::Private,
+                StackPlace::Shared => Stack::Shared,
+                StackPlace::Short => Stack::Short(values.integer("stack-entries") as u32),
+            }),
         }
     }
 }
@@ -111,9 +96,9 @@ impl Nodes {
             .note("a smaller --workgroup, or --stack private"));
         }
         match walk.order {
-            Order::DepthFirst => {}
-            Order::BreadthFirst => groups.put_in(groups.breadth_first()),
-            Order::VanEmdeBoas => groups.put_in(groups.van_emde_boas()),
+            NodeOrder::DepthFirst => {}
+            NodeOrder::BreadthFirst => groups.put_in(groups.breadth_first()),
+            NodeOrder::VanEmdeBoas => groups.put_in(groups.van_emde_boas()),
         }
         let blocks = if walk.width == 4 { Blocks::Four(groups.wide()) } else { Blocks::Two(groups.pairs()) };
         let stack = walk.stack.unwrap_or(if fits { Stack::Shared } else { Stack::Private });
@@ -345,7 +330,7 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeSet;
 
-    const ORDERS: [Order; 3] = [Order::DepthFirst, Order::BreadthFirst, Order::VanEmdeBoas];
+    const ORDERS: [NodeOrder; 3] = [NodeOrder::DepthFirst, NodeOrder::BreadthFirst, NodeOrder::VanEmdeBoas];
 
     /// A tree of `leaf_count` leaves whose shape is that of `seed`'s bits; each leaf has one triangle and a box of its own.
     fn tree(leaf_count: u32, seed: u32) -> Bvh {
@@ -375,7 +360,7 @@ mod tests {
         Bvh { nodes, ..Bvh::empty() }
     }
 
-    fn nodes(bvh: &Bvh, width: usize, order: Order, stack: Option<Stack>) -> Result<Nodes> {
+    fn nodes(bvh: &Bvh, width: usize, order: NodeOrder, stack: Option<Stack>) -> Result<Nodes> {
         let caps = known::caps("lavapipe-22.3.6").unwrap();
         Nodes::new(bvh, Walk { width, order, stack }, 64, &caps.limits)
     }
@@ -478,7 +463,7 @@ mod tests {
             }
             bvh
         };
-        let of = |length, stack| nodes(&chain(length), 2, Order::DepthFirst, stack);
+        let of = |length, stack| nodes(&chain(length), 2, NodeOrder::DepthFirst, stack);
         // 32 KiB: 128 words for each of 64 rays.
         let (most, more) = (of(128, None).unwrap(), of(129, None).unwrap());
         assert_eq!((most.stack, most.stack_entries()), (Stack::Shared, 128));

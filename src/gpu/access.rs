@@ -168,6 +168,11 @@ impl AccessSet {
         if joins { self.with(access) } else { access.into() }
     }
 
+    /// What is known after a reader that has waited for all of them: the readers among them, and it.
+    pub fn read_by(self, access: Access) -> Self {
+        self.iter().filter(|known| !known.writes()).fold(access.into(), Self::with)
+    }
+
     /// Both sets' accesses.
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)

@@ -43,8 +43,7 @@ struct Specialization {
 }
 
 impl Specialization {
-    /// Constants that another stage of the same pipeline has are passed over; one that no stage has is a mistake that
-    /// `Interface`'s caller asserts.
+    /// Constants that another stage of the same pipeline has are passed over.
     fn new(shader: &Shader, constants: Constants<'_>) -> Self {
         let mut entries = Vec::new();
         let mut data = Vec::new();
@@ -66,6 +65,7 @@ impl Specialization {
     }
 }
 
+/// A constant that no stage of the pipeline has is a programmer's mistake, such as a misspelt name.
 fn assert_constants_exist(shaders: &[&Shader], constants: Constants<'_>) {
     for (name, _) in constants {
         let known = shaders.iter().any(|shader| shader.constants.iter().any(|constant| constant.name == *name));

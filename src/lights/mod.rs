@@ -11,7 +11,7 @@ pub mod vpl;
 use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::scene::{Light, LightKind, Material, Scene};
-use crate::settings::{Values, parse_color};
+use crate::settings::{Rig, Values, parse_color};
 use glam::Vec3;
 
 /// The default rig's key light, in lux: white, from the camera's upper left.
@@ -71,14 +71,14 @@ impl LightSet {
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
         let emissive = scene.drawn_materials().any(Material::is_emissive);
-        let (has_rig, faint_part) = match (opening, values.text("rig")) {
+        let (has_rig, faint_part) = match (opening, values.choice("rig")) {
             (Some(opening), _) => (opening.has_rig, opening.faint_part),
-            (None, "default") if has_punctual => (false, None),
-            (None, "default") if emissive => {
+            (None, Rig::Default) if has_punctual => (false, None),
+            (None, Rig::Default) if emissive => {
                 let part = emission::lit_part(scene, FAINT_RADIANCE);
                 (part < LEAST_LIT_PART, Some(part).filter(|part| *part < LEAST_LIT_PART))
             }
-            (None, rig) => (rig != "none", None),
+            (None, rig) => (rig != Rig::None, None),
         };
         if has_rig {
             lights.push(rig_key(view));

@@ -13,31 +13,12 @@ use super::pieces::{Piece, pieces};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{LightBlock, ObjectLightsBlock};
 use crate::scene::{AlphaMode, Bounds, Scene};
+use crate::settings::ListChoice;
 use crate::units::Bytes;
 use bytemuck::Zeroable;
 use glam::{Vec3, Vec4};
 use std::collections::HashMap;
 use std::ops::Range;
-
-/// Which lists there are (`--light-lists`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ListChoice {
-    /// A list for each draw, or piece of one.
-    Object,
-    /// One list of every light for all draws: the oracle.
-    None,
-}
-
-impl ListChoice {
-    /// The value of `--light-lists`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "object" => Self::Object,
-            "none" => Self::None,
-            other => panic!("--light-lists {other} was checked"),
-        }
-    }
-}
 
 /// A draw's stretch of `ObjectLists::entries`, and the box that its points are held inside.
 #[derive(Clone, Copy, Debug, PartialEq)]

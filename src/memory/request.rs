@@ -1,29 +1,20 @@
 //! What resources ask memory for, and how memory blocks are cut.
 
+use crate::choice::choices;
 use crate::memory::kinds::Use;
 use ash::vk;
 
-/// How resources come by their memory.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Strategy {
-    /// One memory block for each resource.
-    Dedicated,
-    /// Ranges one after the other in shared memory blocks; a block returns whole, when its last range does.
-    #[default]
-    Linear,
-    /// Ranges in shared memory blocks wherever there is room; what returns is taken again.
-    Tlsf,
-}
-
-impl Strategy {
-    /// `dedicated`, `linear` or `tlsf`; None for any other word.
-    pub fn from_setting(word: &str) -> Option<Self> {
-        match word {
-            "dedicated" => Some(Self::Dedicated),
-            "linear" => Some(Self::Linear),
-            "tlsf" => Some(Self::Tlsf),
-            _ => None,
-        }
+choices! {
+    /// How resources come by their memory (`--allocation`).
+    #[derive(Default)]
+    pub enum Strategy {
+        /// Ranges one after the other in shared memory blocks; a block returns whole, when its last range does.
+        #[default]
+        "linear" => Linear,
+        /// One memory block for each resource.
+        "dedicated" => Dedicated,
+        /// Ranges in shared memory blocks wherever there is room; what returns is taken again.
+        "tlsf" => Tlsf,
     }
 }
 

@@ -21,7 +21,7 @@ use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::{BlendParams, LightBlock};
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, upload};
-use crate::lights::object_lists::{ListChoice, ObjectLights, ObjectLists, PieceLights};
+use crate::lights::object_lists::{ObjectLights, ObjectLists, PieceLights};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawCall, SceneGpu};
 use crate::scene::{AlphaMode, Scene};
@@ -98,7 +98,7 @@ pub fn back_to_front(scene: &SceneGpu, view: &View) -> Vec<DrawCall> {
 ///
 /// Errors: as `ObjectLists::new`.
 pub fn lists(scene: &Scene, lights: &[LightBlock], values: &Values, caps: &Caps) -> Result<ObjectLists> {
-    let choice = ListChoice::from_setting(values.text("light-lists"));
+    let choice = values.choice("light-lists");
     ObjectLists::blended(scene, lights, choice, caps.limits.max_storage_buffer_range_bytes)
 }
 

@@ -7,47 +7,22 @@ use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::passes::cull::COMP_VARIANTS;
+use crate::gpu::shader::passes::cull::TILE_PX;
+use crate::gpu::shader::passes::tile_masks::THREADS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Traffic, readback};
-use crate::passes::gbuffer::{GBuffer, PositionStorage};
+use crate::passes::gbuffer::GBuffer;
 use crate::plan::Plan;
-use crate::settings::Values;
+use crate::settings::{CullBy, PositionStorage, Values};
 use crate::units::Extent;
 use std::sync::Arc;
-
-/// Side of a tile: glsl/passes/cull.glsl's TILE_PX.
-const TILE_PX: u32 = 16;
-
-/// Threads of a workgroup: tile_masks.glsl's THREADS.
-const THREADS: u32 = 64;
-
-/// What makes the mask of a tile, with equal results.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CullBy {
-    /// Reads the tile's pixels and tries its lights one after the other.
-    Invocation,
-    /// Shares them among its threads.
-    Workgroup,
-}
 
 impl CullBy {
     /// As `--cull-by` says it; `auto`: an invocation on software drivers (Mesa 22.3.6, 81 lamps at
     /// 1280x720: by a workgroup a frame takes 1.12 times as long, 1.06 to 1.19).
     pub fn new(values: &Values, caps: &Caps) -> Self {
-        match values.text("cull-by") {
-            "invocation" => Self::Invocation,
-            "workgroup" => Self::Workgroup,
-            _ if caps.identity.is_software() => Self::Invocation,
-            _ => Self::Workgroup,
-        }
-    }
-
-    /// The value of the shaders' axis BY, and of the setting.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Invocation => "invocation",
-            Self::Workgroup => "workgroup",
-        }
+        let best = if caps.identity.is_software() { Self::Invocation } else { Self::Workgroup };
+        values.unless_auto("cull-by", Values::choice).unwrap_or(best)
     }
 }
 

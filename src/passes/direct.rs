@@ -9,38 +9,21 @@ use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::lights::LightSet;
 use crate::passes::cull;
-use crate::passes::cull::CullBy;
-use crate::passes::gbuffer::PositionStorage;
 use crate::passes::texels::{LightLoad, Texels};
 use crate::plan::{Plan, Resources};
 use crate::scene::{Material, Scene};
-use crate::settings::Values;
-use crate::shading::brdf::Brdf;
+use crate::settings::{Brdf, CullBy, CullChoice, DirectShadow, PositionStorage, Values};
 use crate::shading::light;
 use crate::units::Extent;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Which lights cast shadow rays (`--direct-shadow`); the number is the shader's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DirectShadow {
-    None = 0,
-    Sun = 1,
-    Ray = 2,
-    /// No light by rays, all by shadow maps (`passes::shadow_maps`).
-    Map = 3,
-}
-
-impl DirectShadow {
-    /// The value of `--direct-shadow`; `sun` without a sun is `none`.
-    fn from_setting(text: &str, lights: &LightSet) -> Self {
-        match text {
-            "ray" if !lights.lights.is_empty() => Self::Ray,
-            "sun" if lights.sun_count() > 0 => Self::Sun,
-            "map" if !lights.lights.is_empty() => Self::Map,
-            "none" | "sun" | "ray" | "map" => Self::None,
-            other => panic!("--direct-shadow {other} was checked"),
-        }
+/// What `--direct-shadow` comes to under `lights`: `none` where no light is one that would cast.
+fn shadow(values: &Values, lights: &LightSet) -> DirectShadow {
+    match values.choice("direct-shadow") {
+        DirectShadow::Sun if lights.sun_count() == 0 => DirectShadow::None,
+        _ if lights.lights.is_empty() => DirectShadow::None,
+        asked => asked,
     }
 }
 
@@ -66,8 +49,8 @@ impl DirectSettings {
     /// Reads `--brdf` and `--direct-shadow`.
     pub fn new(values: &Values, lights: &LightSet, scene: &Scene) -> Self {
         Self {
-            brdf: Brdf::from_setting(values.text("brdf")),
-            shadow: DirectShadow::from_setting(values.text("direct-shadow"), lights),
+            brdf: values.choice("brdf"),
+            shadow: shadow(values, lights),
             sun_count: lights.sun_count() as u64,
             ray_offset: RAY_OFFSET * scene.lasting_bounds().diagonal().max(1e-6),
             extras: scene.drawn_materials().any(Material::has_extras),
@@ -126,8 +109,8 @@ pub struct ShadingSettings {
 
 impl ShadingSettings {
     pub fn new(values: &Values, lights: &LightSet, scene: &Scene, caps: &Caps) -> Self {
-        let position = PositionStorage::from_setting(values.text("position"));
-        Self::with(values, lights, scene, caps, position, values.text("cull") == "tiled")
+        let is_tiled = values.is("cull", CullChoice::Tiled);
+        Self::with(values, lights, scene, caps, values.choice("position"), is_tiled)
     }
 
     /// The same, of a technique whose settings say otherwise where positions are and whether there are lists for tiles.

@@ -24,31 +24,12 @@ use crate::gpu::{
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
+use crate::settings::PositionStorage;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
-/// How positions are kept (`--position`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PositionStorage {
-    Half,
-    Unorm16,
-    Depth,
-    Float,
-}
-
 impl PositionStorage {
-    /// The value of `--position`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "half" => Self::Half,
-            "unorm16" => Self::Unorm16,
-            "depth" => Self::Depth,
-            "float" => Self::Float,
-            other => panic!("--position {other} was checked"),
-        }
-    }
-
     /// Bytes of a position in an image or a buffer.
     pub fn bytes(self) -> u64 {
         match self {
@@ -63,16 +44,6 @@ impl PositionStorage {
             Self::Half | Self::Unorm16 => Some(vk::Format::R32G32_UINT),
             Self::Float => Some(vk::Format::R32G32B32A32_UINT),
             Self::Depth => None,
-        }
-    }
-
-    /// The value of `--position`, and of the shaders' axis POSITION.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Half => "half",
-            Self::Unorm16 => "unorm16",
-            Self::Depth => "depth",
-            Self::Float => "float",
         }
     }
 }

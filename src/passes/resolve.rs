@@ -11,17 +11,18 @@ use crate::settings::Values;
 
 /// Samples a pixel that `--msaa` asks for.
 pub fn samples(values: &Values) -> u32 {
-    values.text("msaa").parse().expect("the settings table has its words")
+    values.integer("msaa") as u32
 }
 
 /// What `--msaa` needs of a device.
 pub fn needs(values: &Values) -> Option<Need> {
-    let (ability, instead) = match samples(values) {
+    let samples = samples(values);
+    let (ability, instead) = match samples {
         4 => (Ability::FourSamples, "--msaa 1 works everywhere"),
         8 => (Ability::EightSamples, "--msaa 4 works on more devices, --msaa 1 everywhere"),
         _ => return None,
     };
-    Some(Need { of: format!("--msaa {}", values.text("msaa")), ability, instead })
+    Some(Need { of: format!("--msaa {samples}"), ability, instead })
 }
 
 /// What the pass touches: both pictures by their full names.

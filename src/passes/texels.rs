@@ -53,10 +53,8 @@ pub struct LightLoad {
 
 impl Texels {
     pub fn new(values: &Values, caps: &Caps) -> Self {
-        let most = match values.text("texels") {
-            "auto" => auto(&caps.identity),
-            count => count.parse().expect("the settings table has numbers"),
-        };
+        let asked = values.unless_auto("texels", Values::integer);
+        let most = asked.map_or_else(|| auto(&caps.identity), |count| count as u32);
         Self { most, max_loop_iterations: caps.identity.max_loop_iterations() }
     }
 

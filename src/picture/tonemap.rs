@@ -3,7 +3,7 @@
 //! Everything is computed in double precision and rounded once, without dither, so that the same picture gives the same
 //! bytes on every machine.
 
-use crate::error::{Error, Result};
+use crate::choice::choices;
 use crate::picture::Picture;
 use crate::units::Extent;
 use std::ops::RangeInclusive;
@@ -11,31 +11,21 @@ use std::ops::RangeInclusive;
 /// What `--exposure` may be, stops.
 pub const EXPOSURES_EV: RangeInclusive<f64> = -32.0..=32.0;
 
-/// How radiance above what a screen can show is brought down to 0 to 1. Input and output are linear.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ToneMap {
-    /// Each channel cut to 0 to 1. The default: below 1 it changes nothing, so two such pictures compare.
-    #[default]
-    Clip,
-    /// L / (1 + L) of the luminance with the hue kept, then cut (Reinhard et al. 2002, equation 3).
-    Reinhard,
-    /// A rational fit of the ACES reference rendering transform, each channel by itself (Narkowicz 2015).
-    Aces,
+choices! {
+    /// How radiance above what a screen can show is brought down to 0 to 1 (`--tonemap`). Input and output are linear.
+    #[derive(Default)]
+    pub enum ToneMap {
+        /// Each channel cut to 0 to 1. The default: below 1 it changes nothing, so two such pictures compare.
+        #[default]
+        "clip" => Clip,
+        /// L / (1 + L) of the luminance with the hue kept, then cut (Reinhard et al. 2002, equation 3).
+        "reinhard" => Reinhard,
+        /// A rational fit of the ACES reference rendering transform, each channel by itself (Narkowicz 2015).
+        "aces" => Aces,
+    }
 }
 
 impl ToneMap {
-    /// Every tone map with the name that the command line gives it.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("clip", Self::Clip), ("reinhard", Self::Reinhard), ("aces", Self::Aces)];
-
-    /// The tone map of that name; a request error that lists the names otherwise.
-    pub fn parse(name: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, tone_map)| tone_map).ok_or_else(|| {
-            let names = Self::ALL.map(|(known, _)| known).join(", ");
-            Error::request(format!("--tonemap {name}: the tone maps are {names}"))
-        })
-    }
-
     /// Linear RGB, finite and at least 0, to linear RGB in 0 to 1.
     pub(crate) fn apply(self, color: [f64; 3]) -> [f64; 3] {
         match self {
@@ -190,13 +180,11 @@ mod tests {
         assert_eq!(one([1.0; 3], 0.0, ToneMap::Reinhard), one([0.5; 3], 0.0, ToneMap::Clip));
         // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.803797
         assert_eq!(one([1.0; 3], 0.0, ToneMap::Aces), one([0.803_797; 3], 0.0, ToneMap::Clip));
-        for (name, tone_map) in ToneMap::ALL {
+        for tone_map in [ToneMap::Clip, ToneMap::Reinhard, ToneMap::Aces] {
+            let name = tone_map.name();
             assert_eq!(one([0.0; 3], 0.0, tone_map), [0; 3], "{name}");
             assert_eq!(one([-1.0, f32::NAN, f32::NEG_INFINITY], 0.0, tone_map), [0; 3], "{name}");
             assert_eq!(one([f32::INFINITY; 3], 0.0, tone_map), [255; 3], "{name}");
-            assert_eq!(ToneMap::parse(name).unwrap(), tone_map);
         }
-        let error = ToneMap::parse("filmic").unwrap_err();
-        assert_eq!(error.message(), "--tonemap filmic: the tone maps are clip, reinhard, aces");
     }
 }

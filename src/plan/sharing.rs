@@ -51,7 +51,7 @@ pub struct Sharing {
 impl Sharing {
     /// As `--alias` says.
     pub fn of(plan: &Plan, requirements: Requirements<'_>, caps: &Caps, values: &Values) -> Self {
-        let mode = Mode::from_setting(values.text("alias")).expect("the settings table has its words");
+        let mode = values.choice("alias");
         Self::new(plan, requirements, &caps.limits, mode)
     }
 

@@ -1,19 +1,13 @@
 //! Materials as shaders read them: glsl/resident.glsl's blocks.
 
+use crate::gpu::shader::resident::{
+    MATERIAL_BASE_COLOR_TEXTURE, MATERIAL_DOUBLE_SIDED, MATERIAL_EMISSIVE_TEXTURE, MATERIAL_F0_SHIFT,
+    MATERIAL_METALLIC_ROUGHNESS_TEXTURE, MATERIAL_NORMAL_TEXTURE, MATERIAL_OCCLUSION_SHIFT, MATERIAL_OCCLUSION_TEXTURE,
+    MATERIAL_UNLIT,
+};
 use crate::gpu::shader::structs::{MaterialBlock, PlacementBlock};
 use crate::scene::{AlphaMode, Material, Placement, Scene, TextureSlot};
 use crate::shading::brdf;
-
-/// glsl/resident.glsl's bits.
-const BASE_COLOR_TEXTURE: u32 = 1;
-const METALLIC_ROUGHNESS_TEXTURE: u32 = 2;
-const NORMAL_TEXTURE: u32 = 4;
-const EMISSIVE_TEXTURE: u32 = 8;
-const DOUBLE_SIDED: u32 = 16;
-const OCCLUSION_TEXTURE: u32 = 32;
-const UNLIT: u32 = 64;
-const F0_SHIFT: u32 = 8;
-const OCCLUSION_SHIFT: u32 = 16;
 
 /// Factors and flags of one material.
 pub fn block(material: &Material) -> MaterialBlock {
@@ -29,15 +23,15 @@ pub fn block(material: &Material) -> MaterialBlock {
             // Where it is drawn as solid: inferred_lighting's --alpha test.
             AlphaMode::Blend => 0.5,
         },
-        flags: bit(material.base_color_texture.is_some(), BASE_COLOR_TEXTURE)
-            | bit(material.metallic_roughness_texture.is_some(), METALLIC_ROUGHNESS_TEXTURE)
-            | bit(material.normal_texture.is_some(), NORMAL_TEXTURE)
-            | bit(material.emissive_texture.is_some(), EMISSIVE_TEXTURE)
-            | bit(material.double_sided, DOUBLE_SIDED)
-            | bit(material.occlusion_texture.is_some(), OCCLUSION_TEXTURE)
-            | bit(material.unlit, UNLIT)
-            | brdf::code_of_f0(material.dielectric_f0) << F0_SHIFT
-            | ((material.occlusion_strength * 255.0).round() as u32) << OCCLUSION_SHIFT,
+        flags: bit(material.base_color_texture.is_some(), MATERIAL_BASE_COLOR_TEXTURE)
+            | bit(material.metallic_roughness_texture.is_some(), MATERIAL_METALLIC_ROUGHNESS_TEXTURE)
+            | bit(material.normal_texture.is_some(), MATERIAL_NORMAL_TEXTURE)
+            | bit(material.emissive_texture.is_some(), MATERIAL_EMISSIVE_TEXTURE)
+            | bit(material.double_sided, MATERIAL_DOUBLE_SIDED)
+            | bit(material.occlusion_texture.is_some(), MATERIAL_OCCLUSION_TEXTURE)
+            | bit(material.unlit, MATERIAL_UNLIT)
+            | brdf::code_of_f0(material.dielectric_f0) << MATERIAL_F0_SHIFT
+            | ((material.occlusion_strength * 255.0).round() as u32) << MATERIAL_OCCLUSION_SHIFT,
     }
 }
 

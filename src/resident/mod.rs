@@ -24,7 +24,7 @@ pub use geometry::{Geometry, groups_of};
 pub use raster::{Coverage, Raster};
 pub use relief::advise;
 pub use textures::Textures;
-pub use visible::{DrawList, GeometryChoice};
+pub use visible::DrawList;
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
@@ -77,7 +77,19 @@ pub struct SceneGpu {
     _samplers: Vec<Sampler>,
 }
 
+/// Draw calls, and the clusters of triangles that they are made of.
+pub struct ClusteredCalls<'a> {
+    pub calls: &'a [DrawCall],
+    pub clusters: &'a [Cluster],
+    pub indices: &'a [u32],
+}
+
 impl SceneGpu {
+    /// `calls`, which are of this scene, with its clusters.
+    pub fn clustered<'a>(&'a self, calls: &'a [DrawCall]) -> ClusteredCalls<'a> {
+        ClusteredCalls { calls, clusters: &self.clusters, indices: &self.host_indices }
+    }
+
     /// Uploads the scene; `kept`, the textures of another one, serves again where they are the same.
     ///
     /// Errors: memory is too small or a limit is passed (exit code 4).

@@ -8,7 +8,13 @@ use super::material_blocks;
 use super::structure::{self, SceneStructure};
 use crate::bvh::nodes::Nodes;
 use crate::bvh::{Bvh, Source};
+use crate::choice::choices;
 use crate::error::{Error, Result};
+use crate::gpu::shader::resident_traced::{
+    ALPHA_IS_BLEND, ALPHA_IS_MASK, ALPHA_IS_OPAQUE, TEXELS_BETWEEN_LEVELS, TEXELS_LEVELS, TEXELS_NEAREST,
+    TEXELS_NEAREST_SMALL, TEXELS_SRGB, TEXELS_WRAP_U_SHIFT, TEXELS_WRAP_V_SHIFT, WRAP_CLAMP, WRAP_MIRRORED,
+    WRAP_REPEAT,
+};
 use crate::gpu::shader::structs::{
     BvhTriangleBlock, TexelsBlock, TracedClosingBlock, TracedExtendedBlock, TracedMaterialBlock, TracedTangentsBlock,
     TracedTriangleBlock,
@@ -22,19 +28,6 @@ use crate::units::Bytes;
 use bytemuck::Zeroable;
 use glam::{Mat3, Vec2, Vec3, Vec4};
 use std::sync::Arc;
-
-/// glsl/shading/texel.glsl's bits.
-const WRAP_U_SHIFT: u32 = 2;
-const WRAP_V_SHIFT: u32 = 4;
-const NEAREST: u32 = 64;
-const SRGB: u32 = 128;
-const LEVELS: u32 = 256;
-const BETWEEN_LEVELS: u32 = 512;
-const NEAREST_SMALL: u32 = 1024;
-/// glsl/shading/traced.glsl's kinds.
-const ALPHA_OPAQUE: u32 = 0;
-const ALPHA_MASK: u32 = 1;
-const ALPHA_BLEND: u32 = 2;
 
 /// Buffers that texels may fill: the shader's texels_0 to texels_3.
 const TEXEL_BUFFERS: usize = 4;
@@ -65,12 +58,13 @@ pub enum Rays {
     Query { is_opaque: bool },
 }
 
-/// Levels of a texture that rays read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TexelLevels {
-    Finest,
-    /// All, by the width of the ray's cone.
-    Cone,
+choices! {
+    /// Levels of a texture that rays read (`--texture-level`).
+    pub enum TexelLevels {
+        "0" => Finest,
+        /// All, by the width of the ray's cone.
+        "cone" => Cone,
+    }
 }
 
 impl TexelLevels {
@@ -246,9 +240,9 @@ impl Layout {
         // A material that nothing draws has no texels.
         let Some(place) = self.places[texture.image] else { return TexelsBlock::zeroed() };
         let wrap = |wrap: Wrap| match wrap {
-            Wrap::Repeat => 0,
-            Wrap::MirroredRepeat => 1,
-            Wrap::ClampToEdge => 2,
+            Wrap::Repeat => WRAP_REPEAT,
+            Wrap::MirroredRepeat => WRAP_MIRRORED,
+            Wrap::ClampToEdge => WRAP_CLAMP,
         };
         let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
         let placed = material_blocks::placement(material.placement(slot));
@@ -259,13 +253,13 @@ impl Layout {
             width_px: place.width_px,
             height_px: place.height_px,
             flags: place.buffer
-                | wrap(texture.sampler.wrap_u) << WRAP_U_SHIFT
-                | wrap(texture.sampler.wrap_v) << WRAP_V_SHIFT
-                | bit(!texture.sampler.mag_linear, NEAREST)
-                | bit(texture.color_space == ColorSpace::Srgb, SRGB)
-                | bit(texture.sampler.mip_linear.is_some(), LEVELS)
-                | bit(texture.sampler.mip_linear == Some(true), BETWEEN_LEVELS)
-                | bit(!texture.sampler.min_linear, NEAREST_SMALL),
+                | wrap(texture.sampler.wrap_u) << TEXELS_WRAP_U_SHIFT
+                | wrap(texture.sampler.wrap_v) << TEXELS_WRAP_V_SHIFT
+                | bit(!texture.sampler.mag_linear, TEXELS_NEAREST)
+                | bit(texture.color_space == ColorSpace::Srgb, TEXELS_SRGB)
+                | bit(texture.sampler.mip_linear.is_some(), TEXELS_LEVELS)
+                | bit(texture.sampler.mip_linear == Some(true), TEXELS_BETWEEN_LEVELS)
+                | bit(!texture.sampler.min_linear, TEXELS_NEAREST_SMALL),
         }
     }
 
@@ -280,9 +274,9 @@ impl Layout {
             occlusion: self.texels(scene, material, TextureSlot::Occlusion),
             emitter_density: emitter_density(material),
             alpha: match material.alpha {
-                AlphaMode::Opaque => ALPHA_OPAQUE,
-                AlphaMode::Mask { .. } => ALPHA_MASK,
-                AlphaMode::Blend => ALPHA_BLEND,
+                AlphaMode::Opaque => ALPHA_IS_OPAQUE,
+                AlphaMode::Mask { .. } => ALPHA_IS_MASK,
+                AlphaMode::Blend => ALPHA_IS_BLEND,
             },
             ..TracedMaterialBlock::zeroed()
         };

@@ -12,30 +12,11 @@
 //! same order, in which what was left out has no say: the same bits on every device.
 
 use super::raster::{Coverage, Raster};
-use super::{Cluster, DrawCall, SceneGpu};
+use super::{Cluster, ClusteredCalls, DrawCall, SceneGpu};
 use crate::frame::View;
 use crate::scene::{AlphaMode, Bounds, Projection, Scene};
+use crate::settings::GeometryChoice;
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
-
-/// What is drawn of the solid draws, front to back (`--geometry`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GeometryChoice {
-    /// The clusters that the view may see.
-    Culled,
-    /// Every cluster: the oracle.
-    All,
-}
-
-impl GeometryChoice {
-    /// The value of `--geometry`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "culled" => Self::Culled,
-            "all" => Self::All,
-            other => panic!("--geometry {other} was checked"),
-        }
-    }
-}
 
 /// Rounding of a clip-space number that two products with a matrix made in 32 bits, as a part of the sum of its terms'
 /// magnitudes: eight roundings of 2^-24 each, doubled.
@@ -53,22 +34,9 @@ pub struct DrawList {
     pub clusters_culled: u64,
 }
 
-/// Draw calls, and the clusters of triangles that they are made of.
-struct ClusteredCalls<'a> {
-    calls: &'a [DrawCall],
-    clusters: &'a [Cluster],
-    indices: &'a [u32],
-}
-
-impl<'a> ClusteredCalls<'a> {
-    fn of(resident: &'a SceneGpu, calls: &'a [DrawCall]) -> Self {
-        Self { calls, clusters: &resident.clusters, indices: &resident.host_indices }
-    }
-}
-
 impl DrawList {
     pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, raster: Raster, choice: GeometryChoice) -> Self {
-        Self::of(scene, &ClusteredCalls::of(resident, &resident.calls), view, raster, choice)
+        Self::of(scene, &resident.clustered(&resident.calls), view, raster, choice)
     }
 
     /// What casts shadows into a map that is drawn from `view`: both sides of every triangle, as shadow rays meet both. `scene`:
@@ -77,7 +45,7 @@ impl DrawList {
         let both_sides = |call: &DrawCall| DrawCall { double_sided: true, ..*call };
         let calls: Vec<DrawCall> = resident.calls.iter().map(both_sides).collect();
         let raster = Raster { extent: view.extent, coverage: Coverage::Middle };
-        Self::of(scene, &ClusteredCalls::of(resident, &calls), view, raster, choice)
+        Self::of(scene, &resident.clustered(&calls), view, raster, choice)
     }
 
     fn of(scene: &Scene, clustered: &ClusteredCalls<'_>, view: &View, raster: Raster, choice: GeometryChoice) -> Self {

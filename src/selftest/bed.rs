@@ -155,7 +155,7 @@ impl Bed {
 
     /// The place as the settings have it: while a shutter is open, too.
     fn showing(&mut self, place: Place, values: &Values, technique: &str) -> Result<&Session> {
-        let strategy = Strategy::from_setting(values.text("allocation")).expect("the table holds its words");
+        let strategy = values.choice("allocation");
         let gpu = self.gpu(strategy)?;
         let shutter = values.iter().find(|(key, _)| *key == "shutter").map_or("none", |(_, text)| text);
         let key = (place, shutter.to_owned());

@@ -11,16 +11,18 @@ mod tree;
 
 pub use optics::{
     APERTURE, FOCUS, LENS_CONDITIONS, MEDIUM, MOTION_CONDITIONS, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO,
-    STEREO_EYES, earlier_s, exposure_s,
+    STEREO_EYES, StereoEyes, earlier_s, exposure_s,
 };
 pub use readers::{Condition, Unread};
-pub use shadow_maps::{MAPPED_DIRECT_SHADOW, SHADOW_MAP_CONDITIONS, SHADOW_MAPS};
+pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAP_CONDITIONS, SHADOW_MAPS};
 pub use tables::{
-    BRDF, COMMON, CULL_BY, CULL_CONDITIONS, DEPTH_PREPASS, DIRECT_SHADOW, EMISSIVE, GEOMETRY, INSTRUMENT, LIGHT_LISTS,
-    MULTISAMPLE, NORMAL_THRESHOLD, SHADING, TEXELS, VPL_CLAMP, WORKGROUP,
+    BRDF, Brdf, COMMON, CULL_BY, CULL_CONDITIONS, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow,
+    EMISSIVE, GEOMETRY, GeometryChoice, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD,
+    PositionStorage, Rig, SHADING, TEXELS, VPL_CLAMP, WORKGROUP,
 };
-pub use tree::TREE;
+pub use tree::{NodeOrder, StackPlace, TREE};
 
+use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};
 use glam::Vec3;
@@ -291,6 +293,16 @@ impl Values {
 
     pub fn color(&self, key: &str) -> Vec3 {
         self.parsed(key, parse_color)
+    }
+
+    /// The value of a `Kind::Choice` setting with the words of `T`.
+    pub fn choice<T: Choice>(&self, key: &str) -> T {
+        self.parsed(key, T::from_word)
+    }
+
+    /// Whether a `Kind::Choice` setting with the words of `T` has this value.
+    pub fn is<T: Choice>(&self, key: &str, value: T) -> bool {
+        self.text(key) == value.into()
     }
 
     pub fn is_on(&self, key: &str) -> bool {

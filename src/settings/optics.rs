@@ -1,6 +1,7 @@
 //! The rows of what lies between a surface and the film, which several techniques read.
 
 use super::{Condition, Kind, Part, Setting, Unread, Values};
+use crate::choice::choices;
 use crate::error::{Error, Result};
 
 /// How wide the lens is.
@@ -39,10 +40,19 @@ pub const STEREO: Setting = Setting {
     ..Setting::ROW
 };
 
+choices! {
+    /// Which of two eyes see (`--stereo-eyes`).
+    pub enum StereoEyes {
+        "both" => Both,
+        "left" => Left,
+        "right" => Right,
+    }
+}
+
 /// Which of the two eyes see.
 pub const STEREO_EYES: Setting = Setting {
     key: "stereo-eyes",
-    kind: Kind::Choice(&["both", "left", "right"]),
+    kind: Kind::Choice(StereoEyes::WORDS),
     default: "both",
     paper: "Clarberg 2014, 7",
     help: "Eyes of --stereo to draw: both, which deep_shading shades at once as seen from the midpoint between them, \

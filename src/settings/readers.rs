@@ -24,10 +24,14 @@ pub struct Unread {
 }
 
 impl Unread {
-    /// None where `key` has one of the values `readers`; `why`: what the others lack, after the colon.
-    pub fn unless(values: &Values, key: &str, readers: &[&str], why: &'static str) -> Option<Self> {
-        let text = values.text(key);
-        let words = match readers {
+    /// None where `key` has one of the values `readers`, of its enum or as words; `why`: what the others lack, after the
+    /// colon.
+    pub fn unless<T>(values: &Values, key: &str, readers: &[T], why: &'static str) -> Option<Self>
+    where
+        T: Copy + Into<&'static str>,
+    {
+        let (text, readers) = (values.text(key), words(readers));
+        let words = match &readers[..] {
             [] => String::new(),
             [one] => (*one).to_owned(),
             [few @ .., last] => format!("{} or {last}", few.join(", ")),
@@ -39,11 +43,14 @@ impl Unread {
         })
     }
 
-    /// Some where `key` has one of the values `others`.
-    pub fn with(values: &Values, key: &str, others: &[&str], why: &'static str) -> Option<Self> {
+    /// Some where `key` has one of the values `others`, of its enum or as words.
+    pub fn with<T>(values: &Values, key: &str, others: &[T], why: &'static str) -> Option<Self>
+    where
+        T: Copy + Into<&'static str>,
+    {
         let text = values.text(key);
         let readers = format!("any other --{key}");
-        others.contains(&text).then(|| Self { with: format!("--{key} {text}"), why, readers })
+        words(others).contains(&text).then(|| Self { with: format!("--{key} {text}"), why, readers })
     }
 
     /// Some where `key`, a number of at least 0, is 0.
@@ -57,6 +64,10 @@ impl Unread {
         let Self { with, why, readers } = self;
         format!("--{key} {value} with {with}: {why}; {readers} would read it")
     }
+}
+
+fn words<T: Copy + Into<&'static str>>(values: &[T]) -> Vec<&'static str> {
+    values.iter().map(|value| (*value).into()).collect()
 }
 
 /// Why nothing reads `key`; None where something does.

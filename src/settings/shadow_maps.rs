@@ -5,12 +5,14 @@
 //! texels; 0.152, 0.0088 and 0.027 without a slope's part, where surfaces shadow themselves; 0.032, 0.0083 and 0.0075
 //! at 0.0001 %; at 0.1 % the RMSE of the fence is 0.103 instead of 0.061.
 
+use super::tables::{DirectShadow, GeometryChoice};
 use super::{Condition, Kind, Setting, Unread, Values};
+use crate::choice::choices;
 
 /// `DIRECT_SHADOW` with shadow maps among its choices.
 pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
     key: "direct-shadow",
-    kind: Kind::Choice(&["none", "sun", "ray", "map"]),
+    kind: Kind::Choice(DirectShadow::WORDS),
     default: "sun",
     paper: "map: Clarberg 2014, 6",
     help: "Lights that cast shadows, and how: none; directional lights by rays (sun); every punctual light by rays \
@@ -18,11 +20,33 @@ pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
     ..Setting::ROW
 };
 
+choices! {
+    /// When shadow maps are drawn (`--shadow-maps`).
+    pub enum MapDrawing {
+        /// In every frame and set of samples.
+        "frame" => Frame,
+        /// Before the first.
+        "once" => Once,
+    }
+}
+
+choices! {
+    /// How a map is asked (`--shadow-filter`).
+    pub enum MapFilter {
+        /// One comparison.
+        "nearest" => Nearest,
+        /// Four, filtered by the sampler.
+        "bilinear" => Bilinear,
+        /// Four, filtered by the shader.
+        "gather" => Gather,
+    }
+}
+
 /// How shadow maps are made and read.
 pub const SHADOW_MAPS: &[Setting] = &[
     Setting {
         key: "shadow-maps",
-        kind: Kind::Choice(&["frame", "once"]),
+        kind: Kind::Choice(MapDrawing::WORDS),
         default: "frame",
         paper: "Clarberg 2014, 6.2",
         help: "When shadow maps are drawn: anew in every frame and set of samples, as in the paper (frame), or once \
@@ -41,7 +65,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
     },
     Setting {
         key: "shadow-filter",
-        kind: Kind::Choice(&["nearest", "bilinear", "gather"]),
+        kind: Kind::Choice(MapFilter::WORDS),
         auto: true,
         default: "auto",
         help: "How a shadow map is read: by one comparison (nearest), or by four weighted by distance, in the device's \
@@ -68,7 +92,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
     },
     Setting {
         key: "shadow-casters",
-        kind: Kind::Choice(&["culled", "all"]),
+        kind: Kind::Choice(GeometryChoice::WORDS),
         default: "culled",
         help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
                plain way to the same bits)",
@@ -77,7 +101,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
 ];
 
 fn without_maps(values: &Values) -> Option<Unread> {
-    Unread::unless(values, MAPPED_DIRECT_SHADOW.key, &["map"], "there are no shadow maps")
+    Unread::unless(values, MAPPED_DIRECT_SHADOW.key, &[DirectShadow::Map], "there are no shadow maps")
 }
 
 /// `SHADOW_MAPS` are read where there are any.

@@ -1,7 +1,10 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
 use super::{Condition, Kind, Setting, Unread};
-use crate::picture::tonemap::EXPOSURES_EV;
+use crate::choice::choices;
+use crate::memory::{Strategy, alias};
+use crate::picture::image_file::ExrPrecision;
+use crate::picture::tonemap::{EXPOSURES_EV, ToneMap};
 
 /// Settings that every technique and every picture has.
 pub const COMMON: &[Setting] = &[
@@ -63,14 +66,14 @@ pub const COMMON: &[Setting] = &[
     },
     Setting {
         key: "tonemap",
-        kind: Kind::Choice(&["clip", "reinhard", "aces"]),
+        kind: Kind::Choice(ToneMap::WORDS),
         default: "clip",
         help: "Tone-mapping operator of PNG output",
         ..Setting::ROW
     },
     Setting {
         key: "exr",
-        kind: Kind::Choice(&["float", "half"]),
+        kind: Kind::Choice(ExrPrecision::WORDS),
         default: "float",
         help: "Precision of the numbers in EXR files",
         ..Setting::ROW
@@ -92,7 +95,7 @@ pub const COMMON: &[Setting] = &[
     },
     Setting {
         key: "rig",
-        kind: Kind::Choice(&["default", "always", "none"]),
+        kind: Kind::Choice(Rig::WORDS),
         default: "default",
         help: "Add a key light of 3 lux from the camera's upper left and an ambient radiance of 0.3; default: only to \
                a scene without punctual lights in which emissive surfaces, if there are any, make less than half of it \
@@ -116,7 +119,7 @@ pub const COMMON: &[Setting] = &[
     },
     Setting {
         key: "allocation",
-        kind: Kind::Choice(&["linear", "dedicated", "tlsf"]),
+        kind: Kind::Choice(Strategy::WORDS),
         default: "linear",
         help: "How memory is allocated for resources: as ranges one after the other in shared memory blocks (linear), \
                as one memory block for each (dedicated), or as ranges in shared memory blocks wherever there is room \
@@ -125,7 +128,7 @@ pub const COMMON: &[Setting] = &[
     },
     Setting {
         key: "alias",
-        kind: Kind::Choice(&["greedy", "optimal", "off"]),
+        kind: Kind::Choice(alias::Mode::WORDS),
         default: "greedy",
         help: "How resources of a frame that never live in the same pass share bytes: placed by the best of a few \
                orders (greedy), by a search for the least sum (optimal), or not at all (off)",
@@ -164,10 +167,28 @@ pub const COMMON: &[Setting] = &[
     },
 ];
 
+choices! {
+    /// When the default rig lights a scene (`--rig`).
+    pub enum Rig {
+        "default" => Default,
+        "always" => Always,
+        "none" => None,
+    }
+}
+
+choices! {
+    /// Which BRDF direct light uses (`--brdf`); the number is the shader's.
+    pub enum Brdf {
+        "lambert" => Lambert = 0,
+        "blinn-phong" => BlinnPhong = 1,
+        "ggx" => Ggx = 2,
+    }
+}
+
 /// The reflectance model of surfaces.
 pub const BRDF: Setting = Setting {
     key: "brdf",
-    kind: Kind::Choice(&["lambert", "blinn-phong", "ggx"]),
+    kind: Kind::Choice(Brdf::WORDS),
     default: "ggx",
     help: "Reflectance model of surfaces under direct light",
     ..Setting::ROW
@@ -203,20 +224,44 @@ pub const EMISSIVE: Setting = Setting {
     ..Setting::ROW
 };
 
+choices! {
+    /// What is drawn of the solid draws, front to back (`--geometry`, `--shadow-casters`).
+    pub enum GeometryChoice {
+        /// The clusters that the view may see.
+        "culled" => Culled,
+        /// Every cluster: the oracle.
+        "all" => All,
+    }
+}
+
 /// Which triangles of solid surfaces are drawn.
 pub const GEOMETRY: Setting = Setting {
     key: "geometry",
-    kind: Kind::Choice(&["culled", "all"]),
+    kind: Kind::Choice(GeometryChoice::WORDS),
     default: "culled",
     help: "Solid surfaces to draw, nearest first: only the clusters of triangles that the camera may see (culled), or \
            all of them (the plain way to the same picture)",
     ..Setting::ROW
 };
 
+choices! {
+    /// Which lights cast shadow rays (`--direct-shadow`); the number is the shader's.
+    pub enum DirectShadow {
+        "none" => None = 0,
+        "sun" => Sun = 1,
+        "ray" => Ray = 2,
+        /// No light by rays, all by shadow maps (`passes::shadow_maps`).
+        "map" => Map = 3,
+    }
+}
+
+/// The words of `DirectShadow` without the last: techniques without shadow maps have no `map`.
+const TRACED_SHADOW: &[&str] = DirectShadow::WORDS.split_at(DirectShadow::WORDS.len() - 1).0;
+
 /// Which punctual lights cast shadow rays.
 pub const DIRECT_SHADOW: Setting = Setting {
     key: "direct-shadow",
-    kind: Kind::Choice(&["none", "sun", "ray"]),
+    kind: Kind::Choice(TRACED_SHADOW),
     default: "sun",
     help: "Lights that cast shadows by rays: none, directional lights (sun), or every punctual light (ray)",
     ..Setting::ROW
@@ -234,10 +279,20 @@ pub const INSTRUMENT: Setting = Setting {
     ..Setting::ROW
 };
 
+choices! {
+    /// What makes a tile's list of lights (`--cull-by`).
+    pub enum CullBy {
+        /// Reads the tile's pixels and tries its lights one after the other.
+        "invocation" => Invocation,
+        /// Shares them among its threads.
+        "workgroup" => Workgroup,
+    }
+}
+
 /// What makes the lists of tiled culling.
 pub const CULL_BY: Setting = Setting {
     key: "cull-by",
-    kind: Kind::Choice(&["invocation", "workgroup"]),
+    kind: Kind::Choice(CullBy::WORDS),
     auto: true,
     default: "auto",
     help: "What makes a tile's list of lights: one invocation, or a workgroup that shares out the tile's pixels and \
@@ -248,7 +303,7 @@ pub const CULL_BY: Setting = Setting {
 /// Settings that are not read without light lists for tiles.
 pub const CULL_CONDITIONS: &[Condition] = &[Condition {
     key: CULL_BY.key,
-    unread: |values| Unread::unless(values, "cull", &["tiled"], "there are no tiles"),
+    unread: |values| Unread::unless(values, "cull", &[CullChoice::Tiled], "there are no tiles"),
 }];
 
 /// How much two normals of one surface may differ.
@@ -275,10 +330,20 @@ pub const TEXELS: Setting = Setting {
     ..Setting::ROW
 };
 
+choices! {
+    /// Which lists of lights there are for surfaces that are shaded where they are drawn (`--light-lists`).
+    pub enum ListChoice {
+        /// A list for each draw, or piece of one.
+        "object" => Object,
+        /// One list of every light for all draws: the oracle.
+        "none" => None,
+    }
+}
+
 /// Which punctual lights surfaces have that are shaded where they are drawn (`lights::object_lists`).
 pub const LIGHT_LISTS: &[Setting] = &[Setting {
     key: "light-lists",
-    kind: Kind::Choice(&["object", "none"]),
+    kind: Kind::Choice(ListChoice::WORDS),
     default: "object",
     paper: "Kircher 2009, 5",
     help: "Punctual lights that are evaluated for a surface shaded while it is drawn (every surface of forward, and \
@@ -308,12 +373,30 @@ pub const DEPTH_PREPASS: Setting = Setting {
     ..Setting::ROW
 };
 
+choices! {
+    /// How a G-buffer keeps positions (`--position`).
+    pub enum PositionStorage {
+        "half" => Half,
+        "unorm16" => Unorm16,
+        "depth" => Depth,
+        "float" => Float,
+    }
+}
+
+choices! {
+    /// Which lights direct lighting evaluates for a pixel (`--cull`).
+    pub enum CullChoice {
+        "none" => None,
+        "tiled" => Tiled,
+    }
+}
+
 /// Settings of shading with a G-buffer, which several techniques read.
 pub const SHADING: &[Setting] = &[
     BRDF,
     Setting {
         key: "position",
-        kind: Kind::Choice(&["half", "unorm16", "depth", "float"]),
+        kind: Kind::Choice(PositionStorage::WORDS),
         default: "unorm16",
         paper: "Segovia 2006, 4.1",
         help: "How the G-buffer stores positions: as half floats (the paper's), as 16-bit fractions of the scene's box \
@@ -323,7 +406,7 @@ pub const SHADING: &[Setting] = &[
     GEOMETRY,
     Setting {
         key: "cull",
-        kind: Kind::Choice(&["none", "tiled"]),
+        kind: Kind::Choice(CullChoice::WORDS),
         default: "none",
         help: "Lights that are evaluated for a pixel in direct lighting: all of them (none), or a list for each tile \
                of 16x16 pixels (tiled); the same picture",

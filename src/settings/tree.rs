@@ -8,6 +8,26 @@
 //! measurement's noise.
 
 use super::{Kind, Setting};
+use crate::choice::choices;
+
+choices! {
+    /// Which node lies behind which in memory (`--node-layout`).
+    pub enum NodeOrder {
+        "depth-first" => DepthFirst,
+        "breadth-first" => BreadthFirst,
+        /// Prokop, Cache-Oblivious Algorithms, 1999: halves of the levels, each ordered in the same way.
+        "van-emde-boas" => VanEmdeBoas,
+    }
+}
+
+choices! {
+    /// Where waiting nodes are kept (`--stack`).
+    pub enum StackPlace {
+        "private" => Private,
+        "shared" => Shared,
+        "short" => Short,
+    }
+}
 
 /// Width of the tree, its order in memory, and where a walk keeps the nodes that it has yet to visit.
 pub const TREE: &[Setting] = &[
@@ -20,7 +40,7 @@ pub const TREE: &[Setting] = &[
     },
     Setting {
         key: "node-layout",
-        kind: Kind::Choice(&["depth-first", "breadth-first", "van-emde-boas"]),
+        kind: Kind::Choice(NodeOrder::WORDS),
         default: "depth-first",
         help: "Order of the tree's nodes in memory: each node before all below its first child (depth-first), before \
                all that are as deep as it (breadth-first), or the upper half of the levels before each tree of the \
@@ -29,7 +49,7 @@ pub const TREE: &[Setting] = &[
     },
     Setting {
         key: "stack",
-        kind: Kind::Choice(&["private", "shared", "short"]),
+        kind: Kind::Choice(StackPlace::WORDS),
         auto: true,
         default: "auto",
         help: "Where a ray keeps the nodes that it has yet to visit: in private memory, in workgroup memory (shared), \

@@ -1,28 +1,9 @@
 //! Lambert, Blinn-Phong and GGX on the host: the twin of glsl/shading/brdf.glsl.
 
 use crate::scene::material::DEFAULT_DIELECTRIC_F0;
+use crate::settings::Brdf;
 use glam::Vec3;
 use std::f32::consts::PI;
-
-/// Which BRDF direct light uses (`--brdf`); the number is the shader's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Brdf {
-    Lambert = 0,
-    BlinnPhong = 1,
-    Ggx = 2,
-}
-
-impl Brdf {
-    /// The value of `--brdf`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "lambert" => Self::Lambert,
-            "blinn-phong" => Self::BlinnPhong,
-            "ggx" => Self::Ggx,
-            other => panic!("--brdf {other} was checked"),
-        }
-    }
-}
 
 /// A surface as light sees it; colours linear, 0 to 1.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +78,14 @@ pub fn evaluate(kind: Brdf, surface: &Surface, normal: Vec3, to_light: Vec3, to_
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::shader::shading::{brdf, extras};
+
+    #[test]
+    fn numbers_are_the_shader_s() {
+        assert_eq!(DEFAULT_DIELECTRIC_F0, extras::DEFAULT_DIELECTRIC_F0);
+        let kinds = [Brdf::Lambert, Brdf::BlinnPhong, Brdf::Ggx].map(|kind| kind as u32);
+        assert_eq!(kinds, [brdf::BRDF_LAMBERT, brdf::BRDF_BLINN_PHONG, brdf::BRDF_GGX]);
+    }
 
     /// Part of the light from one direction that leaves in all directions, by a midpoint rule over the hemisphere.
     fn reflected(kind: Brdf, surface: &Surface, incidence: f32) -> f32 {

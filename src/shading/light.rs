@@ -1,24 +1,17 @@
 //! Punctual and virtual point lights on the host: the twin of glsl/shading/light.glsl.
 
+use crate::gpu::shader::shading::light::{LEAST_DISTANCE_SQUARED, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT};
 use crate::gpu::shader::structs::{LightBlock, VplBlock};
 use crate::scene::{Light, LightKind};
 use bytemuck::Zeroable;
 use glam::{Vec3, Vec4};
 
-/// glsl/shading/light.glsl's kinds.
-const DIRECTIONAL: u32 = 0;
-const POINT: u32 = 1;
-const SPOT: u32 = 2;
-
-/// 1/d^2 of a punctual light ends at a millimetre: a surface inside a lamp stays finite.
-const LEAST_DISTANCE_SQUARED: f32 = 1e-6;
-
 /// A bit for each kind of light that is among `lights`: glsl/shading/light.glsl's LIGHT_KINDS.
 pub fn kinds(lights: &[Light]) -> u32 {
     let kind = |light: &Light| match light.kind {
-        LightKind::Directional => DIRECTIONAL,
-        LightKind::Point => POINT,
-        LightKind::Spot { .. } => SPOT,
+        LightKind::Directional => LIGHT_DIRECTIONAL,
+        LightKind::Point => LIGHT_POINT,
+        LightKind::Spot { .. } => LIGHT_SPOT,
     };
     lights.iter().fold(0, |bits, light| bits | 1 << kind(light))
 }
@@ -38,11 +31,11 @@ pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
         ..LightBlock::zeroed()
     };
     match light.kind {
-        LightKind::Directional => block.kind = DIRECTIONAL,
-        LightKind::Point => block.kind = POINT,
+        LightKind::Directional => block.kind = LIGHT_DIRECTIONAL,
+        LightKind::Point => block.kind = LIGHT_POINT,
         LightKind::Spot { inner_angle, outer_angle } => {
             // KHR_lights_punctual's own suggestion for the cone's edge.
-            block.kind = SPOT;
+            block.kind = LIGHT_SPOT;
             block.spot_scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
             block.spot_offset = -outer_angle.cos() * block.spot_scale;
         }
@@ -54,7 +47,7 @@ pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
 pub fn incident_from(light: &LightBlock, position_ws: Vec3) -> (Vec3, f32, Vec3) {
     let intensity = Vec4::from_array(light.intensity).truncate();
     let direction = Vec4::from_array(light.direction_ws).truncate();
-    if light.kind == DIRECTIONAL {
+    if light.kind == LIGHT_DIRECTIONAL {
         return (-direction, 1e30, intensity);
     }
     let to_light = Vec4::from_array(light.position_ws).truncate() - position_ws;
@@ -64,7 +57,7 @@ pub fn incident_from(light: &LightBlock, position_ws: Vec3) -> (Vec3, f32, Vec3)
     let fraction_squared = distance_squared * light.position_ws[3];
     let window = (1.0 - fraction_squared * fraction_squared).clamp(0.0, 1.0);
     let mut attenuation = window / distance_squared.max(LEAST_DISTANCE_SQUARED);
-    if light.kind == SPOT {
+    if light.kind == LIGHT_SPOT {
         let cone = (direction.dot(-towards) * light.spot_scale + light.spot_offset).clamp(0.0, 1.0);
         attenuation *= cone * cone;
     }

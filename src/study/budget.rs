@@ -8,7 +8,7 @@ use crate::job::Job;
 use crate::memory::kinds::{Kinds, Use};
 use crate::memory::pool::Rules;
 use crate::memory::rehearsal::Rehearsal;
-use crate::memory::{Request, Strategy, Tiling};
+use crate::memory::{Request, Tiling};
 use crate::plan::{Plan, Planned, Requirement, Shape};
 use crate::scene::Scene;
 use crate::study::driver::{Driver, Plans};
@@ -69,7 +69,7 @@ fn advised(refused: Error, enough: &str) -> Error {
 ///
 /// Errors: the budget is spent (exit code 4).
 fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64, copies: Copies) -> Result<u64> {
-    let strategy = Strategy::from_setting(job.values.text("allocation")).expect("the table holds its words");
+    let strategy = job.values.choice("allocation");
     let Driver { caps, requirements } = driver;
     let mut endless = caps.clone();
     endless.heaps.iter_mut().for_each(|heap| heap.bytes = u64::MAX);

@@ -28,9 +28,9 @@ use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::picture::Aov;
 use crate::plan::{Plan, Requirements, Resources};
-use crate::resident::{Coverage, DrawList, GeometryChoice, Raster, SceneGpu, SceneStats};
+use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
 use crate::scene::Scene;
-use crate::settings::{COMMON, Condition, INSTRUMENT, Setting, Values};
+use crate::settings::{COMMON, Condition, DirectShadow, INSTRUMENT, Setting, Values};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -56,8 +56,7 @@ impl Inputs<'_> {
 
     /// The same, drawn into images of another extent than the picture's.
     fn draw_list_into(&self, scene: &SceneGpu, raster: Raster) -> DrawList {
-        let choice = GeometryChoice::from_setting(self.values.text("geometry"));
-        DrawList::new(self.scene, scene, self.view, raster, choice)
+        DrawList::new(self.scene, scene, self.view, raster, self.values.choice("geometry"))
     }
 }
 
@@ -264,7 +263,7 @@ pub fn set(technique: &dyn Technique, values: &mut Values, key: &str, value: &st
 pub fn timed(technique: &dyn Technique, values: &Values) -> Values {
     let mut timed = values.clone();
     if let Some(setting) = settings_of(technique).iter().find(|setting| setting.key == INSTRUMENT.key)
-        && values.text(INSTRUMENT.key) == "auto"
+        && values.unless_auto(INSTRUMENT.key, Values::is_on).is_none()
     {
         timed.set(setting, "off").expect("a choice of the setting");
     }
@@ -277,10 +276,10 @@ pub fn timed(technique: &dyn Technique, values: &Values) -> Values {
 /// Errors: some of the lights would, and others not (exit code 2).
 fn light_visibility(values: &Values, lights: &LightSet, by_volumes: usize) -> Result<String> {
     let all = lights.lights.len();
-    let traced = match values.text("direct-shadow") {
-        "none" => 0,
-        "sun" => lights.sun_count(),
-        _ => all,
+    let traced = match values.choice("direct-shadow") {
+        DirectShadow::None => 0,
+        DirectShadow::Sun => lights.sun_count(),
+        DirectShadow::Ray | DirectShadow::Map => all,
     };
     match traced.max(by_volumes.min(all)) {
         0 => Ok("off".to_owned()),

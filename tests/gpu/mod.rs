@@ -4,6 +4,7 @@
 mod loops;
 mod lost;
 mod multisample;
+mod pipeline;
 mod statistics;
 mod validation;
 

@@ -1,6 +1,7 @@
 //! The table of shaders: what each entry point binds, takes and runs on, read back from its SPIR-V with spirq.
 
 use crate::compile::{EntryPoint, Variant};
+use crate::constants::Constants;
 use crate::structs::{Structs, by_module};
 use glslang::ShaderStage;
 use spirq::ReflectConfig;
@@ -224,7 +225,7 @@ impl Module {
     }
 }
 
-pub fn write(table: &Table, structs: &Structs) -> String {
+pub fn write(table: &Table, structs: &Structs, constants: &Constants) -> String {
     let mut root = Module::default();
     let mut all = String::new();
     for row in &table.rows {
@@ -242,6 +243,9 @@ pub fn write(table: &Table, structs: &Structs) -> String {
             )
             .expect("writing to a string");
         }
+    }
+    for (module, items) in constants.by_module() {
+        root.at(module).items.push_str(&items);
     }
     let mut names = String::new();
     let mut layouts = String::new();

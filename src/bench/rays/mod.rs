@@ -19,6 +19,8 @@ use crate::gpu::commands::{Submits, Traffic};
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorded::Recorded;
 use crate::gpu::shader::bench::rays::COMP_VARIANTS;
+use crate::gpu::shader::bench::rays::THREADS;
+use crate::gpu::shader::bvh_trace::RAY_SHADOW;
 use crate::gpu::shader::structs::{RayBlock, RaysParams};
 use crate::gpu::shader::variant;
 use crate::gpu::structure::STORAGE;
@@ -36,10 +38,6 @@ use std::sync::Arc;
 
 /// Ledger group of its buffers.
 const GROUP: &str = "bench";
-/// Invocations of a workgroup: the shader's.
-const THREADS: u32 = 64;
-/// bvh_trace.glsl's RAY_SHADOW.
-const RAY_SHADOW: u32 = 1;
 
 /// A way of walking in order that is measured.
 pub struct Variant {

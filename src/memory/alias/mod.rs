@@ -4,33 +4,24 @@
 //! answer (`greedy.rs`), and an exact one by branch and bound (`optimal.rs`). A pass is one moment: a resource whose last
 //! pass is another's first one lives beside it.
 
+use crate::choice::choices;
 pub use span::Span;
 use span::{one_after_the_other, total_bytes};
 mod greedy;
 mod optimal;
 mod span;
 
-/// How hard to look for bytes to share.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
-    /// Nobody shares.
-    #[default]
-    Off,
-    /// The best of a few orders.
-    Greedy,
-    /// The least sum, or the best found when a fixed number of steps is spent.
-    Optimal,
-}
-
-impl Mode {
-    /// `off`, `greedy` or `optimal`; None for any other word.
-    pub fn from_setting(word: &str) -> Option<Self> {
-        match word {
-            "off" => Some(Self::Off),
-            "greedy" => Some(Self::Greedy),
-            "optimal" => Some(Self::Optimal),
-            _ => None,
-        }
+choices! {
+    /// How hard to look for bytes to share (`--alias`).
+    #[derive(Default)]
+    pub enum Mode {
+        /// The best of a few orders.
+        "greedy" => Greedy,
+        /// The least sum, or the best found when a fixed number of steps is spent.
+        "optimal" => Optimal,
+        /// Nobody shares.
+        #[default]
+        "off" => Off,
     }
 }
 
@@ -204,11 +195,10 @@ mod tests {
 
     #[test]
     fn nothing_takes_no_bytes() {
-        for mode in ["off", "greedy", "optimal"] {
-            let placement = place(&[], Mode::from_setting(mode).unwrap());
+        for mode in [Mode::Off, Mode::Greedy, Mode::Optimal] {
+            let placement = place(&[], mode);
             assert_eq!((placement.total_bytes, placement.proven_optimal), (0, true));
         }
-        assert_eq!(Mode::from_setting("best"), None);
     }
 
     #[test]

@@ -1,41 +1,15 @@
 //! Shadow maps' format, the filter that they are read by, and the names of what they take.
 
 use crate::caps::Caps;
+use crate::settings::{MapFilter, Values};
 use ash::vk;
 
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-/// How a map is asked (`--shadow-filter`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MapFilter {
-    /// One comparison.
-    Nearest,
-    /// Four, filtered by the sampler.
-    Bilinear,
-    /// Four, filtered by the shader.
-    Gather,
-}
-
-impl MapFilter {
-    /// The value of `--shadow-filter`.
-    pub(super) fn from_setting(text: &str, caps: &Caps) -> Self {
-        match text {
-            "auto" if caps.formats.float_depth_linear => Self::Bilinear,
-            "auto" | "gather" => Self::Gather,
-            "nearest" => Self::Nearest,
-            "bilinear" => Self::Bilinear,
-            other => panic!("--shadow-filter {other} was checked"),
-        }
-    }
-
-    /// As settings name it.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Nearest => "nearest",
-            Self::Bilinear => "bilinear",
-            Self::Gather => "gather",
-        }
-    }
+/// The value of `--shadow-filter`; auto: the device's filter where it has one for depth.
+pub(super) fn filter(values: &Values, caps: &Caps) -> MapFilter {
+    let best = if caps.formats.float_depth_linear { MapFilter::Bilinear } else { MapFilter::Gather };
+    values.unless_auto("shadow-filter", Values::choice).unwrap_or(best)
 }
 
 /// The pass, and what its resources' names begin with.

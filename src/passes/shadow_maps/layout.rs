@@ -7,11 +7,11 @@ use crate::frame::View;
 use crate::gpu::shader::structs::ShadowMapBlock;
 use crate::gpu::{Access, ImageDescription};
 use crate::lights::LightSet;
-use crate::passes::shadow_maps::format::{FORMAT, MapFilter, blocks_name, depth_name, pass};
+use crate::passes::shadow_maps::format::{FORMAT, blocks_name, depth_name, filter, pass};
 use crate::plan::{Plan, Requirements, Shape};
-use crate::resident::{GeometryChoice, SceneStats};
+use crate::resident::SceneStats;
 use crate::scene::{Bounds, Camera, Light, LightKind, Projection, Scene};
-use crate::settings::Values;
+use crate::settings::{DirectShadow, GeometryChoice, MapDrawing, MapFilter, Values};
 use crate::shading::light;
 use crate::units::{Bytes, Extent};
 use ash::vk;
@@ -61,7 +61,7 @@ impl MapLayout {
         caps: &Caps,
         requirements: Requirements<'_>,
     ) -> Result<Option<Self>> {
-        if values.text("direct-shadow") != "map" || lights.lights.is_empty() {
+        if !values.is("direct-shadow", DirectShadow::Map) || lights.lights.is_empty() {
             return Ok(None);
         }
         let size_px = values.integer("shadow-map-size") as u32;
@@ -72,10 +72,10 @@ impl MapLayout {
         let mut layout = Self {
             blocks: Vec::with_capacity(lights.lights.len()),
             views: Vec::with_capacity(layer_count as usize),
-            filter: MapFilter::from_setting(values.text("shadow-filter"), caps),
+            filter: filter(values, caps),
             slope_bias_px: values.number("shadow-slope-bias") as f32,
-            casters: GeometryChoice::from_setting(values.text("shadow-casters")),
-            is_once: values.text("shadow-maps") == "once",
+            casters: values.choice("shadow-casters"),
+            is_once: values.is("shadow-maps", MapDrawing::Once),
             size_px,
             bias_m: values.length("shadow-bias", scene.lasting_bounds().diagonal().max(1e-6)),
         };

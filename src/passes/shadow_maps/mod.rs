@@ -40,9 +40,9 @@ use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Edge, Gpu,
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
-use crate::settings::Values;
+use crate::settings::{MapFilter, Values};
 use ash::vk;
-use format::{FORMAT, MapFilter, blocks_name, depth_name, pass};
+use format::{FORMAT, blocks_name, depth_name, pass};
 use glam::Mat4;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -56,7 +56,7 @@ pub fn axis(has_shadow_maps: bool) -> &'static str {
 pub fn needs(values: &Values) -> Option<Need> {
     let of = "--shadow-filter bilinear";
     let instead = "--shadow-filter gather makes the same picture everywhere";
-    (values.text("shadow-filter") == "bilinear").then(|| Need {
+    values.is("shadow-filter", MapFilter::Bilinear).then(|| Need {
         of: of.to_owned(),
         ability: Ability::FilteredDepth,
         instead,

@@ -1,5 +1,6 @@
 //! How a picture is written.
 
+use crate::choice::choices;
 use crate::picture::Aov;
 use crate::picture::tonemap::ToneMap;
 use std::collections::BTreeMap;
@@ -20,14 +21,16 @@ pub struct WriteOptions<'a> {
     pub attributes: Vec<(String, String)>,
 }
 
-/// The floating-point format of an EXR.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ExrPrecision {
-    /// 32 bits: what is read back equals what was written.
-    #[default]
-    Float,
-    /// 16 bits, rounded to nearest, ties to even. A finite value past 65504, the largest half, becomes 65504.
-    Half,
+choices! {
+    /// The floating-point format of an EXR (`--exr`).
+    #[derive(Default)]
+    pub enum ExrPrecision {
+        /// 32 bits: what is read back equals what was written.
+        #[default]
+        "float" => Float,
+        /// 16 bits, rounded to nearest, ties to even. A finite value past 65504, the largest half, becomes 65504.
+        "half" => Half,
+    }
 }
 
 /// The texts of a header, by name.

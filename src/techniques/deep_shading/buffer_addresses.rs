@@ -49,7 +49,7 @@ pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
         let space = choices.space.extent;
         let why =
             format!("shading space of {space}: its lists have {entries} entries, and indices reach {MOST_ENTRIES}");
-        let advice = match choices.is_compacted {
+        let advice = match choices.lists.is_compacted {
             true => "--compaction off has one entry a pixel; a smaller --shading-scale or --guard-band, fewer pixels",
             false => "a smaller --shading-scale or --guard-band has fewer pixels",
         };

@@ -10,12 +10,12 @@ use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
 use crate::passes::shadow_maps::MapLayout;
-use crate::resident::GeometryChoice;
-use crate::settings::Values;
+use crate::settings::{GeometryChoice, Values};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
+use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::is_looped;
 use crate::techniques::deep_shading::modes::shading::Shading;
@@ -26,25 +26,8 @@ use crate::techniques::deep_shading::resources::{
 };
 use crate::units::Extent;
 
-pub struct Choices {
-    pub shading: Shading,
-    pub direct: DirectSettings,
-    pub visibility: Visibility,
-    pub layer_from: LayerFrom,
-    pub polygon_from: PolygonFrom,
-    /// Stochastic rasterisation tests all samples of a pixel at once.
-    pub is_looped: bool,
-    /// Layers that are drawn together reach beyond the frame.
-    pub has_padding: bool,
-    pub table: TupleTable,
-    /// Sets of samples that the picture is the mean of.
-    pub run_count: u32,
-    pub space: ShadingSpace,
-    /// None: a pinhole, where the camera is.
-    pub lens: Option<Lens>,
-    /// The scene is another one when the shutter closes.
-    pub is_moving: bool,
-    pub has_lists: bool,
+/// How lists are made and read. Without lists all are false but `tolerates_duplicates`.
+pub struct ListChoices {
     /// The host inserts into them, and samples have no SPIDs.
     pub is_direct: bool,
     /// The device draws strays only where there are some.
@@ -55,19 +38,51 @@ pub struct Choices {
     pub has_addresses: bool,
     /// Shading space is drawn with what stands in lists.
     pub has_marks: bool,
+}
+
+/// How triangles are drawn, for samples and into shading space.
+pub struct RasterChoices {
+    pub layer_from: LayerFrom,
+    pub polygon_from: PolygonFrom,
+    pub conservative: Conservative,
+    /// Stochastic rasterisation tests all samples of a pixel at once.
+    pub is_looped: bool,
+    /// Layers that are drawn together reach beyond the frame.
+    pub has_padding: bool,
+    /// Sub-pixel precision to which the rasteriser snaps corners, in bits.
+    sub_pixel_bits: u32,
+}
+
+/// What is blurred.
+pub struct BlurChoices {
+    /// None: a pinhole, where the camera is.
+    pub lens: Option<Lens>,
+    /// The scene where it is shaded; None: nothing moves.
+    pub mid_exposure: Option<MidExposure>,
+    /// The scene is another one when the shutter closes.
+    pub is_moving: bool,
+    /// Something is blurred, and its colours are filtered.
+    pub is_reconstructed: bool,
+}
+
+pub struct Choices {
+    pub shading: Shading,
+    pub direct: DirectSettings,
+    pub visibility: Visibility,
+    pub raster: RasterChoices,
+    pub table: TupleTable,
+    /// Sets of samples that the picture is the mean of.
+    pub run_count: u32,
+    pub space: ShadingSpace,
+    pub blur: BlurChoices,
+    pub has_lists: bool,
+    pub lists: ListChoices,
     /// Entries of the cache of `--shading indirect-gbuffer`.
     pub cache_entries: u64,
     pub is_counted: bool,
     /// Shaders reach buffers with an entry a sample, or more, by their addresses.
     pub is_by_address: bool,
-    /// Sub-pixel precision to which the rasteriser snaps corners, in bits.
-    sub_pixel_bits: u32,
-    /// Something is blurred, and its colours are filtered.
-    pub is_reconstructed: bool,
-    pub conservative: Conservative,
     pub geometry: GeometryChoice,
-    /// The scene where it is shaded; None: nothing moves.
-    pub middle: Option<MidExposure>,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
 }
@@ -85,8 +100,8 @@ impl Choices {
                 .within(NAME)
                 .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
         }
-        let has_lists = shading == Shading::Deep && values.text("lists") != "none";
-        let is_direct = has_lists && values.text("lists") == "direct";
+        let has_lists = shading == Shading::Deep && !values.is("lists", Lists::None);
+        let is_direct = has_lists && values.is("lists", Lists::Direct);
         require_direct(values)?;
         require_straight(values)?;
         require_spids(values)?;
@@ -97,9 +112,9 @@ impl Choices {
         } else {
             None
         };
-        let middle = MidExposure::new(inputs)?;
+        let mid_exposure = MidExposure::new(inputs)?;
         let (scene, lights) =
-            middle.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
+            mid_exposure.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
         let (table, visibility) = (TupleTable::new(samples, tuples), shading.visibility(values)?);
         let table = TupleTable { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
@@ -112,33 +127,39 @@ impl Choices {
             maps: maps.map_err(|error| error.within(NAME))?,
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
             visibility,
-            layer_from: LayerFrom::of(values, inputs.caps),
-            polygon_from: PolygonFrom::of(values, inputs.caps),
-            is_looped: matches!(shading, Shading::Deep | Shading::IndirectGbuffer)
-                && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
-            has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
+            raster: RasterChoices {
+                layer_from: LayerFrom::of(values, inputs.caps),
+                polygon_from: PolygonFrom::of(values, inputs.caps),
+                conservative: Conservative::of(values, inputs.caps),
+                is_looped: matches!(shading, Shading::Deep | Shading::IndirectGbuffer)
+                    && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
+                has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
+                sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
+            },
             table,
             run_count: values.integer("accumulate") as u32,
             space,
-            is_moving: middle.is_some(),
+            blur: BlurChoices {
+                is_moving: mid_exposure.is_some(),
+                is_reconstructed: values.is_on("reconstruct")
+                    && (lens.is_some_and(|lens| lens.radius > 0.0) || mid_exposure.is_some()),
+                lens,
+                mid_exposure,
+            },
             has_lists,
-            is_direct,
-            has_stray_count: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
-            tolerates_duplicates: values.text("duplicates") == "tolerated",
-            is_compacted,
-            has_zmax: has_lists && values.is_on("zmax"),
-            has_addresses: has_lists && values.is_on("address-buffer"),
-            has_marks: has_lists && !is_direct && values.text("shaded-triangles") == "listed",
+            lists: ListChoices {
+                is_direct,
+                has_stray_count: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
+                tolerates_duplicates: values.is("duplicates", Duplicates::Tolerated),
+                is_compacted,
+                has_zmax: has_lists && values.is_on("zmax"),
+                has_addresses: has_lists && values.is_on("address-buffer"),
+                has_marks: has_lists && !is_direct && values.is("shaded-triangles", ShadedTriangles::Listed),
+            },
             cache_entries: cache_entries.unwrap_or(samples_of_set),
-            is_counted: values.text("instrument") != "off",
+            is_counted: values.unless_auto("instrument", Values::is_on).unwrap_or(true),
             is_by_address: false,
-            sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
-            is_reconstructed: values.is_on("reconstruct")
-                && (lens.is_some_and(|lens| lens.radius > 0.0) || middle.is_some()),
-            lens,
-            middle,
-            conservative: Conservative::of(values, inputs.caps),
-            geometry: GeometryChoice::from_setting(values.text("geometry")),
+            geometry: values.choice("geometry"),
         };
         choices.is_by_address = is_by_address(&choices, inputs);
         Ok(choices)
@@ -146,18 +167,18 @@ impl Choices {
 
     /// The shaders' block: shading space, cameras, lens and samples.
     pub fn deep_block(&self, inputs: &Inputs<'_>) -> DeepBlock {
-        let close = self.middle.as_ref().map(|middle| &middle.closing.view);
-        self.space.block(inputs.view, close, self.lens, &self.table)
+        let close = self.blur.mid_exposure.as_ref().map(|middle| &middle.closing.view);
+        self.space.block(inputs.view, close, self.blur.lens, &self.table)
     }
 
     /// The lights that shade: those in the middle of the exposure.
     pub fn lights<'a>(&'a self, inputs: &Inputs<'a>) -> &'a LightSet {
-        self.middle.as_ref().map_or(inputs.lights, |middle| &middle.lights)
+        self.blur.mid_exposure.as_ref().map_or(inputs.lights, |middle| &middle.lights)
     }
 
     /// Where the lenses of the eyes are on the unit disk.
     pub fn eyes(&self) -> Vec<f32> {
-        self.lens.map_or_else(|| vec![0.0], |lens| lens.places())
+        self.blur.lens.map_or_else(|| vec![0.0], |lens| lens.places())
     }
 
     /// Both eyes are seen by at once.
@@ -167,17 +188,16 @@ impl Choices {
 
     /// Samples have a depth image: what is nearest is found by depth tests.
     pub fn has_depth(&self) -> bool {
-        self.visibility != Visibility::Ray && !self.is_looped
+        self.visibility != Visibility::Ray && !self.raster.is_looped
     }
 
     /// Something is seen from elsewhere than the camera shows it from.
     pub fn is_blurred(&self) -> bool {
-        self.lens.is_some() || self.is_moving
+        self.blur.lens.is_some() || self.blur.is_moving
     }
 
-    /// The name of the pass that shades samples where they are seen: all of them, or those that shading space has no place for,
-    /// which blur brings in from outside, and rounding where triangles are huge, edge-on or cut by the near plane; and those whose
-    /// lists are full.
+    /// The name of the pass that shades samples where they are seen: all of them, or strays, which blur brings in from
+    /// outside shading space, and rounding where triangles are huge, edge-on or cut by the near plane.
     pub fn brute_pass(&self) -> &'static str {
         if self.has_lists { "strays" } else { "brute" }
     }
@@ -189,7 +209,7 @@ impl Choices {
 
     /// SUB_PIXEL_BITS: the steps of a pixel that the rasteriser snaps corners to, as a power of two.
     fn sub_pixel_bits(&self) -> u32 {
-        self.sub_pixel_bits.min(16)
+        self.raster.sub_pixel_bits.min(16)
     }
 
     /// Samples of one set, padding included.
@@ -202,16 +222,16 @@ impl Choices {
         let mut constants = self.direct.light_constants().to_vec();
         constants.extend(self.maps.iter().flat_map(MapLayout::constants));
         constants.extend([
-            ("IS_MOVING", u32::from(self.is_moving)),
-            ("HAS_LENS", u32::from(self.lens.is_some_and(|lens| lens.reach() > 0.0))),
-            ("TOLERATES_DUPLICATES", u32::from(self.tolerates_duplicates)),
-            ("IS_COMPACTED", u32::from(self.is_compacted)),
+            ("IS_MOVING", u32::from(self.blur.is_moving)),
+            ("HAS_LENS", u32::from(self.blur.lens.is_some_and(|lens| lens.reach() > 0.0))),
+            ("TOLERATES_DUPLICATES", u32::from(self.lists.tolerates_duplicates)),
+            ("IS_COMPACTED", u32::from(self.lists.is_compacted)),
             ("IS_COUNTED", u32::from(self.is_counted)),
-            ("HAS_PADDING", u32::from(self.has_padding)),
+            ("HAS_PADDING", u32::from(self.raster.has_padding)),
             ("SUB_PIXEL_BITS", self.sub_pixel_bits()),
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("CACHE_ENTRIES", self.cache_entries as u32),
-            ("MISSING_FAILS", u32::from(self.conservative != Conservative::Plain)),
+            ("MISSING_FAILS", u32::from(self.raster.conservative != Conservative::Plain)),
             ("PASS_SAMPLES", self.shading.pass_samples()),
             ("TEXTURE_SIDE_BITS", self.shading.texture_side_bits()),
         ]);
@@ -230,7 +250,7 @@ pub fn constants_of(choices: &Choices, shaders: &[Option<&Shader>]) -> Vec<(&'st
 
 /// Entries of the longest buffer that has as many a pixel of shading space.
 pub fn space_entries(choices: &Choices) -> u64 {
-    let a_pixel = match (choices.has_lists, choices.is_compacted) {
+    let a_pixel = match (choices.has_lists, choices.lists.is_compacted) {
         (false, _) => 0,
         (true, false) => 1,
         (true, true) => LINEAR_COUNT,
@@ -259,14 +279,12 @@ pub fn longest_bytes(choices: &Choices, frame: Extent) -> u64 {
 
 /// `--list-access`, `auto` resolved: whether addresses are taken.
 pub fn is_by_address(choices: &Choices, inputs: &Inputs<'_>) -> bool {
-    match inputs.values.text("list-access") {
-        "descriptors" => false,
-        "addresses" => true,
-        _ => longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes,
-    }
+    let is_long = || longest_bytes(choices, inputs.view.extent) > inputs.caps.limits.max_storage_buffer_range_bytes;
+    let asked = inputs.values.unless_auto("list-access", Values::choice);
+    asked.map_or_else(is_long, |access: ListAccess| access == ListAccess::Addresses)
 }
 
 /// How buffers are reached, in the report's words.
 pub fn list_access_name(is_by_address: bool) -> &'static str {
-    if is_by_address { "addresses" } else { "descriptors" }
+    if is_by_address { ListAccess::Addresses.name() } else { ListAccess::Descriptors.name() }
 }

@@ -1,16 +1,21 @@
 //! Settings that cannot be together.
 
 use crate::error::{Error, Result};
-use crate::settings::Values;
+use crate::settings::{StereoEyes, Values};
+use crate::techniques::deep_shading::modes::conservative::Conservative;
+use crate::techniques::deep_shading::modes::lists::Lists;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::modes::warp::Warp;
 use crate::techniques::deep_shading::resources::NAME;
 
 /// Errors: both eyes, and what knows of one (exit code 2).
 pub fn require_both(values: &Values) -> Result<()> {
-    if values.number("stereo") == 0.0 || values.text("stereo-eyes") != "both" {
+    if values.number("stereo") == 0.0 || !values.is("stereo-eyes", StereoEyes::Both) {
         return Ok(());
     }
-    let why = match values.text("shading") {
-        "msaa" => "--shading msaa: it draws a pixel's samples at once, which are one eye's",
+    let why = match values.choice("shading") {
+        ShadingKind::Msaa => "--shading msaa: it draws a pixel's samples at once, which are one eye's",
         _ if values.is_on("reconstruct") => "--reconstruct on: it filters what one eye sees",
         _ => return Ok(()),
     };
@@ -27,11 +32,12 @@ pub fn require_spids(values: &Values) -> Result<()> {
             format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
         Err(Error::request(why).within(NAME).note(format!("--{setting} {instead} keeps them")))
     };
-    match (values.is_on("reconstruct"), values.text("shading"), values.text("lists")) {
+    match (values.is_on("reconstruct"), values.choice("shading"), values.choice("lists")) {
         (false, ..) => Ok(()),
-        (true, "deep", "direct") => refused("lists", "linked"),
-        (true, "deep", _) => Ok(()),
+        (true, ShadingKind::Deep, Lists::Direct) => refused("lists", "linked"),
+        (true, ShadingKind::Deep, _) => Ok(()),
         (true, shading, _) => {
+            let shading = shading.name();
             let why = format!("--reconstruct on with --shading {shading}: it filters what the lists' samples see");
             Err(Error::request(why).within(NAME).note("--shading deep has them"))
         }
@@ -42,21 +48,25 @@ pub fn require_spids(values: &Values) -> Result<()> {
 pub fn require_direct(values: &Values) -> Result<()> {
     let refused =
         |why: &str, advice: &str| Err(Error::request(format!("--lists direct: {why}")).within(NAME).note(advice));
-    match values.text("lists") {
-        "direct" if values.text("visibility") != "ray" => {
-            refused("only rays find a sample's triangle at once", "--visibility ray has them")
-        }
-        "direct" if !values.is_on("address-buffer") => {
-            refused("without SPIDs a sample needs its address", "--address-buffer on gives it one")
-        }
-        _ => Ok(()),
+    if !values.is("lists", Lists::Direct) {
+        return Ok(());
     }
+    if !values.is("visibility", Visibility::Ray) {
+        return refused("only rays find a sample's triangle at once", "--visibility ray has them");
+    }
+    if !values.is_on("address-buffer") {
+        return refused("without SPIDs a sample needs its address", "--address-buffer on gives it one");
+    }
+    Ok(())
 }
 
 /// Errors: the device draws triangles itself that shading space has bent (exit code 2).
 pub fn require_straight(values: &Values) -> Result<()> {
-    let road = values.text("conservative");
-    if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
+    let asked = values.unless_auto("conservative", Values::choice);
+    if let Some(road @ (Conservative::Hardware | Conservative::Plain)) = asked
+        && values.is("shading-warp", Warp::Foveated)
+    {
+        let road = road.name();
         let why = "triangles are not straight in a foveated shading space";
         return Err(Error::request(format!("--conservative {road}: {why}"))
             .within(NAME)

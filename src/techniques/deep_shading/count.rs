@@ -3,12 +3,12 @@
 //! writes  count.lengths  buffer, 4 B a pixel of shading space; the counters
 
 use super::choices::Choices;
-use super::lists::Lists;
+use super::lists::ListsEdge;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::count::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::plan::Resources;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::full;
@@ -24,35 +24,32 @@ pub struct Count {
 
 impl Count {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
-        let lists = if choices.is_compacted { "compact" } else { "linked" };
+        let lists = if choices.lists.is_compacted { "compact" } else { "linked" };
         let shader = variant(COMP_VARIANTS, &[lists]);
         let pipeline = ComputePipeline::new(gpu, shader, &constants_of(choices, &[Some(shader)]))?;
         let lengths = resources.buffer(&full(super::resources::LENGTHS));
         Ok(Self { pipeline, lengths, space: choices.space.extent })
     }
 
-    /// After the resolve.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        lists: &Lists,
-        counters: &Buffer,
+        read: ListsEdge<'_>,
+        counters: Edge<'_, Buffer>,
     ) -> Result<()> {
+        let lists = read.lists;
         let traffic = Traffic {
             read_bytes: lists.begins.bytes,
             written_bytes: self.lengths.bytes,
             invocations: Some(self.space.pixel_count()),
         };
         cmd.pass(&full("count"), traffic, |cmd| {
-            lists.links_to_compute(cmd, Access::ComputeWrite);
-            cmd.barriers([
-                self.lengths.discard(Access::ComputeWrite),
-                counters.from(Access::ComputeWrite).to(Access::ComputeWrite),
-            ]);
+            cmd.barriers(read.links_to(Access::ComputeWrite));
+            cmd.barriers([self.lengths.discard(Access::ComputeWrite), counters.to(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();
             bound.extend(lists.bound());
-            bound.extend([("Counters", Bound::Buffer(counters)), ("Lengths", Bound::Buffer(&self.lengths))]);
+            bound.extend([("Counters", Bound::Buffer(counters.resource)), ("Lengths", Bound::Buffer(&self.lengths))]);
             let groups = self.pipeline.groups([self.space.width, self.space.height, 1]);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })

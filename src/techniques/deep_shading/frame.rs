@@ -6,9 +6,12 @@ use super::buffer_addresses::BufferAddresses;
 use super::choices::Choices;
 use super::counters::FrameCounts;
 use super::indirect;
+use super::lists::ListsEdge;
+use super::pass_inputs::DrawInputs;
 use super::primitives::{self, Primitives};
 use super::reconstruct::Reconstruct;
-use super::resolve::{Resolve, SampleColors};
+use super::resolve::Resolve;
+use super::sample_colors::SampleColors;
 use super::scene::DeepScene;
 use super::separate::SeparateShading;
 use super::stereo::{self, RightEye};
@@ -22,7 +25,7 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, SPIDS, full};
-use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::techniques::{Frame, Inputs};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -42,7 +45,7 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
         if !(choices.has_lists && choices.is_counted) {
             leave_out(LENGTHS, "lists are counted with --shading deep, --lists linked or direct, and --instrument on");
         }
-        if choices.is_direct {
+        if choices.lists.is_direct {
             leave_out(SPIDS, "--lists direct has no SPIDs; --lists linked makes them");
         }
     }
@@ -56,6 +59,15 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
 enum ShadingPasses {
     Separate(Box<SeparateShading>, BufferAddresses),
     Baseline(Box<Baseline>),
+}
+
+/// What the host has made of the scene.
+pub struct HostTables {
+    pub primitives: Primitives,
+    /// With `--visibility ray`.
+    pub traced: Option<TracedSamples>,
+    /// With `--shading texture-space`.
+    pub atlases: Option<Atlases>,
 }
 
 pub struct DeepFrame {
@@ -81,12 +93,13 @@ impl DeepFrame {
         scene: &SceneGpu,
         resources: &mut Resources,
         choices: Choices,
-        (mut primitives, traced, atlases): (Primitives, Option<TracedSamples>, Option<Atlases>),
+        host: HostTables,
     ) -> Result<Self> {
+        let HostTables { mut primitives, traced, atlases } = host;
         let frame = inputs.view.extent;
         let list = primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred());
         primitives.set_order(scene, &list);
-        let reconstruct = match choices.is_reconstructed {
+        let reconstruct = match choices.blur.is_reconstructed {
             true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
             false => None,
         };
@@ -156,28 +169,38 @@ impl Frame for DeepFrame {
         let eyes: Vec<&Image> = [color].into_iter().chain(right.iter().map(|right| &right.color)).collect();
         let mut bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
-        let drawn = DrawInputs { scene, list, primitives, table: &self.choices.table, frame: color.description.extent };
+        if let ShadingPasses::Separate(_, addresses) = &self.shader {
+            bound.push(addresses.bound());
+        }
+        let (table, extent) = (&self.choices.table, color.description.extent);
+        let inputs = DrawInputs { scene, list, primitives, table, frame: extent, bound: &bound };
         match &self.shader {
-            ShadingPasses::Separate(separate, buffer_addresses) => {
-                bound.push(buffer_addresses.bound());
-                let shaded = separate.record(cmd, &self.scene, drawn, &bound, counters)?;
-                self.resolve.record(cmd, &bound, shaded, counters, &eyes)?;
+            ShadingPasses::Separate(separate, _) => {
+                let shaded = separate.record(cmd, &self.scene, inputs, counters)?;
+                // Entries of a compact geometry buffer are shaded by a compute shader, all else by fragments.
+                let counted = match shaded {
+                    SampleColors::Pointed { .. } => Access::ComputeWrite,
+                    _ => Access::FragmentWrite,
+                };
+                self.resolve.record(cmd, &bound, shaded, counters.from(counted), &eyes)?;
                 if let Some(reconstruct) = &self.reconstruct {
-                    reconstruct.record(cmd, &bound, shaded, color)?;
+                    reconstruct.record(cmd, &bound, shaded.read_by_compute(), color.from(Access::ComputeWrite))?;
                 }
-                separate.record_count(cmd, &bound, counters)?;
+                let lists =
+                    shaded.lists().map(|lists| ListsEdge { links: lists.links.with(Access::ComputeRead), ..lists });
+                separate.record_count(cmd, &bound, lists, counters.from(Access::ComputeWrite))?;
             }
             ShadingPasses::Baseline(baseline) => {
-                let maps = self.scene.maps_barrier(Access::DepthWrite, Access::FragmentSample);
-                baseline.record(cmd, drawn, &bound, maps, counters)?;
-                self.resolve.record(cmd, &bound, SampleColors::Baseline(baseline), counters, &eyes)?;
+                baseline.record(cmd, inputs, self.scene.maps_from(Access::DepthWrite), counters)?;
+                let shaded = SampleColors::Baseline(baseline.from(Access::ColorWrite));
+                self.resolve.record(cmd, &bound, shaded, counters.from(Access::FragmentWrite), &eyes)?;
             }
         }
         if let Some(accumulate) = &self.accumulate {
             accumulate.record(cmd, NAME, frame, self.run_picture().from(Access::ComputeWrite))?;
         }
         if let Some(right) = right {
-            right.record(cmd, frame)?;
+            right.record(cmd, frame, right.color.from(Access::ComputeWrite))?;
         }
         Ok(())
     }
@@ -207,7 +230,7 @@ impl Frame for DeepFrame {
     }
 
     fn explained_nan(&self) -> Option<[String; 2]> {
-        let conservative = self.choices.conservative.name();
+        let conservative = self.choices.raster.conservative.name();
         let (what, help) = match self.choices.shading {
             Shading::Deep if self.choices.has_lists => (
                 format!(
@@ -255,7 +278,9 @@ impl Frame for DeepFrame {
                 Ok(indirect::touched_bytes(&self.counted(gpu)?))
             }
             // Without lists colours are cleared whole, and what the host inserts is copied whole.
-            ShadingPasses::Separate(..) if !self.choices.has_lists || self.choices.is_direct => Ok(BTreeMap::new()),
+            ShadingPasses::Separate(..) if !self.choices.has_lists || self.choices.lists.is_direct => {
+                Ok(BTreeMap::new())
+            }
             ShadingPasses::Separate(..) => {
                 Ok(self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes())
             }

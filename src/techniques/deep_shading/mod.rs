@@ -1,55 +1,67 @@
-//! Deep shading buffers: Clarberg and Munkberg 2014, "Deep Shading Buffers on Commodity GPUs". Under motion and defocus blur
-//! each triangle is shaded once a pixel, however many samples see it.
+//! Deep shading buffers: Clarberg and Munkberg 2014, "Deep Shading Buffers on Commodity GPUs". Under motion and defocus
+//! blur each triangle is shaded once a pixel, however many samples see it.
 //!
-//! Passes: shadow_maps (with `--direct-shadow map`), visibility (the triangle that each sample sees, and where it is in
-//! canonical shading space: its SPID), lists (of triangles, by compare-exchange), lists.compact, lists.address, shade (one
-//! conservative pass over shading space, which shades what the lists have), strays (samples that shading space has no place
-//! for, and those that a list of 1024 triangles has none for) or brute (`--lists none`), resolve (box filter), with `--reconstruct on`
-//! reconstruct.samples (motion and depth), reconstruct.layers and reconstruct.filter, count (`--instrument on`), accumulate
-//! (`--accumulate` above 1).
-//!
-//! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve and
-//! accumulate, or those of `indirect-gbuffer`
-//! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, drawn frame by frame or stochastically
-//! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that see it,
-//!   `--pass-samples` of them at a time
-//! - `indirect-gbuffer`: decoupled deferred shading (Liktor and Dachsbacher 2012): the same samples find what is shaded in a cache
-//!   and point to it in a compact geometry buffer (indirect/mod.rs); passes visibility, indirect.gbuffer, indirect.shade
-//! - `texture-space`: adaptive texture-space shading (Andersson et al. 2014): draw by draw a texture is shaded and then drawn with
-//!   (baseline/texture_space/mod.rs)
-//!
-//! Words
-//! - tuple: a place in a pixel, on the lens and in time; N of them are spread over a table of N/n pixels (section 4.2)
-//! - SPID: what a sample keeps of what it sees, the triangle's id and the pixel of shading space where it is shaded
-//! - guard band: pixels of shading space around the frame's (`--guard-band`)
-//! - stray: a sample that no list has, because shading space has no place for it or the list is full
-//! - hull: the polygon that covers every pixel which a triangle touches (`--conservative`)
+//! Words, which files here use as they are explained here
+//! - tuple: a place in a pixel, on the lens and in time at which samples are taken; N of them are spread over a table
+//!   of N/n pixels, which repeats over the frame (section 4.2)
+//! - sample: a pixel of the frame at one of its tuples
+//! - shading space, the paper's canonical one: the frame in the middle of the exposure, seen from the middle of the
+//!   lens, in whose pixels surfaces are shaded (section 3)
+//! - guard band: pixels of shading space around the frame's, for what blur brings in (`--guard-band`)
+//! - SPID, shading point identifier: what a sample keeps of what it sees, the triangle's id and the pixel of
+//!   shading space where that is shaded
+//! - list: the triangles to be shaded at one pixel of shading space, in nodes that are linked or, once compacted,
+//!   sorted in a row
+//! - stray: a sample that no list has, because shading space has no place for it or its list is full
+//! - hull: the polygon around every pixel which a triangle touches (`--conservative`)
+//! - entry: what `--shading indirect-gbuffer` has of a list's node, a triangle at a pixel of shading space with its
+//!   material
 //! - atlas, chart: a mesh's own texture coordinates, and a connected part of them (`--shading texture-space`)
 //!
+//! Passes: shadow_maps (with `--direct-shadow map`), visibility (each sample's SPID), lists (insertion by
+//! compare-exchange), lists.compact, lists.address, shade (one conservative pass over shading space, which shades what
+//! the lists have), strays or brute (`--lists none`), resolve (box filter), with `--reconstruct on` reconstruct.samples
+//! (motion and depth), reconstruct.layers and reconstruct.filter, count (`--instrument on`), accumulate (`--accumulate`
+//! above 1).
+//!
+//! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve
+//! and accumulate, or those of `indirect-gbuffer`
+//! - `ssaa`: every sample that is drawn is shaded where its tuple sees it, drawn frame by frame or stochastically
+//! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that
+//!   see it, `--pass-samples` of them at a time
+//! - `indirect-gbuffer`: decoupled deferred shading (Liktor and Dachsbacher 2012): the same samples find what is shaded
+//!   in a cache and point to it in a compact geometry buffer (indirect/mod.rs); passes visibility, indirect.gbuffer,
+//!   indirect.shade
+//! - `texture-space`: adaptive texture-space shading (Andersson et al. 2014): draw by draw a texture is shaded and then
+//!   drawn with (baseline/texture_space/mod.rs)
+//!
 //! Differs from the paper
-//! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need to be;
-//!   an insertion that another was quicker than looks at what is new, and no triangle comes into a list twice
+//! - a node of a list is its sample's own, so that no counter gives nodes out and their pool is as long as it can need
+//!   to be; an insertion that another was quicker than looks at what is new, and no triangle comes into a list twice
 //!   (`--duplicates tolerated` is the paper's way)
 //! - colours of a compacted list follow each other from a place that the list's first node keeps; a pass of its own
 //!   then looks up each sample's address
-//! - s_z is the depth where the sample hit, and a triangle is hidden where its nearest corner is behind all of them: the test
-//!   needs no depth buffer in shading space, and hulls no depth
-//! - a shading point outside its triangle is brought to the triangle's nearest place; texture levels come from rates on the
-//!   triangle's plane: colours depend on triangle and pixel alone
-//! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and counted; so are
-//!   samples that see more in a pixel than the 1024 triangles that a list holds, so that work grows with samples alone
-//! - shading space is drawn with triangles that lists have, which insertion marks (`--shaded-triangles all` is the paper's way)
+//! - s_z is the depth where the sample hit, and a triangle is hidden where its nearest corner is behind all of them:
+//!   the test needs no depth buffer in shading space, and hulls no depth
+//! - a shading point outside its triangle is brought to the triangle's nearest place; texture levels come from rates on
+//!   the triangle's plane: colours depend on triangle and pixel alone
+//! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and
+//!   counted; so are samples that see more in a pixel than the 1024 triangles that a list holds, so that work grows
+//!   with samples alone
+//! - shading space is drawn with triangles that lists have, which insertion marks (`--shaded-triangles all` is the
+//!   paper's way)
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
-//! - `--visibility stochastic` tests the tuples of the interleaved kinds, so that both see the same samples: all of a pixel's in a
-//!   loop, the nearest kept by 64-bit atomics (the paper has images of 8 samples a pixel and their depth test), or a layer a
-//!   tuple where the device has none (`--sample-tests`)
-//! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no SPID is kept
+//! - `--visibility stochastic` tests the tuples of the interleaved kinds, so that both see the same samples: all of a
+//!   pixel's in a loop, the nearest kept by 64-bit atomics (the paper has images of 8 samples a pixel and their depth
+//!   test), or a layer a tuple where the device has none (`--sample-tests`)
+//! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no
+//!   SPID is kept
 //! - the reconstruction is a filter of our choice; motion vectors come from SPIDs after visibility (reconstruct/mod.rs)
 //! - two eyes (`--stereo`) share one buffer, which the paper has as future work (section 7; stereo.rs)
 //! - light as by `forward`, `--direct-shadow map` as the paper's; surfaces face as the middle of the lens sees them
 //!
-//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same picture,
-//! to the bit on software drivers, and so does every order of `--visibility`; `--conservative none` alone leaves samples
+//! Equals itself: `--lists none`, which shades every sample, and every setting of the lists give the same picture, to
+//! the bit on software drivers, and so does every order of `--visibility`; `--conservative none` alone leaves samples
 //! without a colour. Without blur it is `forward --supersample` with samples in other places.
 
 mod baseline;
@@ -65,6 +77,7 @@ mod indirect;
 mod lists;
 mod mid_exposure;
 mod modes;
+mod pass_inputs;
 mod passes;
 mod plan;
 mod primitives;
@@ -74,6 +87,7 @@ mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
+mod sample_colors;
 mod scene;
 mod separate;
 mod settings;
@@ -94,12 +108,14 @@ use crate::plan::Plan;
 use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
+use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
 use crate::techniques::deep_shading::modes::shading::CONDITIONS;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::texture_space::atlases::Atlases;
 use choices::Choices;
-use frame::DeepFrame;
+use frame::{DeepFrame, HostTables};
 use modes::layer_from::LayerFrom;
 use modes::polygon_from::PolygonFrom;
 use modes::shading::Shading;
@@ -145,27 +161,29 @@ impl Technique for DeepShading {
             need("the visibility pass", Ability::FloatDepth, ""),
             need("the shading pass", Ability::FragmentAtomics, ""),
         ];
-        let visibility = Visibility::of(values);
-        let has_layers = matches!(values.text("shading"), "deep" | "indirect-gbuffer");
+        let visibility: Visibility = values.choice("visibility");
+        let shading: ShadingKind = values.choice("shading");
+        let has_layers = ShadingKind::OF_SPACE.contains(&shading);
         if has_layers && visibility.is_layered() {
             let ability = match LayerFrom::of(values, caps) {
                 LayerFrom::Vertex if visibility.has_layer_from() => Ability::LayerFromVertex,
                 _ => Ability::GeometryShader,
             };
-            let of = format!("--visibility {}", values.text("visibility"));
+            let of = format!("--visibility {}", visibility.name());
             needs.push(need(&of, ability, "--visibility repeat-frame works without it"));
         }
-        let has_polygons = visibility.has_polygons() && values.text("shading") != "msaa";
+        let has_polygons = visibility.has_polygons() && shading != ShadingKind::Msaa;
         if has_polygons && PolygonFrom::of(values, caps) == PolygonFrom::Geometry {
             let instead = "--polygon-from vertex works without it";
             needs.push(need("--polygon-from geometry", Ability::GeometryShader, instead));
         }
-        if has_layers && visibility == Visibility::Stochastic && values.text("sample-tests") == "loop" {
+        let is_looped = values.is("sample-tests", SampleTests::Loop);
+        if has_layers && visibility == Visibility::Stochastic && is_looped {
             let instead = "--sample-tests layers works without it";
             needs.push(need("--sample-tests loop", Ability::WideAtomics, instead));
         }
         match Conservative::of(values, caps) {
-            _ if values.text("shading") != "deep" => {}
+            _ if shading != ShadingKind::Deep => {}
             Conservative::Geometry => {
                 let instead = "--conservative vertex works without it";
                 needs.push(need("--conservative geometry", Ability::GeometryShader, instead));
@@ -218,10 +236,10 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { shading, table, conservative, lens, visibility, layer_from, .. } = &self.choices;
+        let Choices { shading, table, visibility, raster, blur, .. } = &self.choices;
         let mut resolved = BTreeMap::from([
             ("tuples", table.tuples_of_eye().to_string()),
-            ("conservative", conservative.name().to_owned()),
+            ("conservative", raster.conservative.name().to_owned()),
         ]);
         if let Shading::Msaa { pass_samples } = shading {
             resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
@@ -233,24 +251,24 @@ impl Prepared for PreparedDeep {
         resolved.insert(INSTRUMENT.key, instrument.to_owned());
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
-            resolved.insert("layer-from", layer_from.name().to_owned());
+            resolved.insert("layer-from", raster.layer_from.name().to_owned());
         }
         if visibility.has_polygons() && !matches!(shading, Shading::Msaa { .. }) {
-            resolved.insert("polygon-from", self.choices.polygon_from.name().to_owned());
+            resolved.insert("polygon-from", raster.polygon_from.name().to_owned());
         }
         if *visibility == Visibility::Stochastic && matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
-            resolved.insert("sample-tests", sample_tests_name(self.choices.is_looped).to_owned());
+            resolved.insert("sample-tests", sample_tests_name(raster.is_looped).to_owned());
         }
-        if !self.choices.has_marks {
+        if !self.choices.lists.has_marks {
             resolved.insert("shaded-triangles", "all".to_owned());
         }
         if matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
             resolved.insert("list-access", list_access_name(self.choices.is_by_address).to_owned());
         }
-        if let Some(lens) = lens {
+        if let Some(lens) = blur.lens {
             resolved.insert("focus", format!("{}", lens.focus));
         }
-        if !self.choices.is_reconstructed {
+        if !blur.is_reconstructed {
             resolved.insert("reconstruct", "off".to_owned());
         }
         resolved
@@ -271,7 +289,7 @@ impl Prepared for PreparedDeep {
             counters: BTreeMap::from([("lights", f64::from(light_count)), ("primitives", primitives.count as f64)]),
             light_counts: [light_count, 0],
             build: Box::new(move |gpu, inputs, scene, resources| {
-                let host = (primitives, traced, atlases);
+                let host = HostTables { primitives, traced, atlases };
                 Ok(Box::new(DeepFrame::new(gpu, inputs, scene, resources, choices, host)?))
             }),
         })

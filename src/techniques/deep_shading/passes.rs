@@ -19,14 +19,15 @@ fn touch(name: &str, access: Access) -> (String, Access) {
 
 fn links(choices: &Choices, access: Access) -> Touches {
     let mut lists = vec![touch(BEGINS, access), touch(NODES, access)];
-    lists.extend(choices.is_compacted.then(|| touch(LINEAR, access)));
+    lists.extend(choices.lists.is_compacted.then(|| touch(LINEAR, access)));
     lists
 }
 
 pub fn plan(plan: &mut Plan, choices: &Choices) {
-    if choices.is_direct {
+    if choices.lists.is_direct {
         let copied = [BEGINS, NODES, ADDRESSES, COLORS, COUNTERS].into_iter();
-        let copied = copied.chain(choices.is_compacted.then_some(LINEAR)).chain(choices.has_zmax.then_some(ZMAX));
+        let copied =
+            copied.chain(choices.lists.is_compacted.then_some(LINEAR)).chain(choices.lists.has_zmax.then_some(ZMAX));
         let accesses = [Access::TransferWrite, Access::ComputeWrite];
         plan.pass(full("lists"), copied.flat_map(|name| accesses.map(|access| touch(name, access))));
     } else {
@@ -41,8 +42,8 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
     }
     if choices.has_lists {
         let mut shaded = links(choices, Access::GraphicsRead);
-        shaded.extend(choices.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
-        shaded.extend(choices.has_marks.then(|| touch(MARKS, Access::GraphicsRead)));
+        shaded.extend(choices.lists.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
+        shaded.extend(choices.lists.has_marks.then(|| touch(MARKS, Access::GraphicsRead)));
         shaded.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
@@ -50,7 +51,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
     plan.pass(full(choices.brute_pass()), brute(choices));
     let written = [touch(COUNTERS, Access::ComputeWrite)].into_iter().chain(stereo::resolved(choices));
     plan.pass(full("resolve"), shaded(choices).into_iter().chain(written));
-    if choices.is_reconstructed {
+    if choices.blur.is_reconstructed {
         reconstruct::plan_passes(plan, shaded(choices), COLOR);
     }
     if choices.has_lists && choices.is_counted {
@@ -64,9 +65,9 @@ fn visibility(choices: &Choices) -> Touches {
     let written = choices.visibility.writes();
     let mut seen = vec![touch(SPIDS, written)];
     seen.extend(choices.has_depth().then(|| touch(DEPTH, Access::DepthWrite)));
-    seen.extend(choices.is_looped.then(looped::touches).into_iter().flatten());
+    seen.extend(choices.raster.is_looped.then(looped::touches).into_iter().flatten());
     seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
-    seen.extend(choices.has_zmax.then(|| touch(SHADING_DEPTHS, written)));
+    seen.extend(choices.lists.has_zmax.then(|| touch(SHADING_DEPTHS, written)));
     seen
 }
 
@@ -80,22 +81,22 @@ fn insertion(plan: &mut Plan, choices: &Choices) {
         touch(NODES, Access::ComputeWrite),
         touch(COLORS, Access::ComputeWrite),
     ];
-    listed.extend(choices.has_addresses.then(|| touch(ADDRESSES, Access::ComputeWrite)));
-    if choices.has_zmax {
+    listed.extend(choices.lists.has_addresses.then(|| touch(ADDRESSES, Access::ComputeWrite)));
+    if choices.lists.has_zmax {
         listed.push(touch(SHADING_DEPTHS, Access::ComputeSample));
         listed.extend([touch(ZMAX, Access::TransferWrite), touch(ZMAX, Access::ComputeWrite)]);
     }
-    if choices.has_marks {
+    if choices.lists.has_marks {
         listed.extend([touch(MARKS, Access::TransferWrite), touch(MARKS, Access::ComputeWrite)]);
     }
     plan.pass(full("lists"), listed);
-    if !choices.is_compacted {
+    if !choices.lists.is_compacted {
         return;
     }
     let mut compacted = links(choices, Access::ComputeWrite);
     compacted.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
     plan.pass(full("lists.compact"), compacted);
-    if choices.has_addresses {
+    if choices.lists.has_addresses {
         let mut addressed = links(choices, Access::ComputeRead);
         addressed.extend([touch(SPIDS, Access::ComputeSample), touch(ADDRESSES, Access::ComputeWrite)]);
         plan.pass(full("lists.address"), addressed);
@@ -103,7 +104,7 @@ fn insertion(plan: &mut Plan, choices: &Choices) {
 }
 
 fn brute(choices: &Choices) -> Touches {
-    let mut brute = match choices.is_direct {
+    let mut brute = match choices.lists.is_direct {
         true => vec![touch(ADDRESSES, Access::GraphicsRead)],
         false => vec![touch(SPIDS, Access::FragmentSample)],
     };
@@ -113,7 +114,7 @@ fn brute(choices: &Choices) -> Touches {
         false => vec![touch(COLORS, Access::TransferWrite)],
     });
     brute.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
-    brute.extend(choices.has_stray_count.then(stray_draws::touches).into_iter().flatten());
+    brute.extend(choices.lists.has_stray_count.then(stray_draws::touches).into_iter().flatten());
     brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
     brute
 }
@@ -121,8 +122,8 @@ fn brute(choices: &Choices) -> Touches {
 /// What says which colours samples have.
 fn shaded(choices: &Choices) -> Touches {
     let mut shaded = vec![touch(COLORS, Access::ComputeRead)];
-    shaded.extend((!choices.is_direct).then(|| touch(SPIDS, Access::ComputeSample)));
-    if choices.has_lists && choices.has_addresses {
+    shaded.extend((!choices.lists.is_direct).then(|| touch(SPIDS, Access::ComputeSample)));
+    if choices.has_lists && choices.lists.has_addresses {
         shaded.push(touch(ADDRESSES, Access::ComputeRead));
     } else if choices.has_lists {
         shaded.extend(links(choices, Access::ComputeRead));

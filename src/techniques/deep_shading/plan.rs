@@ -51,8 +51,8 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     plan.buffer("counters", full(COUNTERS), counters::COUNT * 4);
     plan.read_back(&full(COUNTERS));
     let extent = inputs.view.extent;
-    let run = if choices.is_reconstructed { reconstruct::COLOR } else { COLOR };
-    if choices.is_reconstructed {
+    let run = if choices.blur.is_reconstructed { reconstruct::COLOR } else { COLOR };
+    if choices.blur.is_reconstructed {
         stored(&mut plan, COLOR, extent);
         reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
     }
@@ -94,13 +94,13 @@ fn attached(choices: &Choices) -> Usage {
 ///
 /// Errors: the host would hold too much (exit code 4).
 fn plan_samples(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
-    if !choices.is_direct {
+    if !choices.lists.is_direct {
         plan.push("frame_buffer", full(SPIDS), layers(choices, inputs, SPID_FORMAT, attached(choices)));
     }
     if choices.visibility == Visibility::Ray {
         return ray::plan(plan, choices, inputs);
     }
-    if choices.is_looped {
+    if choices.raster.is_looped {
         looped::plan(plan, choices.samples_of(inputs.view.extent), inputs.stats.draw_count);
     } else {
         let depth = layers(choices, inputs, DEPTH_FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
@@ -117,26 +117,26 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
     if choices.has_lists {
         let mut list = |group, name: &str, bytes| {
             plan.buffer(group, full(name), bytes);
-            if choices.is_direct {
+            if choices.lists.is_direct {
                 direct::plan(plan, name, bytes);
             }
         };
         list("deep_shading_buffer", BEGINS, shading_pixels * BEGIN_BYTES);
         list("deep_shading_buffer", NODES, samples * NODE_BYTES);
-        if choices.is_compacted {
+        if choices.lists.is_compacted {
             list("auxiliary", LINEAR, shading_pixels * LINEAR_COUNT * ROW_ID_BYTES);
         }
-        if choices.has_addresses {
+        if choices.lists.has_addresses {
             list("auxiliary", ADDRESSES, samples * ADDRESS_BYTES);
         }
-        if choices.has_zmax {
+        if choices.lists.has_zmax {
             list("auxiliary", ZMAX, shading_pixels * 4);
         }
-        if choices.has_zmax && !choices.is_direct {
+        if choices.lists.has_zmax && !choices.lists.is_direct {
             let depths = layers(choices, inputs, SHADING_DEPTH_FORMAT, attached(choices));
             plan.push("auxiliary", full(SHADING_DEPTHS), depths);
         }
-        if choices.has_marks {
+        if choices.lists.has_marks {
             let words = inputs.scene.triangle_count().div_ceil(32);
             plan.buffer("listed_triangles", full(MARKS), words * 4);
         }
@@ -144,7 +144,7 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
         }
     }
-    if choices.has_stray_count {
+    if choices.lists.has_stray_count {
         stray_draws::plan(plan, inputs.stats.draw_count);
     }
 }
@@ -162,7 +162,7 @@ fn plan_scene(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result
     plan.buffer("scene.geometry", full("close.positions"), vertices * 12);
     plan.buffer("scene.geometry", full("close.attributes"), vertices * size_of::<VertexAttributes>() as u64);
     plan.buffer("scene.geometry", full("close.draws"), draws * size_of::<DrawBlock>() as u64);
-    if choices.is_moving && choices.maps.is_some() {
+    if choices.blur.is_moving && choices.maps.is_some() {
         plan.buffer("scene.geometry", full("middle.draws"), draws * size_of::<DrawBlock>() as u64);
         let flags = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::VERTEX_BUFFER | BufferUsageFlags::TRANSFER_DST;
         let shape = Shape::Buffer { bytes: vertices * 12, flags, usage: Use::Device };
@@ -188,12 +188,12 @@ fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     if choices.visibility.is_layered() && layers > most_drawn {
         return Err(Error::request(format!(
             "--visibility {}, {asked}: this device draws into {most_drawn} layers at once",
-            inputs.values.text("visibility")
+            choices.visibility.name()
         ))
         .within(NAME)
         .note("--visibility repeat-frame draws into one"));
     }
-    if choices.is_looped {
+    if choices.raster.is_looped {
         looped::require_fitting(choices.samples_of(inputs.view.extent), &inputs.caps.limits)?;
     }
     match choices.shading {

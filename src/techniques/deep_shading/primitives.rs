@@ -3,15 +3,12 @@
 use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::shader::structs::DrawnParams;
+use crate::gpu::shader::techniques::deep_shading::scene_buffers::{DRAWN_BLENDED, DRAWN_DOUBLE_SIDED, DRAWN_MIRRORED};
 use crate::passes::blend;
-use crate::resident::{Coverage, DrawCall, DrawList, GeometryChoice, Raster, SceneGpu};
+use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu};
 use crate::scene::{AlphaMode, Scene};
+use crate::settings::GeometryChoice;
 use bytemuck::Zeroable;
-
-/// `scene_buffers.glsl`.
-const DRAWN_MIRRORED: u32 = 1;
-const DRAWN_BLENDED: u32 = 2;
-const DRAWN_DOUBLE_SIDED: u32 = 4;
 
 /// Ids of a scene's triangles.
 pub struct Primitives {

@@ -4,21 +4,21 @@
 //! reads  the scene, visibility.spids, visibility.depth
 
 use super::choices::Choices;
-use super::primitives::Primitives;
+use super::pass_inputs::DrawInputs;
 use super::stray_draws::StrayDraws;
 use super::visibility;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
-use crate::gpu::{Access, AccessSet, Bound, Commands, Gpu};
+use crate::gpu::{Access, Bound, Commands, Gpu};
 use crate::passes::mesh;
 use crate::plan::Resources;
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::DEPTH_FORMAT;
 use crate::techniques::deep_shading::visibility::draw;
-use crate::techniques::deep_shading::visibility::samples::Samples;
+use crate::techniques::deep_shading::visibility::samples::SeenSamples;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -72,8 +72,8 @@ impl TriangleRedraw {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        let stray_draws = if choices.has_stray_count {
-            Some(StrayDraws::new(gpu, resources, scene, (&stages, &repeats))?)
+        let stray_draws = if choices.lists.has_stray_count {
+            Some(StrayDraws::new(gpu, resources, scene, &stages, &repeats)?)
         } else {
             None
         };
@@ -87,45 +87,44 @@ impl TriangleRedraw {
     }
 
     /// Bytes of vertices and of what says what samples see.
-    pub fn read_bytes(&self, gpu: &Gpu, scene: &SceneGpu, list: &DrawList, samples: Option<&Samples>) -> u64 {
+    pub fn read_bytes(&self, gpu: &Gpu, inputs: DrawInputs<'_>, seen: Option<SeenSamples<'_>>) -> u64 {
+        let DrawInputs { scene, list, .. } = inputs;
         let (_, layers) = self.layers;
         let repeats = self.visibility.repeats(scene, &gpu.caps.limits, layers);
         let rounds = self.visibility.round_count(&repeats, layers);
         u64::from(rounds) * mesh::read_bytes(scene, list.calls())
-            + samples.map_or(0, |samples| samples.spids.description.bytes())
+            + seen.map_or(0, |seen| seen.spids.resource.spids.description.bytes())
     }
 
-    /// Waits for the samples, which compute shaders may have read, and draws. `left`: what touched the SPIDs last.
-    /// `bound`: all that shaders read and write except for SPIDs.
+    /// Waits for the samples, and draws. `bound`: all that shaders read and write except for SPIDs.
     pub fn record<'a>(
         &self,
         cmd: &mut Commands,
-        scene: &SceneGpu,
-        list: &DrawList,
-        primitives: &Primitives,
-        samples: Option<(&'a Samples, AccessSet)>,
+        inputs: DrawInputs<'_>,
+        seen: Option<SeenSamples<'a>>,
         mut bound: Vec<(&'static str, Bound<'a>)>,
     ) -> Result<()> {
+        let DrawInputs { scene, list, primitives, .. } = inputs;
         let (layer, layers) = self.layers;
         let repeats = self.visibility.repeats(scene, &cmd.gpu().caps.limits, layers);
-        cmd.barriers(samples.map(|(samples, left)| samples.spids.from(left).to(Access::FragmentSample)));
-        let depth = samples.and_then(|(samples, _)| samples.depth.as_ref()).filter(|_| !self.visibility.has_polygons());
-        cmd.barriers(depth.map(|depth| depth.from(Access::DepthWrite).to(Access::DepthTest)));
-        let spids = samples.map(|(samples, _)| samples.sampled(&samples.spids, Access::FragmentSample));
+        cmd.barriers(seen.map(|seen| seen.spids.spids_to(Access::FragmentSample)));
+        let depth = seen.and_then(|seen| seen.depth).filter(|_| !self.visibility.has_polygons());
+        cmd.barriers(depth.map(|depth| depth.to(Access::DepthTest)));
+        let samples = seen.map(|seen| seen.spids.resource);
+        let spids = samples.map(|samples| samples.sampled(&samples.spids, Access::FragmentSample));
         bound.extend(spids.map(|spids| ("spids", spids)));
         let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
         let Some(first) = list.calls().next() else { return Ok(()) };
         self.visibility.for_layers(&repeats, layers, |at, repeats| {
-            let depth = depth.map(|depth| (depth, None, Access::DepthTest));
+            let depth = depth.map(|depth| (depth.resource, None, Access::DepthTest));
             cmd.begin_layers(layer, at, &[], depth);
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
             if let Some(stray_draws) = &self.stray_draws {
-                let drawn = (&self.pipeline, self.stages.sides);
-                draw::draw_by(cmd, drawn, scene, primitives, &scene.calls, repeats, |call| {
+                draw::draw_by(cmd, &self.pipeline, self.stages.sides, inputs, &scene.calls, repeats, |call| {
                     stray_draws.draw(cmd, call.draw);
                 });
             } else {
-                draw::draw(cmd, (&self.pipeline, &self.stages), scene, primitives, list.calls(), repeats);
+                draw::draw(cmd, &self.pipeline, &self.stages, inputs, list.calls(), repeats);
             }
             cmd.end_rendering();
         });

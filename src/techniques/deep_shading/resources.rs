@@ -1,5 +1,6 @@
 //! The technique's name, the names, formats and sizes of what it holds.
 
+use crate::gpu::shader::techniques::deep_shading::nodes;
 use crate::plan::Plan;
 use crate::units::Extent;
 use ash::vk::{Format, ImageUsageFlags as Usage};
@@ -31,7 +32,7 @@ pub const DEPTH_FORMAT: Format = Format::D32_SFLOAT;
 pub const SHADING_DEPTH_FORMAT: Format = Format::R32_UINT;
 
 /// The paper's M.
-pub const LINEAR_COUNT: u64 = 16;
+pub const LINEAR_COUNT: u64 = nodes::LINEAR_COUNT as u64;
 
 /// Bytes of the pointer at which a list begins.
 pub const BEGIN_BYTES: u64 = 4;

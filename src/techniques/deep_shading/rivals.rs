@@ -9,11 +9,11 @@ use ash::vk::{Format, ImageUsageFlags as Usage};
 const NAME: &str = "adaptive texture-space shading (Andersson et al. 2014)";
 /// Texels of a side of a texture of its pool, as the paper sets it up, and how many it uses.
 const SIDE_PX: u32 = 2048;
-const TEXTURE_COUNT: u32 = 8;
+const POOL_TEXTURES: u32 = 8;
 
 /// One texture of the pool, and the pool.
 pub fn rivals() -> Vec<Rival> {
-    [1, TEXTURE_COUNT]
+    [1, POOL_TEXTURES]
         .map(|count| {
             let extent = Extent::new(SIDE_PX, SIDE_PX);
             let plain = ImageDescription::plain(extent, Format::R16G16B16A16_SFLOAT, 1, Usage::SAMPLED);

@@ -3,7 +3,7 @@
 
 use super::choices::Choices;
 use crate::error::Result;
-use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Gpu, upload};
+use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Edge, Gpu, upload};
 use crate::passes::direct::{self, DirectGpu};
 use crate::passes::shadow_maps::{Places, ShadowMaps};
 use crate::plan::Resources;
@@ -58,13 +58,13 @@ impl DeepScene {
         choices: &Choices,
         scene: &SceneGpu,
     ) -> Result<Self> {
-        let moved = choices.middle.as_ref();
+        let moved = choices.blur.mid_exposure.as_ref();
         let lights = direct::light_blocks(choices.lights(inputs), inputs.values);
         let bounds = inputs.scene.bounds();
         let background = inputs.values.color("background");
         let open = inputs.view.block(&bounds, background, inputs.lights.ambient, lights.len() as u32, 0);
         let middle = moved.map_or(open, |moved| moved.frame(inputs, &open));
-        let middle = seen_from(middle, choices.lens);
+        let middle = seen_from(middle, choices.blur.lens);
         let tree = choices.direct.tree(inputs.bvh, inputs.scene)?;
         let direct = DirectGpu::new(gpu, resources, NAME, &lights, false, tree)?;
         let seed = inputs.values.integer("seed") as u32;
@@ -122,9 +122,9 @@ impl DeepScene {
         moved.unwrap_or_else(|| Places::of(scene))
     }
 
-    /// What a pass waits for that lights, after the one that touched the shadow maps last.
-    pub fn maps_barrier(&self, from: Access, to: Access) -> Option<Barrier> {
-        self.maps.as_ref().and_then(|maps| maps.from(from).to(to))
+    /// The shadow maps, and the access that touched them last.
+    pub fn maps_from(&self, access: Access) -> Option<Edge<'_, ShadowMaps>> {
+        self.maps.as_ref().map(|maps| maps.from(access))
     }
 
     /// Everything that a shader of the technique may read of it, by name.

@@ -9,21 +9,22 @@ use super::lists::address::Address;
 use super::lists::compact::Compact;
 use super::lists::direct::HostInsertion;
 use super::lists::insert::Insert;
-use super::lists::{self, Lists};
+use super::lists::{self, Lists, ListsEdge};
+use super::pass_inputs::{DrawInputs, ShadingEdges};
 use super::primitives::Primitives;
-use super::resolve::SampleColors;
+use super::sample_colors::SampleColors;
 use super::scene::DeepScene;
 use super::shade::Shade;
 use super::visibility;
 use super::visibility::SampleRasterizer;
 use super::visibility::ray::{Rays, TracedSamples, TracedSets};
 use crate::error::Result;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu};
+use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Edge, Gpu};
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
+use crate::techniques::deep_shading::visibility::samples::{Samples, SeenSamples};
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -99,12 +100,12 @@ impl SeparateShading {
             ),
         };
         let list_shading = if choices.has_lists {
-            let address = choices.is_compacted && choices.has_addresses;
+            let address = choices.lists.is_compacted && choices.lists.has_addresses;
             let insertion = match host_lists {
                 Some(direct) => Insertion::Host(direct),
                 None => Insertion::Device(Box::new(DeviceInsertion {
                     insert: Insert::new(gpu, choices)?,
-                    compact: if choices.is_compacted { Some(Compact::new(gpu, choices)?) } else { None },
+                    compact: if choices.lists.is_compacted { Some(Compact::new(gpu, choices)?) } else { None },
                     address: if address { Some(Address::new(gpu, choices)?) } else { None },
                 })),
             };
@@ -175,89 +176,121 @@ impl SeparateShading {
         }
     }
 
-    /// To samples that have colours.
+    /// From what is drawn to samples that have colours.
     pub fn record(
         &self,
         cmd: &mut Commands,
         deep: &DeepScene,
-        drawn: DrawInputs<'_>,
-        bound: &[(&'static str, Bound<'_>)],
+        inputs: DrawInputs<'_>,
         counters: &Buffer,
     ) -> Result<SampleColors<'_>> {
-        let DrawInputs { scene, list, primitives, .. } = drawn;
         match &self.finder {
             TriangleFinder::HostLists => {}
             TriangleFinder::Rays(samples, rays) => rays.record(cmd, samples, counters)?,
             TriangleFinder::Rasterizer(samples, rasterizer) => {
-                visibility::record(cmd, rasterizer, drawn, bound, samples, counters, self.visibility)?;
+                visibility::record(cmd, rasterizer, inputs, samples, counters, self.visibility)?;
             }
-        }
-        if let Some(list_shading) = &self.list_shading {
-            let links_left = self.record_insertion(cmd, list_shading, bound, counters)?;
-            let maps = deep.maps_barrier(Access::DepthWrite, Access::FragmentSample);
-            let left = (&list_shading.lists, links_left, maps);
-            list_shading.shade.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
         }
         let brute = match &self.unlisted {
             Unlisted::BruteForce(brute) => brute,
             Unlisted::Indirect(indirect) => {
                 let samples = self.samples().expect("there are no lists");
-                let left = (samples, deep.maps_barrier(Access::DepthWrite, Access::ComputeSample));
-                indirect.record(cmd, scene, list, primitives, bound, left, &self.colors, counters)?;
-                let samples = (samples, samples.written | Access::FragmentSample);
+                let edges = self.untouched(deep, counters.from(Access::FragmentWrite));
+                indirect.record(cmd, inputs, as_written(samples), edges)?;
                 return Ok(SampleColors::Pointed {
-                    samples,
-                    pointers: &indirect.entries.pointers,
-                    colors: &self.colors,
+                    samples: samples.from(samples.written | Access::FragmentSample),
+                    pointers: indirect.entries.pointers.from(Access::FragmentWrite),
+                    colors: self.colors.from(Access::ComputeWrite),
                 });
             }
         };
-        let lists = self.list_shading.as_ref().map(|list_shading| &list_shading.lists);
-        let maps_left = if lists.is_some() { Access::FragmentSample } else { Access::DepthWrite };
-        let left = (lists, deep.maps_barrier(maps_left, Access::FragmentSample));
-        brute.record(cmd, scene, list, primitives, bound, self.samples(), left, &self.colors, counters)?;
-        let samples = self.samples().map(|samples| {
-            let seen_by = if lists.is_some() { Access::ComputeSample } else { samples.written };
-            (samples, seen_by | Access::FragmentSample)
+        let colors = self.colors.from(Access::FragmentWrite);
+        let Some(list_shading) = &self.list_shading else {
+            let edges = self.untouched(deep, counters.from(Access::FragmentWrite));
+            brute.record(cmd, inputs, self.samples().map(as_written), None, edges)?;
+            let samples = self.samples().map(|samples| samples.from(samples.written | Access::FragmentSample));
+            return Ok(SampleColors::Separate { samples, lists: None, colors });
+        };
+        let mut lists = self.record_insertion(cmd, list_shading, inputs.bound, counters)?;
+        let edges = ShadingEdges {
+            colors: self.colors.from(Access::ComputeWrite),
+            counters: counters.from(Access::ComputeWrite),
+            maps: deep.maps_from(Access::DepthWrite),
+        };
+        list_shading.shade.record(cmd, inputs, lists, edges)?;
+        lists.links = lists.links.after(Access::GraphicsRead);
+        // Compute shaders have read SPIDs first: what wrote them was waited for by those alone.
+        let seen = self.samples().map(|samples| SeenSamples {
+            spids: samples.from(Access::ComputeSample | samples.written),
+            ..as_written(samples)
         });
-        Ok(SampleColors::Separate { samples, lists, colors: &self.colors })
+        let edges = ShadingEdges {
+            colors,
+            counters: counters.from(Access::FragmentWrite),
+            maps: deep.maps_from(Access::FragmentSample),
+        };
+        brute.record(cmd, inputs, seen, Some(lists), edges)?;
+        // Compute shaders touch the links after draws have read them: what wrote them was waited for by the draws alone.
+        lists.links = lists.links.with(Access::ComputeWrite);
+        if seen.is_none() {
+            lists.addresses = lists.addresses.with(Access::GraphicsRead);
+        }
+        let samples = self.samples().map(|samples| samples.from(Access::ComputeSample | Access::FragmentSample));
+        Ok(SampleColors::Separate { samples, lists: Some(lists), colors })
     }
 
-    /// Returns how the links were touched last.
-    fn record_insertion(
+    /// Before the only pass that shades.
+    fn untouched<'a>(&'a self, deep: &'a DeepScene, counters: Edge<'a, Buffer>) -> ShadingEdges<'a> {
+        let colors = self.colors.from(AccessSet::UNTOUCHED);
+        ShadingEdges { colors, counters, maps: deep.maps_from(Access::DepthWrite) }
+    }
+
+    /// Returns the lists as insertion leaves them.
+    fn record_insertion<'a>(
         &self,
         cmd: &mut Commands,
-        list_shading: &ListShading,
+        list_shading: &'a ListShading,
         bound: &[(&'static str, Bound<'_>)],
         counters: &Buffer,
-    ) -> Result<Access> {
+    ) -> Result<ListsEdge<'a>> {
         let (lists, colors) = (&list_shading.lists, &self.colors);
+        let written = lists.from(Access::ComputeWrite);
         let DeviceInsertion { insert, compact, address } = match &list_shading.insertion {
             Insertion::Device(inserted) => &**inserted,
             Insertion::Host(direct) => {
                 direct.record(cmd, lists, colors, counters)?;
-                return Ok(Access::ComputeWrite);
+                return Ok(written);
             }
         };
         let samples = self.samples().expect("the host has not inserted them");
-        insert.record(cmd, bound, samples, lists, colors, counters)?;
+        let seen = samples.from(samples.written);
+        insert.record(cmd, bound, seen, lists, colors, counters.from(Access::FragmentWrite))?;
         if let Some(compact) = compact {
-            compact.record(cmd, bound, lists, colors, counters, self.space)?;
+            let [colors, counters] = [colors, counters].map(|buffer| buffer.from(Access::ComputeWrite));
+            compact.record(cmd, bound, written, colors, counters, self.space)?;
         }
-        let Some(address) = address else { return Ok(Access::ComputeWrite) };
-        address.record(cmd, bound, samples, lists)?;
-        Ok(Access::ComputeRead)
+        let Some(address) = address else { return Ok(written) };
+        address.record(cmd, bound, samples.from(Access::ComputeSample), written)?;
+        Ok(ListsEdge { links: written.links.after(Access::ComputeRead), ..written })
     }
 
-    /// After the resolve.
+    /// Counts lists, where `--instrument on` and there are some.
     pub fn record_count(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        counters: &Buffer,
+        lists: Option<ListsEdge<'_>>,
+        counters: Edge<'_, Buffer>,
     ) -> Result<()> {
-        let Some(list_shading) = &self.list_shading else { return Ok(()) };
-        let Some(count) = &list_shading.count else { return Ok(()) };
-        count.record(cmd, bound, &list_shading.lists, counters)
+        match (self.count(), lists) {
+            (Some(count), Some(lists)) => count.record(cmd, bound, lists, counters),
+            _ => Ok(()),
+        }
     }
+}
+
+/// Samples as visibility leaves them.
+fn as_written(samples: &Samples) -> SeenSamples<'_> {
+    let depth = samples.depth.as_ref().map(|depth| depth.from(Access::DepthWrite));
+    SeenSamples { spids: samples.from(samples.written), depth }
 }

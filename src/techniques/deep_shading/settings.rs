@@ -3,6 +3,14 @@
 use crate::settings::{
     APERTURE, BRDF, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
 };
+use crate::techniques::deep_shading::modes::conservative::Conservative;
+use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
+use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
+use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
+use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::modes::warp::Warp;
 
 /// Greatest side of the guard band: shading pixels have 16 bits a side.
 const MOST_GUARD_PX: u64 = 4096;
@@ -13,7 +21,7 @@ pub const LEAST_SCALE: f64 = 0.05;
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "shading",
-        kind: Kind::Choice(&["deep", "ssaa", "msaa", "indirect-gbuffer", "texture-space"]),
+        kind: Kind::Choice(ShadingKind::WORDS),
         default: "deep",
         paper: "Clarberg 2014, 6",
         help: "What is shaded: the triangles in the lists (deep); or, as a baseline, every sample that is drawn \
@@ -65,7 +73,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "visibility",
-        kind: Kind::Choice(&["repeat-frame", "repeat-draw", "instancing", "replicate", "stochastic", "ray"]),
+        kind: Kind::Choice(Visibility::WORDS),
         default: "repeat-frame",
         paper: "Clarberg 2014, 4.2",
         help: "How samples find the triangle that they see: the frame is drawn once for each tuple (repeat-frame); \
@@ -76,7 +84,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "layer-from",
-        kind: Kind::Choice(&["vertex", "geometry"]),
+        kind: Kind::Choice(LayerFrom::WORDS),
         auto: true,
         default: "auto",
         paper: "Clarberg 2014, 4.2",
@@ -86,7 +94,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "polygon-from",
-        kind: Kind::Choice(&["geometry", "vertex"]),
+        kind: Kind::Choice(PolygonFrom::WORDS),
         auto: true,
         default: "auto",
         paper: "Clarberg 2014, 4.2",
@@ -97,7 +105,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "sample-tests",
-        kind: Kind::Choice(&["loop", "layers"]),
+        kind: Kind::Choice(SampleTests::WORDS),
         auto: true,
         default: "auto",
         paper: "Clarberg 2014, 4.2",
@@ -154,7 +162,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "shading-warp",
-        kind: Kind::Choice(&["even", "foveated"]),
+        kind: Kind::Choice(Warp::WORDS),
         default: "even",
         paper: "Clarberg 2014, 7",
         help: "Where shading space is finer: nowhere (even), or in its middle, which is as fine as an even one \
@@ -172,7 +180,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "lists",
-        kind: Kind::Choice(&["linked", "direct", "none"]),
+        kind: Kind::Choice(Lists::WORDS),
         default: "linked",
         paper: "Clarberg 2014, 4.3",
         help: "How the triangles to shade at each pixel of shading space are listed: in linked lists (linked); in \
@@ -182,7 +190,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "list-access",
-        kind: Kind::Choice(&["descriptors", "addresses"]),
+        kind: Kind::Choice(ListAccess::WORDS),
         auto: true,
         default: "auto",
         help: "How shaders reach what is kept of each sample and shading pixel (lists and colours, what --reconstruct \
@@ -193,7 +201,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "duplicates",
-        kind: Kind::Choice(&["avoided", "tolerated"]),
+        kind: Kind::Choice(Duplicates::WORDS),
         default: "avoided",
         paper: "Clarberg 2014, 4.3",
         help: "What an insertion does when another one has changed the list first: it looks through the nodes added \
@@ -228,7 +236,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "conservative",
-        kind: Kind::Choice(&["geometry", "vertex", "hardware", "none"]),
+        kind: Kind::Choice(Conservative::WORDS),
         auto: true,
         default: "auto",
         paper: "Clarberg 2014, 4.4",
@@ -241,7 +249,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "shaded-triangles",
-        kind: Kind::Choice(&["listed", "all"]),
+        kind: Kind::Choice(ShadedTriangles::WORDS),
         default: "listed",
         paper: "all: Clarberg 2014, 4.4",
         help: "Triangles that are drawn into shading space: those that are in a list, for which insertion marks one \

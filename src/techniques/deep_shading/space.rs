@@ -1,5 +1,5 @@
-//! Canonical shading space: the frame in the middle of the exposure, from the middle of the lens, with a guard band around it
-//! (Clarberg & Munkberg 2014, sections 3 and 6).
+//! Shading space: its size with the guard band, and where a place of the scene lies in it (Clarberg & Munkberg 2014,
+//! sections 3 and 6).
 
 use super::settings::LEAST_SCALE;
 use super::tuples::TupleTable;
@@ -10,6 +10,7 @@ use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::settings::Values;
 use crate::techniques::deep_shading::eyes::clip_from;
+use crate::techniques::deep_shading::modes::warp::Warp;
 use crate::units::Extent;
 use glam::{Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -36,7 +37,7 @@ impl ShadingSpace {
     pub fn new(values: &Values, limits: &Limits, frame: Extent) -> Result<Self> {
         let (guard_px, scale) = (values.integer("guard-band") as u32, values.number("shading-scale"));
         let scaled = [frame.width, frame.height].map(|side| f64::from(side) * scale);
-        let warp_falloff = if values.text("shading-warp") == "foveated" { values.number("warp-falloff") } else { 0.0 };
+        let warp_falloff = if values.is("shading-warp", Warp::Foveated) { values.number("warp-falloff") } else { 0.0 };
         let even = scaled.map(|side| side.ceil() + 2.0 * f64::from(guard_px));
         // Its middle stays as fine.
         let [width, height] = even.map(|side| (side / (1.0 + warp_falloff)).ceil() as u64);

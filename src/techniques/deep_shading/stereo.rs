@@ -10,7 +10,7 @@
 
 use super::choices::Choices;
 use crate::error::Result;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image, readback};
 use crate::passes::accumulate::{self, Accumulate};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
@@ -70,10 +70,10 @@ impl RightEye {
         Ok(Some(Self { color: resources.image(&full(RIGHT)), accumulate }))
     }
 
-    /// After the resolve. `frame`: the block of glsl/frame.glsl.
-    pub fn record(&self, cmd: &mut Commands, frame: &Buffer) -> Result<()> {
+    /// `frame`: the block of glsl/frame.glsl; `resolved`: `color`.
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, resolved: Edge<'_, Image>) -> Result<()> {
         let Some(accumulate) = &self.accumulate else { return Ok(()) };
-        accumulate.record(cmd, &right_eye(), frame, self.color.from(Access::ComputeWrite))
+        accumulate.record(cmd, &right_eye(), frame, resolved)
     }
 
     /// The mean of all runs.

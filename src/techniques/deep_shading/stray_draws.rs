@@ -3,7 +3,8 @@
 //! reads  count.counters, strays.draws      writes  strays.count
 
 use crate::error::Result;
-use crate::gpu::{Access, Buffer, Commands, Gpu, upload};
+use crate::gpu::shader::techniques::deep_shading::counters::COUNTED_ANY_STRAY;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, upload};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::SceneGpu;
@@ -15,9 +16,9 @@ use std::sync::Arc;
 const DRAWS: &str = "strays.draws";
 pub const COUNT: &str = "strays.count";
 
-/// COUNTED_ANY_STRAY of counters.glsl. The number of strays itself, millions, is more than a device may take for a draw count
+/// The word of the counters that is 1 where there are strays. Their own number, millions, is more than a device may take for a draw count
 /// (maxDrawIndirectCount).
-const ANY_STRAY_WORD: u64 = 20;
+const ANY_STRAY_WORD: u64 = COUNTED_ANY_STRAY as u64;
 
 const COMMAND_BYTES: u64 = size_of::<vk::DrawIndirectCommand>() as u64;
 
@@ -48,7 +49,8 @@ impl StrayDraws {
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
         scene: &SceneGpu,
-        (stages, repeats): (&SampleStages, &Repeats),
+        stages: &SampleStages,
+        repeats: &Repeats,
     ) -> Result<Self> {
         let mut commands = vec![[0u32; 4]; scene.calls.len()];
         for call in &scene.calls {
@@ -60,10 +62,11 @@ impl StrayDraws {
         Ok(Self { draws, count: resources.buffer(&full(COUNT)) })
     }
 
-    /// Takes over whether there are strays, before the draws. `counters`: as fragments write them, before and after.
-    pub fn record(&self, cmd: &mut Commands, counters: &Buffer) {
-        cmd.barriers([counters.from(Access::FragmentWrite).to(Access::TransferRead)]);
+    /// Takes over whether there are strays, before the draws, whose fragments write `counters`.
+    pub fn record(&self, cmd: &mut Commands, counters: Edge<'_, Buffer>) {
+        cmd.barriers([counters.to(Access::TransferRead)]);
         cmd.barriers([self.count.discard(Access::TransferWrite)]);
+        let counters = counters.resource;
         cmd.copy_word(counters, ANY_STRAY_WORD, &self.count);
         cmd.barriers([self.count.from(Access::TransferWrite).to(Access::IndirectRead)]);
         cmd.barriers([counters.from(Access::TransferRead).to(Access::FragmentWrite)]);

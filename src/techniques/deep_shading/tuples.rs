@@ -1,5 +1,5 @@
-//! Tuples: the places in a pixel, on the lens and in time at which all samples are taken (Clarberg & Munkberg 2014, section
-//! 4.2; Keller & Heidrich 2001 interleave them in the same way).
+//! Tuples, and how they are spread over pixels (Clarberg & Munkberg 2014, section 4.2; Keller & Heidrich 2001
+//! interleave samples in the same way).
 //!
 //! Samples of a pixel are its cell's tuples. The table of cells repeats over the frame, so that all samples of one tuple are a
 //! regular grid, which the rasteriser draws as a picture of its own.

@@ -1,16 +1,28 @@
 //! What forward shading's settings come to, for one scene and one device.
 
 use super::resources;
+use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
-use crate::lights::object_lists::{ListChoice, ObjectLists};
+use crate::gpu::shader::techniques::forward::material::UNIFORM_LIGHT_COUNT;
+use crate::lights::object_lists::ObjectLists;
 use crate::passes::direct::{self, DirectSettings};
 use crate::passes::resolve;
 use crate::passes::shadow_maps::MapLayout;
 use crate::resident::Coverage;
+use crate::settings::ListChoice;
+use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::forward::resources::NAME;
 use crate::units::Bytes;
+
+choices! {
+    /// The buffer from which solid surfaces read the lights (`--light-buffer`).
+    pub enum LightBuffer {
+        "uniform" => Uniform,
+        "storage" => Storage,
+    }
+}
 
 /// The choices that the settings make.
 pub struct Choices {
@@ -32,9 +44,10 @@ impl Choices {
     pub(super) fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
         let (count, range) = (inputs.lights.lights.len(), inputs.caps.limits.max_uniform_buffer_range_bytes);
-        let fits = count <= resources::UNIFORM_LIGHT_COUNT && resources::UNIFORM_BYTES <= range;
-        if values.text("light-buffer") == "uniform" && !fits {
-            let (most, device) = (resources::UNIFORM_LIGHT_COUNT, &inputs.caps.identity.name);
+        let asked = values.unless_auto("light-buffer", Values::choice);
+        let fits = count <= UNIFORM_LIGHT_COUNT as usize && resources::UNIFORM_BYTES <= range;
+        if asked == Some(LightBuffer::Uniform) && !fits {
+            let (most, device) = (UNIFORM_LIGHT_COUNT, &inputs.caps.identity.name);
             let why = format!(
                 "--light-buffer uniform: {count} lights: it holds {most}, where a device binds {} ({device} binds {})",
                 Bytes(resources::UNIFORM_BYTES),
@@ -43,9 +56,9 @@ impl Choices {
             return Err(Error::request(why).within(NAME).note("--light-buffer storage holds all of them"));
         }
         Ok(Self {
-            is_uniform: fits && values.text("light-buffer") != "storage",
+            is_uniform: fits && asked != Some(LightBuffer::Storage),
             direct: DirectSettings::new(values, inputs.lights, inputs.scene),
-            lists: ListChoice::from_setting(values.text("light-lists")),
+            lists: values.choice("light-lists"),
             has_prepass: values.is_on("depth-prepass"),
             samples: resolve::samples(values),
             runs_per_side: values.integer("supersample") as u32,

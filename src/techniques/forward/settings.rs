@@ -1,11 +1,12 @@
 //! The settings that only this technique reads.
 
+use super::choices::LightBuffer;
 use crate::settings::{BRDF, DEPTH_PREPASS, GEOMETRY, Kind, MAPPED_DIRECT_SHADOW, Setting};
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "light-buffer",
-        kind: Kind::Choice(&["uniform", "storage"]),
+        kind: Kind::Choice(LightBuffer::WORDS),
         auto: true,
         default: "auto",
         help: "Buffer from which solid surfaces read the lights: a uniform buffer, which holds 1024, or a storage \

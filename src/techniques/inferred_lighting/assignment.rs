@@ -3,26 +3,17 @@
 use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
 
-/// How layers are given out (`--assignment`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Assignment {
-    /// As the user says; the rest in rotation, in the order of the file.
-    Static,
-    /// By turns, from the nearest on.
-    Depth,
-    /// Overlapping draws get different ones, nearest first.
-    Overlap,
-}
+use crate::choice::choices;
 
-impl Assignment {
-    /// The value of `--assignment`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "static" => Self::Static,
-            "depth" => Self::Depth,
-            "overlap" => Self::Overlap,
-            other => panic!("--assignment {other} was checked"),
-        }
+choices! {
+    /// How layers are given out (`--assignment`).
+    pub enum Assignment {
+        /// Overlapping draws get different ones, nearest first.
+        "overlap" => Overlap,
+        /// By turns, from the nearest on.
+        "depth" => Depth,
+        /// As the user says; the rest in rotation, in the order of the file.
+        "static" => Static,
     }
 }
 

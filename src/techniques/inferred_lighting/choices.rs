@@ -3,14 +3,15 @@
 use super::encoding::Packing;
 use super::layer_names;
 use super::light::Volumes;
-use super::light::store::Store;
+use super::light::store::{Store, Sums};
+use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::lights::shadow_casters;
 use crate::passes::direct::ShadingSettings;
-use crate::passes::gbuffer::PositionStorage;
 use crate::passes::resolve;
 use crate::sampling::pattern::Pattern;
-use crate::shading::brdf::Brdf;
+use crate::settings::Values;
+use crate::settings::{Brdf, PositionStorage};
 use crate::techniques::Inputs;
 use crate::techniques::inferred_lighting::assignment::{self, Assignment};
 use crate::units::Extent;
@@ -20,29 +21,43 @@ use std::collections::BTreeMap;
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
 
-/// How texels of one surface are distinguished from those of another: light_filter.glsl's FILTER_ values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LightFilter {
-    Bilinear,
-    Dsf,
-    Nearest,
-    Bilateral,
-    Discontinuity,
+choices! {
+    /// How texels of one surface are distinguished from those of another (`--light-filter`); the number is
+    /// light_filter.glsl's FILTER_ value.
+    pub enum LightFilter {
+        "dsf" => Dsf = 1,
+        "bilinear" => Bilinear = 0,
+        "nearest" => Nearest = 2,
+        "bilateral" => Bilateral = 3,
+        "discontinuity" => Discontinuity = 4,
+    }
+}
+
+choices! {
+    /// How the four texels of a solid surface's pixel are read (`--light-fetch`).
+    pub enum LightFetch {
+        "texels" => Texels,
+        "sampler" => Sampler,
+    }
+}
+
+choices! {
+    /// How BLEND surfaces are drawn (`--alpha`).
+    pub enum Alpha {
+        "blend" => Blend,
+        "test" => Test,
+    }
+}
+
+choices! {
+    /// Weights of the samples nearest to a fragment of a BLEND surface (`--alpha-filter`).
+    pub enum AlphaFilter {
+        "cone" => Cone,
+        "bilinear" => Bilinear,
+    }
 }
 
 impl LightFilter {
-    /// The value of `--light-filter`.
-    fn from_setting(text: &str) -> Self {
-        match text {
-            "bilinear" => Self::Bilinear,
-            "dsf" => Self::Dsf,
-            "nearest" => Self::Nearest,
-            "bilateral" => Self::Bilateral,
-            "discontinuity" => Self::Discontinuity,
-            other => panic!("--light-filter {other} was checked"),
-        }
-    }
-
     /// It compares normals instead of ids.
     pub fn reads_normals(self) -> bool {
         matches!(self, Self::Bilateral | Self::Discontinuity)
@@ -91,8 +106,9 @@ impl Choices {
     /// Errors: settings that contradict each other (exit code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
-        let volumes = Volumes::from_setting(values.text("volumes"));
-        let in_halves = values.text("l-buffer") == "half";
+        let volumes = values.choice("volumes");
+        let sums: Sums = values.choice("l-buffer");
+        let in_halves = sums == Sums::Half;
         if in_halves && volumes == Volumes::Tiled {
             return Err(Error::request("--l-buffer half with --volumes tiled: sums of one dispatch are not blended")
                 .note("--volumes scissor blends in half floats; --volumes tiled takes --l-buffer float"));
@@ -105,17 +121,17 @@ impl Choices {
         }
         let stipple = assignment::stipple(values);
         let [stipple_side, _] = stipple.period_px();
-        let cone_radius = match values.text("alpha-filter") {
-            "cone" => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
-            _ => 0.0,
+        let cone_radius = match values.choice("alpha-filter") {
+            AlphaFilter::Cone => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
+            AlphaFilter::Bilinear => 0.0,
         };
-        let assignment = Assignment::from_setting(values.text("assignment"));
+        let assignment = values.choice("assignment");
         let named = values.text("stipple-layers");
         let named_layers = match assignment {
             Assignment::Static => layer_names::layers(inputs.scene, named, &stipple)?,
             _ if named == layer_names::NONE => BTreeMap::new(),
             _ => {
-                let (assignment, error) = (values.text("assignment"), "layers are given out otherwise");
+                let (assignment, error) = (assignment.name(), "layers are given out otherwise");
                 return Err(Error::request(format!("--stipple-layers with --assignment {assignment}: {error}"))
                     .note("--assignment static takes them"));
             }
@@ -124,22 +140,22 @@ impl Choices {
         let (position, cull) = (PositionStorage::Depth, volumes == Volumes::Tiled);
         Ok(Self {
             shading: ShadingSettings::with(values, inputs.lights, inputs.scene, inputs.caps, position, cull),
-            light_extent: light_extent(values.text("light-size"), inputs.view.extent),
-            has_extras: values.is_on("extras") && values.text("brdf") != "lambert",
+            light_extent: light_extent(values.unless_auto("light-size", Values::extent), inputs.view.extent),
+            has_extras: values.is_on("extras") && !values.is("brdf", Brdf::Lambert),
             has_motion: values.is_on("motion-vectors"),
             light_roughness: values.number("light-roughness") as f32,
             volumes,
             least_counted_texels: values.integer("stencil-least"),
             casting_lights: shadow_casters::strongest(&inputs.lights.lights, casting_count),
             in_halves,
-            filter: LightFilter::from_setting(values.text("light-filter")),
-            sampler_blends: values.text("light-fetch") == "sampler",
+            filter: values.choice("light-filter"),
+            sampler_blends: values.is("light-fetch", LightFetch::Sampler),
             normal_threshold: values.number("normal-threshold") as f32,
-            store: if values.text("l-buffer") == "fixed" { Store::Fixed { range: light_range } } else { Store::Halves },
+            store: if sums == Sums::Fixed { Store::Fixed { range: light_range } } else { Store::Halves },
             light_range,
             packing: Packing::from_settings(values),
             depth_threshold: values.number("depth-threshold") as f32,
-            tests_alpha: values.text("alpha") == "test",
+            tests_alpha: values.is("alpha", Alpha::Test),
             stipple,
             samples: resolve::samples(values),
             has_prepass: values.is_on("depth-prepass"),
@@ -195,12 +211,10 @@ impl Choices {
     }
 }
 
-fn light_extent(text: &str, frame: Extent) -> Extent {
+/// `--light-size`; auto: a part of the frame.
+fn light_extent(asked: Option<Extent>, frame: Extent) -> Extent {
     let scaled = |side: u32| ((f64::from(side) * LIGHT_SCALE).round() as u32).max(1);
-    match text.split_once('x').map(|(width, height)| (width.parse(), height.parse())) {
-        Some((Ok(width), Ok(height))) => Extent::new(width, height),
-        _ => Extent::new(scaled(frame.width), scaled(frame.height)),
-    }
+    asked.unwrap_or_else(|| Extent::new(scaled(frame.width), scaled(frame.height)))
 }
 
 #[cfg(test)]
@@ -209,8 +223,8 @@ mod tests {
 
     #[test]
     fn the_default_size_is_the_paper_s() {
-        assert_eq!(light_extent("auto", Extent::new(1280, 720)), Extent::new(800, 450));
-        assert_eq!(light_extent("auto", Extent::new(1, 3)), Extent::new(1, 2));
-        assert_eq!(light_extent("320x200", Extent::new(1, 3)), Extent::new(320, 200));
+        assert_eq!(light_extent(None, Extent::new(1280, 720)), Extent::new(800, 450));
+        assert_eq!(light_extent(None, Extent::new(1, 3)), Extent::new(1, 2));
+        assert_eq!(light_extent(Some(Extent::new(320, 200)), Extent::new(1, 3)), Extent::new(320, 200));
     }
 }

@@ -8,7 +8,8 @@ use crate::gpu::shader::techniques::inferred_lighting::cull::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::cull;
-use crate::passes::cull::{CullBy, CullLights, CullSurface, MaskPipeline};
+use crate::passes::cull::{CullLights, CullSurface, MaskPipeline};
+use crate::settings::CullBy;
 use crate::techniques::inferred_lighting::resources::NAME;
 use std::sync::Arc;
 

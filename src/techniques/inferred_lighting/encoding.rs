@@ -4,6 +4,7 @@
 //! paper's PlayStation 3), or as two numbers of fixed point (its Xbox 360, where what shaders write is scaled to a format
 //! from -32 to 32, and only the scaled part of the steps is used).
 
+use crate::choice::choices;
 use crate::settings::Values;
 use glam::{Vec2, Vec3};
 
@@ -11,6 +12,15 @@ use glam::{Vec2, Vec3};
 pub const FIXED_LIMIT: f64 = 32.0;
 /// Most of the 16-bit numbers.
 const LAST: u32 = 0xffff;
+
+choices! {
+    /// The format in which a texel's two numbers are written (`--packing`).
+    pub enum PackingFormat {
+        "words" => Words,
+        "rgba8" => Rgba8,
+        "fixed" => Fixed,
+    }
+}
 
 /// How texels lie in their targets (`--packing`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,15 +36,14 @@ pub enum Packing {
 impl Packing {
     /// The values of `--packing` and `--fixed-range`.
     pub fn from_settings(values: &Values) -> Self {
-        match values.text("packing") {
-            "words" => Self::Words,
-            "rgba8" => Self::Bytes,
-            "fixed" => {
+        match values.choice("packing") {
+            PackingFormat::Words => Self::Words,
+            PackingFormat::Rgba8 => Self::Bytes,
+            PackingFormat::Fixed => {
                 let steps = f64::from(LAST) * values.number("fixed-range") / FIXED_LIMIT;
                 // Odd: so many lie left and right of the middle.
                 Self::Fixed { steps: steps as u32 | 1 }
             }
-            other => panic!("--packing {other} was checked"),
         }
     }
 

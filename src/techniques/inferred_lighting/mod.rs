@@ -40,6 +40,8 @@ use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::{blend, cull as light_masks, direct, resolve};
 use crate::plan::Plan;
 use crate::settings::{Condition, MOTION_CONDITIONS, MULTISAMPLE, Setting, Values};
+use crate::techniques::inferred_lighting::encoding::PackingFormat;
+use crate::techniques::inferred_lighting::light::store::Sums;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
 use choices::Choices;
 use encoding::Loss;
@@ -86,23 +88,24 @@ impl Technique for InferredLighting {
         let of = "the material pass".to_owned();
         needs.push(Need { of, ability: Ability::FragmentAtomics, instead: "" });
         needs.extend(resolve::needs(values));
-        if values.text("packing") == "fixed" {
+        if values.is("packing", PackingFormat::Fixed) {
             let of = "--packing fixed".to_owned();
             needs.push(Need { of, ability: Ability::FixedPairs, instead: "--packing words works without it" });
         }
-        if values.text("l-buffer") == "fixed" {
+        if values.is("l-buffer", Sums::Fixed) {
             let of = "--l-buffer fixed".to_owned();
             needs.push(Need { of, ability: Ability::FixedQuads, instead: "--l-buffer float works without it" });
         }
-        if values.text("volumes") != "tiled" {
-            let of = format!("--volumes {}", values.text("volumes"));
+        let volumes: Volumes = values.choice("volumes");
+        if volumes != Volumes::Tiled {
+            let of = format!("--volumes {}", volumes.name());
             needs.push(Need {
                 of: of.clone(),
                 ability: Ability::BlendFloats,
                 instead: "--volumes tiled works without it",
             });
             let casts = values.integer("shadow-volumes") > 0;
-            if casts || Volumes::from_setting(values.text("volumes")).counts() {
+            if casts || volumes.counts() {
                 let (of, instead) = match casts {
                     true => {
                         ("--shadow-volumes".to_owned(), "--shadow-volumes 0 with --volumes scissor works without it")

@@ -1,7 +1,11 @@
 //! The settings of inferred lighting.
 
-use super::encoding::FIXED_LIMIT;
+use super::assignment::Assignment;
+use super::choices::{Alpha, AlphaFilter, LightFetch, LightFilter};
+use super::encoding::{FIXED_LIMIT, PackingFormat};
 use super::layer_names;
+use super::light::Volumes;
+use super::light::store::Sums;
 use crate::settings::{
     BRDF, CULL_BY, Condition, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS,
     NORMAL_THRESHOLD, Setting, TEXELS, Unread, WORKGROUP,
@@ -49,7 +53,7 @@ pub const SETTINGS: &[Setting] = &[
     MOTION_INTERVAL,
     Setting {
         key: "volumes",
-        kind: Kind::Choice(&["tiled", "quad", "scissor", "stencil", "both", "auto"]),
+        kind: Kind::Choice(Volumes::WORDS),
         default: "tiled",
         paper: "Kircher 2009, 2.2",
         help: "How texels find their lights: by a list of lights for each tile, in one dispatch (tiled); or by one \
@@ -81,7 +85,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "l-buffer",
-        kind: Kind::Choice(&["float", "half", "fixed"]),
+        kind: Kind::Choice(Sums::WORDS),
         default: "float",
         paper: "Kircher 2009, 2.2, 5.1",
         help: "How the L-buffer sums up light: in 32 bits and packed once, to half floats (float) or to 16 bits of \
@@ -99,7 +103,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "packing",
-        kind: Kind::Choice(&["words", "rgba8", "fixed"]),
+        kind: Kind::Choice(PackingFormat::WORDS),
         default: "words",
         paper: "Kircher 2009, 5",
         help: "Format in which the geometry pass writes a texel's two 16-bit numbers: one word (words), the bytes of \
@@ -117,7 +121,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "light-filter",
-        kind: Kind::Choice(&["dsf", "bilinear", "nearest", "bilateral", "discontinuity"]),
+        kind: Kind::Choice(LightFilter::WORDS),
         default: "dsf",
         paper: "Kircher 2009, 3",
         help: "How four texels of the light buffer become the light of a pixel: by the discontinuity sensitive filter, \
@@ -128,7 +132,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "light-fetch",
-        kind: Kind::Choice(&["texels", "sampler"]),
+        kind: Kind::Choice(LightFetch::WORDS),
         default: "texels",
         paper: "Kircher 2009, 7.1",
         help: "How the four texels of a solid surface's pixel are read where all of them belong to that surface: one \
@@ -147,7 +151,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "alpha",
-        kind: Kind::Choice(&["blend", "test"]),
+        kind: Kind::Choice(Alpha::WORDS),
         default: "blend",
         paper: "Kircher 2009, 4, 6",
         help: "How BLEND surfaces are drawn: stippled into the light buffer and blended (blend), or as solid surfaces \
@@ -166,7 +170,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "assignment",
-        kind: Kind::Choice(&["overlap", "depth", "static"]),
+        kind: Kind::Choice(Assignment::WORDS),
         default: "overlap",
         paper: "Kircher 2009, 4, 7.1",
         help: "How BLEND surfaces share the layers of the stipple: those that overlap on the screen get different \
@@ -185,7 +189,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "alpha-filter",
-        kind: Kind::Choice(&["cone", "bilinear"]),
+        kind: Kind::Choice(AlphaFilter::WORDS),
         default: "cone",
         paper: "Kircher 2009, 4",
         help: "Weights of the four samples nearest to a fragment of a BLEND surface: falling to 0 at --cone-radius \
@@ -211,18 +215,18 @@ pub const CONDITIONS: &[Condition] = &[
     },
     Condition {
         key: "stencil-least",
-        unread: |values| Unread::unless(values, "volumes", &["auto"], "all lights are drawn in the same way"),
+        unread: |values| Unread::unless(values, "volumes", &[Volumes::Auto], "all lights are drawn in the same way"),
     },
     Condition {
         key: CULL_BY.key,
-        unread: |values| Unread::unless(values, "volumes", &["tiled"], "there are no tiles"),
+        unread: |values| Unread::unless(values, "volumes", &[Volumes::Tiled], "there are no tiles"),
     },
     Condition {
         key: "fixed-range",
-        unread: |values| Unread::unless(values, "packing", &["fixed"], "it packs without fixed point"),
+        unread: |values| Unread::unless(values, "packing", &[PackingFormat::Fixed], "it packs without fixed point"),
     },
     Condition {
         key: "cone-radius",
-        unread: |values| Unread::unless(values, "alpha-filter", &["cone"], "its weights have no radius"),
+        unread: |values| Unread::unless(values, "alpha-filter", &[AlphaFilter::Cone], "its weights have no radius"),
     },
 ];

@@ -1,8 +1,9 @@
 //! The stages of the paper's figure 3, and what `--split subsample` interpolates, read back after a frame.
 
-use super::choices::{Choices, Filter};
+use super::choices::Choices;
 use super::frame::InterleavedFrame;
 use super::road::Road;
+use super::road::{Filter, Split};
 use super::roads::Roads;
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
@@ -27,7 +28,7 @@ pub const AOVS: &[&str] =
 /// Those that the settings leave out, with the reason.
 pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String)> {
     let mut left_out = Vec::new();
-    let split = values.text("split");
+    let split = values.choice::<Split>("split").name();
     if choices.road != Road::Subsample {
         left_out.push((UPSCALED, format!("--split {split} interpolates nothing; subsample does")));
     }

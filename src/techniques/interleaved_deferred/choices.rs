@@ -1,29 +1,48 @@
 //! The choices that the settings make, and what is refused because it cannot be made.
 
 use super::mapping::mapping;
-use super::road::{Copier, Copies, Form, MaskKind, Road};
+use super::road::{Copier, Copies, Filter, Form, MaskKind, Road};
 use super::sub_buffers::Storage;
 use super::subsets::subsets;
 use crate::caps::Caps;
+use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Kernel, StopBits};
-use crate::passes::gbuffer::PositionStorage;
 use crate::sampling::pattern::Pattern;
-use crate::settings::Values;
+use crate::settings::{PositionStorage, Values};
 use crate::techniques::Inputs;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::units::Bytes;
 use std::collections::BTreeMap;
 
-/// The filter of `--filter`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filter {
-    None,
-    Gauss,
-    GaussFast,
+choices! {
+    /// How the scene's own lights are shaded (`--direct`).
+    pub enum Direct {
+        /// On every pixel.
+        "full" => Full,
+        /// In the subsets, as diffuse light.
+        "interleaved" => Interleaved,
+        "none" => None,
+    }
+}
+
+choices! {
+    /// Virtual point lights that shade BLEND surfaces (`--blend-lights`).
+    pub enum BlendLights {
+        "subset" => Subset,
+        "all" => All,
+    }
+}
+
+choices! {
+    /// At which discontinuity the filter stops (`--discontinuity`).
+    pub enum StopAt {
+        "directional" => Directional,
+        "any" => Any,
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -70,15 +89,10 @@ impl Choices {
         let mapping = mapping(view.extent, pattern, block);
         // Only a picture whose pixels have different lights has anything to filter.
         let interleaved = !road.sums_all() && mapping.subset_count() > 1;
-        let filter = match values.text("filter") {
-            _ if !interleaved => Filter::None,
-            "gauss" => Filter::Gauss,
-            "gauss-fast" => Filter::GaussFast,
-            _ => Filter::None,
-        };
-        let direct = values.text("direct");
+        let filter = if interleaved { values.choice("filter") } else { Filter::None };
+        let direct: Direct = values.choice("direct");
         let direct_pattern =
-            if road.sums_all() || direct != "interleaved" { [1, 1] } else { direct_pattern(values, pattern)? };
+            if road.sums_all() || direct != Direct::Interleaved { [1, 1] } else { direct_pattern(values, pattern)? };
         let light_pattern = if road.sums_all() { [1, 1] } else { pattern };
         let choices = Self {
             shading: ShadingSettings::new(values, lights, scene, caps),
@@ -87,13 +101,13 @@ impl Choices {
             filter,
             kernel: kernel(values)?,
             fused: filter == Filter::Gauss && values.is_on("fuse"),
-            direct_full: direct == "full",
-            direct_interleaved: direct == "interleaved",
-            blend_subsets: values.text("blend-lights") == "subset",
+            direct_full: direct == Direct::Full,
+            direct_interleaved: direct == Direct::Interleaved,
+            blend_subsets: values.is("blend-lights", BlendLights::Subset),
             light_pattern: Pattern::grid(light_pattern),
             direct_pattern: Pattern::grid(direct_pattern),
             vpl_count: values.integer("vpls") as u32,
-            direct_count: if direct == "none" { 0 } else { lights.lights.len() as u32 },
+            direct_count: if direct == Direct::None { 0 } else { lights.lights.len() as u32 },
         };
         choices.check_lights(values.text("pattern"))?;
         choices.check_device(values.text("pattern"), caps)?;
@@ -311,9 +325,9 @@ fn kernel(values: &Values) -> Result<Kernel> {
         0.0 => taps as f32 / 3.0,
         sigma => sigma as f32,
     };
-    let stop_bits = match values.text("discontinuity") {
-        "any" => StopBits::ANY,
-        _ => StopBits::DIRECTIONAL,
+    let stop_bits = match values.choice("discontinuity") {
+        StopAt::Any => StopBits::ANY,
+        StopAt::Directional => StopBits::DIRECTIONAL,
     };
     Ok(Kernel { taps, sigma, stop_bits })
 }

@@ -15,8 +15,9 @@ use crate::gpu::shader::techniques::interleaved_deferred::discontinuity::COMP_VA
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::ShadingSettings;
-use crate::passes::gbuffer::{self, GBuffer, PositionStorage};
+use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::Plan;
+use crate::settings::PositionStorage;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 

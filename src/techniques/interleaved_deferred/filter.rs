@@ -2,8 +2,9 @@
 //! directions in a pass of their own, or, with `--fuse on`, the rows here and the columns in the composite.
 //! reads  the G-buffer, irradiance in frame order      writes  discontinuity.flags, filter.rows or filter.irradiance
 
-use super::choices::{Choices, Filter};
+use super::choices::Choices;
 use super::discontinuity::{self, Discontinuity};
+use super::road::Filter;
 use crate::error::Result;
 use crate::gpu::shader::structs::DiscontinuityParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};

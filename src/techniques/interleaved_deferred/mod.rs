@@ -61,7 +61,7 @@ use crate::plan::Plan;
 use crate::resident::SceneGpu;
 use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
-use choices::Choices;
+use choices::{Choices, Direct};
 use filter::Filtered;
 use frame::{FrameLights, InterleavedFrame};
 use road::Road;
@@ -125,14 +125,14 @@ impl Technique for InterleavedDeferred {
             // The surface that is seen scatters too.
             more => settings.extend([("transport", "full".to_owned()), ("bounces", (more + 1).to_string())]),
         }
-        match values.text("direct") {
+        match values.choice("direct") {
             // Joined to the subsets, direct light is diffuse.
-            "interleaved" => settings.push(("brdf", "lambert".to_owned())),
-            "none" => {
+            Direct::Interleaved => settings.push(("brdf", "lambert".to_owned())),
+            Direct::None => {
                 return Err(Error::request("--direct none: path tracing cannot leave out direct light")
                     .note("--direct full and interleaved have a reference"));
             }
-            _ => {}
+            Direct::Full => {}
         }
         Ok(settings)
     }
@@ -142,10 +142,8 @@ impl Technique for InterleavedDeferred {
         let mut direct_lights = direct::light_blocks(inputs.lights, inputs.values);
         direct_lights.truncate(choices.direct_count as usize);
         let blended = blend::lists(inputs.scene, &direct_lights, inputs.values, inputs.caps)?;
-        let emissive = match inputs.values.text("emissive") {
-            "auto" => !inputs.lights.has_punctual,
-            text => text == "on",
-        };
+        let asked = inputs.values.unless_auto("emissive", Values::is_on);
+        let emissive = asked.unwrap_or(!inputs.lights.has_punctual);
         // What lights reach in one frame of an animation, they reach in all of them.
         let vpl_clamp_m = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
         Ok(Box::new(PreparedInterleaved { choices, direct_lights, blended, emissive, vpl_clamp_m }))

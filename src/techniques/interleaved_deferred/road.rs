@@ -3,10 +3,42 @@
 
 use super::sub_buffers::{Stage, Storage};
 use crate::caps::{Ability, Caps, Need};
+use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::MappingParams;
 use crate::settings::Values;
 use crate::techniques::interleaved_deferred::resources::NAME;
+
+choices! {
+    /// The words of the methods (`--split`).
+    pub enum Split {
+        "none" => None,
+        "subsample" => Subsample,
+        "stencil" => Stencil,
+        "depth" => Depth,
+        "branch" => Branch,
+        "indirect" => Indirect,
+        "remap" => Remap,
+        "one-pass" => OnePass,
+        "two-pass" => TwoPass,
+        "tile" => Tile,
+        "layered" => Layered,
+        "fragment" => Fragment,
+    }
+}
+
+impl Split {
+    /// Those that copy into sub-buffers.
+    pub const COPYING: &[Self] = &[Self::OnePass, Self::TwoPass, Self::Tile, Self::Layered, Self::Fragment];
+}
+
+choices! {
+    /// Where sub-buffers lie (`--storage`).
+    pub enum StorageKind {
+        "buffer" => Buffer,
+        "image" => Image,
+    }
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Road {
@@ -55,13 +87,23 @@ pub enum Copier {
     TwoFragmentPasses,
 }
 
-/// Texels that a thread of a copy handles (`--copy`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// A texel written, or two.
-    Pull,
-    /// A texel read, or two.
-    Push,
+choices! {
+    /// Texels that a thread of a copy handles (`--copy`).
+    pub enum Form {
+        /// A texel written, or two.
+        "pull" => Pull,
+        /// A texel read, or two.
+        "push" => Push,
+    }
+}
+
+choices! {
+    /// The filter of the interleaved irradiance (`--filter`).
+    pub enum Filter {
+        "gauss" => Gauss,
+        "gauss-fast" => GaussFast,
+        "none" => None,
+    }
 }
 
 impl Road {
@@ -69,33 +111,32 @@ impl Road {
     ///
     /// Errors: they contradict each other (exit code 2).
     pub fn new(values: &Values, caps: &Caps) -> Result<Self> {
-        let split = values.text("split");
+        let split = values.choice("split");
         let by = match split {
-            "none" => return Ok(Self::None),
-            "subsample" => return Ok(Self::Subsample),
-            "stencil" => return Ok(Self::Masked(MaskKind::Stencil)),
-            "depth" => return Ok(Self::Masked(MaskKind::Depth)),
-            "branch" => return Ok(Self::Branch),
-            "indirect" => return Ok(Self::Indirect),
-            "remap" => return Ok(Self::Remap),
-            "one-pass" | "layered" => Copier::OnePass,
-            "two-pass" => Copier::TwoPass,
-            "tile" => Copier::Tile,
-            "fragment" if values.integer("fragment-passes") == 1 => Copier::OneFragmentPass,
-            "fragment" => Copier::TwoFragmentPasses,
-            other => panic!("--split {other} was checked"),
+            Split::None => return Ok(Self::None),
+            Split::Subsample => return Ok(Self::Subsample),
+            Split::Stencil => return Ok(Self::Masked(MaskKind::Stencil)),
+            Split::Depth => return Ok(Self::Masked(MaskKind::Depth)),
+            Split::Branch => return Ok(Self::Branch),
+            Split::Indirect => return Ok(Self::Indirect),
+            Split::Remap => return Ok(Self::Remap),
+            Split::OnePass | Split::Layered => Copier::OnePass,
+            Split::TwoPass => Copier::TwoPass,
+            Split::Tile => Copier::Tile,
+            Split::Fragment if values.integer("fragment-passes") == 1 => Copier::OneFragmentPass,
+            Split::Fragment => Copier::TwoFragmentPasses,
         };
-        let form = match values.text("copy") {
-            "push" if split == "tile" || split == "fragment" => return Err(knows_one_form(split)),
-            "push" => Form::Push,
-            _ => Form::Pull,
-        };
-        Ok(Self::Copy(Copies { by, storage: storage(split, values.text("storage"), caps)?, form }))
+        let form = values.choice("copy");
+        if form == Form::Push && matches!(split, Split::Tile | Split::Fragment) {
+            return Err(knows_one_form(split));
+        }
+        let storage = storage(split, values.unless_auto("storage", Values::choice), caps)?;
+        Ok(Self::Copy(Copies { by, storage, form }))
     }
 
     /// What it needs of a device, with the filter behind it.
     pub fn needs(self, values: &Values) -> Vec<Need> {
-        let split = values.text("split");
+        let split: Split = values.choice("split");
         let mut needs = Vec::new();
         let mut need = |of: String, ability, instead| needs.push(Need { of, ability, instead });
         match self {
@@ -104,7 +145,7 @@ impl Road {
             }
             Self::Copy(copies) if copies.storage != Storage::Buffer => {
                 let of = match split {
-                    "layered" | "fragment" => format!("--split {split}"),
+                    Split::Layered | Split::Fragment => format!("--split {}", split.name()),
                     _ => "--storage image".to_owned(),
                 };
                 let instead = "--split one-pass, two-pass and tile support --storage buffer";
@@ -112,7 +153,7 @@ impl Road {
             }
             _ => {}
         }
-        if values.text("filter") == "gauss-fast" && !self.sums_all() {
+        if values.is("filter", Filter::GaussFast) && !self.sums_all() {
             need("--filter gauss-fast".to_owned(), Ability::StoreWordPairs, "--filter gauss filters in buffers");
         }
         needs
@@ -135,33 +176,33 @@ impl Road {
 /// The storage that `--storage` asks for.
 ///
 /// Errors: the split does not support it (exit code 2).
-fn storage(split: &str, setting: &str, caps: &Caps) -> Result<Storage> {
-    let needs_images = split == "layered" || split == "fragment";
+fn storage(split: Split, asked: Option<StorageKind>, caps: &Caps) -> Result<Storage> {
+    let needs_images = matches!(split, Split::Layered | Split::Fragment);
     let stores_words = caps.features.storage_image_extended_formats;
-    match setting {
-        "buffer" if needs_images => Err(needs_image(split)),
-        "buffer" => Ok(Storage::Buffer),
-        "auto" if !needs_images && (caps.identity.is_software() || !stores_words) => Ok(Storage::Buffer),
-        _ if split == "layered" => Ok(Storage::Layers),
+    match asked {
+        Some(StorageKind::Buffer) if needs_images => Err(needs_image(split)),
+        Some(StorageKind::Buffer) => Ok(Storage::Buffer),
+        None if !needs_images && (caps.identity.is_software() || !stores_words) => Ok(Storage::Buffer),
+        _ if split == Split::Layered => Ok(Storage::Layers),
         _ => Ok(Storage::Image),
     }
 }
 
-fn needs_image(split: &str) -> Error {
+fn needs_image(split: Split) -> Error {
     let why = match split {
-        "layered" => "its sub-buffers are the layers of an image",
+        Split::Layered => "its sub-buffers are the layers of an image",
         _ => "fragment programs draw into images",
     };
-    Error::request(format!("{NAME}: --split {split} with --storage buffer: {why}"))
+    Error::request(format!("{NAME}: --split {} with --storage buffer: {why}", split.name()))
         .note("--storage image or auto; --split one-pass, two-pass and tile support buffers")
 }
 
-fn knows_one_form(split: &str) -> Error {
+fn knows_one_form(split: Split) -> Error {
     let why = match split {
-        "tile" => "a workgroup reads and writes its block in order, both ways",
+        Split::Tile => "a workgroup reads and writes its block in order, both ways",
         _ => "a fragment program writes the texel at its own place",
     };
-    Error::request(format!("{NAME}: --split {split} with --copy push: {why}"))
+    Error::request(format!("{NAME}: --split {} with --copy push: {why}", split.name()))
         .note("--copy pull; --split one-pass, two-pass and layered support both forms")
 }
 
@@ -203,16 +244,6 @@ impl Copies {
     /// Threads for the pixels of the frame, two each: frame order is always a buffer.
     pub fn frame_threads(mapping: &MappingParams) -> [u32; 3] {
         [mapping.row_pitch() / 2, mapping.height_px, 1]
-    }
-}
-
-impl Form {
-    /// The value of the shaders' axis COPY.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pull => "pull",
-            Self::Push => "push",
-        }
     }
 }
 

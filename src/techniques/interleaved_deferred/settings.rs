@@ -1,5 +1,7 @@
 //! The settings of interleaved deferred shading.
 
+use super::choices::{BlendLights, Direct, StopAt};
+use super::road::{Filter, Form, Split, StorageKind};
 use crate::settings::{Condition, EMISSIVE, Kind, NORMAL_THRESHOLD, Setting, Unread, VPL_CLAMP, Values};
 
 /// Its rows of the table.
@@ -16,20 +18,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "split",
-        kind: Kind::Choice(&[
-            "none",
-            "subsample",
-            "stencil",
-            "depth",
-            "branch",
-            "indirect",
-            "remap",
-            "one-pass",
-            "two-pass",
-            "tile",
-            "layered",
-            "fragment",
-        ]),
+        kind: Kind::Choice(Split::WORDS),
         default: "one-pass",
         paper: "Segovia 2006, 3.1-3.3, 4.2",
         help: "How pixels get the light subset of their place in the pattern. Without subsets: every light on every \
@@ -43,7 +32,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "storage",
-        kind: Kind::Choice(&["buffer", "image"]),
+        kind: Kind::Choice(StorageKind::WORDS),
         auto: true,
         default: "auto",
         paper: "Segovia 2006, figure 3",
@@ -53,7 +42,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "copy",
-        kind: Kind::Choice(&["pull", "push"]),
+        kind: Kind::Choice(Form::WORDS),
         default: "pull",
         help: "What a thread of a copy stands for: a texel that it writes (pull) or a texel that it reads (push), or a \
                pair of such texels in buffers",
@@ -99,7 +88,7 @@ pub const SETTINGS: &[Setting] = &[
     EMISSIVE,
     Setting {
         key: "direct",
-        kind: Kind::Choice(&["full", "interleaved", "none"]),
+        kind: Kind::Choice(Direct::WORDS),
         default: "full",
         paper: "Segovia 2006, 4.6",
         help: "How the scene's own lights are shaded: on every pixel by --brdf (full), in the subsets as diffuse light \
@@ -108,7 +97,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "blend-lights",
-        kind: Kind::Choice(&["subset", "all"]),
+        kind: Kind::Choice(BlendLights::WORDS),
         default: "subset",
         help: "Virtual point lights that shade BLEND surfaces, which no filter smooths: those of the pixel's subset, \
                or all",
@@ -129,7 +118,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "filter",
-        kind: Kind::Choice(&["gauss", "gauss-fast", "none"]),
+        kind: Kind::Choice(Filter::WORDS),
         default: "gauss",
         paper: "Segovia 2006, 4.5",
         help: "Filter of the interleaved irradiance; a picture that is not interleaved (--split none, or pattern 1x1) \
@@ -164,7 +153,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "discontinuity",
-        kind: Kind::Choice(&["directional", "any"]),
+        kind: Kind::Choice(StopAt::WORDS),
         default: "directional",
         paper: "Segovia 2006, 4.5",
         help: "Discontinuity at which the filter stops: one in the direction of the filter (directional), or one in \
@@ -184,12 +173,9 @@ pub const SETTINGS: &[Setting] = &[
     },
 ];
 
-/// Splits that copy into sub-buffers.
-const COPYING: &[&str] = &["one-pass", "two-pass", "tile", "layered", "fragment"];
-
 /// Every pixel that is shaded has all lights.
 fn sums_all(values: &Values) -> Option<Unread> {
-    Unread::with(values, "split", &["none", "subsample"], "every light is summed")
+    Unread::with(values, "split", &[Split::None, Split::Subsample], "every light is summed")
 }
 
 /// Nothing is interleaved that a filter would smooth.
@@ -198,38 +184,46 @@ fn is_even(values: &Values) -> Option<Unread> {
 }
 
 fn is_unfiltered(values: &Values) -> Option<Unread> {
-    is_even(values).or_else(|| Unread::unless(values, "filter", &["gauss", "gauss-fast"], "nothing is filtered"))
+    is_even(values)
+        .or_else(|| Unread::unless(values, "filter", &[Filter::Gauss, Filter::GaussFast], "nothing is filtered"))
 }
 
 /// Settings that are not read with some values of others.
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "pattern",
-        unread: |values| Unread::with(values, "split", &["none"], "every pixel has all lights"),
+        unread: |values| Unread::with(values, "split", &[Split::None], "every pixel has all lights"),
     },
-    Condition { key: "storage", unread: |values| Unread::unless(values, "split", COPYING, "it copies nothing") },
-    Condition { key: "copy", unread: |values| Unread::unless(values, "split", COPYING, "it copies nothing") },
+    Condition { key: "storage", unread: |values| Unread::unless(values, "split", Split::COPYING, "it copies nothing") },
+    Condition { key: "copy", unread: |values| Unread::unless(values, "split", Split::COPYING, "it copies nothing") },
     Condition {
         key: "block",
         unread: |values| {
-            Unread::unless(values, "split", &["two-pass", "tile", "fragment"], "it has no blocks").or_else(|| {
-                let draws = values.text("split") == "fragment";
-                let passes = || Unread::unless(values, "fragment-passes", &["2"], "one pass has no blocks");
-                if draws { passes() } else { None }
-            })
+            Unread::unless(values, "split", &[Split::TwoPass, Split::Tile, Split::Fragment], "it has no blocks")
+                .or_else(|| {
+                    let draws = values.is("split", Split::Fragment);
+                    let passes = || Unread::unless(values, "fragment-passes", &["2"], "one pass has no blocks");
+                    if draws { passes() } else { None }
+                })
         },
     },
     Condition {
         key: "fragment-passes",
-        unread: |values| Unread::unless(values, "split", &["fragment"], "it has no fragment programs"),
+        unread: |values| Unread::unless(values, "split", &[Split::Fragment], "it has no fragment programs"),
     },
     Condition { key: "blend-lights", unread: is_even },
-    Condition { key: "brdf", unread: |values| Unread::with(values, "direct", &["none"], "there is no direct light") },
-    Condition { key: "cull", unread: |values| Unread::with(values, "direct", &["none"], "there is no direct light") },
+    Condition {
+        key: "brdf",
+        unread: |values| Unread::with(values, "direct", &[Direct::None], "there is no direct light"),
+    },
+    Condition {
+        key: "cull",
+        unread: |values| Unread::with(values, "direct", &[Direct::None], "there is no direct light"),
+    },
     Condition {
         key: "direct-pattern",
         unread: |values| {
-            Unread::unless(values, "direct", &["interleaved"], "no punctual light is in a subset")
+            Unread::unless(values, "direct", &[Direct::Interleaved], "no punctual light is in a subset")
                 .or_else(|| sums_all(values))
         },
     },
@@ -242,8 +236,9 @@ pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "fuse",
         unread: |values| {
-            is_even(values)
-                .or_else(|| Unread::unless(values, "filter", &["gauss"], "no pass walks rows and columns of buffers"))
+            is_even(values).or_else(|| {
+                Unread::unless(values, "filter", &[Filter::Gauss], "no pass walks rows and columns of buffers")
+            })
         },
     },
 ];

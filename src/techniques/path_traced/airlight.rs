@@ -6,6 +6,7 @@ use crate::gpu::shader::structs::SampleParams;
 use crate::scene::{Light, LightKind};
 use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
+use crate::techniques::path_traced::settings::Transport;
 
 /// What the medium does to the paths of a picture; the number is the shader's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,9 +20,10 @@ impl Air {
     /// Errors: light that a medium has scattered is asked for without one, or virtual point lights in one (exit code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<(Self, Option<Medium>)> {
         let (values, medium) = (inputs.values, Medium::from_values(inputs.values));
-        let is_scattered = ["single-scatter", "full"].contains(&values.text("transport"));
+        let transport = values.choice("transport");
+        let is_scattered = matches!(transport, Transport::SingleScatter | Transport::Full);
         match medium {
-            None if values.text("transport") == "single-scatter" => {
+            None if transport == Transport::SingleScatter => {
                 Err(Error::request("--transport single-scatter: there is no medium that scatters light")
                     .note("--medium 0.1,0,0 is one; without, --transport direct is the same picture"))
             }

@@ -57,11 +57,11 @@ use crate::passes::direct;
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::resident::traced::{Layout, Rays, Reads, TexelLevels};
+use crate::resident::traced::{Layout, Rays, Reads};
 use crate::scene::{AlphaMode, Light, Material};
-use crate::settings::{Condition, LENS_CONDITIONS, Setting, TREE, Values};
-use crate::shading::brdf::Brdf;
+use crate::settings::{Brdf, Condition, LENS_CONDITIONS, Setting, TREE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
+use crate::techniques::path_traced::settings::{RaySource, Transport};
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -102,7 +102,7 @@ impl Technique for PathTraced {
     fn needs(&self, values: &Values, _: &Caps, _: bool) -> Vec<Need> {
         let instead = "--rays tree walks a tree of this program's, to the same picture";
         let query = Need { of: "--rays query".to_owned(), ability: Ability::RayQuery, instead };
-        Vec::from_iter((values.text("rays") == "query").then_some(query))
+        Vec::from_iter(values.is("rays", RaySource::Query).then_some(query))
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -120,7 +120,7 @@ impl Technique for PathTraced {
 
 fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
     let (limits, values) = (&inputs.caps.limits, inputs.values);
-    let rays = if values.text("rays") == "query" {
+    let rays = if values.is("rays", RaySource::Query) {
         Rays::Query { is_opaque: !is_tested(inputs) }
     } else {
         let threads = values.pair("workgroup").iter().product();
@@ -128,7 +128,7 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
         Rays::Tree(Nodes::new(bvh, walk, threads, limits).map_err(|error| error.within(NAME))?)
     };
     let reads = Reads {
-        levels: if values.text("texture-level") == "cone" { TexelLevels::Cone } else { TexelLevels::Finest },
+        levels: values.choice("texture-level"),
         occlusion: !values.is_on("ambient-visibility") && inputs.lights.ambient != Vec3::ZERO,
     };
     Layout::new(inputs.scene, bvh, rays, reads, limits.max_storage_buffer_range_bytes)
@@ -161,10 +161,7 @@ impl Sources {
                 lights.has_punctual = false;
             }
         }
-        let is_emissive = match values.text("emissive") {
-            "auto" => !lights.has_punctual,
-            text => text == "on",
-        };
+        let is_emissive = values.unless_auto("emissive", Values::is_on).unwrap_or(!lights.has_punctual);
         let emitters = is_emissive.then(|| Emitters::of(inputs.scene, bvh));
         let (punctual, power) = emitters::punctual(&lights.lights, 0.5 * inputs.scene.bounds().diagonal());
         let emitted = emitters.as_ref().map_or(0.0, Emitters::power);
@@ -191,10 +188,11 @@ impl Sources {
 fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     let values = inputs.values;
     let bounds = inputs.scene.bounds();
-    let bounces = match values.text("transport") {
-        "direct" | "single-scatter" => 1,
-        "one-bounce" => 2,
-        _ => values.integer("bounces") as u32,
+    let transport = values.choice("transport");
+    let bounces = match transport {
+        Transport::Direct | Transport::SingleScatter => 1,
+        Transport::OneBounce => 2,
+        Transport::Full => values.integer("bounces") as u32,
     };
     let is_walked = !values.is_on("vpl-visibility");
     let least = values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
@@ -220,11 +218,11 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     }
     Ok(Choices {
         bounces: if is_walked { 1 } else { bounces },
-        roulette: values.text("transport") == "full" && !is_walked,
+        roulette: transport == Transport::Full && !is_walked,
         light_visibility: values.is_on("light-visibility"),
         ambient_visibility: values.is_on("ambient-visibility"),
         walk_landings: is_walked.then_some(bounces - 1),
-        brdf: Brdf::from_setting(values.text("brdf")) as u32,
+        brdf: values.choice::<Brdf>("brdf") as u32,
         extras: inputs.scene.drawn_materials().any(Material::has_extras),
         workgroup: values.pair("workgroup"),
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),

@@ -1,8 +1,10 @@
 //! The settings of path tracing.
 
+use crate::choice::choices;
+use crate::resident::traced::TexelLevels;
 use crate::settings::{
-    APERTURE, BRDF, Condition, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP,
-    Values, WORKGROUP,
+    APERTURE, BRDF, Condition, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, StackPlace,
+    Unread, VPL_CLAMP, Values, WORKGROUP,
 };
 
 /// Paths a pixel, at most: float sums of more lose what a path adds.
@@ -18,6 +20,26 @@ pub fn until_error(values: &Values) -> Option<f64> {
 pub fn sample_count(values: &Values) -> u32 {
     let auto = if until_error(values).is_some() { MOST_SAMPLES } else { DEFAULT_SAMPLES };
     values.unless_auto("spp", Values::integer).map_or(auto, |count| count as u32)
+}
+
+choices! {
+    /// Light that is counted (`--transport`).
+    pub enum Transport {
+        "direct" => Direct,
+        "one-bounce" => OneBounce,
+        "single-scatter" => SingleScatter,
+        "full" => Full,
+    }
+}
+
+choices! {
+    /// What rays are traced through (`--rays`).
+    pub enum RaySource {
+        /// A tree built by this program and walked by the shader.
+        "tree" => Tree,
+        /// The driver's own acceleration structure.
+        "query" => Query,
+    }
 }
 
 /// Its rows of the table.
@@ -41,7 +63,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "transport",
-        kind: Kind::Choice(&["direct", "one-bounce", "single-scatter", "full"]),
+        kind: Kind::Choice(Transport::WORDS),
         default: "full",
         help: "Light that is counted: what reaches the visible surfaces straight from lights (direct), or by one \
                surface more too (one-bounce); what is scattered once, by a surface or by --medium (single-scatter); or \
@@ -93,7 +115,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "rays",
-        kind: Kind::Choice(&["tree", "query"]),
+        kind: Kind::Choice(RaySource::WORDS),
         default: "tree",
         help: "What rays are traced through: a tree built by this program and walked by the shader (tree); or the \
                driver's own acceleration structure, by ray queries, where the device has them (query). The same \
@@ -102,7 +124,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "texture-level",
-        kind: Kind::Choice(&["0", "cone"]),
+        kind: Kind::Choice(TexelLevels::WORDS),
         default: "0",
         help: "Mip level of textures that rays read: 0, the finest, which the paths of a pixel average; or the one \
                whose texels are as wide as the ray's cone, which needs fewer paths, blurs surfaces seen at a slant, \
@@ -125,10 +147,14 @@ pub const SETTINGS: &[Setting] = &[
 pub const CONDITIONS: &[Condition] = &[
     Condition {
         key: "bounces",
-        unread: |values| Unread::unless(values, "transport", &["full"], "it fixes how often light is scattered"),
+        unread: |values| {
+            Unread::unless(values, "transport", &[Transport::Full], "it fixes how often light is scattered")
+        },
     },
     Condition {
         key: "stack-entries",
-        unread: |values| Unread::unless(values, "stack", &["short"], "it has room for all nodes that can wait"),
+        unread: |values| {
+            Unread::unless(values, "stack", &[StackPlace::Short], "it has room for all nodes that can wait")
+        },
     },
 ];

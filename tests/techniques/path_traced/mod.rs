@@ -15,7 +15,8 @@ use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, Vec4, vec3};
 use quincunx::picture::Picture;
 use quincunx::scene::{self, AlphaMode, Material, Scene};
-use quincunx::shading::brdf::{self, Brdf, Surface};
+use quincunx::settings::Brdf;
+use quincunx::shading::brdf::{self, Surface};
 use std::f32::consts::PI;
 
 const NAME: &str = "path_traced";

@@ -22,20 +22,20 @@ use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::Shader;
-use crate::gpu::{
-    Access, Barrier, Bound, Buffer, ColorTarget, Commands, Gpu, Image, ImageDescription, Layers, Traffic,
-};
+use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, ImageDescription, Layers, Traffic};
 use crate::passes::mesh;
+use crate::passes::shadow_maps::ShadowMaps;
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{DrawList, SceneGpu};
 use crate::settings::Values;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::pass_samples;
 use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::resources;
 use crate::techniques::deep_shading::resources::{COUNTERS, DEPTH_FORMAT, full};
 use crate::techniques::deep_shading::visibility::draw::SampleStages;
-use crate::techniques::deep_shading::visibility::samples::{DrawInputs, begin_counters};
+use crate::techniques::deep_shading::visibility::samples::begin_counters;
 use crate::units::Extent;
 use ash::vk::{self, ImageUsageFlags as Usage};
 use std::collections::BTreeMap;
@@ -138,6 +138,11 @@ impl Baseline {
         })
     }
 
+    /// Names the access that touched its colours last.
+    pub fn from(&self, access: Access) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
     /// The colours as the resolve reads them.
     pub fn sampled(&self) -> Bound<'_> {
         Bound::Sampled(&self.colors, self.nearest.handle, Access::ComputeSample)
@@ -150,51 +155,55 @@ impl Baseline {
         self.textures.as_ref().map_or_else(|| Ok(BTreeMap::new()), |textures| textures.touched_bytes(gpu, list))
     }
 
-    /// Draws and shades every layer: what of it is in the frame. `maps`: the barrier of the shadow maps.
+    /// Draws and shades every layer: what of it is in the frame.
     pub fn record(
         &self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
-        bound: &[(&'static str, Bound<'_>)],
-        maps: Option<Barrier>,
+        inputs: DrawInputs<'_>,
+        maps: Option<Edge<'_, ShadowMaps>>,
         counters: &Buffer,
     ) -> Result<()> {
         let description = self.colors.description;
         let [textures_read, textures_written] =
-            self.textures.as_ref().map_or([0; 2], |textures| textures.traffic(drawn));
+            self.textures.as_ref().map_or([0; 2], |textures| textures.traffic(inputs));
         let traffic = Traffic {
-            read_bytes: u64::from(description.layers()) * mesh::read_bytes(drawn.scene, drawn.list.calls())
+            read_bytes: u64::from(description.layers()) * mesh::read_bytes(inputs.scene, inputs.list.calls())
                 + textures_read,
             written_bytes: description.bytes() + self.depth.description.bytes() + textures_written,
             invocations: None,
         };
         cmd.pass(&full(self.shading.pass()), traffic, |cmd| {
-            cmd.barriers(maps);
+            cmd.barriers(maps.and_then(|maps| maps.to(Access::FragmentSample)));
             cmd.barriers([self.colors.discard(Access::ColorWrite), self.depth.discard(Access::DepthWrite)]);
             begin_counters(cmd, counters);
-            let mut bound = bound.to_vec();
+            let mut bound = inputs.bound.to_vec();
             bound.push(("Counters", Bound::Buffer(counters)));
             if let Some(textures) = &self.textures {
-                return textures.record(cmd, drawn, &bound, &self.sample, |cmd, lists, is_first| {
-                    if !is_first {
-                        // What was drawn before is tested and kept.
-                        let attached = [
-                            self.colors.from(Access::ColorWrite).to(Access::ColorWrite),
-                            self.depth.from(Access::DepthWrite).to(Access::DepthWrite),
-                        ];
-                        cmd.barriers(attached);
-                    }
-                    self.draw(cmd, drawn, lists, is_first);
-                });
+                return textures.record(
+                    cmd,
+                    DrawInputs { bound: &bound, ..inputs },
+                    &self.sample,
+                    |cmd, lists, is_first| {
+                        if !is_first {
+                            // What was drawn before is tested and kept.
+                            let attached = [
+                                self.colors.from(Access::ColorWrite).to(Access::ColorWrite),
+                                self.depth.from(Access::DepthWrite).to(Access::DepthWrite),
+                            ];
+                            cmd.barriers(attached);
+                        }
+                        self.draw(cmd, inputs, lists, is_first);
+                    },
+                );
             }
             let sets = self.sample.sets(cmd, &bound)?;
-            self.draw(cmd, drawn, &[(drawn.list, &sets)], true);
+            self.draw(cmd, inputs, &[(inputs.list, &sets)], true);
             Ok(())
         })
     }
 
     /// Each of `lists` with its sets into every layer, which begins empty where they are the first.
-    fn draw(&self, cmd: &mut Commands, drawn: DrawInputs<'_>, lists: &[(&DrawList, &PipelineSets)], is_first: bool) {
+    fn draw(&self, cmd: &mut Commands, inputs: DrawInputs<'_>, lists: &[(&DrawList, &PipelineSets)], is_first: bool) {
         let description = self.colors.description;
         for layer in 0..description.layers() {
             // Alpha is 1 where something is.
@@ -205,13 +214,13 @@ impl Baseline {
             let first_tuple = match self.shading {
                 Shading::Msaa { pass_samples } => layer * pass_samples,
                 _ => {
-                    cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, layer));
+                    cmd.set_scissor([0, 0], inputs.table.inside(inputs.frame, layer));
                     layer
                 }
             };
             for (list, sets) in lists {
                 let repeats = repeat_frame::repeats(first_tuple);
-                self.sample.draw(cmd, DrawInputs { list, ..drawn }, sets, &repeats);
+                self.sample.draw(cmd, DrawInputs { list, ..inputs }, sets, &repeats);
             }
             cmd.end_rendering();
         }

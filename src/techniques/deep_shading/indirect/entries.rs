@@ -1,6 +1,6 @@
 //! The compact geometry buffer: samples' pointers, the cache that finds what is there already, and its entries.
 
-use crate::gpu::{Bound, Buffer};
+use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Edge};
 use crate::plan::Resources;
 use crate::techniques::deep_shading::resources::{CACHE, ENTRIES, POINTERS, full};
 
@@ -12,7 +12,19 @@ pub struct Entries {
     pub entries: [Buffer; 4],
 }
 
+impl Edge<'_, Entries> {
+    /// Entries become readable as `access` says.
+    pub fn to(self, access: Access) -> impl Iterator<Item = Barrier> {
+        self.resource.entries.iter().map(move |buffer| buffer.from(self.from).to(access))
+    }
+}
+
 impl Entries {
+    /// Names the access that touched the entries last.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
     pub fn new(resources: &mut Resources) -> Self {
         Self {
             pointers: resources.buffer(&full(POINTERS)),

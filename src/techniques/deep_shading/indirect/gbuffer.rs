@@ -4,18 +4,18 @@
 //! writes  indirect.pointers, indirect.cache, indirect.places, .normals, .base_colors, .radiances
 
 use super::super::choices::Choices;
-use super::super::primitives::Primitives;
+use super::super::pass_inputs::DrawInputs;
 use super::super::redraw::{self, TriangleRedraw};
 use super::entries::Entries;
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::indirect::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::mesh;
 use crate::plan::Resources;
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::resources::full;
-use crate::techniques::deep_shading::visibility::samples::Samples;
+use crate::techniques::deep_shading::visibility::samples::SeenSamples;
 use crate::units::Extent;
 use std::sync::Arc;
 
@@ -34,18 +34,16 @@ impl Gbuffer {
         Ok(Self(TriangleRedraw::new(gpu, scene, resources, choices, frame, fragment)?))
     }
 
-    /// The scene, what of it is drawn, and its ids.
     pub fn record(
         &self,
         cmd: &mut Commands,
-        (scene, list, primitives): (&SceneGpu, &DrawList, &Primitives),
-        bound: &[(&'static str, Bound<'_>)],
-        samples: &Samples,
+        inputs: DrawInputs<'_>,
+        seen: SeenSamples<'_>,
         entries: &Entries,
-        counters: &Buffer,
+        counters: Edge<'_, Buffer>,
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: self.0.read_bytes(cmd.gpu(), scene, list, Some(samples)),
+            read_bytes: self.0.read_bytes(cmd.gpu(), inputs, Some(seen)),
             // Entries are counted after the frame.
             written_bytes: entries.pointers.bytes,
             invocations: None,
@@ -56,12 +54,11 @@ impl Gbuffer {
             cleared.iter().for_each(|buffer| cmd.clear(buffer));
             cmd.barriers(cleared.map(|buffer| buffer.from(Access::TransferWrite).to(Access::FragmentWrite)));
             cmd.barriers(entries.entries.iter().map(|buffer| buffer.discard(Access::FragmentWrite)));
-            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::FragmentWrite)]);
-            let mut bound = bound.to_vec();
+            cmd.barriers([counters.to(Access::FragmentWrite)]);
+            let mut bound = inputs.bound.to_vec();
             bound.extend(entries.bound());
-            bound.push(("Counters", Bound::Buffer(counters)));
-            let samples = Some((samples, AccessSet::from(samples.written)));
-            self.0.record(cmd, scene, list, primitives, samples, bound)
+            bound.push(("Counters", Bound::Buffer(counters.resource)));
+            self.0.record(cmd, inputs, Some(seen), bound)
         })
     }
 }

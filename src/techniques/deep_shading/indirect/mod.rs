@@ -23,17 +23,17 @@ pub mod shade;
 
 use super::choices::Choices;
 use super::counters::FrameCounts;
-use super::primitives::Primitives;
+use super::pass_inputs::{DrawInputs, ShadingEdges};
 use super::stereo;
 use crate::error::Result;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu};
+use crate::gpu::{Access, Buffer, Commands, Gpu};
 use crate::plan::{Plan, Resources};
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::resources::{
     CACHE, CACHE_BYTES, COLOR_BYTES, COLORS, COUNTERS, DEPTH, ENTRIES, ENTRY_BYTES, NAME, POINTER_BYTES, POINTERS,
     SPIDS, full,
 };
-use crate::techniques::deep_shading::visibility::samples::Samples;
+use crate::techniques::deep_shading::visibility::samples::SeenSamples;
 use crate::units::Extent;
 use entries::Entries;
 use gbuffer::Gbuffer;
@@ -111,20 +111,17 @@ impl Indirect {
         entries.iter().chain([pointers, cache])
     }
 
-    /// After visibility. `maps`: what shading from shadow maps waits for.
-    #[allow(clippy::too_many_arguments)]
+    /// Nothing has touched the colours.
     pub fn record(
         &self,
         cmd: &mut Commands,
-        scene: &SceneGpu,
-        list: &DrawList,
-        primitives: &Primitives,
-        bound: &[(&'static str, Bound<'_>)],
-        (samples, maps): (&Samples, Option<Barrier>),
-        colors: &Buffer,
-        counters: &Buffer,
+        inputs: DrawInputs<'_>,
+        seen: SeenSamples<'_>,
+        edges: ShadingEdges<'_>,
     ) -> Result<()> {
-        self.gbuffer.record(cmd, (scene, list, primitives), bound, samples, &self.entries, counters)?;
-        self.shade.record(cmd, bound, &self.entries, maps, colors, counters)
+        self.gbuffer.record(cmd, inputs, seen, &self.entries, edges.counters)?;
+        let counters = edges.counters.resource.from(Access::FragmentWrite);
+        let made = self.entries.from(Access::FragmentWrite);
+        self.shade.record(cmd, inputs.bound, made, ShadingEdges { counters, ..edges })
     }
 }

@@ -3,12 +3,13 @@
 //! writes  shade.colors  buffer, 8 B an entry: RGBA16F
 
 use super::super::choices::Choices;
+use super::super::pass_inputs::ShadingEdges;
 use super::entries::Entries;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::indirect::shade::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Commands, Edge, Gpu, Traffic};
 use crate::passes::shadow_maps;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::full;
@@ -32,27 +33,26 @@ impl Shade {
         })
     }
 
-    /// `maps`: what asking the shadow maps waits for.
+    /// Nothing has touched the colours.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        entries: &Entries,
-        maps: Option<Barrier>,
-        colors: &Buffer,
-        counters: &Buffer,
+        made: Edge<'_, Entries>,
+        edges: ShadingEdges<'_>,
     ) -> Result<()> {
+        let ShadingEdges { colors, counters, maps } = edges;
         // Entries are counted after the frame.
         let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
         cmd.pass(&full("indirect.shade"), traffic, |cmd| {
-            cmd.barriers(maps);
-            let buffers = entries.entries.iter();
-            cmd.barriers(buffers.map(|buffer| buffer.from(Access::FragmentWrite).to(Access::ComputeRead)));
-            cmd.barriers([colors.discard(Access::ComputeWrite)]);
-            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
+            cmd.barriers(maps.and_then(|maps| maps.to(Access::ComputeSample)));
+            cmd.barriers(made.to(Access::ComputeRead));
+            cmd.barriers([colors.resource.discard(Access::ComputeWrite), counters.to(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();
-            bound.extend(entries.bound());
-            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            bound.extend(made.resource.bound());
+            bound.extend(
+                [("Colors", colors), ("Counters", counters)].map(|(name, edge)| (name, Bound::Buffer(edge.resource))),
+            );
             let groups = self.pipeline.groups(self.threads);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })

@@ -2,11 +2,11 @@
 //! reads  visibility.spids, the lists      writes  lists.addresses
 
 use super::super::choices::Choices;
-use super::Lists;
+use super::ListsEdge;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::address::COMP;
-use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Commands, Edge, Gpu, Traffic};
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::full;
 use crate::techniques::deep_shading::visibility::samples::Samples;
@@ -22,25 +22,23 @@ impl Address {
         Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants)? })
     }
 
-    /// After compaction.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        samples: &Samples,
-        lists: &Lists,
+        seen: Edge<'_, Samples>,
+        compacted: ListsEdge<'_>,
     ) -> Result<()> {
+        let (samples, lists) = (seen.resource, compacted.lists);
         let spids = &samples.spids;
         let addresses = lists.addresses.as_ref().expect("only with --address-buffer on");
         let count = spids.description.extent.pixel_count() * u64::from(spids.description.layers());
         let traffic =
             Traffic { read_bytes: spids.description.bytes(), written_bytes: addresses.bytes, invocations: Some(count) };
         cmd.pass(&full("lists.address"), traffic, |cmd| {
-            lists.links_to(cmd, Access::ComputeWrite, Access::ComputeRead);
-            cmd.barriers([
-                spids.from(Access::ComputeSample).to(Access::ComputeSample),
-                addresses.from(Access::ComputeWrite).to(Access::ComputeWrite),
-            ]);
+            cmd.barriers(compacted.links_to(Access::ComputeRead));
+            cmd.barriers([seen.spids_to(Access::ComputeSample)]);
+            cmd.barriers(compacted.addresses_to(Access::ComputeWrite));
             let mut bound = bound.to_vec();
             bound.extend(lists.bound());
             bound.push(("spids", samples.sampled(spids, Access::ComputeSample)));

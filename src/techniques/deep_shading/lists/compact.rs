@@ -3,11 +3,11 @@
 //! reads and writes  lists.begins, lists.nodes      writes  lists.linear; begins alphas of colours at 0
 
 use super::super::choices::Choices;
-use super::Lists;
+use super::ListsEdge;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::compact::COMP;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
@@ -23,26 +23,27 @@ impl Compact {
         Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants)? })
     }
 
-    /// `space`: pixels of shading space. After insertion.
+    /// `space`: pixels of shading space.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        lists: &Lists,
-        colors: &Buffer,
-        counters: &Buffer,
+        inserted: ListsEdge<'_>,
+        colors: Edge<'_, Buffer>,
+        counters: Edge<'_, Buffer>,
         space: Extent,
     ) -> Result<()> {
+        let lists = inserted.lists;
         let begin_bytes = lists.begins.bytes;
         let traffic =
             Traffic { read_bytes: begin_bytes, written_bytes: begin_bytes, invocations: Some(space.pixel_count()) };
         cmd.pass(&full("lists.compact"), traffic, |cmd| {
-            let touched = [&lists.begins, &lists.nodes, colors, counters];
-            cmd.barriers(touched.iter().map(|buffer| buffer.from(Access::ComputeWrite).to(Access::ComputeWrite)));
+            let links = [&lists.begins, &lists.nodes].map(|buffer| buffer.from(inserted.links));
+            cmd.barriers(links.into_iter().chain([colors, counters]).map(|edge| edge.to(Access::ComputeWrite)));
             cmd.barriers(lists.linear.iter().map(|buffer| buffer.discard(Access::ComputeWrite)));
             let mut bound = bound.to_vec();
             bound.extend(lists.bound());
-            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            bound.extend([("Colors", Bound::Buffer(colors.resource)), ("Counters", Bound::Buffer(counters.resource))]);
             let groups = self.pipeline.groups([space.width, space.height, 1]);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })

@@ -7,6 +7,8 @@ use super::super::choices::Choices;
 use super::super::visibility::ray::trace::{Hits, NONE, Spid};
 use super::Lists;
 use crate::error::Result;
+use crate::gpu::shader::techniques::deep_shading::lists::insert::LIST_MOST;
+use crate::gpu::shader::techniques::deep_shading::space::ADDRESS_STRAY;
 use crate::gpu::{Access, Buffer, Commands, Traffic};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
@@ -15,12 +17,6 @@ use crate::units::Extent;
 use ash::vk::BufferUsageFlags;
 use rayon::prelude::*;
 use std::cell::{Cell, RefCell};
-
-/// space.glsl's ADDRESS_STRAY.
-const STRAY: u32 = 1 << 31;
-
-/// insert.comp's.
-const LIST_MOST: usize = 1024;
 
 /// Among the parts of a set.
 const NODES_INDEX: usize = 1;
@@ -49,7 +45,7 @@ struct Entry {
 
 impl HostLists {
     pub fn of(hits: &Hits, choices: &Choices) -> Self {
-        Self::with(hits, choices.space.extent, choices.is_compacted, choices.has_zmax)
+        Self::with(hits, choices.space.extent, choices.lists.is_compacted, choices.lists.has_zmax)
     }
 
     fn with(hits: &Hits, space: Extent, is_compacted: bool, has_zmax: bool) -> Self {
@@ -84,7 +80,7 @@ impl HostLists {
 
     fn push_stray(&mut self, sample: usize, spid: Spid) {
         let color = (self.addresses.len() - 1 - self.stray_nodes.len()) as u32;
-        self.addresses[sample] = color | STRAY;
+        self.addresses[sample] = color | ADDRESS_STRAY;
         self.stray_nodes.push([spid.primitive, spid.pixel]);
     }
 
@@ -94,7 +90,7 @@ impl HostLists {
         let pixel = list[0].pixel as usize;
         self.begins[pixel] = first + 1;
         for (length, of) in list.chunk_by(|a, b| a.primitive == b.primitive).enumerate() {
-            if length >= LIST_MOST {
+            if length >= LIST_MOST as usize {
                 let packed = (list[0].pixel % space.width) | ((list[0].pixel / space.width) << 16);
                 let spid = Spid { primitive: of[0].primitive, pixel: packed };
                 of.iter().for_each(|entry| self.push_stray(entry.sample as usize, spid));
@@ -144,9 +140,9 @@ impl HostInsertion {
         let names = [
             Some(BEGINS),
             Some(NODES),
-            choices.is_compacted.then_some(LINEAR),
+            choices.lists.is_compacted.then_some(LINEAR),
             Some(ADDRESSES),
-            choices.has_zmax.then_some(ZMAX),
+            choices.lists.has_zmax.then_some(ZMAX),
         ];
         let staged = names.into_iter().flatten().map(|name| RefCell::new(resources.buffer(&staged_name(name))));
         Self { sets, staged: staged.collect(), staged_run: Cell::new(0) }
@@ -212,7 +208,7 @@ mod tests {
         let lists = HostLists::with(&hits, Extent::new(2, 2), false, true);
         assert_eq!(lists.begins, [0, 1, 3, 0]);
         assert_eq!(lists.nodes, [[3, 2], [7, 0], [3, 0]]);
-        assert_eq!(lists.addresses, [1, NONE, 0, 1, 5 | STRAY, 2]);
+        assert_eq!(lists.addresses, [1, NONE, 0, 1, 5 | ADDRESS_STRAY, 2]);
         assert_eq!((lists.stray_nodes, lists.zmax), (vec![[9, NONE]], vec![0, 3, 5, 0]));
     }
 
@@ -221,7 +217,7 @@ mod tests {
         let spids: Vec<(u32, u32)> = (0..1026).map(|primitive| (primitive, 1)).collect();
         let lists = HostLists::with(&hits(&spids), Extent::new(2, 1), false, false);
         assert_eq!((lists.nodes.len(), lists.nodes[1023], lists.crowded_count), (1024, [1023, 0], 2));
-        assert_eq!(lists.addresses[1023..], [1023, 1025 | STRAY, 1024 | STRAY]);
+        assert_eq!(lists.addresses[1023..], [1023, 1025 | ADDRESS_STRAY, 1024 | ADDRESS_STRAY]);
         assert_eq!(lists.stray_nodes, [[1024, 1], [1025, 1]]);
     }
 

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::insert::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::techniques::deep_shading::resources::full;
 use crate::techniques::deep_shading::visibility::samples::Samples;
 use std::sync::Arc;
@@ -20,11 +20,11 @@ pub struct Insert {
 impl Insert {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let on = |is_on| if is_on { "on" } else { "off" };
-        let axes = [choices.has_zmax, choices.has_addresses, choices.has_marks].map(on);
+        let axes = [choices.lists.has_zmax, choices.lists.has_addresses, choices.lists.has_marks].map(on);
         let shader = variant(COMP_VARIANTS, &axes);
         let constants = [
-            ("TOLERATES_DUPLICATES", u32::from(choices.tolerates_duplicates)),
-            ("IS_COMPACTED", u32::from(choices.is_compacted)),
+            ("TOLERATES_DUPLICATES", u32::from(choices.lists.tolerates_duplicates)),
+            ("IS_COMPACTED", u32::from(choices.lists.is_compacted)),
             ("IS_COUNTED", u32::from(choices.is_counted)),
             ("BY_ADDRESS", u32::from(choices.is_by_address)),
             ("HAS_FENCES", u32::from(!gpu.caps.identity.barriers_end_threads())),
@@ -37,11 +37,12 @@ impl Insert {
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        samples: &Samples,
+        seen: Edge<'_, Samples>,
         lists: &Lists,
         colors: &Buffer,
-        counters: &Buffer,
+        counters: Edge<'_, Buffer>,
     ) -> Result<()> {
+        let samples = seen.resource;
         let spids = &samples.spids;
         let traffic = Traffic {
             // What walks read beside is counted after the frame.
@@ -60,16 +61,15 @@ impl Insert {
             cmd.barriers(cleared.iter().map(|buffer| buffer.discard(Access::TransferWrite)));
             cleared.iter().for_each(|buffer| cmd.clear(buffer));
             cmd.barriers(cleared.iter().map(|buffer| buffer.from(Access::TransferWrite).to(Access::ComputeWrite)));
-            cmd.barriers([counters.from(Access::FragmentWrite).to(Access::ComputeWrite)]);
+            cmd.barriers([counters.to(Access::ComputeWrite)]);
             let fresh = [Some(&lists.nodes), Some(colors), lists.addresses.as_ref()].into_iter().flatten();
             cmd.barriers(fresh.map(|buffer| buffer.discard(Access::ComputeWrite)));
-            let seen = [Some(spids), samples.shading_depths()].into_iter().flatten();
-            cmd.barriers(seen.map(|image| image.from(samples.written).to(Access::ComputeSample)));
+            cmd.barriers(seen.colors_to(Access::ComputeSample));
             let mut bound = bound.to_vec();
             bound.extend(lists.bound());
             bound.extend([
                 ("Colors", Bound::Buffer(colors)),
-                ("Counters", Bound::Buffer(counters)),
+                ("Counters", Bound::Buffer(counters.resource)),
                 ("spids", samples.sampled(spids, Access::ComputeSample)),
             ]);
             let depths = samples.shading_depths();

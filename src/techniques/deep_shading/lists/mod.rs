@@ -1,4 +1,4 @@
-//! Lists: which triangles must be shaded at each pixel of shading space (Clarberg & Munkberg 2014, section 4.3).
+//! Lists of the triangles to shade, and the passes that make them (Clarberg & Munkberg 2014, section 4.3).
 //!
 //! Why lanes have samples of one tuple: neighbours in a layer are pixels apart and mostly have lists of their own; the samples
 //! of one pixel would all find one list empty at once.
@@ -9,7 +9,7 @@ pub mod direct;
 pub mod insert;
 
 use super::choices::Choices;
-use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands};
+use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer};
 use crate::plan::Resources;
 use crate::techniques::deep_shading::resources::{ADDRESSES, BEGINS, COLORS, LINEAR, MARKS, NODES, ZMAX, full};
 
@@ -29,6 +29,40 @@ pub struct Lists {
     pub marks: Option<Buffer>,
 }
 
+/// Lists, and who touched which part of them last: passes read some parts and leave others.
+#[derive(Clone, Copy)]
+pub struct ListsEdge<'a> {
+    pub lists: &'a Lists,
+    /// Begins, nodes and rows.
+    pub links: AccessSet,
+    pub addresses: AccessSet,
+    pub depths_and_marks: AccessSet,
+}
+
+impl<'a> ListsEdge<'a> {
+    pub fn links_to(self, access: Access) -> impl Iterator<Item = Barrier> + 'a {
+        self.lists.links().map(move |buffer| buffer.from(self.links).to(access))
+    }
+
+    /// None without addresses.
+    pub fn addresses_to(self, access: Access) -> Option<Barrier> {
+        self.lists.addresses.as_ref().map(|buffer| buffer.from(self.addresses).to(access))
+    }
+
+    pub fn depths_and_marks_to(self, access: Access) -> impl Iterator<Item = Barrier> + 'a {
+        let buffers = self.lists.zmax.iter().chain(&self.lists.marks);
+        buffers.map(move |buffer| buffer.from(self.depths_and_marks).to(access))
+    }
+
+    /// Addresses where there are some, links otherwise: what leads from a sample to its colour becomes readable.
+    pub fn colors_found_by(self, access: Access) -> Vec<Barrier> {
+        match self.addresses_to(access) {
+            Some(addresses) => vec![addresses],
+            None => self.links_to(access).collect(),
+        }
+    }
+}
+
 /// 8 B a sample: RGBA16F; alpha is 1 where it is stored.
 pub fn colors(resources: &mut Resources) -> Buffer {
     resources.buffer(&full(COLORS))
@@ -40,10 +74,10 @@ impl Lists {
         Self {
             begins: take(BEGINS),
             nodes: take(NODES),
-            linear: choices.is_compacted.then(|| take(LINEAR)),
-            addresses: choices.has_addresses.then(|| take(ADDRESSES)),
-            zmax: choices.has_zmax.then(|| take(ZMAX)),
-            marks: choices.has_marks.then(|| take(MARKS)),
+            linear: choices.lists.is_compacted.then(|| take(LINEAR)),
+            addresses: choices.lists.has_addresses.then(|| take(ADDRESSES)),
+            zmax: choices.lists.has_zmax.then(|| take(ZMAX)),
+            marks: choices.lists.has_marks.then(|| take(MARKS)),
         }
     }
 
@@ -66,15 +100,10 @@ impl Lists {
         bound
     }
 
-    /// Compute shaders touch the links after draws have read them: what wrote them was waited for by the draws alone.
-    pub fn links_to_compute(&self, cmd: &mut Commands, to: Access) {
-        self.links_to(cmd, (Access::ComputeWrite | Access::ComputeRead).with(Access::GraphicsRead), to);
-    }
-
-    /// Barriers of the links, from one access to another.
-    pub fn links_to(&self, cmd: &mut Commands, from: impl Into<AccessSet>, to: Access) {
-        let from = from.into();
-        cmd.barriers(self.links().map(|buffer| buffer.from(from).to(to)));
+    /// Names the access that touched all of it last.
+    pub fn from(&self, access: impl Into<AccessSet>) -> ListsEdge<'_> {
+        let access = access.into();
+        ListsEdge { lists: self, links: access, addresses: access, depths_and_marks: access }
     }
 
     /// Bytes of nodes and begins, which a pass over all of them reads.

@@ -1,42 +1,29 @@
 //! How every pixel that a triangle touches is drawn (`--conservative`). Clarberg & Munkberg 2014, section 4.4.
 
 use crate::caps::Caps;
+use crate::choice::choices;
 use crate::settings::Values;
 
-/// How every pixel that a triangle touches is drawn (`--conservative`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Conservative {
-    /// By the device.
-    Hardware,
-    /// Its hull from a geometry shader.
-    Geometry,
-    /// Its hull from vertex shaders.
-    Vertex,
-    /// Only what it covers the middle of: samples at its rim find no colour.
-    Plain,
+choices! {
+    /// How every pixel that a triangle touches is drawn (`--conservative`).
+    pub enum Conservative {
+        /// Its hull from a geometry shader.
+        "geometry" => Geometry,
+        /// Its hull from vertex shaders.
+        "vertex" => Vertex,
+        /// By the device.
+        "hardware" => Hardware,
+        /// Only what it covers the middle of: samples at its rim find no colour.
+        "none" => Plain,
+    }
 }
 
 impl Conservative {
     /// `--conservative`, `auto` resolved.
     pub fn of(values: &Values, caps: &Caps) -> Self {
-        match values.text("conservative") {
-            "hardware" => Self::Hardware,
-            "geometry" => Self::Geometry,
-            "vertex" => Self::Vertex,
-            "none" => Self::Plain,
-            // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
-            _ if caps.features.geometry_shader => Self::Geometry,
-            _ => Self::Vertex,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Hardware => "hardware",
-            Self::Geometry => "geometry",
-            Self::Vertex => "vertex",
-            Self::Plain => "none",
-        }
+        // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
+        let best = if caps.features.geometry_shader { Self::Geometry } else { Self::Vertex };
+        values.unless_auto("conservative", Values::choice).unwrap_or(best)
     }
 }
 

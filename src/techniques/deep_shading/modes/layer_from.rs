@@ -1,31 +1,22 @@
 //! Which stage says the layer (`--layer-from`).
 
 use crate::caps::Caps;
+use crate::choice::choices;
 use crate::settings::Values;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LayerFrom {
-    /// The vertex shader.
-    Vertex,
-    /// A geometry shader after it.
-    Geometry,
+choices! {
+    /// Which stage says the layer (`--layer-from`).
+    pub enum LayerFrom {
+        "vertex" => Vertex,
+        /// A geometry shader after the vertex shader.
+        "geometry" => Geometry,
+    }
 }
 
 impl LayerFrom {
     /// `--layer-from`, `auto` resolved.
     pub fn of(values: &Values, caps: &Caps) -> Self {
-        match values.text("layer-from") {
-            "vertex" => Self::Vertex,
-            "geometry" => Self::Geometry,
-            _ if caps.features.layer_from_vertex_shader => Self::Vertex,
-            _ => Self::Geometry,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Vertex => "vertex",
-            Self::Geometry => "geometry",
-        }
+        let best = if caps.features.layer_from_vertex_shader { Self::Vertex } else { Self::Geometry };
+        values.unless_auto("layer-from", Values::choice).unwrap_or(best)
     }
 }

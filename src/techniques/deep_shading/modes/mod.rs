@@ -3,9 +3,12 @@
 
 pub mod conservative;
 pub mod layer_from;
+pub mod lists;
 pub mod pass_samples;
 pub mod polygon_from;
 pub mod pool_size;
 pub mod sample_tests;
 pub mod shading;
+pub mod shading_kind;
 pub mod visibility;
+pub mod warp;

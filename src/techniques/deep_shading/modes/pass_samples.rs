@@ -3,6 +3,7 @@
 use crate::caps::{Ability, Caps, Need};
 use crate::error::{Error, Result};
 use crate::settings::Values;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 
 /// More than one sample a pixel, most first.
 pub const MULTIPLE: [(u32, Ability); 2] = [(8, Ability::EightSamples), (4, Ability::FourSamples)];
@@ -25,11 +26,11 @@ pub fn pass_samples(values: &Values, caps: &Caps, spp: u32) -> Result<u32> {
 
 /// What `--pass-samples` needs of a device; None with other kinds of `--shading`, which refuse the setting.
 pub fn needs(values: &Values) -> Option<Need> {
-    let asked = values.text("pass-samples");
-    if values.text("shading") != "msaa" {
+    if !values.is("shading", ShadingKind::Msaa) {
         return None;
     }
-    let (_, ability) = MULTIPLE.into_iter().find(|(samples, _)| asked == samples.to_string())?;
+    let asked = values.unless_auto("pass-samples", Values::integer)?;
+    let (_, ability) = MULTIPLE.into_iter().find(|(samples, _)| asked == u64::from(*samples))?;
     let instead = "--pass-samples auto takes as many as the device has";
     Some(Need { of: format!("--pass-samples {asked}"), ability, instead })
 }

@@ -12,7 +12,7 @@ pub struct PoolSize {
 
 impl PoolSize {
     pub fn of(values: &Values) -> Self {
-        let side_px = values.text("shading-texture-size").parse().expect("it is one of a list");
-        Self { count: values.integer("shading-textures") as u32, side_px }
+        let [count, side_px] = ["shading-textures", "shading-texture-size"].map(|key| values.integer(key) as u32);
+        Self { count, side_px }
     }
 }

@@ -5,40 +5,59 @@ use crate::error::{Error, Result};
 use crate::settings::{Condition, Unread, Values, readers};
 use crate::techniques::deep_shading::modes::pass_samples;
 use crate::techniques::deep_shading::modes::pool_size::PoolSize;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::NAME;
 use crate::techniques::deep_shading::settings::SETTINGS;
 
 /// Settings that not everything that is shaded reads.
 pub const CONDITIONS: &[Condition] = &[
-    Condition { key: "guard-band", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
+    Condition {
+        key: "guard-band",
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, NO_SPACE),
+    },
     Condition {
         key: "shading-scale",
         unread: |values| {
             Unread::unless(
                 values,
                 "shading",
-                &["deep", "indirect-gbuffer", "texture-space"],
+                &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::TextureSpace],
                 "it shades no pixels of shading space",
             )
         },
     },
-    Condition { key: "shading-warp", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
-    Condition { key: "warp-falloff", unread: |values| Unread::unless(values, "shading", OF_SPACE, NO_SPACE) },
-    Condition { key: "lists", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition {
+        key: "shading-warp",
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, NO_SPACE),
+    },
+    Condition {
+        key: "warp-falloff",
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, NO_SPACE),
+    },
+    Condition { key: "lists", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
     Condition {
         key: "list-access",
-        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples' colours are in images"),
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples' colours are in images"),
     },
-    Condition { key: "duplicates", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "compaction", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "zmax", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "address-buffer", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "conservative", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
-    Condition { key: "shaded-triangles", unread: |values| Unread::unless(values, "shading", &["deep"], NO_LISTS) },
+    Condition { key: "duplicates", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
+    Condition { key: "compaction", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
+    Condition { key: "zmax", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
+    Condition {
+        key: "address-buffer",
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS),
+    },
+    Condition {
+        key: "conservative",
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS),
+    },
+    Condition {
+        key: "shaded-triangles",
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS),
+    },
     Condition {
         key: "layer-from",
-        unread: |values| Unread::unless(values, "shading", OF_SPACE, "samples are drawn layer by layer"),
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples are drawn layer by layer"),
     },
     Condition {
         key: "polygon-from",
@@ -46,7 +65,7 @@ pub const CONDITIONS: &[Condition] = &[
             Unread::unless(
                 values,
                 "shading",
-                &["deep", "indirect-gbuffer", "ssaa", "texture-space"],
+                &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::Ssaa, ShadingKind::TextureSpace],
                 "its triangles come from vertex shaders",
             )
         },
@@ -57,30 +76,32 @@ pub const CONDITIONS: &[Condition] = &[
             Unread::unless(
                 values,
                 "shading",
-                OF_SPACE,
+                ShadingKind::OF_SPACE,
                 "samples are drawn and coloured layer by layer, or as many at a time as an image has",
             )
         },
     },
     Condition {
         key: "pass-samples",
-        unread: |values| Unread::unless(values, "shading", &["msaa"], "samples are drawn one at a time"),
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Msaa], "samples are drawn one at a time"),
     },
     Condition {
         key: "shading-cache",
-        unread: |values| Unread::unless(values, "shading", &["indirect-gbuffer"], "it has no cache"),
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::IndirectGbuffer], "it has no cache"),
     },
     Condition {
         key: "shading-textures",
-        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
+        unread: |values| {
+            Unread::unless(values, "shading", &[ShadingKind::TextureSpace], "it has no textures of its own")
+        },
     },
     Condition {
         key: "shading-texture-size",
-        unread: |values| Unread::unless(values, "shading", &["texture-space"], "it has no textures of its own"),
+        unread: |values| {
+            Unread::unless(values, "shading", &[ShadingKind::TextureSpace], "it has no textures of its own")
+        },
     },
 ];
-
-pub const OF_SPACE: &[&str] = &["deep", "indirect-gbuffer"];
 
 pub const NO_SPACE: &str = "it has no shading space";
 
@@ -109,15 +130,13 @@ impl Shading {
     ///
     /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
     pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
-        let text = values.text("shading");
         readers::require_read(CONDITIONS, SETTINGS, values)?;
-        Ok(match text {
-            "deep" => Self::Deep,
-            "indirect-gbuffer" => Self::IndirectGbuffer,
-            "ssaa" => Self::Ssaa,
-            "texture-space" => Self::TextureSpace(PoolSize::of(values)),
-            "msaa" => Self::Msaa { pass_samples: pass_samples::pass_samples(values, caps, spp)? },
-            other => panic!("--shading {other} was checked"),
+        Ok(match values.choice("shading") {
+            ShadingKind::Deep => Self::Deep,
+            ShadingKind::IndirectGbuffer => Self::IndirectGbuffer,
+            ShadingKind::Ssaa => Self::Ssaa,
+            ShadingKind::TextureSpace => Self::TextureSpace(PoolSize::of(values)),
+            ShadingKind::Msaa => Self::Msaa { pass_samples: pass_samples::pass_samples(values, caps, spp)? },
         })
     }
 
@@ -125,7 +144,7 @@ impl Shading {
     ///
     /// Errors: what is drawn sample by sample has no such kind (exit code 2).
     pub fn visibility(self, values: &Values) -> Result<Visibility> {
-        let visibility = Visibility::of(values);
+        let visibility: Visibility = values.choice("visibility");
         let goes_with_all = matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic);
         match self {
             Self::Deep | Self::IndirectGbuffer => Ok(visibility),

@@ -1,31 +1,21 @@
 //! What triangles are drawn as (`--visibility`).
 
+use crate::choice::choices;
 use crate::gpu::Access;
-use crate::settings::Values;
 
-/// Shape in which triangles are drawn, and order of tuples and draws (`--visibility`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Visibility {
-    RepeatFrame,
-    RepeatDraw,
-    Instancing,
-    Replicate,
-    Stochastic,
-    Ray,
+choices! {
+    /// Shape in which triangles are drawn, and order of tuples and draws (`--visibility`).
+    pub enum Visibility {
+        "repeat-frame" => RepeatFrame,
+        "repeat-draw" => RepeatDraw,
+        "instancing" => Instancing,
+        "replicate" => Replicate,
+        "stochastic" => Stochastic,
+        "ray" => Ray,
+    }
 }
 
 impl Visibility {
-    pub fn of(values: &Values) -> Self {
-        match values.text("visibility") {
-            "repeat-draw" => Self::RepeatDraw,
-            "instancing" => Self::Instancing,
-            "replicate" => Self::Replicate,
-            "stochastic" => Self::Stochastic,
-            "ray" => Self::Ray,
-            _ => Self::RepeatFrame,
-        }
-    }
-
     /// Whether all layers are drawn into at once.
     pub fn is_layered(self) -> bool {
         matches!(self, Self::RepeatDraw | Self::Instancing | Self::Replicate)

@@ -1,6 +1,6 @@
 //! What the filter's passes hand to each other.
 
-use crate::gpu::{Bound, Buffer};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Edge};
 
 pub const RANGES: &str = "reconstruct.samples.draws";
 
@@ -11,7 +11,20 @@ pub struct FilterBuffers {
     pub(super) tiles: Buffer,
 }
 
+impl Edge<'_, FilterBuffers> {
+    /// Samples' colours and vectors become readable by compute shaders.
+    pub(super) fn samples_to_read(self) -> [Barrier; 2] {
+        let FilterBuffers { colors, vectors, .. } = self.resource;
+        [colors, vectors].map(|buffer| buffer.from(self.from).to(Access::ComputeRead))
+    }
+}
+
 impl FilterBuffers {
+    /// Names the access that touched samples' colours and vectors last.
+    pub(super) fn from(&self, access: Access) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
     pub(super) fn bound(&self) -> [(&'static str, Bound<'_>); 3] {
         [
             ("SampleColors", Bound::Buffer(&self.colors)),

@@ -5,7 +5,7 @@
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::layers::COMP;
-use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Commands, Edge, Gpu, Traffic};
 use crate::techniques::deep_shading::choices::{Choices, constants_of};
 use crate::techniques::deep_shading::reconstruct::filter_buffers::FilterBuffers;
 use crate::techniques::deep_shading::resources::full;
@@ -22,26 +22,26 @@ impl Layers {
         Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &constants_of(choices, &[Some(&COMP)]))? })
     }
 
-    /// After the samples. `tiles` across and down: a workgroup each.
+    /// `tiles` across and down: a workgroup each.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
-        reconstructed: &FilterBuffers,
+        gathered: Edge<'_, FilterBuffers>,
         [across, down]: [u32; 2],
     ) -> Result<()> {
+        let buffers = gathered.resource;
         // A tile and the eight around it, twice.
         let traffic = Traffic {
-            read_bytes: 18 * reconstructed.sample_bytes(),
-            written_bytes: reconstructed.tiles.bytes,
+            read_bytes: 18 * buffers.sample_bytes(),
+            written_bytes: buffers.tiles.bytes,
             invocations: Some(u64::from(across) * u64::from(down) * u64::from(self.pipeline.workgroup[0])),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {
-            let FilterBuffers { colors, vectors, tiles } = reconstructed;
-            cmd.barriers([colors, vectors].map(|buffer| buffer.from(Access::ComputeWrite).to(Access::ComputeRead)));
-            cmd.barriers([tiles.discard(Access::ComputeWrite)]);
+            cmd.barriers(gathered.samples_to_read());
+            cmd.barriers([buffers.tiles.discard(Access::ComputeWrite)]);
             let mut bound = bound.to_vec();
-            bound.extend(reconstructed.bound());
+            bound.extend(buffers.bound());
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), [across, down, 1])
         })
     }

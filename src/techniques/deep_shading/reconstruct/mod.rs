@@ -22,10 +22,11 @@ pub(super) mod samples;
 use super::choices::Choices;
 use super::primitives::Primitives;
 use super::ranges;
-use super::resolve::{SampleColors, fetch};
+use super::sample_colors::{SampleColors, fetch};
 use crate::error::Result;
 use crate::gpu::shader::structs::TileBlock;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
+use crate::gpu::shader::techniques::deep_shading::reconstruct::blur::TILE_PX;
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::reconstruct::filter_buffers::{FilterBuffers, RANGES};
@@ -38,9 +39,6 @@ use std::sync::Arc;
 
 pub const COLOR: &str = "reconstruct.filter.color";
 const TILES: &str = "reconstruct.layers.tiles";
-
-/// TILE_PX of blur.glsl.
-const TILE_PX: u32 = 16;
 
 /// Tiles across and down.
 fn tiles(frame: Extent) -> [u32; 2] {
@@ -72,7 +70,7 @@ pub struct Reconstruct {
     gather: Gather,
     layers: Layers,
     filter: Filter,
-    reconstructed: FilterBuffers,
+    buffers: FilterBuffers,
     /// The picture.
     pub color: Image,
 }
@@ -90,7 +88,7 @@ impl Reconstruct {
             gather: Gather::new(gpu, resources, scene, primitives, choices, fetch(choices))?,
             layers: Layers::new(gpu, choices)?,
             filter: Filter::new(gpu, choices)?,
-            reconstructed: FilterBuffers {
+            buffers: FilterBuffers {
                 colors: resources.buffer(&full(SAMPLE_COLORS)),
                 vectors: resources.buffer(&full(SAMPLE_VECTORS)),
                 tiles: resources.buffer(&full(TILES)),
@@ -101,20 +99,22 @@ impl Reconstruct {
 
     /// The buffers with one entry for each sample.
     pub fn buffers(&self) -> [&Buffer; 2] {
-        [&self.reconstructed.colors, &self.reconstructed.vectors]
+        [&self.buffers.colors, &self.buffers.vectors]
     }
 
-    /// After the resolve, which has left `resolved`.
+    /// `resolved`: the picture without the filter.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
         shaded: SampleColors<'_>,
-        resolved: &Image,
+        resolved: Edge<'_, Image>,
     ) -> Result<()> {
-        self.gather.record(cmd, bound, shaded, &self.reconstructed, resolved.description.extent)?;
-        self.layers.record(cmd, bound, &self.reconstructed, tiles(resolved.description.extent))?;
-        self.filter.record(cmd, bound, &self.reconstructed, resolved.from(Access::ComputeWrite), &self.color)
+        let (buffers, extent) = (&self.buffers, resolved.resource.description.extent);
+        self.gather.record(cmd, bound, shaded, buffers, extent)?;
+        self.layers.record(cmd, bound, buffers.from(Access::ComputeWrite), tiles(extent))?;
+        let cut = buffers.tiles.from(Access::ComputeWrite);
+        self.filter.record(cmd, bound, buffers.from(Access::ComputeRead), cut, resolved, &self.color)
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::super::primitives::Primitives;
 use super::super::ranges;
-use super::super::resolve::SampleColors;
+use super::super::sample_colors::SampleColors;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::samples::COMP_VARIANTS;
@@ -52,27 +52,26 @@ impl Gather {
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, ranges: buffer })
     }
 
-    /// After the resolve, for which `shaded` was made readable by compute shaders.
     pub fn record(
         &self,
         cmd: &mut Commands,
         bound: &[(&'static str, Bound<'_>)],
         shaded: SampleColors<'_>,
-        reconstructed: &FilterBuffers,
+        buffers: &FilterBuffers,
         frame: Extent,
     ) -> Result<()> {
         let traffic = Traffic {
             read_bytes: shaded.bytes(),
-            written_bytes: reconstructed.sample_bytes(),
+            written_bytes: buffers.sample_bytes(),
             invocations: Some(frame.pixel_count()),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {
-            shaded.stay_in_compute(cmd);
-            let FilterBuffers { colors, vectors, .. } = reconstructed;
+            cmd.barriers(shaded.to_compute());
+            let FilterBuffers { colors, vectors, .. } = buffers;
             cmd.barriers([colors, vectors].map(|buffer| buffer.discard(Access::ComputeWrite)));
             let mut bound = bound.to_vec();
             bound.extend(shaded.bound());
-            bound.extend(reconstructed.bound());
+            bound.extend(buffers.bound());
             bound.push(("DrawnRanges", Bound::Buffer(&self.ranges)));
             let groups = self.pipeline.groups([frame.width, frame.height, 1]);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)

@@ -9,16 +9,16 @@ pub(super) mod stages;
 pub mod vertex;
 
 use super::choices::Choices;
-use super::lists::Lists;
-use super::primitives::Primitives;
+use super::lists::ListsEdge;
+use super::pass_inputs::{DrawInputs, ShadingEdges};
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
 use crate::passes::mesh::{self, Sides};
 use crate::passes::shadow_maps;
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::resources::full;
@@ -46,9 +46,9 @@ pub struct Shade {
 
 impl Shade {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let lists = if choices.is_compacted { "compact" } else { "linked" };
-        let zmax = if choices.has_zmax { "on" } else { "off" };
-        let stages = choices.conservative.stages(if choices.has_marks { "on" } else { "off" });
+        let lists = if choices.lists.is_compacted { "compact" } else { "linked" };
+        let zmax = if choices.lists.has_zmax { "on" } else { "off" };
+        let stages = choices.raster.conservative.stages(if choices.lists.has_marks { "on" } else { "off" });
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
@@ -77,19 +77,15 @@ impl Shade {
         Ok(Self { pipeline, stages, space: choices.space.extent })
     }
 
-    /// The lists with the access that touched their links last; the barrier of the shadow maps.
-    #[allow(clippy::too_many_arguments)]
     pub fn record(
         &self,
         cmd: &mut Commands,
-        scene: &SceneGpu,
-        list: &DrawList,
-        primitives: &Primitives,
-        bound: &[(&'static str, Bound<'_>)],
-        (lists, left, maps): (&Lists, Access, Option<Barrier>),
-        colors: &Buffer,
-        counters: &Buffer,
+        inputs: DrawInputs<'_>,
+        listed: ListsEdge<'_>,
+        edges: ShadingEdges<'_>,
     ) -> Result<()> {
+        let DrawInputs { scene, list, primitives, .. } = inputs;
+        let (ShadingEdges { colors, counters, maps }, lists) = (edges, listed.lists);
         let traffic = Traffic {
             // Vertices are an upper bound: those of triangles without a list may stay unread.
             read_bytes: mesh::read_bytes(scene, list.calls())
@@ -100,17 +96,15 @@ impl Shade {
             invocations: None,
         };
         cmd.pass(&full("shade"), traffic, |cmd| {
-            cmd.barriers(maps);
-            lists.links_to(cmd, left, Access::GraphicsRead);
-            let zmax = lists.zmax.iter();
-            cmd.barriers(zmax.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::GraphicsRead)));
-            let marks = lists.marks.iter();
-            cmd.barriers(marks.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::GraphicsRead)));
-            let written = [colors, counters].into_iter();
-            cmd.barriers(written.map(|buffer| buffer.from(Access::ComputeWrite).to(Access::FragmentWrite)));
-            let mut bound = bound.to_vec();
+            cmd.barriers(maps.and_then(|maps| maps.to(Access::FragmentSample)));
+            cmd.barriers(listed.links_to(Access::GraphicsRead));
+            cmd.barriers(listed.depths_and_marks_to(Access::GraphicsRead));
+            cmd.barriers([colors, counters].map(|edge| edge.to(Access::FragmentWrite)));
+            let mut bound = inputs.bound.to_vec();
             bound.extend(lists.bound());
-            bound.extend([("Colors", Bound::Buffer(colors)), ("Counters", Bound::Buffer(counters))]);
+            bound.extend(
+                [("Colors", colors), ("Counters", counters)].map(|(name, edge)| (name, Bound::Buffer(edge.resource))),
+            );
             let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
             cmd.begin_rendering(self.space, &[], None);
             let Some(first) = list.calls().next() else {

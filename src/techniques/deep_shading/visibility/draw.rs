@@ -6,7 +6,8 @@ use crate::gpu::shader::techniques::deep_shading::visibility::sample::VERT_VARIA
 use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::{self, Sides};
 use crate::resident::{DrawCall, SceneGpu};
-use crate::techniques::deep_shading::primitives::{self, Primitives};
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
+use crate::techniques::deep_shading::primitives;
 use std::ops::Range;
 
 /// How each draw call is repeated for its tuples.
@@ -55,13 +56,13 @@ pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str) -> &'stat
 /// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
 pub fn draw<'a>(
     cmd: &Commands,
-    (pipeline, stages): (&GraphicsPipeline, &SampleStages),
-    scene: &SceneGpu,
-    primitives: &Primitives,
+    pipeline: &GraphicsPipeline,
+    stages: &SampleStages,
+    inputs: DrawInputs<'_>,
     calls: impl IntoIterator<Item = &'a DrawCall>,
     repeats: &Repeats,
 ) {
-    draw_by(cmd, (pipeline, stages.sides), scene, primitives, calls, repeats, |call| {
+    draw_by(cmd, pipeline, stages.sides, inputs, calls, repeats, |call| {
         let [count, first] = stages.vertices(call);
         // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
         unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
@@ -71,13 +72,14 @@ pub fn draw<'a>(
 /// The same for a caller that draws the vertices of a call itself: `draw`, for each of its repeats.
 pub fn draw_by<'a>(
     cmd: &Commands,
-    (pipeline, sides): (&GraphicsPipeline, Sides),
-    scene: &SceneGpu,
-    primitives: &Primitives,
+    pipeline: &GraphicsPipeline,
+    sides: Sides,
+    inputs: DrawInputs<'_>,
     calls: impl IntoIterator<Item = &'a DrawCall>,
     repeats: &Repeats,
     mut draw: impl FnMut(&DrawCall),
 ) {
+    let DrawInputs { scene, primitives, .. } = inputs;
     mesh::for_each(cmd, pipeline, scene, sides, calls, |call| {
         let params = primitives.params(scene, call);
         for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {

@@ -25,9 +25,10 @@ use crate::passes::{fullscreen, mesh};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::resources::{NAME, NEAREST_BYTES, full};
 use crate::techniques::deep_shading::visibility::draw::Repeats;
-use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use std::sync::Arc;
 
 const NEAREST: &str = "visibility.nearest";
@@ -64,7 +65,7 @@ pub struct LoopedSamples {
 }
 
 impl LoopedSamples {
-    /// `primitives`: numbered in the order of what is drawn.
+    /// `primitives`: numbered in the order of what is inputs.
     ///
     /// Errors: memory for the upload (exit code 4).
     pub fn new(
@@ -97,8 +98,8 @@ impl LoopedSamples {
     }
 
     /// Bytes read of vertices, and all that is written on the way.
-    pub(super) fn traffic_bytes(&self, drawn: DrawInputs<'_>) -> [u64; 2] {
-        let vertices = u64::from(self.table.eyes) * mesh::read_bytes(drawn.scene, drawn.list.calls());
+    pub(super) fn traffic_bytes(&self, inputs: DrawInputs<'_>) -> [u64; 2] {
+        let vertices = u64::from(self.table.eyes) * mesh::read_bytes(inputs.scene, inputs.list.calls());
         [vertices + self.nearest.bytes, self.nearest.bytes]
     }
 
@@ -106,7 +107,7 @@ impl LoopedSamples {
     pub(super) fn record<'a>(
         &'a self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
+        inputs: DrawInputs<'_>,
         mut bound: Vec<(&'static str, Bound<'a>)>,
         samples: &Samples,
     ) -> Result<()> {
@@ -115,12 +116,12 @@ impl LoopedSamples {
         cmd.barriers([self.nearest.from(Access::TransferWrite).to(Access::FragmentWrite)]);
         bound.push(("Nearest", Bound::Buffer(&self.nearest)));
         let sets = self.sample.sets(cmd, &bound)?;
-        cmd.begin_rendering(drawn.frame, &[], None);
+        cmd.begin_rendering(inputs.frame, &[], None);
         let step = self.table.tuples_of_eye();
         let eyes = Repeats { tuples: 0..self.table.tuple_count(), step, instance_count: 1 };
-        self.sample.draw(cmd, drawn, &sets, &eyes);
+        self.sample.draw(cmd, inputs, &sets, &eyes);
         cmd.end_rendering();
         cmd.barriers([self.nearest.from(Access::FragmentWrite).to(Access::GraphicsRead)]);
-        self.spids.record(cmd, drawn, &bound, samples)
+        self.spids.record(cmd, inputs, &bound, samples)
     }
 }

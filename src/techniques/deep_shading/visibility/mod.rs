@@ -30,8 +30,9 @@ use crate::passes::mesh;
 use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::resources::NAME;
-use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples, begin_counters};
+use crate::techniques::deep_shading::visibility::samples::{Samples, begin_counters};
 use looped::LoopedSamples;
 use sample::TupleDraws;
 use std::sync::Arc;
@@ -45,7 +46,7 @@ pub enum SampleRasterizer {
 }
 
 impl SampleRasterizer {
-    /// `primitives`: numbered in the order of what is drawn.
+    /// `primitives`: numbered in the order of what is inputs.
     ///
     /// Errors: memory for uploads (exit code 4).
     pub fn new(
@@ -55,20 +56,20 @@ impl SampleRasterizer {
         choices: &Choices,
         primitives: &Primitives,
     ) -> Result<Self> {
-        Ok(match choices.is_looped {
+        Ok(match choices.raster.is_looped {
             true => Self::Loop(Box::new(LoopedSamples::new(gpu, scene, resources, choices, primitives)?)),
             false => Self::Layers(Box::new(TupleDraws::new(gpu, scene, choices)?)),
         })
     }
 
-    fn traffic(&self, cmd: &Commands, drawn: DrawInputs<'_>, samples: &Samples, visibility: Visibility) -> Traffic {
+    fn traffic(&self, cmd: &Commands, inputs: DrawInputs<'_>, samples: &Samples, visibility: Visibility) -> Traffic {
         let layers = samples.spids.description.layers();
         let [read, written] = match self {
-            Self::Loop(looped) => looped.traffic_bytes(drawn),
+            Self::Loop(looped) => looped.traffic_bytes(inputs),
             Self::Layers(_) => {
-                let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);
+                let repeats = visibility.repeats(inputs.scene, &cmd.gpu().caps.limits, layers);
                 let rounds = visibility.round_count(&repeats, layers);
-                [u64::from(rounds) * mesh::read_bytes(drawn.scene, drawn.list.calls()), 0]
+                [u64::from(rounds) * mesh::read_bytes(inputs.scene, inputs.list.calls()), 0]
             }
         };
         Traffic { read_bytes: read, written_bytes: samples.bytes() + written, invocations: None }
@@ -79,32 +80,31 @@ impl SampleRasterizer {
 pub fn record(
     cmd: &mut Commands,
     rasterizer: &SampleRasterizer,
-    drawn: DrawInputs<'_>,
-    bound: &[(&'static str, Bound<'_>)],
+    inputs: DrawInputs<'_>,
     samples: &Samples,
     counters: &Buffer,
     visibility: Visibility,
 ) -> Result<()> {
-    let traffic = rasterizer.traffic(cmd, drawn, samples, visibility);
+    let traffic = rasterizer.traffic(cmd, inputs, samples, visibility);
     cmd.pass(&format!("{NAME}.visibility"), traffic, |cmd| {
         cmd.barriers(samples.colors().map(|image| image.discard(Access::ColorWrite)));
         cmd.barriers(samples.depth.iter().map(|depth| depth.discard(Access::DepthWrite)));
         begin_counters(cmd, counters);
-        let mut bound = bound.to_vec();
+        let mut bound = inputs.bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
         let sample = match rasterizer {
-            SampleRasterizer::Loop(looped) => return looped.record(cmd, drawn, bound, samples),
+            SampleRasterizer::Loop(looped) => return looped.record(cmd, inputs, bound, samples),
             SampleRasterizer::Layers(sample) => sample,
         };
         let layers = samples.spids.description.layers();
-        let repeats = visibility.repeats(drawn.scene, &cmd.gpu().caps.limits, layers);
+        let repeats = visibility.repeats(inputs.scene, &cmd.gpu().caps.limits, layers);
         let sets = sample.sets(cmd, &bound)?;
         visibility.for_layers(&repeats, layers, |at, repeats| {
             samples.begin(cmd, at);
             if let Layers::One(tuple) = at {
-                cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, tuple));
+                cmd.set_scissor([0, 0], inputs.table.inside(inputs.frame, tuple));
             }
-            sample.draw(cmd, drawn, &sets, repeats);
+            sample.draw(cmd, inputs, &sets, repeats);
             cmd.end_rendering();
         });
         Ok(())

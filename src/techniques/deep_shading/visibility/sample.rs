@@ -12,9 +12,9 @@ use crate::passes::mesh::{self};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::resources::{DEPTH_FORMAT, SHADING_DEPTH_FORMAT, SPID_FORMAT};
 use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages, draw};
-use crate::techniques::deep_shading::visibility::samples::DrawInputs;
 use ash::vk;
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub struct TupleDraws {
 
 impl TupleDraws {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
-        let depth = if choices.has_zmax { "shading" } else { "none" };
+        let depth = if choices.lists.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = stages::stages(scene, choices, &repeats);
@@ -46,7 +46,7 @@ impl TupleDraws {
                     fragment: Some(fragment),
                     constants: &constants,
                     vertex_buffers: &[],
-                    color_formats: if choices.has_zmax { &formats } else { &formats[..1] },
+                    color_formats: if choices.lists.has_zmax { &formats } else { &formats[..1] },
                     samples: 1,
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
@@ -80,16 +80,16 @@ impl TupleDraws {
     pub fn draw(
         &self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
+        inputs: DrawInputs<'_>,
         PipelineSets([opaque, tested]): &PipelineSets,
         repeats: &Repeats,
     ) {
-        let DrawInputs { scene, list, primitives, .. } = drawn;
+        let DrawInputs { scene, list, primitives, .. } = inputs;
         for (pipeline, set, calls) in [(&self.opaque, opaque, &list.opaque), (&self.tested, tested, &list.mask)] {
             if let Some(first) = calls.first() {
                 let params = primitives.params(scene, first);
                 cmd.bind_with_set(pipeline, bytemuck::bytes_of(&params), *set);
-                draw(cmd, (pipeline, &self.stages), scene, primitives, calls, repeats);
+                draw(cmd, pipeline, &self.stages, inputs, calls, repeats);
             }
         }
     }

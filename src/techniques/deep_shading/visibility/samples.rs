@@ -1,15 +1,11 @@
-//! What samples see, one entry each, and what is drawn for them.
+//! What samples see, one entry each.
 
 use crate::error::Result;
 use crate::gpu::sampler::Sampler;
-use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Gpu, Image, Layers};
+use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Layers};
 use crate::plan::Resources;
-use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::Choices;
-use crate::techniques::deep_shading::primitives::Primitives;
 use crate::techniques::deep_shading::resources::{DEPTH, SHADING_DEPTHS, SPIDS, full};
-use crate::techniques::deep_shading::tuples::TupleTable;
-use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
@@ -32,9 +28,14 @@ impl Samples {
             spids: resources.image(&full(SPIDS)),
             depth: choices.has_depth().then(|| resources.image(&full(DEPTH))),
             written: choices.visibility.writes(),
-            shading_depths: choices.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
+            shading_depths: choices.lists.has_zmax.then(|| resources.image(&full(SHADING_DEPTHS))),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
         })
+    }
+
+    /// Names the access that touched SPIDs and depths at shading points last.
+    pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
     }
 
     pub fn sampled<'a>(&'a self, image: &'a Image, access: Access) -> Bound<'a> {
@@ -64,14 +65,24 @@ impl Samples {
     }
 }
 
-/// What is drawn, and where.
+/// What says which triangle a sample sees, for passes that draw the triangles again.
 #[derive(Clone, Copy)]
-pub struct DrawInputs<'a> {
-    pub scene: &'a SceneGpu,
-    pub list: &'a DrawList,
-    pub primitives: &'a Primitives,
-    pub table: &'a TupleTable,
-    pub frame: Extent,
+pub struct SeenSamples<'a> {
+    pub spids: Edge<'a, Samples>,
+    /// Where samples have a depth buffer.
+    pub depth: Option<Edge<'a, Image>>,
+}
+
+impl Edge<'_, Samples> {
+    /// SPIDs become readable as `access` says.
+    pub fn spids_to(self, access: Access) -> Barrier {
+        self.resource.spids.from(self.from).to(access)
+    }
+
+    /// SPIDs and, with `--zmax on`, depths at shading points become readable as `access` says.
+    pub fn colors_to(self, access: Access) -> impl Iterator<Item = Barrier> {
+        self.resource.colors().map(move |image| image.from(self.from).to(access))
+    }
 }
 
 /// Sets the counters of a frame to 0, for shaders of fragments to count on.

@@ -14,8 +14,9 @@ use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::resources::{SHADING_DEPTH_FORMAT, SPID_FORMAT, full};
-use crate::techniques::deep_shading::visibility::samples::{DrawInputs, Samples};
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use std::sync::Arc;
 
 const RANGES: &str = "visibility.draws";
@@ -38,9 +39,9 @@ impl Spids {
         choices: &Choices,
         primitives: &Primitives,
     ) -> Result<Self> {
-        let fragment = variant(FRAG_VARIANTS, &[if choices.has_zmax { "shading" } else { "none" }]);
+        let fragment = variant(FRAG_VARIANTS, &[if choices.lists.has_zmax { "shading" } else { "none" }]);
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
-        let formats = if choices.has_zmax { &formats[..] } else { &formats[..1] };
+        let formats = if choices.lists.has_zmax { &formats[..] } else { &formats[..1] };
         let constants = constants_of(choices, &[Some(fragment)]);
         let description = GraphicsDescription { constants: &constants, ..fullscreen::description(fragment, formats) };
         let ranges = resources.buffer(&full(RANGES));
@@ -53,7 +54,7 @@ impl Spids {
     pub(super) fn record(
         &self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
+        inputs: DrawInputs<'_>,
         bound: &[(&'static str, Bound<'_>)],
         samples: &Samples,
     ) -> Result<()> {
@@ -62,7 +63,7 @@ impl Spids {
         let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
         for tuple in 0..samples.spids.description.layers() {
             samples.begin(cmd, Layers::One(tuple));
-            cmd.set_scissor([0, 0], drawn.table.inside(drawn.frame, tuple));
+            cmd.set_scissor([0, 0], inputs.table.inside(inputs.frame, tuple));
             cmd.bind_with_set(&self.pipeline, &[], set);
             fullscreen::draw(cmd, tuple);
             cmd.end_rendering();

@@ -39,7 +39,7 @@ impl Visibility {
 pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> SampleStages {
     match choices.visibility {
         Visibility::RepeatFrame => SampleStages::sharp(draw::vertex_shader(scene, repeats, "none"), None),
-        Visibility::RepeatDraw | Visibility::Instancing => choices.layer_from.stages(scene, repeats),
+        Visibility::RepeatDraw | Visibility::Instancing => choices.raster.layer_from.stages(scene, repeats),
         Visibility::Replicate => replicate::stages(scene, repeats),
         Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices, "layer"),
     }

@@ -10,24 +10,21 @@
 
 use super::super::choices::Choices;
 use super::polygon;
+use crate::gpu::shader::techniques::deep_shading::visibility::bound::{BOUND_MOST_SIDES, BOUND_STILL_SIDES};
 use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh::Sides;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
-/// BOUND_MOST_SIDES and BOUND_STILL_SIDES of bound.glsl.
-const MOST_SIDES: u32 = 12;
-const STILL_SIDES: u32 = 7;
-
 pub(super) const FRAGMENTS: &[&Shader] = FRAG_VARIANTS;
 
 /// `tests`: the value of the shaders' axis.
 pub(super) fn stages(choices: &Choices, tests: &str) -> SampleStages {
-    if choices.polygon_from == PolygonFrom::Geometry {
+    if choices.raster.polygon_from == PolygonFrom::Geometry {
         return polygon::stages(tests);
     }
-    let side_count = if choices.is_moving { MOST_SIDES } else { STILL_SIDES };
+    let side_count = if choices.blur.is_moving { BOUND_MOST_SIDES } else { BOUND_STILL_SIDES };
     SampleStages {
         vertex: variant(VERT_VARIANTS, &[tests]),
         geometry: None,

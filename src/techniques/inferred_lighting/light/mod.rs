@@ -16,6 +16,7 @@ pub mod store;
 pub mod tiled;
 pub mod volumes;
 
+use crate::choice::choices;
 use crate::gpu::Access;
 use crate::plan::Plan;
 use crate::techniques::inferred_lighting::resources::NAME;
@@ -23,34 +24,22 @@ use crate::units::Extent;
 use ash::vk;
 use store::Store;
 
-/// How texels meet their lights (`--volumes`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Volumes {
-    Tiled,
-    Quad,
-    Scissor,
-    /// Over the frame, where the light's volume meets a surface.
-    Stencil,
-    /// The same within the rectangle.
-    Both,
-    /// The same, except for small lights, which have the rectangle alone.
-    Auto,
+choices! {
+    /// How texels meet their lights (`--volumes`).
+    pub enum Volumes {
+        "tiled" => Tiled,
+        "quad" => Quad,
+        "scissor" => Scissor,
+        /// Over the frame, where the light's volume meets a surface.
+        "stencil" => Stencil,
+        /// The same within the rectangle.
+        "both" => Both,
+        /// The same, except for small lights, which have the rectangle alone.
+        "auto" => Auto,
+    }
 }
 
 impl Volumes {
-    /// The value of `--volumes`.
-    pub fn from_setting(text: &str) -> Self {
-        match text {
-            "tiled" => Self::Tiled,
-            "quad" => Self::Quad,
-            "scissor" => Self::Scissor,
-            "stencil" => Self::Stencil,
-            "both" => Self::Both,
-            "auto" => Self::Auto,
-            other => panic!("--volumes {other} was checked"),
-        }
-    }
-
     /// Whether lights are counted into a stencil.
     pub fn counts(self) -> bool {
         matches!(self, Self::Stencil | Self::Both | Self::Auto)

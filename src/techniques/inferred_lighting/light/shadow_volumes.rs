@@ -18,8 +18,9 @@ use crate::gpu::shader::techniques::inferred_lighting::light::shadow_volumes::VE
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
 use crate::lights::shadow_casters::{CastingLight, ShadowCasters};
 use crate::memory::kinds::Use;
-use crate::passes::direct::{DirectGpu, DirectShadow};
+use crate::passes::direct::DirectGpu;
 use crate::plan::{Plan, Resources, Shape};
+use crate::settings::DirectShadow;
 use crate::techniques::inferred_lighting::resources::NAME;
 use ash::vk;
 use std::sync::Arc;

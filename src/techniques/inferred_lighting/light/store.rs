@@ -1,15 +1,27 @@
 //! How the L-buffer keeps light: the twin of l_buffer.glsl. Kircher 2009, sections 2.2, 5.1.
 
+use crate::choice::choices;
+use crate::gpu::shader::techniques::inferred_lighting::l_buffer::LIGHT_STEPS;
 use half::f16;
 
-/// Steps of fixed point that encode light; the number after the last encodes NaN.
-const LIGHT_STEPS: f32 = 65534.0;
 /// Down to what part of `--light-range` losses are measured.
 const LEAST_PART: f32 = 1.0 / 256.0;
 /// Lights that a loss is measured at.
 const LOSS_SAMPLES: u16 = 4096;
 
-/// A channel of the L-buffer (`--l-buffer`).
+choices! {
+    /// How the L-buffer sums up light (`--l-buffer`).
+    pub enum Sums {
+        /// In 32 bits, packed once to half floats.
+        "float" => Float,
+        /// Blended in half floats.
+        "half" => Half,
+        /// In 32 bits, packed once to 16 bits of fixed point.
+        "fixed" => Fixed,
+    }
+}
+
+/// A channel of the L-buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Store {
     Halves,

@@ -14,8 +14,9 @@ use crate::gpu::shader::techniques::interleaved_deferred::split::fragment::FRAG_
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, ColorTarget, Commands, Edge, Gpu, Traffic};
 use crate::passes::fullscreen;
-use crate::passes::gbuffer::{GBuffer, PositionStorage};
+use crate::passes::gbuffer::GBuffer;
 use crate::plan::{Plan, Resources};
+use crate::settings::PositionStorage;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 

@@ -1,6 +1,7 @@
 //! The host's part: the atlas of every mesh that is drawn, as shaders read it. What has none is refused.
 
 use crate::error::{Error, Result};
+use crate::gpu::shader::techniques::deep_shading::baseline::texture_space::atlas::{CHART_LEVEL_BITS, OWNER_RANK_BITS};
 use crate::resident::groups_of;
 use crate::scene::atlas::{Atlas, Flaw};
 use crate::scene::{Mesh, Scene, procedural};
@@ -8,10 +9,8 @@ use crate::techniques::deep_shading::resources::NAME;
 use glam::Vec2;
 use rayon::prelude::*;
 
-/// CHART_LEVEL_BITS of atlas.glsl.
-const CHART_LEVEL_BITS: u32 = 4;
-/// Owners' words hold one more than a triangle (OWNER_TRIANGLE of atlas.glsl).
-const MOST_TRIANGLES: usize = (1 << 27) - 1;
+/// Owners' words hold one more than a triangle beside a rank.
+const MOST_TRIANGLES: usize = (u32::MAX >> OWNER_RANK_BITS) as usize;
 
 /// Atlases of all meshes in the order of `Geometry`: vertices one after the other, triangles by cluster.
 pub struct Atlases {

@@ -2,16 +2,16 @@
 //! reads   the scene, texture_space.atlas, texture_space.charts
 
 use super::super::super::choices::Choices;
-use super::super::super::shade::vertex::HULL_VERTICES;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::texture_space::hull::VERT;
+use crate::gpu::shader::techniques::deep_shading::hull::HULL_VERTICES;
 use crate::gpu::{Bound, Commands, Gpu};
 use crate::passes::mesh::{self, Sides};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::deep_shading::choices::constants_of;
-use crate::techniques::deep_shading::visibility::samples::DrawInputs;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -64,11 +64,11 @@ impl Hulls {
     pub fn draw(
         &self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
+        inputs: DrawInputs<'_>,
         draws: &[DrawList],
         sets: &[Option<vk::DescriptorSet>],
     ) {
-        let DrawInputs { scene, primitives, .. } = drawn;
+        let DrawInputs { scene, primitives, .. } = inputs;
         cmd.begin_rendering(self.texture, &[], None);
         for (list, set) in draws.iter().zip(sets) {
             let Some(first) = list.calls().next() else { continue };

@@ -34,8 +34,8 @@ use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::modes::pool_size::PoolSize;
+use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::resources::full;
-use crate::techniques::deep_shading::visibility::samples::DrawInputs;
 use ash::vk;
 use atlases::Atlases;
 use hull::Hulls;
@@ -111,22 +111,20 @@ impl TextureSpace {
     }
 
     /// All draws, as many at a time as there are textures: claimed, shaded, and then drawn by `draw`, which gets them
-    /// with the sets that `sample` binds for each and whether they are the first. `bound`: what shaders of the
-    /// technique may read.
+    /// with the sets that `sample` binds for each and whether they are the first.
     ///
     /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(
         &self,
         cmd: &mut Commands,
-        drawn: DrawInputs<'_>,
-        bound: &[(&'static str, Bound<'_>)],
+        inputs: DrawInputs<'_>,
         sample: &TupleDraws,
         mut draw: impl FnMut(&mut Commands, &[(&DrawList, &PipelineSets)], bool),
     ) -> Result<()> {
         let mut sets = Vec::new();
         for texture in self.pool.bound() {
             let own = [("Atlas", Bound::Buffer(&self.atlas)), ("Charts", Bound::Buffer(&self.charts))];
-            let bound: Vec<_> = bound.iter().copied().chain(own).chain(texture).collect();
+            let bound: Vec<_> = inputs.bound.iter().copied().chain(own).chain(texture).collect();
             sets.push(SlotSets {
                 claim: self.claim.set(cmd, &bound)?,
                 shade: self.shade.set(cmd, &bound)?,
@@ -135,16 +133,16 @@ impl TextureSpace {
         }
         let [claims, shades] = [|set: &SlotSets| set.claim, |set: &SlotSets| set.shade]
             .map(|of: fn(&SlotSets) -> Option<vk::DescriptorSet>| sets.iter().map(of).collect::<Vec<_>>());
-        let draws = draws_of(drawn.list);
+        let draws = draws_of(inputs.list);
         // Where nothing is drawn layers are still to be cleared.
         let chunk_count = draws.len().div_ceil(self.pool.len()).max(1);
         for chunk_index in 0..chunk_count {
             let is_first = chunk_index == 0;
             let chunk = draws.chunks(self.pool.len()).nth(chunk_index).unwrap_or_default();
             self.pool.begin(cmd, chunk.len(), is_first);
-            self.claim.draw(cmd, drawn, chunk, &claims);
+            self.claim.draw(cmd, inputs, chunk, &claims);
             self.pool.claimed(cmd, is_first);
-            self.shade.draw(cmd, drawn, chunk, &shades);
+            self.shade.draw(cmd, inputs, chunk, &shades);
             self.pool.shaded(cmd);
             let lists: Vec<_> = chunk.iter().zip(sets.iter().map(|set| &set.apply)).collect();
             draw(cmd, &lists, is_first);
@@ -160,9 +158,9 @@ impl TextureSpace {
     }
 
     /// Bytes of vertices and texels that claims and shading read and write, but for shading itself, which is counted after the frame.
-    pub fn traffic(&self, drawn: DrawInputs<'_>) -> [u64; 2] {
-        let read = 2 * mesh::read_bytes(drawn.scene, drawn.list.calls());
-        let chunks = draws_of(drawn.list).len() as u64;
+    pub fn traffic(&self, inputs: DrawInputs<'_>) -> [u64; 2] {
+        let read = 2 * mesh::read_bytes(inputs.scene, inputs.list.calls());
+        let chunks = draws_of(inputs.list).len() as u64;
         [read, chunks * self.pool.owner_bytes()]
     }
 }

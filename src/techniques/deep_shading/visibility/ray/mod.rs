@@ -39,7 +39,7 @@ const STAGED_DEPTHS: &str = "visibility.rays.shading_depths";
 /// Errors: the host would hold too much (exit code 4).
 pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
     let samples = choices.samples_of(inputs.view.extent);
-    let listed = if choices.is_direct { choices.space.extent.pixel_count() * LIST_BYTES } else { 0 };
+    let listed = if choices.lists.is_direct { choices.space.extent.pixel_count() * LIST_BYTES } else { 0 };
     let bytes = samples * (size_of::<Spid>() + size_of::<u32>()) as u64 + listed;
     let most = MOST_HOST_BYTES / bytes;
     if most < u64::from(choices.run_count) {
@@ -54,7 +54,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<(
         );
         return Err(Error::memory(why).within(NAME).note(advice));
     }
-    if choices.is_direct {
+    if choices.lists.is_direct {
         return Ok(());
     }
     let mut staged = |name: &str, bytes: u64| {
@@ -62,7 +62,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) -> Result<(
         plan.push("frame_buffer_upload", full(name), Shape::Buffer { bytes, flags, usage: Use::Upload });
     };
     staged(STAGED_SPIDS, samples * size_of::<Spid>() as u64);
-    if choices.has_zmax {
+    if choices.lists.has_zmax {
         staged(STAGED_DEPTHS, samples * size_of::<u32>() as u64);
     }
     Ok(())
@@ -90,7 +90,7 @@ impl TracedSamples {
             stage.reach(run.into(), choices.run_count.into());
             tracer.trace(run)
         });
-        let sets = if choices.is_direct {
+        let sets = if choices.lists.is_direct {
             TracedSets::Lists(traced.map(|hits| Ok(HostLists::of(&hits?, choices))).collect::<Result<_>>()?)
         } else {
             TracedSets::Samples(traced.collect::<Result<_>>()?)
@@ -111,7 +111,7 @@ impl Rays {
     pub fn new(resources: &mut Resources, choices: &Choices, sets: Vec<Hits>) -> Self {
         let mut staged = |name: &str| RefCell::new(resources.buffer(&full(name)));
         let spids = staged(STAGED_SPIDS);
-        Self { sets, spids, shading_depths: choices.has_zmax.then(|| staged(STAGED_DEPTHS)) }
+        Self { sets, spids, shading_depths: choices.lists.has_zmax.then(|| staged(STAGED_DEPTHS)) }
     }
 
     /// Puts a run's set where the frame takes it from.

@@ -67,7 +67,7 @@ impl<'a> Tracer<'a> {
             eyes: choices.eyes(),
             space: choices.space,
             frame: inputs.view.extent,
-            is_moving: choices.is_moving,
+            is_moving: choices.blur.is_moving,
             depths,
             seed: inputs.values.integer("seed") as u32,
         })
