@@ -1,6 +1,7 @@
 //! The pages beside the code: what they link to and name is there, and what the program makes or writes is in them.
 
 use crate::support::program::Program;
+use crate::techniques::own_pass::edges;
 use quincunx::techniques;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -376,6 +377,15 @@ fn the_page_of_the_report_names_every_key() {
     );
 }
 
+/// Runs an example in `folder`. Returns what it says.
+fn run_example(name: &str, folder: &Path, arguments: &[&str]) -> String {
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    cargo.args(["run", "--quiet", "--example", name, "--manifest-path"]).arg(root().join("Cargo.toml"));
+    let output = cargo.arg("--").args(arguments).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
 /// Lines of code between `from` and `to`, without indentation, comment signs and blank lines.
 fn lines_between<'a>(text: &'a str, from: &str, to: &str) -> Vec<&'a str> {
     let (_, rest) = text.split_once(from).unwrap_or_else(|| panic!("no {from:?}"));
@@ -394,12 +404,24 @@ fn the_picture_in_ten_lines_is_the_same_everywhere_and_makes_a_picture() {
         assert_eq!(shown, [&["use quincunx::job::Job;"], &lines[..]].concat(), "{page}");
     }
     let folder = tempfile::tempdir().unwrap();
-    let manifest = root().join("Cargo.toml");
-    let mut cargo = std::process::Command::new(env!("CARGO"));
-    cargo.args(["run", "--quiet", "--example", "picture", "--manifest-path"]).arg(manifest).current_dir(folder.path());
-    let output = cargo.output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run_example("picture", folder.path(), &[]);
     let picture = quincunx::picture::image_file::read(&folder.path().join("cornell.exr")).unwrap();
     assert_eq!(picture.extent.to_string(), "640x360");
     assert!(picture.mean().iter().all(|channel| *channel > 0.01), "{:?}", picture.mean());
+}
+
+#[test]
+fn the_pass_of_one_s_own_makes_its_picture_beside_the_plain_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str| quincunx::picture::image_file::read(&folder.path().join(name)).unwrap();
+    let said = run_example("own_pass", folder.path(), &["a.exr", "b.exr"]);
+    assert!(said.lines().last().unwrap().ends_with(", interleaved_deferred.composite, own.edges"), "{said}");
+    let (plain, own) = (read("a.exr"), read("b.exr"));
+    assert_eq!((plain.extent.to_string(), own.extent), ("320x180".to_owned(), plain.extent));
+    let expected = edges(&plain);
+    let apart = own.pixels.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f32::max) <= 1e-6 && own.mean()[0] < 0.99 * plain.mean()[0]);
+    // Without names: two PNG files.
+    run_example("own_pass", folder.path(), &[]);
+    assert_ne!(read("plain.png").pixels, read("own_pass.png").pixels);
 }

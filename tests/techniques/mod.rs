@@ -5,4 +5,5 @@ mod deep_shading;
 mod forward;
 mod inferred_lighting;
 mod interleaved_deferred;
+pub mod own_pass;
 mod path_traced;
