@@ -10,6 +10,7 @@ use super::what::What;
 use crate::error::{Error, Result};
 use crate::job::{Job, settings};
 use crate::metrics;
+use crate::passes::filter::Filter;
 use crate::picture::Picture;
 use crate::reference::Asked;
 use crate::report::run::{setting, spread};
@@ -209,8 +210,9 @@ fn evaluations(row: &mut Value, member: &Member, times: &[f64]) {
 fn taps(row: &mut Value, member: &Member, times: &[f64]) {
     let pixel_ns = 1e6 * median(times) / member.variant.extent().pixel_count() as f64;
     row["ns_per_pixel"] = json!(pixel_ns);
-    if let Some(kernel) = row["settings"]["kernel"].as_f64() {
-        row["ns_per_tap"] = json!(pixel_ns / (2.0 * kernel));
+    let filter = row["settings"]["filter"].as_str().map_or(Filter::None, Filter::from_setting);
+    if let Some(taps) = row["settings"]["kernel"].as_f64().and_then(|kernel| filter.taps(kernel)) {
+        row["ns_per_tap"] = json!(pixel_ns / taps);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The stages of the paper's figure 3, and what `--split subsample` interpolates, read back after a frame.
 
-use super::choices::{Choices, Filter};
+use super::choices::Choices;
 use super::frame::InterleavedFrame;
 use super::road::Road;
 use super::roads::Roads;
@@ -8,6 +8,7 @@ use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
+use crate::passes::filter::Filter;
 use crate::picture::{Aov, AovChannels};
 use crate::settings::Values;
 use crate::techniques::interleaved_deferred::resources::NAME;

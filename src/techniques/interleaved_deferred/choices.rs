@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
-use crate::passes::filter::{Kernel, StopBits};
+use crate::passes::filter::{Filter, Kernel, StopBits};
 use crate::passes::gbuffer::PositionStorage;
 use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
@@ -17,14 +17,6 @@ use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Bytes;
 use std::collections::BTreeMap;
-
-/// The filter of `--filter`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filter {
-    None,
-    Gauss,
-    GaussFast,
-}
 
 #[derive(Clone, Debug)]
 pub struct Choices {
@@ -86,12 +78,7 @@ impl Choices {
         let mapping = mapping(view.extent, pattern, block);
         // Only a picture whose pixels have different lights has anything to filter.
         let interleaved = !road.sums_all() && mapping.subset_count() > 1;
-        let filter = match values.text("filter") {
-            _ if !interleaved => Filter::None,
-            "gauss" => Filter::Gauss,
-            "gauss-fast" => Filter::GaussFast,
-            _ => Filter::None,
-        };
+        let filter = if interleaved { Filter::from_setting(values.text("filter")) } else { Filter::None };
         let direct = values.text("direct");
         let direct_pattern =
             if road.sums_all() || direct != "interleaved" { [1, 1] } else { direct_pattern(values, pattern)? };

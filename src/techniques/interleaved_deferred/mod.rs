@@ -27,7 +27,6 @@
 mod aov;
 mod choices;
 pub mod composite;
-pub mod discontinuity;
 pub mod filter;
 mod frame;
 pub mod gather;
@@ -54,6 +53,7 @@ use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
 use crate::passes::blend::{self, BlendLights};
+use crate::passes::filter::Filter;
 use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
@@ -108,6 +108,8 @@ impl Technique for InterleavedDeferred {
         let mut needs: Vec<Need> = [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect();
         if let Ok(road) = Road::new(values, caps) {
             needs.extend(road.needs(values));
+            let filter = Filter::from_setting(values.text("filter"));
+            needs.extend(filter.need().filter(|_| !road.sums_all()));
         }
         needs
     }

@@ -93,7 +93,7 @@ impl Road {
         Ok(Self::Copy(Copies { by, storage: storage(split, values.text("storage"), caps)?, form }))
     }
 
-    /// What it needs of a device, with the filter behind it.
+    /// What it needs of a device.
     pub fn needs(self, values: &Values) -> Vec<Need> {
         let split = values.text("split");
         let mut needs = Vec::new();
@@ -111,9 +111,6 @@ impl Road {
                 need(of, Ability::StoreWordPairs, instead);
             }
             _ => {}
-        }
-        if values.text("filter") == "gauss-fast" && !self.sums_all() {
-            need("--filter gauss-fast".to_owned(), Ability::StoreWordPairs, "--filter gauss filters in buffers");
         }
         needs
     }
