@@ -34,7 +34,7 @@ enum FilterPlace {
 }
 
 /// What the composite reads.
-pub struct Filtered<'a> {
+pub struct FilteredIrradiance<'a> {
     /// In frame order.
     pub irradiance: Edge<'a, Buffer>,
     /// Where its columns are still to be walked: where walks end.
@@ -136,19 +136,21 @@ impl FilterStage {
         frame: &Buffer,
         gbuffer: Edge<'_, GBuffer>,
         source: Edge<'a, Buffer>,
-    ) -> Result<Filtered<'a>> {
+    ) -> Result<FilteredIrradiance<'a>> {
         let read_flags = Some(self.flags.from(Access::ComputeRead));
         if !matches!(self.place, FilterPlace::InGather) {
             self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
         }
         let flags = self.flags.from(Access::ComputeWrite);
         Ok(match &self.place {
-            FilterPlace::OwnPass(filter) => Filtered { irradiance: filter.record(cmd, source, flags)?, flags: None },
+            FilterPlace::OwnPass(filter) => {
+                FilteredIrradiance { irradiance: filter.record(cmd, source, flags)?, flags: None }
+            }
             FilterPlace::Rows { gauss, rows } => {
                 gauss.record_rows(cmd, source, flags, rows)?;
-                Filtered { irradiance: rows.from(Access::ComputeWrite), flags: read_flags }
+                FilteredIrradiance { irradiance: rows.from(Access::ComputeWrite), flags: read_flags }
             }
-            FilterPlace::InGather => Filtered { irradiance: source, flags: read_flags },
+            FilterPlace::InGather => FilteredIrradiance { irradiance: source, flags: read_flags },
         })
     }
 

@@ -27,6 +27,7 @@
 mod aov;
 mod choices;
 pub mod composite;
+pub mod drawn_irradiance;
 pub mod filter;
 mod frame;
 pub mod gather;
@@ -34,13 +35,12 @@ pub mod lookup;
 pub mod mapping;
 pub mod mask;
 mod plan;
-pub mod rendered;
 mod resources;
-pub mod road;
-mod roads;
 pub mod settings;
 pub mod shade;
 pub mod split;
+pub mod split_method;
+mod split_passes;
 pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
@@ -61,10 +61,10 @@ use crate::resident::SceneGpu;
 use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::Choices;
-use filter::Filtered;
+use filter::FilteredIrradiance;
 use frame::{FrameLights, InterleavedFrame};
-use road::Road;
 use shade::SubsetLights;
+use split_method::SplitMethod;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -106,10 +106,10 @@ impl Technique for InterleavedDeferred {
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
         let mut needs: Vec<Need> = [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect();
-        if let Ok(road) = Road::new(values, caps) {
-            needs.extend(road.needs(values));
+        if let Ok(split) = SplitMethod::new(values, caps) {
+            needs.extend(split.needs(values));
             let filter = Filter::from_setting(values.text("filter"));
-            needs.extend(filter.need().filter(|_| !road.sums_all()));
+            needs.extend(filter.need().filter(|_| !split.sums_all()));
         }
         needs
     }
@@ -277,15 +277,15 @@ impl Frame for InterleavedFrame {
         if flags.is_some() {
             surface = surface.after(Access::ComputeSample);
         }
-        let lit = self.roads.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface), flags)?;
-        surface = lit.readers;
+        let gathered = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface), flags)?;
+        surface = gathered.readers;
         let filtered = match &self.filter {
             Some(filter) => {
-                let filtered = filter.record(cmd, frame, gbuffer.from(surface), lit.irradiance)?;
+                let filtered = filter.record(cmd, frame, gbuffer.from(surface), gathered.irradiance)?;
                 surface = surface.after(Access::ComputeSample);
                 filtered
             }
-            None => Filtered { irradiance: lit.irradiance, flags: None },
+            None => FilteredIrradiance { irradiance: gathered.irradiance, flags: None },
         };
         self.composite.record(cmd, frame, &self.direct, gbuffer.from(surface), filtered, &self.color)?;
         surface = surface.after(Access::ComputeSample);

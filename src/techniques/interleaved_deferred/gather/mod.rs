@@ -11,8 +11,8 @@ mod traffic;
 pub mod translate;
 
 use super::choices::Choices;
-use super::rendered::Rendered;
-use super::road::{Copier, Copies};
+use super::drawn_irradiance::DrawnIrradiance;
+use super::split_method::{Copier, Copies};
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;
@@ -53,7 +53,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) 
     }
     let target = match stage {
         Stage::Compute => vec![(gathered.clone(), Access::ComputeWrite)],
-        Stage::Fragment => Rendered::touches("gather").to_vec(),
+        Stage::Fragment => DrawnIrradiance::touches("gather").to_vec(),
     };
     if copies.is_two_pass() {
         storage.plan(plan, "irradiance", "gather.blocks.irradiance", mapping, 8, stage);

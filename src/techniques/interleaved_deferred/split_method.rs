@@ -9,7 +9,7 @@ use crate::settings::Values;
 use crate::techniques::interleaved_deferred::resources::NAME;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
+pub enum SplitMethod {
     /// Every light on every pixel: plain deferred shading, another sum.
     None,
     /// All lights at one pixel of each pattern, interpolated: another sum.
@@ -64,7 +64,7 @@ pub enum Form {
     Push,
 }
 
-impl Road {
+impl SplitMethod {
     /// The split that `--split`, `--storage`, `--copy` and `--fragment-passes` ask for on a device.
     ///
     /// Errors: they contradict each other (exit code 2).
@@ -226,11 +226,11 @@ mod tests {
         for (key, text) in [("split", split), ("storage", storage)] {
             values.set(SETTINGS.iter().find(|setting| setting.key == key).unwrap(), text).unwrap();
         }
-        Ok(Road::new(&values, &caps)?.copies().expect("it copies").storage)
+        Ok(SplitMethod::new(&values, &caps)?.copies().expect("it copies").storage)
     }
 
     #[test]
-    fn auto_is_what_the_device_and_the_road_do_best() {
+    fn auto_is_what_the_device_and_the_split_do_best() {
         for (driver, stores_words, split, storage) in [
             ("lavapipe-22.3.6", true, "one-pass", Storage::Buffer),
             ("intel-arc-a770", true, "one-pass", Storage::Image),
