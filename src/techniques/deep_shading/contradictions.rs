@@ -55,10 +55,10 @@ pub fn require_direct(values: &Values) -> Result<()> {
 
 /// Errors: the device draws triangles itself that shading space has bent (exit code 2).
 pub fn require_straight(values: &Values) -> Result<()> {
-    let road = values.text("conservative");
-    if matches!(road, "hardware" | "none") && values.text("shading-warp") == "foveated" {
+    let conservative = values.text("conservative");
+    if matches!(conservative, "hardware" | "none") && values.text("shading-warp") == "foveated" {
         let why = "triangles are not straight in a foveated shading space";
-        return Err(Error::request(format!("--conservative {road}: {why}"))
+        return Err(Error::request(format!("--conservative {conservative}: {why}"))
             .within(NAME)
             .note("--conservative geometry and vertex draw polygons that enclose them"));
     }
