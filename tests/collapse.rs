@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 const INTERLEAVED: &str = "interleaved_deferred";
 
 /// Every method that must give the picture of the first one, `branch`.
-const ROADS: [Changes<'_>; 19] = SPLITS;
+const METHODS: [Changes<'_>; 19] = SPLITS;
 
 /// Those that read `--block`.
-const ROADS_IN_BLOCKS: [Changes<'_>; 7] = [
+const METHODS_IN_BLOCKS: [Changes<'_>; 7] = [
     &[("split", "two-pass"), ("storage", "buffer"), ("copy", "pull")],
     &[("split", "two-pass"), ("storage", "buffer"), ("copy", "push")],
     &[("split", "two-pass"), ("storage", "image"), ("copy", "pull")],
@@ -53,7 +53,7 @@ fn require_every_road_is_branch(size: &str, patterns: &[&str]) {
     let mut seen = Vec::new();
     for pattern in patterns {
         let common = [("vpls", "64"), ("size", size), ("filter", "none"), ("pattern", pattern)];
-        seen.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
+        seen.push(require_one_picture(&watched, INTERLEAVED, &common, &METHODS));
     }
     // Plain deferred shading of the same lights is the pattern of one pixel.
     let plain: [Changes<'_>; 2] =
@@ -81,7 +81,7 @@ fn every_road_is_branch_behind_every_filter() {
     let mut hashes = Vec::new();
     for filter in ["none", "gauss", "gauss-fast"] {
         let common = [("vpls", "64"), ("size", "161x91"), ("pattern", "4x4"), ("filter", filter)];
-        hashes.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
+        hashes.push(require_one_picture(&watched, INTERLEAVED, &common, &METHODS));
     }
     hashes.sort();
     hashes.dedup();
@@ -95,8 +95,8 @@ fn passes_fused_change_no_pixel() {
         [("size", "161x91"), ("pattern", "4x4"), ("kernel", "5"), ("discontinuity", "directional")],
         [("size", "97x53"), ("pattern", "3x2"), ("kernel", "17"), ("discontinuity", "any")],
     ] {
-        for road in ROADS {
-            let common = both(&both(&[("vpls", "64")], &filter), road);
+        for method in METHODS {
+            let common = both(&both(&[("vpls", "64")], &filter), method);
             require_one_picture(&watched, INTERLEAVED, &common, &[&[("fuse", "off")], &[("fuse", "on")]]);
         }
     }
@@ -125,8 +125,8 @@ fn fused_passes_are_fewer() {
 #[test]
 fn shared_bytes_change_no_pixel_on_any_road() {
     let watched = Watched::open("cornell");
-    for road in ROADS {
-        let common = both(&[("vpls", "64"), ("size", "97x53"), ("pattern", "3x2")], road);
+    for method in METHODS {
+        let common = both(&[("vpls", "64"), ("size", "97x53"), ("pattern", "3x2")], method);
         require_one_hash(&watched, INTERLEAVED, &common, &[&[("alias", "off")], &[("alias", "greedy")]]);
     }
 }
@@ -139,13 +139,13 @@ fn blocks_of_any_shape_change_no_pixel() {
         let branch = watched.picture(INTERLEAVED, &both(&common, &[("split", "branch")]));
         // Rounded to whole patterns; smaller than the pattern; odd sub-blocks; flat, tall, larger than the frame.
         for block in ["1", "7", "40x4", "3x37", "16x16", "200"] {
-            for road in ROADS_IN_BLOCKS {
-                let tile = road[0].1 == "tile";
+            for method in METHODS_IN_BLOCKS {
+                let tile = method[0].1 == "tile";
                 if tile && block == "200" {
                     // It does not fit into workgroup memory, and is refused.
                     continue;
                 }
-                let changes = both(&both(&common, road), &[("block", block)]);
+                let changes = both(&both(&common, method), &[("block", block)]);
                 require_same(&watched.session.gpu, &watched.picture(INTERLEAVED, &changes), &branch, &changes);
             }
         }
@@ -155,12 +155,13 @@ fn blocks_of_any_shape_change_no_pixel() {
 #[test]
 fn the_pattern_of_one_pixel_is_plain_deferred_shading() {
     let watched = Watched::open("cornell");
-    let mut roads: Vec<Vec<(&str, &str)>> = ROADS.iter().map(|road| both(road, &[("pattern", "1x1")])).collect();
-    roads.push(vec![("split", "none")]);
-    roads.push(vec![("pattern", "1x1"), ("filter", "none")]);
-    let roads: Vec<Changes<'_>> = roads.iter().map(|road| &road[..]).collect();
+    let mut methods: Vec<Vec<(&str, &str)>> =
+        METHODS.iter().map(|method| both(method, &[("pattern", "1x1")])).collect();
+    methods.push(vec![("split", "none")]);
+    methods.push(vec![("pattern", "1x1"), ("filter", "none")]);
+    let methods: Vec<Changes<'_>> = methods.iter().map(|method| &method[..]).collect();
     for size in ["320x180", "321x181"] {
-        require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", size)], &roads);
+        require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", size)], &methods);
     }
 }
 
@@ -170,7 +171,7 @@ fn every_way_of_holding_positions_splits_the_same() {
     let mut hashes = Vec::new();
     for position in ["half", "unorm16", "depth", "float"] {
         let common = [("vpls", "64"), ("size", "161x91"), ("pattern", "3x2"), ("position", position)];
-        hashes.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
+        hashes.push(require_one_picture(&watched, INTERLEAVED, &common, &METHODS));
     }
     hashes.sort();
     hashes.dedup();
@@ -188,7 +189,7 @@ fn lights_joined_to_the_subsets_split_the_same() {
             ("pattern", pattern),
             ("direct-shadow", shadow),
         ];
-        require_one_picture(&watched, INTERLEAVED, &common, &ROADS);
+        require_one_picture(&watched, INTERLEAVED, &common, &METHODS);
     }
     let one: [Changes<'_>; 2] = [&[("split", "none")], &[("pattern", "1x1")]];
     require_one_picture(&watched, INTERLEAVED, &[("vpls", "64"), ("size", "161x90"), ("direct", "interleaved")], &one);
@@ -208,7 +209,7 @@ fn clusters_split_the_same() {
                 ("pattern", pattern),
                 ("direct-pattern", direct_pattern),
             ];
-            seen.push(require_one_picture(&watched, INTERLEAVED, &common, &ROADS));
+            seen.push(require_one_picture(&watched, INTERLEAVED, &common, &METHODS));
         }
     }
     let distinct: std::collections::BTreeSet<_> = seen.iter().collect();
@@ -269,8 +270,18 @@ fn culling_changes_no_pixel_of_a_map() {
     let common = [("size", "323x177"), ("vpls", "32"), ("lights", "40")];
     require_one_picture(&watched, INTERLEAVED, &common, &culls);
     // One method of each kind.
-    let roads = [ROADS[0], ROADS[1], ROADS[3], ROADS[4], ROADS[5], ROADS[12], ROADS[14], ROADS[15], ROADS[18]];
-    require_one_picture(&watched, INTERLEAVED, &common, &roads);
+    let methods = [
+        METHODS[0],
+        METHODS[1],
+        METHODS[3],
+        METHODS[4],
+        METHODS[5],
+        METHODS[12],
+        METHODS[14],
+        METHODS[15],
+        METHODS[18],
+    ];
+    require_one_picture(&watched, INTERLEAVED, &common, &methods);
 }
 
 /// The depth buffer holds positions: lists of lights, the split and the filter sample it, and BLEND surfaces test it
@@ -279,7 +290,7 @@ fn culling_changes_no_pixel_of_a_map() {
 fn every_road_is_branch_under_blended_surfaces() {
     let watched = Watched::open("hall:triangles=8000");
     let common = [("size", "161x91"), ("vpls", "32"), ("position", "depth"), ("cull", "tiled")];
-    require_one_picture(&watched, INTERLEAVED, &common, &ROADS);
+    require_one_picture(&watched, INTERLEAVED, &common, &METHODS);
     let renderer = watched.render(INTERLEAVED, &common);
     assert!(renderer.counters["blended_draws"] > 0.0);
 }
@@ -313,10 +324,10 @@ fn shared_bytes_change_no_pixel() {
     let watched = Watched::open("lamps:objects=10,lights=24");
     let modes: [Changes<'_>; 3] = [&[("alias", "off")], &[("alias", "greedy")], &[("alias", "optimal")]];
     require_one_hash(&watched, "deferred", &[("size", "161x91"), ("cull", "tiled")], &modes);
-    for road in ROADS {
+    for method in METHODS {
         for filter in ["none", "gauss", "gauss-fast"] {
             let common = [("size", "161x91"), ("vpls", "64"), ("pattern", "3x2"), ("filter", filter)];
-            require_one_hash(&watched, INTERLEAVED, &both(&common, road), &modes);
+            require_one_hash(&watched, INTERLEAVED, &both(&common, method), &modes);
         }
     }
 }
@@ -347,8 +358,8 @@ fn the_shape_of_workgroups_changes_no_pixel() {
         require_one_hash(&watched, INTERLEAVED, &common, &shapes);
     }
     // Odd shapes where a thread carries two texels, one, or a part of a block.
-    for road in [ROADS[9], ROADS[11], ROADS[13], ROADS[14], ROADS[15]] {
-        let common = both(&[("size", "97x53"), ("vpls", "64"), ("pattern", "3x2")], road);
+    for method in [METHODS[9], METHODS[11], METHODS[13], METHODS[14], METHODS[15]] {
+        let common = both(&[("size", "97x53"), ("vpls", "64"), ("pattern", "3x2")], method);
         require_one_hash(&watched, INTERLEAVED, &common, &[shapes[0], shapes[4], shapes[5]]);
     }
     require_one_hash(&watched, "deferred", &[("size", "161x91")], &shapes);
@@ -364,8 +375,8 @@ fn a_submit_for_each_pass_changes_no_pixel() {
     }
     let common = [("size", "97x53"), ("vpls", "64")];
     let together = watched.hash(INTERLEAVED, &common);
-    for road in ROADS {
-        let apart = watched.render_as(INTERLEAVED, &both(&common, road), &[], Submits::PerPass);
-        assert_eq!(apart.picture().unwrap().hash().unwrap(), together, "{road:?}");
+    for method in METHODS {
+        let apart = watched.render_as(INTERLEAVED, &both(&common, method), &[], Submits::PerPass);
+        assert_eq!(apart.picture().unwrap().hash().unwrap(), together, "{method:?}");
     }
 }

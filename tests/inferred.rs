@@ -67,7 +67,7 @@ fn at_the_frame_s_size_it_is_deferred_shading() {
 
 #[test]
 fn every_road_of_the_lights_leaves_the_same_l_buffer() {
-    let roads: [Changes<'_>; 9] = [
+    let methods: [Changes<'_>; 9] = [
         &[("volumes", "tiled")],
         &[("volumes", "tiled"), ("cull-by", "workgroup")],
         &[("volumes", "tiled"), ("texels", "1"), ("workgroup", "8x8")],
@@ -87,16 +87,16 @@ fn every_road_of_the_lights_leaves_the_same_l_buffer() {
         let watched = Watched::open(spec);
         for size in [("160x90", "100x56"), ("97x53", "40x91")] {
             let common = both(&[("size", size.0), ("light-size", size.1)], more);
-            let of = |road: Changes<'_>| {
+            let of = |method: Changes<'_>| {
                 let names = ["light.l_buffer.irradiance", "light.l_buffer.highlight"];
-                let renderer = watched.render_stages(NAME, &both(&common, road), &names);
+                let renderer = watched.render_stages(NAME, &both(&common, method), &names);
                 (names.map(|name| renderer.aov(name).unwrap().channels), renderer.picture().unwrap())
             };
-            let first = of(roads[0]);
-            for road in &roads[1..] {
-                let found = of(road);
-                assert!(found.0 == first.0, "{spec}, {size:?}, {road:?}: another L-buffer");
-                assert!(found.1.pixels == first.1.pixels, "{spec}, {size:?}, {road:?}: another picture");
+            let first = of(methods[0]);
+            for method in &methods[1..] {
+                let found = of(method);
+                assert!(found.0 == first.0, "{spec}, {size:?}, {method:?}: another L-buffer");
+                assert!(found.1.pixels == first.1.pixels, "{spec}, {size:?}, {method:?}: another picture");
             }
         }
     }
