@@ -23,7 +23,7 @@ pub fn all() -> impl Iterator<Item = Case> {
     let tables: [&'static [Group]; 6] =
         [formulas::GROUPS, baselines::GROUPS, interleaved::GROUPS, inferred::GROUPS, deep::GROUPS, paths::GROUPS];
     let groups = tables.into_iter().flatten();
-    groups.flat_map(|group| group.roads.iter().map(move |road| Case { group, road }))
+    groups.flat_map(|group| group.methods.iter().map(move |method| Case { group, method }))
 }
 
 #[cfg(test)]

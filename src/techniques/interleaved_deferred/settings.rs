@@ -1,7 +1,8 @@
 //! The settings of interleaved deferred shading.
 
 use super::choices::{BlendLights, Direct, StopAt};
-use super::road::{Filter, Form, Split, StorageKind};
+use super::split_method::{Form, Split, StorageKind};
+use crate::passes::filter::Filter;
 use crate::settings::{
     BRDF, CULL, CULL_BY, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, Setting, TEXELS, Unread,
     VPL_CLAMP, Values, WORKGROUP,
