@@ -270,8 +270,8 @@ fn every_road_of_the_lights_leaves_the_same_shadows() {
         let of = |method: &str| irradiance(&watched, &[("shadow-volumes", casting), ("volumes", method)]);
         let first = of("scissor");
         // Volumes of shadow are drawn after those of light, and `tiled` draws none.
-        for road in words_but(NAME, "volumes", &["tiled", "scissor"]).into_iter().chain(["auto"]) {
-            assert!(of(road) == first, "{casting} lights, {road}: another L-buffer");
+        for volumes in words_but(NAME, "volumes", &["tiled", "scissor"]).into_iter().chain(["auto"]) {
+            assert!(of(volumes) == first, "{casting} lights, {volumes}: another L-buffer");
         }
     }
 }
