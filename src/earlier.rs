@@ -9,15 +9,15 @@ use crate::metrics::noise;
 use crate::picture::image_file::Texts;
 use crate::picture::{Aov, AovChannels, image_file};
 use crate::reference::recipe::NOT_OF_THE_PICTURE;
-use crate::report::run;
 use crate::report::run::header::{ESTIMATOR, SAMPLES, SCENE_HASH, SETTINGS, TECHNIQUE, VERSION};
 use crate::scene::Scene;
 use crate::session::Renderer;
 use crate::settings::Values;
+use crate::settings::written::{SettingValue, WrittenSettings, written};
 use crate::techniques::Technique;
 use crate::techniques::path_traced::settings::MOST_SAMPLES;
 use crate::units::Extent;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -91,7 +91,7 @@ impl Earlier {
         self.require_text(VERSION, env!("CARGO_PKG_VERSION"))?;
         self.require_text(ESTIMATOR, &technique.estimator_version().to_string())?;
         // Built-in scenes depend on it: it says more than their hash.
-        self.require_setting(&self.settings()?, &run::settings(values, &BTreeMap::new()), "seed")?;
+        self.require_setting(&self.settings()?, &written(values, &BTreeMap::new()), "seed")?;
         self.require_text(SCENE_HASH, &scene.hash)
     }
 
@@ -99,10 +99,11 @@ impl Earlier {
     ///
     /// Errors, all of them with exit code 2: one of `settings` that shows in a picture was another; nothing is left to do,
     /// because it has as many samples, or as small an error, as are asked for.
-    pub fn begin(&self, renderer: &mut Renderer, settings: &Value) -> Result<()> {
+    pub fn begin(&self, renderer: &mut Renderer, settings: &WrittenSettings) -> Result<()> {
         self.require_settings(settings)?;
         let count = self.sample_count;
-        let most = settings["until-error"].as_f64().filter(|most| *most > 0.0 && count > 1);
+        let most = settings.get("until-error").and_then(SettingValue::as_f64);
+        let most = most.filter(|most| *most > 0.0 && count > 1);
         let error = most.map(|_| noise::relative_error(&self.sums, count.into()));
         if let (Some(most), Some(error)) = (most, error.filter(|error| Some(*error) <= most)) {
             return Err(self.refused(&format!(
@@ -112,30 +113,30 @@ impl Earlier {
         renderer.begin_with(self.sums.clone(), count).map_err(|error| self.within(error))
     }
 
-    fn require_settings(&self, ours: &Value) -> Result<()> {
+    fn require_settings(&self, ours: &WrittenSettings) -> Result<()> {
         let theirs = self.settings()?;
-        let keys = [&theirs, ours].into_iter().filter_map(Value::as_object).flat_map(Map::keys);
-        let mut shown = keys.filter(|key| !NOT_OF_THE_PICTURE.contains(&key.as_str()));
+        let keys = theirs.keys().map(String::as_str).chain(ours.iter().map(|(key, _)| key));
+        let mut shown = keys.filter(|key| !NOT_OF_THE_PICTURE.contains(key));
         shown.try_for_each(|key| self.require_setting(&theirs, ours, key))
     }
 
-    fn require_setting(&self, theirs: &Value, ours: &Value, key: &str) -> Result<()> {
+    fn require_setting(&self, theirs: &Map<String, Value>, ours: &WrittenSettings, key: &str) -> Result<()> {
         let shown = |value: Option<&Value>| match value {
             None => "not there".to_owned(),
             Some(value) => quoted(&value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
         };
-        let (its, this) = (theirs.get(key), ours.get(key));
-        if its == this {
+        let (its, this) = (theirs.get(key), ours.get(key).map(|value| json!(value)));
+        if its == this.as_ref() {
             return Ok(());
         }
-        let (key, its, this) = (quoted(key), shown(its), shown(this));
+        let (key, its, this) = (quoted(key), shown(its), shown(this.as_ref()));
         Err(self.refused(&format!("its setting {key} is {its}, and here it is {this}")))
     }
 
     /// An object, by the keys of the settings.
-    fn settings(&self) -> Result<Value> {
+    fn settings(&self) -> Result<Map<String, Value>> {
         let text = self.text(SETTINGS)?;
-        let settings = serde_json::from_str(text).ok().filter(Value::is_object);
+        let settings = serde_json::from_str(text).ok();
         settings.ok_or_else(|| self.refused(&format!("{SETTINGS} is not a JSON object: {}", quoted(text))))
     }
 

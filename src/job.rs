@@ -14,17 +14,15 @@ use crate::picture::tonemap::exposure_for;
 use crate::picture::visible::visible;
 use crate::picture::{Aov, Picture};
 use crate::reference::Asked;
-use crate::report;
 use crate::report::notes;
-use crate::report::run::{Passes, Report};
+use crate::report::run::{AovRow, DeviceRow, ImageRow, Passes, Program, RunReport, SCHEMA, SceneRow, Times};
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
+use crate::settings::written::{SettingValue, WrittenSettings, written};
 use crate::settings::{Values, earlier_s, exposure_s, readers};
 use crate::techniques::{self, Technique, settings_of, stages, timed};
-use crate::units::Extent;
 use crate::whole_file::write_whole;
-use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +55,7 @@ pub struct Job {
 
 /// What a run leaves in memory.
 pub struct Outcome {
-    pub report: Report,
+    pub report: RunReport,
     pub picture: Picture,
     pub path: PathBuf,
     /// What `--exposure auto` came to for this picture, stops; None where it is set, or nothing shines.
@@ -68,6 +66,29 @@ pub struct Outcome {
     pub ended_after: Option<(u32, u32)>,
     /// Whether the gates of `Job::reference` hold; a caller prints first and fails then.
     pub gates: Result<()>,
+}
+
+/// What a renderer leaves of a picture.
+struct Rendered {
+    /// As they were used.
+    settings: WrittenSettings,
+    /// The ledger before its first frame.
+    memory: Snapshot,
+    /// At least one.
+    times: Vec<FrameTime>,
+    picture: Picture,
+    /// As `Renderer::sums` has them.
+    sums: Option<Vec<[f32; 4]>>,
+    /// Those of `Job::aovs`.
+    aovs: Vec<Aov>,
+    /// Stops at which a PNG shows the picture.
+    exposure_ev: f64,
+    /// Stops at which PNGs show the stages.
+    stages_ev: f64,
+    /// As `Outcome` has it.
+    auto_exposure_ev: Option<f64>,
+    /// As `Outcome` has it.
+    ended_after: Option<(u32, u32)>,
 }
 
 /// What becomes of a picture that Ctrl-C has ended between two of its samples.
@@ -160,13 +181,46 @@ impl Job {
         let values = timed.as_ref().unwrap_or(values);
         let recording = Recording { has_statistics: self.statistics, ..submits.into() };
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
-        let mut settings = settings(session, &renderer, values);
+        let settings = settings(session, &renderer, values);
         if let Some(earlier) = &self.earlier {
             earlier.begin(&mut renderer, &settings)?;
         }
+        let rendered = self.rendered(session, &renderer, settings, unfinished)?;
+        let report = self.report(session, &renderer, &rendered, path)?;
+        self.write(path, &rendered, &report)?;
+        // A reference that is made needs the memory.
+        drop(renderer);
+        let Rendered { picture, ended_after, auto_exposure_ev, .. } = rendered;
+        let mut outcome = Outcome {
+            notes: report.notes.clone(),
+            report,
+            picture,
+            path: path.to_owned(),
+            auto_exposure_ev,
+            ended_after,
+            gates: Ok(()),
+        };
+        if let Some(asked) = self.reference.as_ref().filter(|_| ended_after.is_none()) {
+            let judged = asked.judge(&outcome.picture, self.technique, values, session)?;
+            outcome.report.errors = Some(judged.errors);
+            outcome.gates = judged.gates.map_err(|error| error.within(path.display()));
+        }
+        Ok(outcome)
+    }
+
+    /// Renders, and reads back what was asked for. `settings`: those that were used.
+    ///
+    /// Errors: as `picture`.
+    fn rendered(
+        &self,
+        session: &Session,
+        renderer: &Renderer,
+        mut settings: WrittenSettings,
+        unfinished: Unfinished,
+    ) -> Result<Rendered> {
         let memory = session.gpu.memory.snapshot();
         interrupt::check()?;
-        let times = self.frames(&renderer)?;
+        let times = self.frames(renderer)?;
         let (runs, all) = renderer.runs();
         // Fewer than all may also be enough, by --until-error.
         let asked_to_stop = interrupt::check();
@@ -178,30 +232,26 @@ impl Job {
         let picture = renderer.picture()?;
         let sums = renderer.sums()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let asked_ev = values.unless_auto("exposure", Values::number);
+        let asked_ev = self.values.unless_auto("exposure", Values::number);
         let auto_exposure_ev = if asked_ev.is_none() { exposure_for(&picture) } else { None };
         let exposure_ev = asked_ev.or(auto_exposure_ev).unwrap_or_default();
         if asked_ev.is_none() {
-            settings["exposure"] = json!(exposure_ev);
+            settings.insert("exposure", SettingValue::of_number(exposure_ev));
         }
-        let mut report = self.report(session, &renderer, settings, &memory, &times, &aovs, picture.extent)?;
-        report.image(&picture, path, (!is_exr(path)).then_some(exposure_ev))?;
-        let has_rig = renderer.lights.has_rig;
-        let seen = notes::of_nothing_seen(&picture, exposure_ev, &session.scene, &renderer.view, has_rig);
-        let notes: Vec<String> = seen.into_iter().collect();
-        report.notes(&notes);
         // Stages are not light: what was made for the picture's is none of theirs.
         let stages_ev = asked_ev.unwrap_or_default();
-        self.write(path, (&picture, exposure_ev), (&aovs, stages_ev), sums.as_deref(), &report)?;
-        // A reference that is made needs the memory.
-        drop(renderer);
-        let mut gates = Ok(());
-        if let Some(asked) = self.reference.as_ref().filter(|_| ended_after.is_none()) {
-            let judged = asked.judge(&picture, self.technique, values, session)?;
-            report.errors(judged.errors);
-            gates = judged.gates.map_err(|error| error.within(path.display()));
-        }
-        Ok(Outcome { report, picture, path: path.to_owned(), auto_exposure_ev, notes, ended_after, gates })
+        Ok(Rendered {
+            settings,
+            memory,
+            times,
+            picture,
+            sums,
+            aovs,
+            exposure_ev,
+            stages_ev,
+            auto_exposure_ev,
+            ended_after,
+        })
     }
 
     /// Where the picture of `scene` goes.
@@ -211,8 +261,7 @@ impl Job {
 
     /// Errors: a setting is changed that the others leave unread (exit code 2).
     pub(crate) fn require_read(&self) -> Result<()> {
-        let conditions = self.technique.conditions().iter().copied().flatten();
-        readers::require_read(conditions, &settings_of(self.technique), &self.values)
+        readers::require_read(&settings_of(self.technique), &self.values)
             .map_err(|error| error.within(self.technique.name()))
     }
 
@@ -303,55 +352,53 @@ impl Job {
             .collect()
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn report(
-        &self,
-        session: &Session,
-        renderer: &Renderer,
-        settings: Value,
-        memory: &Snapshot,
-        times: &[FrameTime],
-        aovs: &[Aov],
-        extent: Extent,
-    ) -> Result<Report> {
-        let mut report = Report::new(self.technique, &self.command, &session.gpu);
-        report.scene(&session.scene, &renderer.view, &renderer.lights);
-        report.settings(settings);
-        report.aovs(aovs, extent);
+    /// Errors: the picture holds NaN or infinity (exit code 1); memory for reading counters back (4).
+    fn report(&self, session: &Session, renderer: &Renderer, rendered: &Rendered, path: &Path) -> Result<RunReport> {
+        let Rendered { picture, exposure_ev, .. } = rendered;
+        let (scene, view, lights) = (&session.scene, &renderer.view, &renderer.lights);
         let passes = Passes {
             host: &renderer.host_passes,
             once: &renderer.once_passes,
             each_frame: renderer.passes(),
             clock: renderer.clock(),
         };
-        report.times(&passes, times, self.profile);
-        let table = session.memory_table(renderer, Some(memory))?;
-        report.memory(&table.touched_as(&renderer.touched_bytes()?));
-        report.counters(&renderer.measured_counters()?);
-        Ok(report)
+        let table = session.memory_table(renderer, Some(&rendered.memory))?;
+        let counters = renderer.measured_counters()?;
+        Ok(RunReport {
+            schema: SCHEMA,
+            quincunx: Program::this(),
+            command: self.command.clone(),
+            device: DeviceRow::of(&session.gpu),
+            technique: self.technique.name().to_owned(),
+            estimator: self.technique.estimator_version(),
+            scene: SceneRow::of(scene, view, lights),
+            settings: rendered.settings.clone(),
+            aovs: rendered.aovs.iter().map(|aov| AovRow::of(aov, picture.extent)).collect(),
+            times: Times::of(&passes, &rendered.times, self.profile),
+            memory: table.touched_as(&renderer.touched_bytes()?).report(),
+            counters: counters.into_iter().map(|(key, count)| (key.to_owned(), count)).collect(),
+            image: ImageRow::of(picture, path, (!is_exr(path)).then_some(*exposure_ev))?,
+            notes: Vec::from_iter(notes::of_nothing_seen(picture, *exposure_ev, scene, view, lights.has_rig)),
+            errors: None,
+            frame: None,
+            time_s: None,
+        })
     }
 
-    /// Picture and stages, both with the exposure that a PNG of them has, stops. `sums`: kept in an EXR of 32-bit floats, so
-    /// that `--continue` can continue it.
-    fn write(
-        &self,
-        path: &Path,
-        (picture, exposure_ev): (&Picture, f64),
-        (aovs, stages_ev): (&[Aov], f64),
-        sums: Option<&[[f32; 4]]>,
-        report: &Report,
-    ) -> Result<()> {
+    /// Picture and stages. Sums are kept in an EXR of 32-bit floats, so that `--continue` can continue it.
+    fn write(&self, path: &Path, rendered: &Rendered, report: &RunReport) -> Result<()> {
+        let Rendered { picture, aovs, exposure_ev, stages_ev, .. } = rendered;
         let is_exr = is_exr(path);
         let mut options = WriteOptions {
-            exposure_ev,
+            exposure_ev: *exposure_ev,
             tone_map: self.values.choice("tonemap"),
             exr_precision: self.values.choice("exr"),
             aovs: &[],
             attributes: report.attributes(),
         };
-        let mut layers = aovs.to_vec();
+        let mut layers = aovs.clone();
         if options.exr_precision == ExrPrecision::Float {
-            layers.extend(sums.into_iter().flat_map(earlier::layers));
+            layers.extend(rendered.sums.iter().flat_map(|sums| earlier::layers(sums)));
         }
         if is_exr {
             options.aovs = &layers;
@@ -361,7 +408,7 @@ impl Job {
             // A PNG has no layers: each stage becomes a picture beside it.
             for aov in aovs {
                 let file = path.with_extension(format!("{}.png", aov.name));
-                let options = WriteOptions { aovs: &[], exposure_ev: stages_ev, ..options.clone() };
+                let options = WriteOptions { aovs: &[], exposure_ev: *stages_ev, ..options.clone() };
                 write(&file, &visible(aov, picture.extent), &options)?;
             }
         }
@@ -385,10 +432,10 @@ pub(crate) fn scene_of(model: &Model, values: &Values) -> Result<Scene> {
 }
 
 /// As reports and rows have them: with what `auto` and percentages came to.
-pub(crate) fn settings(session: &Session, renderer: &Renderer, values: &Values) -> Value {
+pub(crate) fn settings(session: &Session, renderer: &Renderer, values: &Values) -> WrittenSettings {
     let mut resolved = renderer.resolved.clone();
     resolved.insert("texture-limit", session.scene.texture_limit_px.to_string());
-    report::run::settings(values, &resolved)
+    written(values, &resolved)
 }
 
 /// Errors: the validation layer has said something (exit code 1).

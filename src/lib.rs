@@ -57,6 +57,7 @@ pub mod framing;
 pub mod gpu;
 pub mod interrupt;
 pub mod job;
+pub mod keyed;
 pub mod lens;
 pub mod lights;
 pub mod memory;

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
 use crate::job::{Job, Outcome, Unfinished, judge, scene_of};
 use crate::reference::Asked;
-use crate::report::run::Report;
+use crate::report::run::RunReport;
 use crate::session::Session;
 use crate::settings::Values;
 use crate::whole_file::write_whole;
@@ -30,7 +30,7 @@ pub struct Frames {
 /// What a sequence left.
 pub struct Sequence {
     /// One a finished frame, in order.
-    pub reports: Vec<Report>,
+    pub reports: Vec<RunReport>,
     /// The user stopped it: the frames in `reports` are whole.
     pub is_interrupted: bool,
     /// Whether the gates of `Job::reference` hold in all of these frames.
@@ -118,7 +118,8 @@ impl Job {
             match made {
                 Ok(mut outcome) => {
                     exposure_ev = exposure_ev.or(outcome.auto_exposure_ev);
-                    outcome.report.frame(frame, values.number("time"));
+                    outcome.report.frame = Some(frame);
+                    outcome.report.time_s = Some(values.number("time"));
                     finished(frame, &outcome);
                     sequence.gates = sequence.gates.and(outcome.gates);
                     sequence.reports.push(outcome.report);
@@ -144,7 +145,7 @@ impl Job {
 impl Sequence {
     /// The reports of all frames as one document.
     pub fn json(&self) -> Value {
-        json!({ "schema": 1, "frames": self.reports.iter().map(Report::json).collect::<Vec<_>>() })
+        json!({ "schema": 1, "frames": self.reports })
     }
 }
 

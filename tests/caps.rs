@@ -125,7 +125,7 @@ fn write_plan(text: &mut String, case: &str, planned: Result<Planned>) -> std::f
         }
     };
     let sums = study.table.sums();
-    let [asked, bound, peak] = ["planned_bytes", "allocated_bytes", "peak_bytes"].map(|key| number(&sums[key]));
+    let (asked, bound, peak) = (sums.planned_bytes, sums.allocated_bytes.unwrap(), sums.peak_bytes);
     let types: BTreeSet<u64> = resources(&study).iter().map(|row| number(&row["memory_type"])).collect();
     writeln!(text, "    {asked} B asked for, {bound} bound, {peak} at the peak, memory types {types:?}")?;
     let choices: Vec<String> = resolved.iter().map(|(key, value)| format!("{key} {value}")).collect();
@@ -272,7 +272,7 @@ fn require_same_bytes(tried: &[Tried]) {
     let mut asked: BTreeMap<String, (u64, &str)> = BTreeMap::new();
     for Tried { name, caps, case, planned: (study, resolved) } in tried {
         let sums = study.table.sums();
-        let [bytes, bound] = ["planned_bytes", "allocated_bytes"].map(|key| number(&sums[key]));
+        let (bytes, bound) = (sums.planned_bytes, sums.allocated_bytes.unwrap());
         assert_eq!(study.is_unrounded, caps.layout.is_none(), "{name}");
         assert!(if study.is_unrounded { bound == bytes } else { bound >= bytes }, "{name}: {case}: {bound} of {bytes}");
         // How work is shared out among threads takes no memory.

@@ -25,6 +25,7 @@ mod passes;
 mod plan;
 mod progress;
 mod reference;
+mod report;
 mod resident;
 mod sampling;
 mod scene;

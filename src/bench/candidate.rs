@@ -109,9 +109,8 @@ fn changed_texts(job: &Job) -> impl Iterator<Item = (&'static str, &str)> {
 }
 
 fn unread_of(technique: &dyn Technique, values: &Values) -> BTreeMap<&'static str, String> {
-    let conditions = || technique.conditions().iter().copied().flatten();
     let why = |setting: &Setting| {
-        let unread = readers::unread(conditions(), values, setting.key)?;
+        let unread = (setting.unread)(values)?;
         Some((setting.key, unread.sentence(setting.key, values.text(setting.key))))
     };
     settings_of(technique).iter().filter_map(why).collect()
@@ -119,7 +118,7 @@ fn unread_of(technique: &dyn Technique, values: &Values) -> BTreeMap<&'static st
 
 /// `values` with what nothing reads at its default.
 pub fn without_unread(technique: &dyn Technique, values: &Values) -> Values {
-    readers::without_unread(technique.conditions().iter().copied().flatten(), &settings_of(technique), values)
+    readers::without_unread(&settings_of(technique), values)
 }
 
 /// As many texels a thread as every row has.

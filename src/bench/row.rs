@@ -12,8 +12,9 @@ use crate::job::{Job, settings};
 use crate::metrics;
 use crate::picture::Picture;
 use crate::reference::Asked;
-use crate::report::run::{setting, spread};
+use crate::report::spread::Spread;
 use crate::settings::Values;
+use crate::settings::written::SettingValue;
 use crate::techniques::Technique;
 use serde_json::{Map, Value, json};
 
@@ -41,7 +42,7 @@ impl Head<'_> {
     pub fn row(&self, candidate: &Candidate) -> Value {
         let Ground { job, session, what, is_fair } = &self.ground;
         let settings: Map<String, Value> =
-            candidate.settings.iter().map(|(key, text)| (key.clone(), setting(text))).collect();
+            candidate.settings.iter().map(|(key, text)| (key.clone(), json!(SettingValue::of(text)))).collect();
         let mut row = json!({
             "schema": 1,
             "bench": what.name(),
@@ -59,7 +60,7 @@ impl Head<'_> {
             row["fair"] = json!(true);
         }
         if let Some(asked) = &job.reference {
-            row["reference"] = asked.identity();
+            row["reference"] = json!(asked.identity());
         }
         row
     }
@@ -90,7 +91,7 @@ impl Head<'_> {
         let baseline = samples[BASELINE].totals_ms();
         let [read, written] = member.variant.traffic_bytes();
         let mut row = self.row(candidate);
-        row["settings"] = settings(session, renderer, values);
+        row["settings"] = json!(settings(session, renderer, values));
         if !candidate.unread_axes.is_empty() {
             row["unread_axes"] = json!(candidate.unread_axes);
         }
@@ -99,7 +100,7 @@ impl Head<'_> {
         row["machine"] = json!(rounds.load.map(Load::json));
         row["clock"] = json!(renderer.clock().name());
         row["image_hash"] = json!(picture.hash()?);
-        row[what.time_key()] = spread(&times);
+        row[what.time_key()] = json!(Spread::of(&times));
         row["pass_ms"] = self.pass_ms(candidate, member, samples)?;
         row["speed_up"] = paired_ratio(&baseline, &times).json();
         row["speed_up"]["baseline"] = json!(self.baseline);
@@ -107,7 +108,7 @@ impl Head<'_> {
         row["bytes_read"] = json!(read);
         row["bytes_written"] = json!(written);
         row["planned_bytes"] = json!(renderer.plan.bytes());
-        row["memory"] = session.memory_table(renderer, None)?.touched_as(&renderer.touched_bytes()?).sums();
+        row["memory"] = json!(session.memory_table(renderer, None)?.touched_as(&renderer.touched_bytes()?).sums());
         row["counters"] = json!(renderer.measured_counters()?);
         match what {
             What::Split | What::Gather => copies(&mut row, member, samples),
@@ -179,7 +180,7 @@ fn copies(row: &mut Value, member: &Member, samples: &[Samples]) {
         Ok(probe) => {
             let theirs = samples[*probe].totals_ms();
             let mut entry = paired_ratio(&times, &theirs).json();
-            entry["ms"] = spread(&theirs);
+            entry["ms"] = json!(Spread::of(&theirs));
             entry
         }
         Err(error) => json!({ "skipped": error.message() }),

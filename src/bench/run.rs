@@ -232,7 +232,7 @@ impl<'a> Sweep<'a> {
             if let Some(asked) = &self.head.ground.job.reference {
                 match asked.judge(picture, job.technique, values, session) {
                     Ok(judged) => {
-                        row["errors"] = judged.errors;
+                        row["errors"] = json!(judged.errors);
                         let gates = judged.gates.map_err(|error| error.within(&candidate.label));
                         self.gates = std::mem::replace(&mut self.gates, Ok(())).and(gates);
                     }

@@ -1,5 +1,6 @@
 //! Medians, paired ratios and their 95 % interval.
 
+use crate::report::spread;
 use serde_json::{Value, json};
 
 /// Rounds that an interval takes: Student's factor is 12.7 for two, whose intervals go from nothing to 10^17 and say
@@ -44,7 +45,7 @@ pub fn paired_ratio(long: &[f64], short: &[f64]) -> Ratio {
 pub fn median(samples: &[f64]) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
-    crate::report::run::median(&sorted)
+    spread::median(&sorted)
 }
 
 /// 97.5 % quantile of Student's t; beyond 30 degrees of freedom within 2 % of the normal one.

@@ -126,7 +126,7 @@ impl StructureRules {
     }
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     pub name: String,
     /// `cpu`, `discrete-gpu`, `integrated-gpu`, `virtual-gpu` or `other`.

@@ -174,7 +174,7 @@ impl Seen<'_> {
             "metrics": comparison.metrics,
             "threshold": self.threshold,
             "cut": if self.is_cut() { &Metrics::OF_LIGHT[..] } else { &[] },
-            "gates": self.gates.iter().map(|gate| gate.json(&comparison.metrics)).collect::<Vec<_>>(),
+            "gates": self.gates.iter().map(|gate| gate.verdict(&comparison.metrics)).collect::<Vec<_>>(),
         });
         for (name, part) in self.parts {
             document[name] = json!(part);

@@ -14,6 +14,7 @@ mod progress;
 mod rays;
 mod reference_args;
 pub mod render;
+pub mod sampling;
 pub mod scene;
 mod self_test;
 pub mod settings;
@@ -40,6 +41,7 @@ fn command(listed: &Listed) -> Command {
             bench::command(listed),
             memory::command(listed),
             scene::command(),
+            sampling::command(),
             devices::command(),
             settings::command(),
             completions::command(),
@@ -60,6 +62,7 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("bench", matches)) => bench::run(matches, argv),
         Some(("memory", matches)) => memory::run(matches, argv),
         Some(("scene", matches)) => scene::run(matches),
+        Some(("sampling", matches)) => sampling::run(matches),
         Some(("devices", matches)) => devices::run(matches, argv),
         Some(("settings", matches)) => settings::run(matches),
         Some(("completions", matches)) => completions::run(matches, command(&Listed::All)),

@@ -4,7 +4,7 @@
 //! in the same bytes of it.
 
 use crate::units::Bytes;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// One resource's place. `bound_bytes - bytes` is padding that the driver asks for.
@@ -46,7 +46,7 @@ impl ArenaEntry {
 }
 
 /// One memory block's ranges. An arena counts as one range.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BlockState {
     /// As in `Entry::memory_block`.
     pub index: u32,

@@ -2,7 +2,7 @@
 
 use super::Metrics;
 use crate::error::{Error, Result};
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 
 /// Which side of its value a gate lets pass.
@@ -74,15 +74,31 @@ impl Gate {
     }
 
     /// What a program reads.
-    pub fn json(&self, metrics: &Metrics) -> Value {
-        json!({
-            "metric": self.name(),
-            "bound": self.bound.name(),
-            "value": self.value,
-            "measured": self.measured(metrics),
-            "passed": self.passes(metrics),
-        })
+    pub fn verdict(&self, metrics: &Metrics) -> Verdict {
+        Verdict {
+            metric: self.name().to_owned(),
+            bound: self.bound.name().to_owned(),
+            value: self.value,
+            measured: self.measured(metrics),
+            passed: self.passes(metrics),
+        }
     }
+}
+
+/// A gate and whether it holds, as reports write it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// One of `Metrics::NAMES`.
+    pub metric: String,
+    /// `max` or `min`.
+    pub bound: String,
+    /// What is allowed, in the metric's unit; infinity is null under serde.
+    #[serde(deserialize_with = "super::or_infinity")]
+    pub value: f64,
+    /// What it is, in the metric's unit; infinity is null under serde.
+    #[serde(deserialize_with = "super::or_infinity")]
+    pub measured: f64,
+    pub passed: bool,
 }
 
 /// Errors: a gate fails (exit code 1), the first of `gates`. `context`: what was compared.

@@ -14,7 +14,7 @@ mod ssim;
 
 pub use part::Part;
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
 use crate::picture::Picture;
@@ -22,13 +22,14 @@ use crate::picture::tonemap::{Srgb8, ToneMap};
 use crate::units::Extent;
 
 /// One number of each kind. Under serde an infinite PSNR is null.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// Root of the mean squared difference over all pixels and channels, in units of radiance; 0 for equal pictures.
     pub rmse: f64,
     /// Mean over all pixels and channels of (a - b)^2 / (b^2 + 0.01), b the reference; 0 for equal pictures.
     pub relmse: f64,
     /// Peak signal-to-noise ratio in decibels; infinite where the 8-bit pictures are equal.
+    #[serde(deserialize_with = "or_infinity")]
     pub psnr: f64,
     /// Structural similarity of the luma, -1 to 1; 1 for equal pictures.
     pub ssim: f64,
@@ -39,6 +40,11 @@ pub struct Metrics {
     /// Percent of the pixels whose HDR-FLIP is above a threshold, 0 to 100. Dubla et al. 2009 count pixels that differ
     /// visibly in this way (table 3), with HDR-VDP and its probabilities of detection, which this is not.
     pub over_threshold: f64,
+}
+
+/// A number, or infinity where JSON, which has none, says null.
+fn or_infinity<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
 /// HDR-FLIP above which a pixel counts, where nothing else is asked for: ours, no published number. Two flat

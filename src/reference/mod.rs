@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::metrics::gate::{self, Gate};
 use crate::metrics::{self, Metrics};
 use crate::picture::{Picture, image_file};
+use crate::report::errors::{Errors, ReferenceIdentity};
 use crate::session::Session;
 use crate::settings::Values;
 use crate::techniques::{self, Technique};
@@ -18,7 +19,6 @@ use crate::units::Extent;
 use cache::Cache;
 use made::Watch;
 use recipe::Recipe;
-use serde_json::{Value, json};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub struct Asked {
 /// What judging a picture leaves.
 pub struct Judged {
     /// The report's `errors`.
-    pub errors: Value,
+    pub errors: Errors,
     /// Whether the gates hold.
     pub gates: Result<()>,
 }
@@ -98,13 +98,16 @@ impl Asked {
     }
 
     /// What says that two errors are against the same: the reference and the threshold.
-    pub fn identity(&self) -> Value {
+    pub fn identity(&self) -> ReferenceIdentity {
+        let threshold = self.threshold;
         match &self.source {
             Source::File { path, hash, .. } => {
-                json!({ "name": path.display().to_string(), "hash": hash, "threshold": self.threshold })
+                let (name, hash) = (path.display().to_string(), Some(hash.clone()));
+                ReferenceIdentity { name, hash, technique: None, spp: None, threshold }
             }
             Source::Auto { technique, spp, .. } => {
-                json!({ "name": "auto", "technique": technique.name(), "spp": spp, "threshold": self.threshold })
+                let (technique, spp) = (Some(technique.name().to_owned()), Some(*spp));
+                ReferenceIdentity { name: "auto".to_owned(), hash: None, technique, spp, threshold }
             }
         }
     }
@@ -132,14 +135,14 @@ impl Asked {
         session: &Session,
     ) -> Result<Judged> {
         self.check(picture.extent)?;
-        let mut errors = json!({ "reference": self.identity()["name"] });
+        let (mut reference_key, mut reference_settings) = (None, None);
         let reference = match &self.source {
             Source::File { picture, .. } => picture.clone(),
             Source::Auto { technique: truth, spp, known } => {
                 let recipe = Recipe::judging(*truth, technique, values, session, *spp)
                     .map_err(|error| error.within("--reference auto"))?;
-                errors["reference_key"] = json!(recipe.key());
-                errors["reference_settings"] = recipe.settings();
+                reference_key = Some(recipe.key().to_owned());
+                reference_settings = Some(recipe.settings());
                 let kept = known.borrow().get(recipe.key()).cloned();
                 match kept {
                     Some(picture) => picture,
@@ -154,12 +157,16 @@ impl Asked {
             }
         };
         let metrics = metrics::compare(picture, &reference, self.threshold)?.metrics;
-        for (name, value) in Metrics::NAMES.into_iter().zip(metrics.values()) {
-            errors[name] = json!(value);
-        }
-        errors["threshold"] = json!(self.threshold);
-        errors["cut"] = if self.is_cut() { json!(Metrics::OF_LIGHT) } else { json!([]) };
-        errors["gates"] = self.gates.iter().map(|gate| gate.json(&metrics)).collect();
+        let cut = if self.is_cut() { Metrics::OF_LIGHT.map(str::to_owned).to_vec() } else { Vec::new() };
+        let errors = Errors {
+            reference: self.identity().name,
+            reference_key,
+            reference_settings,
+            metrics,
+            threshold: self.threshold,
+            cut,
+            gates: self.gates.iter().map(|gate| gate.verdict(&metrics)).collect(),
+        };
         Ok(Judged { errors, gates: gate::judge(&self.gates, &metrics, "against the reference") })
     }
 

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::frame::View;
+use crate::keyed::Keyed;
 use crate::lights::LightSet;
 use crate::session::Session;
 use crate::settings::Values;
@@ -137,8 +138,8 @@ impl Recipe {
     }
 
     /// Every setting as text.
-    pub fn settings(&self) -> Value {
-        self.identity["settings"].clone()
+    pub fn settings(&self) -> Keyed<String> {
+        self.values.iter().map(|(key, text)| (key.to_owned(), text.to_owned())).collect()
     }
 
     pub fn extent(&self) -> Extent {

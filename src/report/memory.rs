@@ -4,49 +4,142 @@
 use crate::error::Result;
 use crate::gpu::ImageDescription;
 use crate::memory::kinds::{Kinds, Use};
-use crate::memory::ledger::{BlockState, Snapshot};
+use crate::memory::ledger::{BlockState, Entry, Snapshot};
 use crate::plan::{Peak, Plan, Planned, PlannedArena, Requirements, Shape, Sharing};
 use crate::units::Bytes;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// One resource.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Row {
-    name: String,
-    group: String,
-    shape: Option<Shape>,
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MemoryRow {
+    /// `technique.pass.resource`, or `scene.resource`.
+    pub name: String,
+    /// What it is for, such as `gbuffer`.
+    pub group: String,
     /// Bytes asked for, by arithmetic.
-    bytes: u64,
+    pub bytes: u64,
     /// Bytes that the driver requires.
-    bound_bytes: u64,
-    alignment_bytes: u64,
-    memory_type: u32,
-    reason: &'static str,
-    /// First and last pass; None: kept from frame to frame.
-    passes: Option<[String; 2]>,
-    /// Memory block and offset, where it was made.
-    place: Option<(u32, u64)>,
-    /// Arena, and offset in it.
-    shared: Option<(usize, u64)>,
-    /// Resources that lie in some of the same bytes in other passes.
-    shares_with: Vec<String>,
+    pub bound_bytes: u64,
+    /// Bytes; a power of two.
+    pub alignment_bytes: u64,
+    /// Bytes lost between its end and the next multiple of its alignment.
+    pub alignment_waste_bytes: u64,
+    /// Index of its memory type.
+    pub memory_type: u32,
+    /// Why that type.
+    pub reason: Cow<'static, str>,
+    /// First pass that touches it; None, and null in JSON: it is kept from frame to frame.
+    pub first_pass: Option<String>,
+    /// Last pass that touches it; None as `first_pass`.
+    pub last_pass: Option<String>,
+    /// Vulkan's name of the format; None of buffers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub format: Option<String>,
+    /// `WIDTHxHEIGHT`, pixels; None of buffers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extent: Option<String>,
+    /// Layers; None of buffers and of images without layers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<u32>,
+    /// Samples a pixel, 2 or more; None of all that has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u32>,
     /// Bytes that a frame has touched; None where they were not counted.
-    touched_bytes: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub touched_bytes: Option<u64>,
+    /// Where it lies among others; None where its bytes are its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arena: Option<ArenaPlace>,
+    /// Index of its memory block; None where it was planned alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory_block: Option<u32>,
+    /// Bytes from the memory block's start; None where it was planned alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<u64>,
+    /// Its kind in words, for tables; JSON does not have it.
+    #[serde(skip)]
+    pub kind: String,
 }
 
-impl Row {
-    /// Lost between its end and the next multiple of its alignment.
-    fn waste_bytes(&self) -> u64 {
-        self.bound_bytes.next_multiple_of(self.alignment_bytes) - self.bound_bytes
-    }
+/// The place of a resource that shares bytes with others.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ArenaPlace {
+    /// Index into `MemoryReport::arenas`.
+    pub index: usize,
+    /// Bytes from the arena's start.
+    pub offset: u64,
+    /// Names of resources that lie in some of the same bytes in other passes.
+    pub shares_with: Vec<String>,
+}
+
+/// A range whose parts share bytes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ArenaRow {
+    pub bytes: u64,
+    /// Bytes; a power of two.
+    pub alignment_bytes: u64,
+    /// How many resources lie in it.
+    pub parts: usize,
+    /// Sum of their bound bytes.
+    pub parts_bytes: u64,
+    /// Whether no placement is smaller.
+    pub proven_optimal: bool,
+}
+
+/// The sums of a table, all in bytes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MemorySums {
+    /// Asked for by the technique.
+    pub planned_bytes: u64,
+    /// Required by the driver; None in rows of before it was written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub allocated_bytes: Option<u64>,
+    /// Saved by sharing; None as `allocated_bytes`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aliased_bytes: Option<u64>,
+    /// The most alive at once.
+    pub peak_bytes: u64,
+    /// Pass in which that is; None as `allocated_bytes`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_pass: Option<String>,
+    /// Bound bytes by group; None as `allocated_bytes`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub groups: Option<BTreeMap<String, u64>>,
+    /// Touched by the last frame, of the resources that it counts; None where it counts none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub touched_bytes: Option<u64>,
+    /// Planned bytes of the same resources.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub touched_of_bytes: Option<u64>,
+    /// Touched bytes by group.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub touched_groups: Option<BTreeMap<String, u64>>,
+}
+
+/// A report's `memory`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MemoryReport {
+    #[serde(flatten)]
+    pub sums: MemorySums,
+    pub arenas: Vec<ArenaRow>,
+    /// The scene's resources, then the frame's, then what no plan knows of.
+    pub resources: Vec<MemoryRow>,
+    /// Bytes that vkAllocateMemory was asked for; None where nothing was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory_block_bytes: Option<u64>,
+    /// None where nothing was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory_blocks: Option<Vec<BlockState>>,
 }
 
 /// The memory of one technique on one scene.
 #[derive(Clone, Debug)]
 pub struct MemoryTable {
-    rows: Vec<Row>,
+    rows: Vec<MemoryRow>,
     peak: Peak,
     sharing: Sharing,
     /// Where it was made: what the driver was asked for, and each memory block.
@@ -75,26 +168,13 @@ impl MemoryTable {
         let kept_bytes = rows[..scene.resources.len()].iter().map(|row| row.bound_bytes).sum();
         let bound: Vec<u64> = rows[scene.resources.len()..].iter().map(|row| row.bound_bytes).collect();
         for entry in snapshot.iter().flat_map(|snapshot| &snapshot.resources) {
-            let place = Some((entry.memory_block, entry.offset));
-            match rows.iter_mut().find(|row| row.name == entry.name) {
-                Some(row) => row.place = place,
+            let index = rows.iter().position(|row| row.name == entry.name).unwrap_or_else(|| {
                 // What no plan knows of is still somebody's.
-                None => rows.push(Row {
-                    name: entry.name.clone(),
-                    group: entry.group.clone(),
-                    shape: None,
-                    bytes: entry.bytes,
-                    bound_bytes: entry.bound_bytes,
-                    alignment_bytes: 1,
-                    memory_type: entry.memory_type,
-                    reason: entry.reason,
-                    passes: None,
-                    place,
-                    shared: None,
-                    shares_with: Vec::new(),
-                    touched_bytes: None,
-                }),
-            }
+                rows.push(unplanned(entry));
+                rows.len() - 1
+            });
+            rows[index].memory_block = Some(entry.memory_block);
+            rows[index].offset = Some(entry.offset);
         }
         Ok(Self {
             rows,
@@ -121,46 +201,48 @@ impl MemoryTable {
     }
 
     /// Sums by group, of the resources that have `bytes`.
-    fn groups(&self, bytes: impl Fn(&Row) -> Option<u64>) -> BTreeMap<&str, u64> {
+    fn groups(&self, bytes: impl Fn(&MemoryRow) -> Option<u64>) -> BTreeMap<String, u64> {
         let mut groups = BTreeMap::new();
         for row in &self.rows {
             if let Some(bytes) = bytes(row) {
-                *groups.entry(row.group.as_str()).or_insert(0) += bytes;
+                *groups.entry(row.group.clone()).or_insert(0) += bytes;
             }
         }
         groups
     }
 
     /// The sums, as a benchmark's row has them.
-    pub fn sums(&self) -> Value {
-        let mut sums = json!({
-            "planned_bytes": self.planned_bytes(),
-            "allocated_bytes": self.allocated_bytes(),
-            "aliased_bytes": self.sharing.aliased_bytes(),
-            "peak_bytes": self.peak.bytes,
-            "peak_pass": self.peak.pass,
-            "groups": self.groups(|row| Some(row.bound_bytes)),
-        });
+    pub fn sums(&self) -> MemorySums {
         // A sum is of those that were counted, and says how large they are: the others' share is not known.
         let counted = self.rows.iter().filter_map(|row| Some([row.touched_bytes?, row.bytes]));
-        if let Some([touched, of]) = counted.reduce(|sum, row| [sum[0] + row[0], sum[1] + row[1]]) {
-            sums["touched_bytes"] = json!(touched);
-            sums["touched_of_bytes"] = json!(of);
-            sums["touched_groups"] = json!(self.groups(|row| row.touched_bytes));
+        let counted = counted.reduce(|sum, row| [sum[0] + row[0], sum[1] + row[1]]);
+        MemorySums {
+            planned_bytes: self.planned_bytes(),
+            allocated_bytes: Some(self.allocated_bytes()),
+            aliased_bytes: Some(self.sharing.aliased_bytes()),
+            peak_bytes: self.peak.bytes,
+            peak_pass: Some(self.peak.pass.clone()),
+            groups: Some(self.groups(|row| Some(row.bound_bytes))),
+            touched_bytes: counted.map(|[touched, _]| touched),
+            touched_of_bytes: counted.map(|[_, of]| of),
+            touched_groups: counted.map(|_| self.groups(|row| row.touched_bytes)),
         }
-        sums
     }
 
     /// The report's `memory`.
-    pub fn json(&self) -> Value {
-        let mut document = self.sums();
-        document["arenas"] = self.sharing.arenas.iter().map(arena_json).collect();
-        document["resources"] = self.rows.iter().map(row_json).collect();
-        if let Some((bytes, blocks)) = &self.made {
-            document["memory_block_bytes"] = json!(bytes);
-            document["memory_blocks"] = json!(blocks);
+    pub fn report(&self) -> MemoryReport {
+        MemoryReport {
+            sums: self.sums(),
+            arenas: self.sharing.arenas.iter().map(arena_row).collect(),
+            resources: self.rows.clone(),
+            memory_block_bytes: self.made.as_ref().map(|(bytes, _)| *bytes),
+            memory_blocks: self.made.as_ref().map(|(_, blocks)| blocks.clone()),
         }
-        document
+    }
+
+    /// The same as JSON.
+    pub fn json(&self) -> Value {
+        serde_json::to_value(self.report()).expect("its keys are texts")
     }
 
     /// What a person reads: a line a resource, then the sums.
@@ -178,13 +260,13 @@ impl MemoryTable {
             "resource", "asked, B", "bound, B", "align", "waste", "type", "what"
         )?;
         for row in &self.rows {
-            let lives = match &row.passes {
-                None => "every frame".to_owned(),
-                Some([first, last]) if first == last => short(first).to_owned(),
-                Some([first, last]) => format!("{} to {}", short(first), short(last)),
+            let lives = match (&row.first_pass, &row.last_pass) {
+                (Some(first), Some(last)) if first == last => short(first).to_owned(),
+                (Some(first), Some(last)) => format!("{} to {}", short(first), short(last)),
+                _ => "every frame".to_owned(),
             };
-            let lives = match row.shared {
-                Some((_, offset)) => format!("{lives}, shared from {offset}"),
+            let lives = match &row.arena {
+                Some(arena) => format!("{lives}, shared from {}", arena.offset),
                 None => lives,
             };
             writeln!(
@@ -194,12 +276,12 @@ impl MemoryTable {
                 row.bytes,
                 row.bound_bytes,
                 row.alignment_bytes,
-                row.waste_bytes(),
+                row.alignment_waste_bytes,
                 row.memory_type,
-                what(row),
+                row.kind,
             )?;
         }
-        let mut reasons: Vec<(u32, &str)> = self.rows.iter().map(|row| (row.memory_type, row.reason)).collect();
+        let mut reasons: Vec<(u32, &str)> = self.rows.iter().map(|row| (row.memory_type, &*row.reason)).collect();
         reasons.sort_unstable();
         reasons.dedup();
         writeln!(text)?;
@@ -226,92 +308,101 @@ fn short(pass: &str) -> &str {
     pass.split_once('.').map_or(pass, |(_, rest)| rest)
 }
 
-fn what(row: &Row) -> String {
-    match &row.shape {
-        None => String::new(),
-        Some(Shape::Buffer { usage: Use::Device, .. }) => "buffer".to_owned(),
-        Some(Shape::Buffer { usage, .. }) => format!("buffer, {usage}"),
-        Some(Shape::Image(ImageDescription { extent, format, layer_count: Some(layers), .. })) => {
+/// What a resource is, in words.
+fn kind(shape: &Shape) -> String {
+    match shape {
+        Shape::Buffer { usage: Use::Device, .. } => "buffer".to_owned(),
+        Shape::Buffer { usage, .. } => format!("buffer, {usage}"),
+        Shape::Image(ImageDescription { extent, format, layer_count: Some(layers), .. }) => {
             format!("{format:?} {extent}, {layers} layers")
         }
-        Some(Shape::Image(ImageDescription { extent, format, samples, .. })) if *samples > 1 => {
+        Shape::Image(ImageDescription { extent, format, samples, .. }) if *samples > 1 => {
             format!("{format:?} {extent}, {samples} samples")
         }
-        Some(Shape::Image(ImageDescription { extent, format, level_count: 1, .. })) => format!("{format:?} {extent}"),
-        Some(Shape::Image(ImageDescription { extent, format, level_count, .. })) => {
+        Shape::Image(ImageDescription { extent, format, level_count: 1, .. }) => format!("{format:?} {extent}"),
+        Shape::Image(ImageDescription { extent, format, level_count, .. }) => {
             format!("{format:?} {extent}, {level_count} levels")
         }
     }
 }
 
-fn row_json(row: &Row) -> Value {
-    let mut document = json!({
-        "name": row.name,
-        "group": row.group,
-        "bytes": row.bytes,
-        "bound_bytes": row.bound_bytes,
-        "alignment_bytes": row.alignment_bytes,
-        "alignment_waste_bytes": row.waste_bytes(),
-        "memory_type": row.memory_type,
-        "reason": row.reason,
-        "first_pass": row.passes.as_ref().map(|[first, _]| first),
-        "last_pass": row.passes.as_ref().map(|[_, last]| last),
-    });
-    if let Some(Shape::Image(ImageDescription { extent, format, layer_count, samples, .. })) = row.shape {
-        document["format"] = json!(format!("{format:?}"));
-        document["extent"] = json!(extent.to_string());
-        if let Some(layers) = layer_count {
-            document["layers"] = json!(layers);
-        }
-        if samples > 1 {
-            document["samples"] = json!(samples);
-        }
+fn arena_row(arena: &PlannedArena) -> ArenaRow {
+    ArenaRow {
+        bytes: arena.bytes,
+        alignment_bytes: arena.alignment_bytes,
+        parts: arena.parts.len(),
+        parts_bytes: arena.parts.iter().map(|part| part.bound_bytes).sum(),
+        proven_optimal: arena.proven_optimal,
     }
-    if let Some(bytes) = row.touched_bytes {
-        document["touched_bytes"] = json!(bytes);
-    }
-    if let Some((arena, offset)) = row.shared {
-        document["arena"] = json!({ "index": arena, "offset": offset, "shares_with": row.shares_with });
-    }
-    if let Some((memory_block, offset)) = row.place {
-        document["memory_block"] = json!(memory_block);
-        document["offset"] = json!(offset);
-    }
-    document
 }
 
-fn arena_json(arena: &PlannedArena) -> Value {
-    let parts_bytes: u64 = arena.parts.iter().map(|part| part.bound_bytes).sum();
-    json!({
-        "bytes": arena.bytes,
-        "alignment_bytes": arena.alignment_bytes,
-        "parts": arena.parts.len(),
-        "parts_bytes": parts_bytes,
-        "proven_optimal": arena.proven_optimal,
-    })
+/// What the ledger alone knows of.
+fn unplanned(entry: &Entry) -> MemoryRow {
+    MemoryRow {
+        name: entry.name.clone(),
+        group: entry.group.clone(),
+        bytes: entry.bytes,
+        bound_bytes: entry.bound_bytes,
+        alignment_bytes: 1,
+        alignment_waste_bytes: 0,
+        memory_type: entry.memory_type,
+        reason: entry.reason.into(),
+        first_pass: None,
+        last_pass: None,
+        format: None,
+        extent: None,
+        layers: None,
+        samples: None,
+        touched_bytes: None,
+        arena: None,
+        memory_block: None,
+        offset: None,
+        kind: String::new(),
+    }
 }
 
-fn row(plan: &Plan, sharing: &Sharing, index: usize, requirements: Requirements<'_>, kinds: &Kinds) -> Result<Row> {
+fn row(
+    plan: &Plan,
+    sharing: &Sharing,
+    index: usize,
+    requirements: Requirements<'_>,
+    kinds: &Kinds,
+) -> Result<MemoryRow> {
     let planned: &Planned = &plan.resources[index];
     let required = requirements.of(&planned.shape);
     let choice = kinds.choose(planned.shape.usage(), required.memory_type_bits);
     let choice = choice.map_err(|error| error.within(format!("planning {}", planned.name)))?;
-    let passes = plan
-        .lifetime(index)
-        .map(|lifetime| [lifetime.first, lifetime.last].map(|pass| plan.pass_name(pass).to_owned()));
-    Ok(Row {
+    let lifetime = plan.lifetime(index);
+    let pass_name = |pass: usize| plan.pass_name(pass).to_owned();
+    let shares_with =
+        || sharing.shares_with(index).into_iter().map(|other| plan.resources[other].name.clone()).collect();
+    let image = match &planned.shape {
+        Shape::Image(image) => Some(image),
+        Shape::Buffer { .. } => None,
+    };
+    Ok(MemoryRow {
         name: planned.name.clone(),
         group: planned.group.to_owned(),
-        shape: Some(planned.shape),
         bytes: planned.bytes(),
         bound_bytes: required.bound_bytes,
         alignment_bytes: required.alignment_bytes,
+        alignment_waste_bytes: required.bound_bytes.next_multiple_of(required.alignment_bytes) - required.bound_bytes,
         memory_type: choice.type_index,
-        reason: choice.reason,
-        passes,
-        place: None,
-        shared: sharing.part(index).map(|(arena, part)| (arena, part.offset)),
-        shares_with: sharing.shares_with(index).into_iter().map(|other| plan.resources[other].name.clone()).collect(),
+        reason: choice.reason.into(),
+        first_pass: lifetime.as_ref().map(|lifetime| pass_name(lifetime.first)),
+        last_pass: lifetime.as_ref().map(|lifetime| pass_name(lifetime.last)),
+        format: image.map(|image| format!("{:?}", image.format)),
+        extent: image.map(|image| image.extent.to_string()),
+        layers: image.and_then(|image| image.layer_count),
+        samples: image.map(|image| image.samples).filter(|samples| *samples > 1),
         touched_bytes: None,
+        arena: sharing.part(index).map(|(arena, part)| ArenaPlace {
+            index: arena,
+            offset: part.offset,
+            shares_with: shares_with(),
+        }),
+        memory_block: None,
+        offset: None,
+        kind: kind(&planned.shape),
     })
 }

@@ -1,5 +1,9 @@
 //! What a command leaves behind: numbers, tables.
 
+pub mod errors;
 pub mod memory;
 pub mod notes;
+pub mod nullable;
 pub mod run;
+pub mod spread;
+mod text;

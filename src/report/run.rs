@@ -1,6 +1,11 @@
 //! The report of one run: the request, the device, the result, and the cost of each pass and each byte. Keys:
 //! docs/report.md; within a schema number a key is only ever added.
 
+use super::errors::Errors;
+use super::memory::MemoryReport;
+use super::nullable::present;
+use super::spread::Spread;
+use crate::caps::Identity;
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::Gpu;
@@ -8,16 +13,13 @@ use crate::gpu::commands::RecordedPass;
 use crate::gpu::recorded::FrameTime;
 use crate::gpu::timing::Clock;
 use crate::lights::LightSet;
-use crate::metrics::{self, Metrics};
 use crate::picture::{Aov, AovChannels, Picture};
-use crate::report::memory::MemoryTable;
 use crate::scene::Scene;
-use crate::settings::Values;
-use crate::techniques::Technique;
-use crate::units::{Bytes, Extent};
-use serde_json::{Map, Value, json};
+use crate::settings::written::WrittenSettings;
+use crate::units::Extent;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 /// Names of texts in the header of a picture.
@@ -32,11 +34,164 @@ pub mod header {
 }
 
 /// Number of the set of keys.
-const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 1;
 /// A pass whose timestamp is farther from its wall time than this part of it is reported.
 const DISAGREEMENT: f64 = 0.1;
 /// Shorter passes are not judged: the submit itself takes tens of microseconds.
 const JUDGED_FROM_MS: f64 = 1.0;
+
+/// The report of a picture; its fields are the keys of the JSON document, in their order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunReport {
+    /// `SCHEMA` of the program that wrote it.
+    pub schema: u32,
+    pub quincunx: Program,
+    /// The command that repeats the run, a word an entry; empty where none was typed.
+    pub command: Vec<String>,
+    pub device: DeviceRow,
+    /// The technique's name.
+    pub technique: String,
+    /// `Technique::estimator_version`.
+    pub estimator: u32,
+    pub scene: SceneRow,
+    /// Every setting as it was used: what `auto` and percentages came to.
+    pub settings: WrittenSettings,
+    /// The stages that were asked for.
+    pub aovs: Vec<AovRow>,
+    #[serde(flatten)]
+    pub times: Times,
+    pub memory: MemoryReport,
+    /// Numbers of the last run of what was recorded; each technique has its own.
+    pub counters: BTreeMap<String, f64>,
+    pub image: ImageRow,
+    /// What a person should know of the picture, as sentences; not there where there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+    /// Errors against the reference; None where none was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Errors>,
+    /// Number of the frame; None outside of sequences.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<u32>,
+    /// Its moment, seconds; None outside of sequences.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
+}
+
+/// The program that made a picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    pub version: String,
+    pub commit: String,
+}
+
+/// The device that made it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceRow {
+    #[serde(flatten)]
+    pub identity: Identity,
+    /// Whether it keeps shaders within their buffers.
+    pub robust_buffer_access: bool,
+}
+
+/// What was drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneRow {
+    /// Built-in name with parameters, or path.
+    pub name: String,
+    /// BLAKE3 of what is drawn, hexadecimal.
+    pub hash: String,
+    pub triangles: u64,
+    pub draws: usize,
+    /// Punctual lights.
+    pub lights: usize,
+    pub materials: usize,
+    /// Name of the camera; `framing` where it was made.
+    pub camera: String,
+    /// `default` where the default rig is added; else None.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rig: Option<String>,
+    /// What is left out of a file or approximated, as sentences; not there where there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+}
+
+/// A stage that was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AovRow {
+    pub name: String,
+    /// `rgb float`, `float` or `uint`.
+    pub format: String,
+    /// `WIDTHxHEIGHT`, pixels.
+    pub extent: String,
+    /// BLAKE3 of its values, hexadecimal.
+    pub hash: String,
+}
+
+/// The passes of a picture with their times.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    /// In the order in which they ran.
+    pub passes: Vec<PassRow>,
+    /// `wall` or `timestamps`: what `PassRow::ms` and `total_ms` are by.
+    pub clock: String,
+    /// Milliseconds of the frame; None, and null in JSON, where none was made.
+    pub total_ms: Option<Spread>,
+    /// Frames before the measured ones. 0: the time is of the first frame, shader compilation included.
+    pub warmup_frames: u32,
+    /// Passes whose two times differ by over 10 %, as sentences; not there where none does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub timing_warnings: Vec<String>,
+}
+
+/// A pass.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassRow {
+    /// `technique.pass`.
+    pub name: String,
+    /// `host, once` or `device, once`; None of a pass of each frame.
+    #[serde(default, rename = "where", skip_serializing_if = "Option::is_none")]
+    pub place: Option<String>,
+    /// Bytes that it reads by its own reckoning; None of what ran once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bytes_read: Option<u64>,
+    /// The same, written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bytes_written: Option<u64>,
+    /// Shader invocations by the same reckoning, null where it cannot tell; None of what ran once.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub invocations: Option<Option<u64>>,
+    /// Milliseconds by the clock that `Times::clock` names; None of a pass that was not timed.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub ms: Option<Option<Spread>>,
+    /// Milliseconds between the device's timestamps, null where it has none; None of a pass that was not timed.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub timestamp_ms: Option<Option<Spread>>,
+    /// Milliseconds of the submit's wall time; None of a pass that was not timed.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub wall_ms: Option<Option<Spread>>,
+    /// What the device counted, by Vulkan's names; None where it was not asked to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statistics: Option<BTreeMap<String, u64>>,
+}
+
+/// The picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ImageRow {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// Mean radiance of red, green and blue.
+    pub mean: [f64; 3],
+    /// Hash of the linear pixels, hexadecimal.
+    pub hash: String,
+    /// File that it was written to.
+    pub path: String,
+    /// Stops at which it was written; None of an EXR.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exposure_ev: Option<f64>,
+}
 
 /// The passes of a picture, in the order in which they ran.
 pub struct Passes<'a> {
@@ -47,48 +202,6 @@ pub struct Passes<'a> {
     pub each_frame: &'a [RecordedPass],
     /// Which of the two clocks is the figure.
     pub clock: Clock,
-}
-
-/// A JSON document in the making, and the text that a person reads.
-pub struct Report {
-    document: Map<String, Value>,
-    is_software: bool,
-}
-
-/// Median, least and greatest of some milliseconds, with the samples.
-pub fn spread(samples: &[f64]) -> Value {
-    if samples.is_empty() {
-        return Value::Null;
-    }
-    let mut sorted = samples.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    json!({ "median": median(&sorted), "min": sorted[0], "max": sorted[sorted.len() - 1], "samples": samples })
-}
-
-/// Median of sorted samples, at least one.
-pub fn median(sorted: &[f64]) -> f64 {
-    let middle = sorted.len() / 2;
-    if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
-}
-
-/// A setting's text, a number where it is one.
-pub fn setting(text: &str) -> Value {
-    text.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number)
-}
-
-/// Every setting by its key. `resolved`: what `auto` and percentages came to.
-pub fn settings(values: &Values, resolved: &BTreeMap<&'static str, String>) -> Value {
-    let value = |key: &str, text: &str| setting(resolved.get(key).map_or(text, String::as_str));
-    Value::Object(values.iter().map(|(key, text)| (key.to_owned(), value(key, text))).collect())
-}
-
-/// What a pass's statistics say of its shaders; None where it has none.
-fn invocations(pass: &Value) -> Option<String> {
-    let counts = pass.get("statistics")?;
-    let count = |stage: &str| counts[format!("{stage}_shader_invocations")].as_u64().unwrap_or_default();
-    let stages = ["vertex", "geometry", "fragment", "compute"].into_iter().filter(|stage| count(stage) > 0);
-    let told: Vec<String> = stages.map(|stage| format!("{stage} {}", count(stage))).collect();
-    Some(format!("{} invocations", if told.is_empty() { "no".to_owned() } else { told.join(", ") }))
 }
 
 /// Whether a pass's two times, milliseconds, cannot both be right: a submit adds to the wall time what it takes.
@@ -104,38 +217,23 @@ fn milliseconds(ns: u64) -> f64 {
     ns as f64 / 1e6
 }
 
-impl Report {
-    pub fn new(technique: &dyn Technique, command: &[String], gpu: &Gpu) -> Self {
-        let mut document = Map::new();
-        document.insert("schema".into(), json!(SCHEMA));
+impl Program {
+    /// The one that runs.
+    pub fn this() -> Self {
         let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("QUINCUNX_COMMIT"));
-        document.insert("quincunx".into(), json!({ "version": version, "commit": commit }));
-        document.insert("command".into(), json!(command));
-        let mut device = json!(gpu.caps.identity);
-        device["robust_buffer_access"] = json!(gpu.is_robust);
-        document.insert("device".into(), device);
-        document.insert("technique".into(), json!(technique.name()));
-        document.insert("estimator".into(), json!(technique.estimator_version()));
-        Self { document, is_software: gpu.caps.identity.is_software() }
+        Self { version: version.to_owned(), commit: commit.to_owned() }
     }
+}
 
-    /// What was drawn: `scene` as `view` shows it, under `lights`.
-    pub fn scene(&mut self, scene: &Scene, view: &View, lights: &LightSet) {
-        let mut entry = json!({
-            "name": scene.name,
-            "hash": scene.hash,
-            "triangles": scene.triangle_count(),
-            "draws": scene.draws.len(),
-            "lights": lights.lights.len(),
-            "materials": scene.materials.len(),
-            "camera": view.camera.name,
-        });
-        if lights.has_rig {
-            entry["rig"] = json!("default");
-        }
-        if view.made_up {
-            entry["camera"] = json!("framing");
-        }
+impl DeviceRow {
+    pub fn of(gpu: &Gpu) -> Self {
+        Self { identity: gpu.caps.identity.clone(), robust_buffer_access: gpu.is_robust }
+    }
+}
+
+impl SceneRow {
+    /// `scene` as `view` shows it, under `lights`.
+    pub fn of(scene: &Scene, view: &View, lights: &LightSet) -> Self {
         let mut warnings = scene.warnings.clone();
         if let Some(part) = lights.faint_part {
             warnings.push(format!(
@@ -148,272 +246,133 @@ impl Report {
         if lights.is_emissive_alone {
             warnings.push("only its emissive surfaces light it; --rig always adds the default rig".to_owned());
         }
-        if !warnings.is_empty() {
-            entry["warnings"] = json!(warnings);
+        Self {
+            name: scene.name.clone(),
+            hash: scene.hash.clone(),
+            triangles: scene.triangle_count(),
+            draws: scene.draws.len(),
+            lights: lights.lights.len(),
+            materials: scene.materials.len(),
+            camera: if view.made_up { "framing".to_owned() } else { view.camera.name.clone() },
+            rig: lights.has_rig.then(|| "default".to_owned()),
+            warnings,
         }
-        self.document.insert("scene".into(), entry);
     }
+}
 
-    /// As `settings` makes them.
-    pub fn settings(&mut self, settings: Value) {
-        self.document.insert("settings".into(), settings);
-    }
-
+impl ImageRow {
     /// `exposure_ev`: of a PNG, at how many stops it was written.
     ///
     /// Errors: the picture holds NaN or infinity (exit code 1).
-    pub fn image(&mut self, picture: &Picture, path: &Path, exposure_ev: Option<f64>) -> Result<()> {
-        let hash = picture.hash()?;
+    pub fn of(picture: &Picture, path: &Path, exposure_ev: Option<f64>) -> Result<Self> {
+        let (hash, mean, path) = (picture.hash()?, picture.mean(), path.display().to_string());
         let Extent { width, height } = picture.extent;
-        let path = path.display().to_string();
-        let mean = picture.mean();
-        let mut entry = json!({ "width": width, "height": height, "mean": mean, "hash": hash, "path": path });
-        if let Some(exposure_ev) = exposure_ev {
-            entry["exposure_ev"] = json!(exposure_ev);
-        }
-        self.document.insert("image".into(), entry);
-        Ok(())
+        Ok(Self { width, height, mean, hash, path, exposure_ev })
     }
+}
 
-    /// Notes on the picture for the reader.
-    pub fn notes(&mut self, notes: &[String]) {
-        if !notes.is_empty() {
-            self.document.insert("notes".into(), json!(notes));
-        }
-    }
-
-    pub fn aovs(&mut self, aovs: &[Aov], extent: Extent) {
-        let entries: Vec<Value> = aovs
-            .iter()
-            .map(|aov| {
-                let mut hasher = blake3::Hasher::new();
-                let format = match &aov.channels {
-                    AovChannels::Rgb(values) => {
-                        hasher.update(bytemuck::cast_slice(values));
-                        "rgb float"
-                    }
-                    AovChannels::Y(values) => {
-                        hasher.update(bytemuck::cast_slice(values));
-                        "float"
-                    }
-                    AovChannels::YU32(values) => {
-                        hasher.update(bytemuck::cast_slice(values));
-                        "uint"
-                    }
-                };
-                let hash = hasher.finalize().to_hex().to_string();
-                json!({ "name": aov.name, "format": format, "extent": extent.to_string(), "hash": hash })
-            })
-            .collect();
-        self.document.insert("aovs".into(), json!(entries));
-    }
-
-    /// Which frame of a sequence it is, and at which time.
-    pub fn frame(&mut self, frame: u32, time_s: f64) {
-        self.document.insert("frame".into(), json!(frame));
-        self.document.insert("time_s".into(), json!(time_s));
-    }
-
-    /// A row for each pass, with its times where frames were submitted pass by pass and what the device counted where it was
-    /// asked to; and the frame's time.
-    pub fn times(&mut self, passes: &Passes<'_>, frames: &[FrameTime], profile: bool) {
-        let once = |passes: &[(String, u64)], place: &str| -> Vec<Value> {
-            let row = |(name, ns): &(String, u64)| json!({ "name": name, "where": place, "ms": spread(&[milliseconds(*ns)]) });
-            passes.iter().map(row).collect()
+impl AovRow {
+    pub fn of(aov: &Aov, extent: Extent) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        let format = match &aov.channels {
+            AovChannels::Rgb(values) => {
+                hasher.update(bytemuck::cast_slice(values));
+                "rgb float"
+            }
+            AovChannels::Y(values) => {
+                hasher.update(bytemuck::cast_slice(values));
+                "float"
+            }
+            AovChannels::YU32(values) => {
+                hasher.update(bytemuck::cast_slice(values));
+                "uint"
+            }
         };
-        let mut rows = once(passes.host, "host, once");
-        rows.extend(once(passes.once, "device, once"));
+        let hash = hasher.finalize().to_hex().to_string();
+        Self { name: aov.name.clone(), format: format.to_owned(), extent: extent.to_string(), hash }
+    }
+}
+
+impl PassRow {
+    fn once((name, ns): &(String, u64), place: &str) -> Self {
+        let ms = Some(Spread::of(&[milliseconds(*ns)]));
+        Self { name: name.clone(), place: Some(place.to_owned()), ms, ..Self::default() }
+    }
+
+    /// Median milliseconds; None where it was not timed.
+    pub fn median_ms(&self) -> Option<f64> {
+        Some(self.ms.as_ref()?.as_ref()?.median)
+    }
+}
+
+impl Times {
+    /// A row for each pass, with its times where frames were submitted pass by pass (`profile`) and what the device
+    /// counted where it was asked to; and the frame's time.
+    pub fn of(passes: &Passes<'_>, frames: &[FrameTime], profile: bool) -> Self {
+        let mut rows: Vec<PassRow> = passes.host.iter().map(|pass| PassRow::once(pass, "host, once")).collect();
+        rows.extend(passes.once.iter().map(|pass| PassRow::once(pass, "device, once")));
         let clock = passes.clock;
-        let mut warnings = Vec::new();
+        let mut timing_warnings = Vec::new();
         for (index, pass) in passes.each_frame.iter().enumerate() {
             let walls: Vec<f64> =
                 frames.iter().filter_map(|frame| frame.passes[index].wall_ns).map(milliseconds).collect();
             let stamps: Vec<f64> =
                 frames.iter().filter_map(|frame| frame.passes[index].timestamp_ns).map(milliseconds).collect();
             if walls.iter().zip(&stamps).any(|(wall, stamp)| disagrees(clock, *wall, *stamp)) {
-                warnings.push(format!("{}: timestamp and wall time differ by over 10 %", pass.name));
+                timing_warnings.push(format!("{}: timestamp and wall time differ by over 10 %", pass.name));
             }
-            let mut row = json!({
-                "name": pass.name,
-                "bytes_read": pass.traffic.read_bytes,
-                "bytes_written": pass.traffic.written_bytes,
-                "invocations": pass.traffic.invocations,
-            });
+            let mut row = PassRow {
+                name: pass.name.clone(),
+                bytes_read: Some(pass.traffic.read_bytes),
+                bytes_written: Some(pass.traffic.written_bytes),
+                invocations: Some(pass.traffic.invocations),
+                ..PassRow::default()
+            };
             if profile {
                 let figures = frames.iter().filter_map(|frame| frame.passes[index].figure_ns(clock));
-                row["ms"] = spread(&figures.map(milliseconds).collect::<Vec<f64>>());
-                row["timestamp_ms"] = spread(&stamps);
-                row["wall_ms"] = spread(&walls);
+                row.ms = Some(Spread::of(&figures.map(milliseconds).collect::<Vec<f64>>()));
+                row.timestamp_ms = Some(Spread::of(&stamps));
+                row.wall_ms = Some(Spread::of(&walls));
             }
             // Statistics are those of the last frame, as counters are.
-            if let Some(counts) = frames.last().and_then(|frame| frame.statistics.get(index)) {
-                row["statistics"] = json!(counts);
-            }
+            let counts = frames.last().and_then(|frame| frame.statistics.get(index));
+            row.statistics =
+                counts.map(|counts| counts.iter().map(|(stage, count)| ((*stage).to_owned(), *count)).collect());
             rows.push(row);
         }
         let totals: Vec<f64> = frames.iter().map(|frame| milliseconds(frame.figure_ns(clock))).collect();
-        self.document.insert("passes".into(), json!(rows));
-        self.document.insert("clock".into(), json!(clock.name()));
-        self.document.insert("total_ms".into(), spread(&totals));
-        // Without --profile the one frame also pays for what drivers compile at first use.
-        self.document.insert("warmup_frames".into(), json!(u32::from(profile)));
-        if !warnings.is_empty() {
-            self.document.insert("timing_warnings".into(), json!(warnings));
+        Self {
+            passes: rows,
+            clock: clock.name().to_owned(),
+            total_ms: Spread::of(&totals),
+            // Without --profile the one frame also pays for what drivers compile at first use.
+            warmup_frames: u32::from(profile),
+            timing_warnings,
         }
     }
+}
 
-    pub fn memory(&mut self, table: &MemoryTable) {
-        self.document.insert("memory".into(), table.json());
-    }
-
-    pub fn counters(&mut self, counters: &BTreeMap<&'static str, f64>) {
-        self.document.insert("counters".into(), json!(counters));
-    }
-
-    /// Errors of the picture against its reference.
-    pub fn errors(&mut self, errors: Value) {
-        self.document.insert("errors".into(), errors);
-    }
-
+impl RunReport {
     /// The whole document.
     pub fn json(&self) -> Value {
-        Value::Object(self.document.clone())
+        serde_json::to_value(self).expect("its keys are texts")
     }
 
     /// What the header of a picture carries.
     pub fn attributes(&self) -> Vec<(String, String)> {
-        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        let samples = self.document["counters"].get("samples").and_then(Value::as_f64).map(|count| json!(count as u64));
+        let settings = serde_json::to_string(&self.settings).expect("its keys are texts");
         let mut attributes = [
-            (header::VERSION, &self.document["quincunx"]["version"]),
-            (header::TECHNIQUE, &self.document["technique"]),
-            (header::ESTIMATOR, &self.document["estimator"]),
-            (header::SCENE, &self.document["scene"]["name"]),
-            (header::SCENE_HASH, &self.document["scene"]["hash"]),
-            (header::SETTINGS, &self.document["settings"]),
+            (header::VERSION, self.quincunx.version.clone()),
+            (header::TECHNIQUE, self.technique.clone()),
+            (header::ESTIMATOR, self.estimator.to_string()),
+            (header::SCENE, self.scene.name.clone()),
+            (header::SCENE_HASH, self.scene.hash.clone()),
+            (header::SETTINGS, settings),
         ]
-        .map(|(name, value)| (name.to_owned(), text(value)))
+        .map(|(name, text)| (name.to_owned(), text))
         .to_vec();
-        attributes.extend(samples.map(|count| (header::SAMPLES.to_owned(), count.to_string())));
+        let samples = self.counters.get("samples").map(|count| (*count as u64).to_string());
+        attributes.extend(samples.map(|samples| (header::SAMPLES.to_owned(), samples)));
         attributes
-    }
-
-    /// The report as text for a reader.
-    pub fn text(&self) -> String {
-        let document = &self.document;
-        let string = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-        let mut text = String::new();
-        let mut line = |words: String| writeln!(text, "{words}").expect("writing to a string");
-        line(format!(
-            "{}  {} triangles, {} draws, {} lights, {} materials",
-            string(&document["scene"]["name"]),
-            document["scene"]["triangles"],
-            document["scene"]["draws"],
-            document["scene"]["lights"],
-            document["scene"]["materials"]
-        ));
-        for warning in document["scene"]["warnings"].as_array().into_iter().flatten() {
-            line(format!("  note: {}", string(warning)));
-        }
-        let device = &document["device"];
-        line(format!(
-            "{}  ({}, Vulkan {})",
-            string(&device["name"]),
-            string(&device["driver_info"]),
-            string(&device["api"])
-        ));
-        for pass in document["passes"].as_array().into_iter().flatten() {
-            let place = pass["where"].as_str().map_or_else(String::new, |place| format!("  ({place})"));
-            let time = pass["ms"]["median"].as_f64().map(|ms| format!("{ms:>10.3} ms{place}"));
-            let told: Vec<String> = time.into_iter().chain(invocations(pass)).collect();
-            if !told.is_empty() {
-                line(format!("  {:<44} {}", string(&pass["name"]), told.join("  ")));
-            }
-        }
-        let software = if self.is_software { ", software driver" } else { "" };
-        let warm = if document["warmup_frames"] == 0 { ", first frame, shader compilation included" } else { "" };
-        let total = document["total_ms"]["median"].as_f64().unwrap_or_default();
-        line(format!("  {:<44} {total:>10.3} ms{software}{warm}", "frame"));
-        for warning in document.get("timing_warnings").and_then(Value::as_array).into_iter().flatten() {
-            line(format!("  note: {}", string(warning)));
-        }
-        let counter = |key: &str| document["counters"][key].as_f64();
-        if let (Some(found), Some(wanted)) = (counter("vpls_found"), counter("vpls"))
-            && found < wanted
-        {
-            line(format!(
-                "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
-            ));
-        }
-        if let Some(open) = counter("shadow_casters_not_closed").filter(|open| *open > 0.0) {
-            line(format!("  note: draws without shadow volumes, because their meshes are not closed: {open}"));
-        }
-        if let Some(samples) = counter("samples") {
-            let (error, plural) = (counter("estimated_error"), if samples == 1.0 { "" } else { "s" });
-            let words = error.map_or(String::new(), |error| format!(", estimated error {error:.5}"));
-            line(format!("{samples} sample{plural} a pixel{words}"));
-            let most = document["settings"].get("until-error").and_then(Value::as_f64).filter(|most| *most > 0.0);
-            if let Some(most) = most.filter(|most| error.is_some_and(|error| error > *most)) {
-                line(format!("  note: --until-error {most} is not reached; a larger --spp would help"));
-            }
-        }
-        if let (Some(evaluated), Some(left_out)) = (counter("light_evaluations"), counter("light_evaluations_culled"))
-            && evaluated + left_out > 0.0
-        {
-            // The composite shades virtual lights' techniques, and other work with it.
-            let shades = if counter("vpls").is_some() { "composite" } else { "shade" };
-            let named = |pass: &&Value| string(&pass["name"]).ends_with(&format!(".{shades}"));
-            let pass_ms = document["passes"].as_array().into_iter().flatten().find(named);
-            let each = pass_ms.and_then(|pass| pass["ms"]["median"].as_f64()).map(|ms| 1e6 * ms / evaluated.max(1.0));
-            line(format!(
-                "direct light: {:.1} million evaluations of a light at a pixel{}, {:.0} % left out by culling",
-                evaluated / 1e6,
-                each.map_or(String::new(), |ns| format!(", {ns:.2} ns each")),
-                100.0 * left_out / (evaluated + left_out)
-            ));
-        }
-        let bytes = |key: &str| Bytes(document["memory"][key].as_u64().unwrap_or_default());
-        line(format!(
-            "memory: {} planned, {} allocated, {} saved by sharing, {} in memory blocks",
-            bytes("planned_bytes"),
-            bytes("allocated_bytes"),
-            bytes("aliased_bytes"),
-            bytes("memory_block_bytes")
-        ));
-        if document["memory"]["touched_bytes"].is_u64() {
-            let (touched, of) = (bytes("touched_bytes"), bytes("touched_of_bytes"));
-            line(format!("  touched: {touched} of {of}, over the resources in which the frame counts"));
-        }
-        if let Some(errors) = document.get("errors") {
-            line(format!("errors against {}", string(&errors["reference"])));
-            for name in Metrics::NAMES {
-                // Equal pictures have a PSNR without end.
-                let value = errors[name].as_f64().unwrap_or(f64::INFINITY);
-                let is_cut = errors["cut"].as_array().is_some_and(|cut| !cut.is_empty());
-                line(metrics::line(name, value, errors["threshold"].as_f64().unwrap_or_default(), is_cut));
-            }
-        }
-        for note in document.get("notes").and_then(Value::as_array).into_iter().flatten() {
-            line(format!("note: {}", string(note)));
-        }
-        if let Some(exposure_ev) = document["image"]["exposure_ev"].as_f64().filter(|exposure_ev| *exposure_ev != 0.0) {
-            line(format!("exposure {exposure_ev} EV"));
-        }
-        line(format!("image hash {}", string(&document["image"]["hash"])));
-        line(format!("wrote {}", string(&document["image"]["path"])));
-        text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_median_of_an_even_number_lies_between() {
-        let value = spread(&[4.0, 1.0, 3.0, 2.0]);
-        assert_eq!(value["median"], 2.5);
-        assert_eq!((&value["min"], &value["max"]), (&json!(1.0), &json!(4.0)));
-        assert_eq!(spread(&[]), Value::Null);
     }
 }

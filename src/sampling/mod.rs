@@ -2,4 +2,5 @@
 
 pub mod pattern;
 pub mod pcg;
+pub mod periodogram;
 pub mod sobol;

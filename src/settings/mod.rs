@@ -8,16 +8,16 @@ pub mod readers;
 mod shadow_maps;
 mod tables;
 mod tree;
+pub mod written;
 
 pub use optics::{
-    APERTURE, FOCUS, LENS_CONDITIONS, MEDIUM, MOTION_CONDITIONS, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO,
-    STEREO_EYES, StereoEyes, earlier_s, exposure_s,
+    APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes, earlier_s,
+    exposure_s,
 };
-pub use readers::{Condition, Unread};
-pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAP_CONDITIONS, SHADOW_MAPS};
+pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAPS};
 pub use tables::{
-    BRDF, Brdf, COMMON, CULL_BY, CULL_CONDITIONS, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow,
-    EMISSIVE, GEOMETRY, GeometryChoice, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD,
+    BRDF, Brdf, COMMON, CULL, CULL_BY, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow, EMISSIVE,
+    GEOMETRY, GeometryChoice, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD, POSITION,
     PositionStorage, Rig, SHADING, TEXELS, VPL_CLAMP, WORKGROUP,
 };
 pub use tree::{NodeOrder, StackPlace, TREE};
@@ -88,12 +88,33 @@ pub struct Setting {
     /// Where it comes from, or nothing.
     pub paper: &'static str,
     pub help: &'static str,
+    /// What leaves it unread; None where something reads it. The values have every setting that this asks for.
+    pub unread: fn(&Values) -> Option<Unread>,
+}
+
+/// What leaves a setting unread, and what would read it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unread {
+    /// The value that does, as a flag.
+    with: String,
+    why: &'static str,
+    /// Flags that read it.
+    readers: String,
 }
 
 impl Setting {
     /// The base of rows, with nothing that only some of them have: `Setting { key: .., ..Setting::ROW }`.
-    pub const ROW: Self =
-        Self { key: "", symbol: "", kind: Kind::Choice(&[]), auto: false, default: "", unit: "", paper: "", help: "" };
+    pub const ROW: Self = Self {
+        key: "",
+        symbol: "",
+        kind: Kind::Choice(&[]),
+        auto: false,
+        default: "",
+        unit: "",
+        paper: "",
+        help: "",
+        unread: |_| None,
+    };
 
     /// The words that a choice is one of, `auto` included; None of settings that are no choices.
     pub fn choices(&self) -> Option<Vec<&'static str>> {

@@ -1,6 +1,6 @@
 //! The rows of what lies between a surface and the film, which several techniques read.
 
-use super::{Condition, Kind, Part, Setting, Unread, Values};
+use super::{Kind, Part, Setting, Unread, Values};
 use crate::choice::choices;
 use crate::error::{Error, Result};
 
@@ -24,6 +24,10 @@ pub const FOCUS: Setting = Setting {
     unit: "m",
     help: "Distance from the camera to the plane in focus, for --aperture and --stereo; auto: the surface at the \
            middle of the picture, or, where there is none, the middle of the scene",
+    unread: |values| match values.number(STEREO.key) > 0.0 {
+        true => None,
+        false => Unread::without(values, APERTURE.key, "through a pinhole all is sharp"),
+    },
     ..Setting::ROW
 };
 
@@ -57,20 +61,9 @@ pub const STEREO_EYES: Setting = Setting {
     paper: "Clarberg 2014, 7",
     help: "Eyes of --stereo to draw: both, which deep_shading shades at once as seen from the midpoint between them, \
            with the right eye's picture in the stage stereo.right; or one eye alone, as seen by that eye",
+    unread: |values| Unread::without(values, STEREO.key, "there is one eye"),
     ..Setting::ROW
 };
-
-/// Settings that are not read with a pinhole or with one eye.
-pub const LENS_CONDITIONS: &[Condition] = &[
-    Condition {
-        key: FOCUS.key,
-        unread: |values| match values.number(STEREO.key) > 0.0 {
-            true => None,
-            false => Unread::without(values, APERTURE.key, "through a pinhole all is sharp"),
-        },
-    },
-    Condition { key: STEREO_EYES.key, unread: |values| Unread::without(values, STEREO.key, "there is one eye") },
-];
 
 /// How long the film is exposed.
 pub const SHUTTER: Setting = Setting {
@@ -104,14 +97,9 @@ pub const MOTION_INTERVAL: Setting = Setting {
     unit: "s",
     paper: "Kircher 2009, 2.1",
     help: "Time of one frame, over which --motion-vectors are measured; motion begins at 0 s at the earliest",
+    unread: |values| Unread::unless(values, MOTION_VECTORS.key, &["on"], "there are no motion vectors"),
     ..Setting::ROW
 };
-
-/// Settings that a geometry pass without motion vectors does not read.
-pub const MOTION_CONDITIONS: &[Condition] = &[Condition {
-    key: MOTION_INTERVAL.key,
-    unread: |values| Unread::unless(values, MOTION_VECTORS.key, &["on"], "there are no motion vectors"),
-}];
 
 /// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads
 /// no such setting.

@@ -1,27 +1,9 @@
-//! Settings that not every choice of others reads: the table's rows say what a value may be, conditions when it matters.
+//! Settings that not every choice of others reads: `Setting::unread` of a row says why.
 //!
 //! A render refuses a changed value that nothing reads, a benchmark measures what it leaves equal only once: both ask here.
 
-use super::{Setting, Values};
+use super::{Setting, Unread, Values};
 use crate::error::{Error, Result};
-
-/// A setting that some values of other settings leave unread.
-#[derive(Clone, Copy, Debug)]
-pub struct Condition {
-    pub key: &'static str,
-    /// None where something reads it. The values have every setting that this asks for.
-    pub unread: fn(&Values) -> Option<Unread>,
-}
-
-/// What leaves a setting unread, and what would read it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unread {
-    /// The value that does, as a flag.
-    with: String,
-    why: &'static str,
-    /// Flags that read it.
-    readers: String,
-}
 
 impl Unread {
     /// None where `key` has one of the values `readers`, of its enum or as words; `why`: what the others lack, after the
@@ -70,21 +52,12 @@ fn words<T: Copy + Into<&'static str>>(values: &[T]) -> Vec<&'static str> {
     values.iter().map(|value| (*value).into()).collect()
 }
 
-/// Why nothing reads `key`; None where something does.
-pub fn unread<'a>(conditions: impl IntoIterator<Item = &'a Condition>, values: &Values, key: &str) -> Option<Unread> {
-    conditions.into_iter().filter(|condition| condition.key == key).find_map(|condition| (condition.unread)(values))
-}
-
 /// Errors: the value of a setting is not its default, and nothing reads it (exit code 2).
-pub fn require_read<'a>(
-    conditions: impl IntoIterator<Item = &'a Condition> + Clone,
-    settings: &[Setting],
-    values: &Values,
-) -> Result<()> {
+pub fn require_read(settings: &[Setting], values: &Values) -> Result<()> {
     for setting in settings {
         let (key, text) = (setting.key, values.text(setting.key));
         if text != setting.default
-            && let Some(unread) = unread(conditions.clone(), values, key)
+            && let Some(unread) = (setting.unread)(values)
         {
             return Err(Error::request(unread.sentence(key, text))
                 .note(format!("--{key} {} is the default, which is always accepted", setting.default)));
@@ -94,14 +67,10 @@ pub fn require_read<'a>(
 }
 
 /// `values` with every setting that nothing reads at its default: two requests with the same effect are equal.
-pub fn without_unread<'a>(
-    conditions: impl IntoIterator<Item = &'a Condition> + Clone,
-    settings: &[Setting],
-    values: &Values,
-) -> Values {
+pub fn without_unread(settings: &[Setting], values: &Values) -> Values {
     let mut read = values.clone();
     for setting in settings {
-        if unread(conditions.clone(), values, setting.key).is_some() {
+        if (setting.unread)(values).is_some() {
             read.set(setting, setting.default).expect("a default is possible");
         }
     }
@@ -115,15 +84,24 @@ mod tests {
 
     const ROAD: Setting =
         Setting { key: "road", kind: Kind::Choice(&["short", "long", "none"]), default: "short", ..Setting::ROW };
-    const WIDTH: Setting = Setting { key: "width", kind: Kind::Integer { min: 0, max: 9 }, default: "3", ..ROAD };
-    const SIGNS: Setting = Setting { key: "signs", kind: Kind::Choice(&["off", "on"]), default: "off", ..ROAD };
+    const WIDTH: Setting = Setting {
+        key: "width",
+        kind: Kind::Integer { min: 0, max: 9 },
+        default: "3",
+        unread: |values| Unread::unless(values, "road", &["long"], "it is a point"),
+        ..ROAD
+    };
+    const SIGNS: Setting = Setting {
+        key: "signs",
+        kind: Kind::Choice(&["off", "on"]),
+        default: "off",
+        unread: |values| {
+            let without_road = Unread::with(values, "road", &["none"], "there is no road");
+            without_road.or_else(|| Unread::without(values, "width", "it has no room"))
+        },
+        ..ROAD
+    };
     const ALL: [Setting; 3] = [ROAD, WIDTH, SIGNS];
-    const CONDITIONS: &[Condition] = &[
-        Condition { key: "width", unread: |values| Unread::unless(values, "road", &["long"], "it is a point") },
-        Condition { key: "signs", unread: |values| Unread::with(values, "road", &["none"], "there is no road") },
-        Condition { key: "signs", unread: |values| Unread::without(values, "width", "it has no room") },
-    ];
-
     fn values(changes: &[(&Setting, &str)]) -> Values {
         let mut values = Values::defaults(&ALL);
         changes.iter().for_each(|(setting, text)| values.set(setting, text).unwrap());
@@ -132,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_changed_value_that_nothing_reads_is_refused_with_what_would_read_it() {
-        let refused = |changes: &[(&Setting, &str)]| require_read(CONDITIONS, &ALL, &values(changes)).err();
+        let refused = |changes: &[(&Setting, &str)]| require_read(&ALL, &values(changes)).err();
         for fine in
             [&[][..], &[(&ROAD, "none")], &[(&ROAD, "long"), (&WIDTH, "5")], &[(&SIGNS, "on")], &[(&WIDTH, "3")]]
         {
@@ -156,7 +134,7 @@ mod tests {
 
     #[test]
     fn requests_that_come_to_the_same_are_equal() {
-        let read = |changes: &[(&Setting, &str)]| without_unread(CONDITIONS, &ALL, &values(changes));
+        let read = |changes: &[(&Setting, &str)]| without_unread(&ALL, &values(changes));
         assert_eq!(read(&[(&WIDTH, "5")]), values(&[]));
         assert_eq!(read(&[(&ROAD, "long"), (&WIDTH, "5")]), values(&[(&ROAD, "long"), (&WIDTH, "5")]));
     }

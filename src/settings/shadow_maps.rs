@@ -6,7 +6,7 @@
 //! at 0.0001 %; at 0.1 % the RMSE of the fence is 0.103 instead of 0.061.
 
 use super::tables::{DirectShadow, GeometryChoice};
-use super::{Condition, Kind, Setting, Unread, Values};
+use super::{Kind, Setting, Unread, Values};
 use crate::choice::choices;
 
 /// `DIRECT_SHADOW` with shadow maps among its choices.
@@ -42,7 +42,7 @@ choices! {
     }
 }
 
-/// How shadow maps are made and read.
+/// How shadow maps are made and read; nothing reads it where there are none.
 pub const SHADOW_MAPS: &[Setting] = &[
     Setting {
         key: "shadow-maps",
@@ -51,6 +51,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         paper: "Clarberg 2014, 6.2",
         help: "When shadow maps are drawn: anew in every frame and set of samples, as in the paper (frame), or once \
                before the first, with their time in a row of its own (once); the same picture",
+        unread: without_maps,
         ..Setting::ROW
     },
     Setting {
@@ -61,6 +62,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         paper: "Clarberg 2014, 6.2",
         help: "Width and height of a shadow map; spot and directional lights have one map each, point lights and spots \
                wider than 178 degrees six each",
+        unread: without_maps,
         ..Setting::ROW
     },
     Setting {
@@ -71,6 +73,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         help: "How a shadow map is read: by one comparison (nearest), or by four weighted by distance, in the device's \
                filter (bilinear) or, where depth formats cannot be filtered, in the shader (gather, the plain way to \
                the same picture); auto: bilinear where the device has it, gather elsewhere",
+        unread: without_maps,
         ..Setting::ROW
     },
     Setting {
@@ -79,6 +82,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "0.03%",
         unit: "m",
         help: "Distance by which a point moves towards the light before its shadow map is read, to cover rounding",
+        unread: without_maps,
         ..Setting::ROW
     },
     Setting {
@@ -88,6 +92,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         unit: "px",
         help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
                this many texels; 2 is the reach of four comparisons",
+        unread: without_maps,
         ..Setting::ROW
     },
     Setting {
@@ -96,6 +101,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         default: "culled",
         help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
                plain way to the same bits)",
+        unread: without_maps,
         ..Setting::ROW
     },
 ];
@@ -103,13 +109,3 @@ pub const SHADOW_MAPS: &[Setting] = &[
 fn without_maps(values: &Values) -> Option<Unread> {
     Unread::unless(values, MAPPED_DIRECT_SHADOW.key, &[DirectShadow::Map], "there are no shadow maps")
 }
-
-/// `SHADOW_MAPS` are read where there are any.
-pub const SHADOW_MAP_CONDITIONS: &[Condition] = &[
-    Condition { key: "shadow-maps", unread: without_maps },
-    Condition { key: "shadow-map-size", unread: without_maps },
-    Condition { key: "shadow-filter", unread: without_maps },
-    Condition { key: "shadow-bias", unread: without_maps },
-    Condition { key: "shadow-slope-bias", unread: without_maps },
-    Condition { key: "shadow-casters", unread: without_maps },
-];

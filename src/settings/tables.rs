@@ -1,6 +1,6 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
-use super::{Condition, Kind, Setting, Unread};
+use super::{Kind, Setting, Unread};
 use crate::choice::choices;
 use crate::memory::{Strategy, alias};
 use crate::picture::image_file::ExrPrecision;
@@ -297,14 +297,9 @@ pub const CULL_BY: Setting = Setting {
     default: "auto",
     help: "What makes a tile's list of lights: one invocation, or a workgroup that shares out the tile's pixels and \
            the lights; auto: an invocation on software drivers, a workgroup elsewhere; the same lists",
+    unread: |values| Unread::unless(values, CULL.key, &[CullChoice::Tiled], "there are no tiles"),
     ..Setting::ROW
 };
-
-/// Settings that are not read without light lists for tiles.
-pub const CULL_CONDITIONS: &[Condition] = &[Condition {
-    key: CULL_BY.key,
-    unread: |values| Unread::unless(values, "cull", &[CullChoice::Tiled], "there are no tiles"),
-}];
 
 /// How much two normals of one surface may differ.
 pub const NORMAL_THRESHOLD: Setting = Setting {
@@ -391,29 +386,26 @@ choices! {
     }
 }
 
+/// How the G-buffer stores positions.
+pub const POSITION: Setting = Setting {
+    key: "position",
+    kind: Kind::Choice(PositionStorage::WORDS),
+    default: "unorm16",
+    paper: "Segovia 2006, 4.1",
+    help: "How the G-buffer stores positions: as half floats (the paper's), as 16-bit fractions of the scene's box \
+           (unorm16), as the depth buffer, or as 32-bit floats (the most exact, for comparison)",
+    ..Setting::ROW
+};
+
+/// Which lights direct lighting evaluates for a pixel.
+pub const CULL: Setting = Setting {
+    key: "cull",
+    kind: Kind::Choice(CullChoice::WORDS),
+    default: "none",
+    help: "Lights that are evaluated for a pixel in direct lighting: all of them (none), or a list for each tile \
+           of 16x16 pixels (tiled); the same picture",
+    ..Setting::ROW
+};
+
 /// Settings of shading with a G-buffer, which several techniques read.
-pub const SHADING: &[Setting] = &[
-    BRDF,
-    Setting {
-        key: "position",
-        kind: Kind::Choice(PositionStorage::WORDS),
-        default: "unorm16",
-        paper: "Segovia 2006, 4.1",
-        help: "How the G-buffer stores positions: as half floats (the paper's), as 16-bit fractions of the scene's box \
-               (unorm16), as the depth buffer, or as 32-bit floats (the most exact, for comparison)",
-        ..Setting::ROW
-    },
-    GEOMETRY,
-    Setting {
-        key: "cull",
-        kind: Kind::Choice(CullChoice::WORDS),
-        default: "none",
-        help: "Lights that are evaluated for a pixel in direct lighting: all of them (none), or a list for each tile \
-               of 16x16 pixels (tiled); the same picture",
-        ..Setting::ROW
-    },
-    CULL_BY,
-    DIRECT_SHADOW,
-    TEXELS,
-    WORKGROUP,
-];
+pub const SHADING: &[Setting] = &[BRDF, POSITION, GEOMETRY, CULL, CULL_BY, DIRECT_SHADOW, TEXELS, WORKGROUP];

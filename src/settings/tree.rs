@@ -7,7 +7,7 @@
 //! is won. A short stack does 0.6 to 0.8 of a whole one's rays. Orders of nodes differ by no more than the
 //! measurement's noise.
 
-use super::{Kind, Setting};
+use super::{Kind, Setting, Unread};
 use crate::choice::choices;
 
 choices! {
@@ -63,6 +63,9 @@ pub const TREE: &[Setting] = &[
         default: "8",
         help: "Most nodes that wait in the stack of --stack short; the other stacks hold as many as the tree can make \
                wait",
+        unread: |values| {
+            Unread::unless(values, "stack", &[StackPlace::Short], "it has room for all nodes that can wait")
+        },
         ..Setting::ROW
     },
 ];

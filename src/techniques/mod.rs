@@ -14,8 +14,10 @@ pub mod fitness;
 pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
+pub mod notes;
 pub mod own_pass;
 pub mod path_traced;
+pub mod patterns;
 pub mod stages;
 
 pub use all::{ALL, find};
@@ -29,9 +31,11 @@ use crate::lights::LightSet;
 use crate::picture::Aov;
 use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
+use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
-use crate::settings::{COMMON, Condition, DirectShadow, INSTRUMENT, Setting, Values};
+use crate::settings::{COMMON, DirectShadow, INSTRUMENT, Setting, Values};
 use glam::Vec2;
+use notes::Figures;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -70,6 +74,20 @@ pub struct Rival {
     pub bytes: u64,
 }
 
+/// A pattern of samples that settings of a technique choose.
+pub struct NamedPattern {
+    /// Its name on the command line, different from every other pattern's.
+    pub name: &'static str,
+    /// One line for the list.
+    pub summary: &'static str,
+    /// Keys of those settings.
+    pub keys: &'static [&'static str],
+    /// The pattern.
+    ///
+    /// Errors: the settings contradict each other (exit code 2).
+    pub make: fn(&Values) -> Result<Pattern>,
+}
+
 /// One way of making a picture.
 pub trait Technique: Sync {
     /// Its name on the command line, in labels and in reports.
@@ -83,11 +101,6 @@ pub trait Technique: Sync {
 
     /// Tables of the settings that it reads beside the common ones.
     fn settings(&self) -> &'static [&'static [Setting]];
-
-    /// When its settings are read, of those that not every value of others reads.
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[]
-    }
 
     /// Names that `--aov` takes.
     fn aovs(&self) -> &'static [&'static str];
@@ -122,6 +135,16 @@ pub trait Technique: Sync {
     /// Methods whose memory its paper compares with.
     fn rivals(&self) -> Vec<Rival> {
         Vec::new()
+    }
+
+    /// What a report says of its figures, a line an entry.
+    fn notes(&self, _: &Figures<'_>) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Patterns of samples that its settings choose.
+    fn patterns(&self) -> &'static [NamedPattern] {
+        &[]
     }
 
     /// Its choices for these inputs: made here once, then planned, then built. No device is needed.

@@ -4,7 +4,8 @@
 //! pass's resources are planned with the technique's, its barriers are checked like theirs, its time stands beside
 //! theirs. examples/own_pass.rs is a pass whole.
 
-use super::{Frame, HostPart, Inputs, Need, Prepared, Rival, Sums, Technique};
+use super::notes::Figures;
+use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Sums, Technique};
 use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
@@ -12,7 +13,7 @@ use crate::lights::LightSet;
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::settings::{Condition, Setting, Values};
+use crate::settings::{Setting, Values};
 use crate::units::Extent;
 use glam::Vec2;
 use std::collections::BTreeMap;
@@ -65,10 +66,6 @@ impl Technique for WithPass {
         self.technique.settings()
     }
 
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        self.technique.conditions()
-    }
-
     fn aovs(&self) -> &'static [&'static str] {
         self.technique.aovs()
     }
@@ -95,6 +92,14 @@ impl Technique for WithPass {
 
     fn rivals(&self) -> Vec<Rival> {
         self.technique.rivals()
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        self.technique.notes(figures)
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        self.technique.patterns()
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -1,6 +1,7 @@
 //! The program from outside: exit codes, what it says, and which files it leaves.
 
 mod compare;
+mod sampling;
 mod scene_verbs;
 
 use crate::support::program::Program;

@@ -1,7 +1,7 @@
 //! Every choice of every setting plans, compiles and records, or is refused by name.
 
 use super::{FAMILIES, Null, is_refused};
-use quincunx::settings::{Setting, Values, readers};
+use quincunx::settings::{Setting, Values};
 use quincunx::techniques::{self, Technique, settings_of};
 
 /// A setting's key and its value.
@@ -20,7 +20,7 @@ const OTHERS: [Change; 8] = [
 ];
 
 /// Whether something reads each of these changes of the defaults.
-fn are_read(technique: &dyn Technique, settings: &[Setting], changes: &[Change]) -> bool {
+fn are_read(settings: &[Setting], changes: &[Change]) -> bool {
     let mut values = Values::defaults(settings);
     for (key, text) in changes {
         let setting = settings.iter().find(|setting| setting.key == *key).unwrap();
@@ -28,8 +28,8 @@ fn are_read(technique: &dyn Technique, settings: &[Setting], changes: &[Change])
             return false;
         }
     }
-    let conditions = || technique.conditions().iter().copied().flatten();
-    changes.iter().all(|(key, _)| readers::unread(conditions(), &values, key).is_none())
+    let is_read = |key: &str| settings.iter().any(|setting| setting.key == key && (setting.unread)(&values).is_none());
+    changes.iter().all(|(key, _)| is_read(key))
 }
 
 /// A choice, and the ways to ask for it in which something reads all of it: by itself and with one other change, or,
@@ -50,7 +50,7 @@ fn choices(technique: &dyn Technique) -> Vec<Asked> {
     let others: Vec<Change> = OTHERS.into_iter().chain(own.iter().copied()).filter(|(key, _)| has(key)).collect();
     let is_way = |changes: &Vec<Change>| {
         let are_distinct = (1..changes.len()).all(|at| changes[..at].iter().all(|(key, _)| *key != changes[at].0));
-        are_distinct && are_read(technique, &settings, changes)
+        are_distinct && are_read(&settings, changes)
     };
     let asked = |choice: &Change| {
         let one = others.iter().map(|first| vec![*first, *choice]);

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["choice", "error", "progress", "sampling", "units"],
+    &["choice", "error", "keyed", "progress", "sampling", "units"],
     &["caps", "interrupt", "whole_file"],
     &["memory", "picture"],
     &["gpu", "metrics", "scene", "settings"],

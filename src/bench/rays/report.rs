@@ -5,7 +5,7 @@ use crate::bench::stats::{median, paired_ratio};
 use crate::bench::table::{self, Table};
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
-use crate::report::run::spread;
+use crate::report::spread::Spread;
 use crate::scene::Scene;
 use crate::units::Bytes;
 use serde_json::{Value, json};
@@ -48,11 +48,11 @@ fn row(one: &Measured, gpu: &Gpu, scene: &Scene, request: &Request) -> Value {
         "ray_count": request.ray_count,
         "seed": request.seed,
         "repeat": request.repeat,
-        "ms": spread(&device),
+        "ms": Spread::of(&device),
         "mrays_per_s": rate(&device),
         "speed_to_plain": paired_ratio(&plain, &device).json(),
         "host_threads": rayon::current_num_threads(),
-        "host_ms": spread(&host),
+        "host_ms": Spread::of(&host),
         "host_mrays_per_s": rate(&host),
         "speed_to_host": paired_ratio(&host, &device).json(),
         "hits": one.hit_count,

@@ -3,8 +3,8 @@
 use super::{Pattern, Sample};
 
 impl Pattern {
-    /// The least distance between two samples of the repeated pattern, px: copies of one sample in two periods count too.
-    /// None without samples.
+    /// The least distance between two samples of the repeated pattern, px: copies of one sample in two periods count
+    /// too. None without samples.
     pub fn least_distance_px(&self) -> Option<f64> {
         self.least_distance_of(|_| true)
     }

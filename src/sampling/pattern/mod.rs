@@ -2,9 +2,9 @@
 //! section 2), and which subset each of them belongs to.
 //!
 //! Copies of one sample in all periods are a regular grid. In Keller's patterns each sample is a subset of its own, so
-//! that a subset is one such grid; in Segovia's a subset is what a pixel of the pattern is shaded with. A pixel may hold
-//! any number of samples, none included, and not all pixels the same: what is asked for samples over a whole number of
-//! pixels may have any ratio of the two. The period is anything from one pixel to the frame.
+//! that a subset is one such grid; in Segovia's a subset is what a pixel of the pattern is shaded with. A pixel may
+//! hold any number of samples, none included, and not all pixels the same, so that samples over a number of pixels may
+//! be any two numbers. The period is anything from one pixel to the frame.
 
 mod distance;
 pub mod grid;
@@ -66,7 +66,8 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// A pattern of `samples`, each with the pixel of the period that it lies in. Samples of one pixel keep their order.
+    /// A pattern of `samples`, each with the pixel of the period that it lies in. Samples of one pixel keep their
+    /// order.
     ///
     /// `period_px`: width and height, each at least 1. `further`: dimensions beside the place, at most `MOST_FURTHER`.
     pub fn new(period_px: [u32; 2], further: &[Dimension], mut samples: Vec<([u32; 2], Sample)>) -> Self {
@@ -153,10 +154,12 @@ mod tests {
             places in prop::collection::vec(((0..width, 0..height), (0f32..1.0, 0f32..1.0), 0f32..1.0), 0..60),
             width in Just(width), height in Just(height),
         ) -> (Vec<([u32; 2], Sample)>, Pattern) {
-            let sample = |(index, ((x, y), (u, v), time)): (usize, ((u32, u32), (f32, f32), f32))| {
-                ([x, y], Sample { place_px: [u, v], further: [time, 0.0, 0.0], subset: index as u32 })
-            };
-            let samples: Vec<_> = places.into_iter().enumerate().map(sample).collect();
+            let samples: Vec<_> = (0..)
+                .zip(places)
+                .map(|(subset, ((x, y), (u, v), time))| {
+                    ([x, y], Sample { place_px: [u, v], further: [time, 0.0, 0.0], subset })
+                })
+                .collect();
             (samples.clone(), Pattern::new([width, height], &[Dimension::Time], samples))
         }
     }
@@ -190,7 +193,9 @@ mod tests {
         }
 
         #[test]
-        fn the_period_repeats((_, pattern) in any_pattern(), x in 0u32..40, y in 0u32..40, right in 0u32..9, down in 0u32..9) {
+        fn the_period_repeats(
+            (_, pattern) in any_pattern(), x in 0u32..40, y in 0u32..40, right in 0u32..9, down in 0u32..9,
+        ) {
             let [width, height] = pattern.period_px();
             let there = [x + right * width, y + down * height];
             prop_assert_eq!(pattern.samples_of([x, y]), pattern.samples_of(there));

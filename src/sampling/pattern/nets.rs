@@ -9,8 +9,8 @@ impl Pattern {
     /// `samples` at each pixel of the period, with time and lens; each is a subset of its own, and they count pixel by
     /// pixel.
     ///
-    /// `run`: another part of the sequence for each set of samples that a picture sums. A single sample of the first run
-    /// lies in the middle of its pixel.
+    /// `run`: another part of the sequence for each set of samples that a picture sums. A single sample of the first
+    /// run lies in the middle of its pixel.
     pub fn nets(period_px: [u32; 2], samples: u32, seed: u32, run: u32) -> Self {
         let count = period_px[0] * period_px[1] * samples;
         let pair = |index: u32, purpose: u32| {

@@ -3,7 +3,7 @@
 use super::mid_exposure::MidExposure;
 use super::space::ShadingSpace;
 use super::tuples::TupleTable;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
@@ -94,12 +94,7 @@ impl Choices {
         let values = inputs.values;
         let samples = values.integer("spp") as u32;
         let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
-        let tuples = values.unless_auto("tuples", Values::integer).map_or(4 * samples, |tuples| tuples as u32);
-        if !tuples.is_multiple_of(samples) {
-            return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
-                .within(NAME)
-                .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
-        }
+        let table = TupleTable::from_settings(values)?;
         let has_lists = shading == Shading::Deep && !values.is("lists", Lists::None);
         let is_direct = has_lists && values.is("lists", Lists::Direct);
         require_direct(values)?;
@@ -116,7 +111,7 @@ impl Choices {
         let (scene, lights) =
             mid_exposure.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
-        let (table, visibility) = (TupleTable::new(samples, tuples), shading.visibility(values)?);
+        let visibility = shading.visibility(values)?;
         let table = TupleTable { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
         let space =
             ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;

@@ -99,18 +99,17 @@ mod touched;
 mod tuples;
 mod visibility;
 
-use super::{HostPart, Inputs, Prepared, Rival, Technique, light_visibility};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::Plan;
-use crate::settings::{Condition, INSTRUMENT, LENS_CONDITIONS, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
+use crate::settings::{INSTRUMENT, SHADOW_MAPS, Setting, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
-use crate::techniques::deep_shading::modes::shading::CONDITIONS;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::texture_space::atlases::Atlases;
@@ -141,10 +140,6 @@ impl Technique for DeepShading {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, SHADOW_MAPS]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[CONDITIONS, SHADOW_MAP_CONDITIONS, LENS_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -215,6 +210,10 @@ impl Technique for DeepShading {
 
     fn rivals(&self) -> Vec<Rival> {
         rivals::rivals()
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        tuples::PATTERNS
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -2,6 +2,7 @@
 
 use crate::settings::{
     APERTURE, BRDF, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
+    Unread, Values,
 };
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
@@ -39,6 +40,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 6",
         help: "Number of textures of --shading texture-space, which is how many draws are shaded and drawn at a time; \
                the same picture",
+        unread: without_textures,
         ..Setting::ROW
     },
     Setting {
@@ -49,6 +51,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 6",
         help: "Texels along a side of the finest level of each texture of --shading texture-space: the most with which \
                a mesh's atlas is shaded",
+        unread: without_textures,
         ..Setting::ROW
     },
     Setting {
@@ -59,6 +62,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 2",
         help: "Entries of the cache in which --shading indirect-gbuffer finds what has been seen before; what a full \
                cache forgets is shaded again, to the same picture; auto: as many as samples",
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::IndirectGbuffer], "it has no cache"),
         ..Setting::ROW
     },
     Setting {
@@ -69,6 +73,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 6",
         help: "Samples a pixel that --shading msaa draws at once; --spp takes as many passes as it needs; auto: the \
                most of these that the device has and that divide --spp",
+        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Msaa], "samples are drawn one at a time"),
         ..Setting::ROW
     },
     Setting {
@@ -90,6 +95,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.2",
         help: "Stage that writes the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a \
                geometry shader that passes triangles through; the same samples; auto: vertex where the device can",
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples are drawn layer by layer"),
         ..Setting::ROW
     },
     Setting {
@@ -101,6 +107,14 @@ pub const SETTINGS: &[Setting] = &[
         help: "Stage that makes the polygon around a triangle's blur with --visibility stochastic (and around strays \
                with ray): a geometry shader, once for the polygon, or vertex shaders, each corner for itself; the same \
                samples; auto: geometry where the device can",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::Ssaa, ShadingKind::TextureSpace],
+                "its triangles come from vertex shaders",
+            )
+        },
         ..Setting::ROW
     },
     Setting {
@@ -113,6 +127,14 @@ pub const SETTINGS: &[Setting] = &[
                fragment tests all samples of its pixel, of which 64-bit atomics keep the nearest (loop); or it is \
                drawn into a layer for each tuple, where a pixel is a sample (layers); the same picture; auto: loop \
                where the device can",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                ShadingKind::OF_SPACE,
+                "samples are drawn and coloured layer by layer, or as many at a time as an image has",
+            )
+        },
         ..Setting::ROW
     },
     Setting {
@@ -150,6 +172,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 6",
         help: "Width of the border of shading space around the frame, for what blur brings in; samples that are \
                farther out are shaded one by one",
+        unread: without_space,
         ..Setting::ROW
     },
     Setting {
@@ -158,6 +181,14 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         paper: "Clarberg 2014, 6",
         help: "Pixels of shading space along one pixel of the frame; below 1, shading is coarser than the frame",
+        unread: |values| {
+            Unread::unless(
+                values,
+                "shading",
+                &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::TextureSpace],
+                "it shades no pixels of shading space",
+            )
+        },
         ..Setting::ROW
     },
     Setting {
@@ -167,6 +198,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 7",
         help: "Where shading space is finer: nowhere (even), or in its middle, which is as fine as an even one \
                (foveated); visibility stays as fine",
+        unread: without_space,
         ..Setting::ROW
     },
     Setting {
@@ -176,6 +208,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Falloff c of --shading-warp foveated: at r, from 0 in the middle to 1 at the rim, a pixel of shading \
                space is 1 + c r times as wide across and (1 + c r)^2 times as long towards the rim; shading space then \
                has 1/(1 + c)^2 of the pixels",
+        unread: without_space,
         ..Setting::ROW
     },
     Setting {
@@ -186,6 +219,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How the triangles to shade at each pixel of shading space are listed: in linked lists (linked); in \
                lists that rays fill at once, without a SPID a sample, with --visibility ray (direct); or not, each \
                sample being shaded where it is seen, at its shading point (none, the plain way to the same picture)",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -197,6 +231,7 @@ pub const SETTINGS: &[Setting] = &[
                filters, the buffers of --shading indirect-gbuffer): through descriptors, within the longest range that \
                the device binds, or by the buffers' addresses, at any length; the same picture; auto: addresses where \
                a buffer is longer than that range",
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples' colours are in images"),
         ..Setting::ROW
     },
     Setting {
@@ -207,6 +242,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What an insertion does when another one has changed the list first: it looks through the nodes added \
                since, so that no triangle is listed twice (avoided), or it does not (tolerated, the paper's way); the \
                same picture",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -215,6 +251,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         paper: "Clarberg 2014, 4.3",
         help: "Sort the lists and store their first M = 16 triangles in a row; the same picture",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -224,6 +261,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 3.1",
         help: "Leave out, before a list is read, triangles that lie behind all that samples saw at that pixel of \
                shading space; the same picture",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -232,6 +270,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         paper: "Clarberg 2014, 4.3",
         help: "Keep the address of each sample's colour; off: find it again by following links; the same picture",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -245,6 +284,7 @@ pub const SETTINGS: &[Setting] = &[
                has not been seen to run yet); the same picture, or an error that says how many samples have no colour; \
                auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
                triangle covers, to measure what the others cost and how much has no colour then",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -254,6 +294,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "all: Clarberg 2014, 4.4",
         help: "Triangles that are drawn into shading space: those that are in a list, for which insertion marks one \
                bit each (listed), or all of the scene, as in the paper and with --lists direct (all); the same picture",
+        unread: without_lists,
         ..Setting::ROW
     },
     Setting {
@@ -275,3 +316,15 @@ pub const SETTINGS: &[Setting] = &[
     GEOMETRY,
     MAPPED_DIRECT_SHADOW,
 ];
+
+fn without_space(values: &Values) -> Option<Unread> {
+    Unread::unless(values, "shading", ShadingKind::OF_SPACE, "it has no shading space")
+}
+
+fn without_lists(values: &Values) -> Option<Unread> {
+    Unread::unless(values, "shading", &[ShadingKind::Deep], "it has no lists")
+}
+
+fn without_textures(values: &Values) -> Option<Unread> {
+    Unread::unless(values, "shading", &[ShadingKind::TextureSpace], "it has no textures of its own")
+}

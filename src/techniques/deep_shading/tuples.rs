@@ -7,9 +7,21 @@
 //! With two eyes (`--stereo`) the left eye's tuples come first and then the right eye's: the same places in a pixel, on
 //! the lens and in time, with the lens at another place.
 
+use crate::error::{Error, Result};
 use crate::gpu::shader::structs::TupleBlock;
 use crate::sampling::pattern::{Pattern, Sample};
+use crate::settings::Values;
+use crate::techniques::NamedPattern;
+use crate::techniques::deep_shading::resources::NAME;
 use crate::units::Extent;
+
+/// Patterns that the settings choose.
+pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
+    name: "tuples",
+    summary: "Places in a pixel, on the lens and in time at which all samples are taken, over a table of pixels",
+    keys: &["spp", "tuples", "seed"],
+    make: |values| Ok(TupleTable::from_settings(values)?.pattern(values.integer("seed") as u32, 0)),
+}];
 
 /// How samples are spread over pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +35,20 @@ pub struct TupleTable {
 }
 
 impl TupleTable {
+    /// The table of `--spp` and `--tuples`, for one eye.
+    ///
+    /// Errors: `--tuples` is no multiple of `--spp` (exit code 2).
+    pub fn from_settings(values: &Values) -> Result<Self> {
+        let samples = values.integer("spp") as u32;
+        let tuples = values.unless_auto("tuples", Values::integer).map_or(4 * samples, |tuples| tuples as u32);
+        if !tuples.is_multiple_of(samples) {
+            return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
+                .within(NAME)
+                .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
+        }
+        Ok(Self::new(samples, tuples))
+    }
+
     /// For one eye. `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
     pub fn new(samples: u32, tuples: u32) -> Self {
         let cells = tuples / samples;

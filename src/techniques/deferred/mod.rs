@@ -5,6 +5,7 @@
 
 pub mod shade;
 
+use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
@@ -20,7 +21,7 @@ use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, SceneGpu};
-use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -48,10 +49,6 @@ impl Technique for Deferred {
         &[SHADING, LIGHT_LISTS]
     }
 
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[CULL_CONDITIONS]
-    }
-
     fn aovs(&self) -> &'static [&'static str] {
         gbuffer::AOVS
     }
@@ -76,6 +73,10 @@ impl Technique for Deferred {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        Vec::from_iter(notes::direct_light(figures, Some("deferred.shade")))
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -25,6 +25,7 @@ mod plan;
 mod resources;
 mod settings;
 
+use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
@@ -41,7 +42,7 @@ use crate::passes::shadow_maps::{self, MapLayout, Places, ShadowMaps};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
-use crate::settings::{Condition, LIGHT_LISTS, MULTISAMPLE, SHADOW_MAP_CONDITIONS, SHADOW_MAPS, Setting, Values};
+use crate::settings::{LIGHT_LISTS, MULTISAMPLE, SHADOW_MAPS, Setting, Values};
 use crate::techniques::forward::choices::Choices;
 use crate::techniques::forward::material::{MaterialLights, Targets};
 use crate::techniques::forward::resources::NAME;
@@ -72,10 +73,6 @@ impl Technique for Forward {
         &[settings::SETTINGS, LIGHT_LISTS, SHADOW_MAPS, MULTISAMPLE]
     }
 
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[SHADOW_MAP_CONDITIONS]
-    }
-
     fn aovs(&self) -> &'static [&'static str] {
         &[DEPTH_STAGE]
     }
@@ -102,6 +99,10 @@ impl Technique for Forward {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        Vec::from_iter(notes::direct_light(figures, None))
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -2,6 +2,15 @@
 
 use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
+use crate::techniques::NamedPattern;
+
+/// Patterns that the settings choose.
+pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
+    name: "stipple",
+    summary: "Texels of the light buffer by their layer: 0 is the solid surfaces', the others are BLEND surfaces'",
+    keys: &["stipple"],
+    make: |values| Ok(stipple(values)),
+}];
 
 use crate::choice::choices;
 

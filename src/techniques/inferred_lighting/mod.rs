@@ -30,7 +30,8 @@ mod settings;
 mod stipple;
 mod survivors;
 
-use super::{HostPart, Inputs, Prepared, Technique, light_visibility};
+use super::notes::{self, Figures};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::Access;
@@ -39,7 +40,7 @@ use crate::lights::LightSet;
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::{blend, cull as light_masks, direct, resolve};
 use crate::plan::Plan;
-use crate::settings::{Condition, MOTION_CONDITIONS, MULTISAMPLE, Setting, Values};
+use crate::settings::{MULTISAMPLE, Setting, Values};
 use crate::techniques::inferred_lighting::encoding::PackingFormat;
 use crate::techniques::inferred_lighting::light::store::Sums;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
@@ -67,10 +68,6 @@ impl Technique for InferredLighting {
 
     fn settings(&self) -> &'static [&'static [Setting]] {
         &[settings::SETTINGS, MULTISAMPLE]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS, MOTION_CONDITIONS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -135,6 +132,17 @@ impl Technique for InferredLighting {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        let open = figures.counter("shadow_casters_not_closed").filter(|open| *open > 0.0);
+        let open = open
+            .map(|open| format!("  note: draws without shadow volumes, because their meshes are not closed: {open}"));
+        open.into_iter().chain(notes::direct_light(figures, None)).collect()
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        assignment::PATTERNS
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -7,8 +7,8 @@ use super::layer_names;
 use super::light::Volumes;
 use super::light::store::Sums;
 use crate::settings::{
-    BRDF, CULL_BY, Condition, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS,
-    NORMAL_THRESHOLD, Setting, TEXELS, Unread, WORKGROUP,
+    BRDF, CULL_BY, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD,
+    Setting, TEXELS, Unread, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -17,7 +17,7 @@ pub const SETTINGS: &[Setting] = &[
     GEOMETRY,
     DIRECT_SHADOW,
     DEPTH_PREPASS,
-    CULL_BY,
+    Setting { unread: |values| Unread::unless(values, "volumes", &[Volumes::Tiled], "there are no tiles"), ..CULL_BY },
     TEXELS,
     WORKGROUP,
     NORMAL_THRESHOLD,
@@ -47,6 +47,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "0.5",
         paper: "Kircher 2009, 2.2",
         help: "Roughness of every surface in the light pass with --extras off",
+        unread: |values| Unread::unless(values, "extras", &["off"], "each texel has its own roughness"),
         ..Setting::ROW
     },
     MOTION_VECTORS,
@@ -70,6 +71,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.2",
         help: "Number of texels in a light's rectangle from which --volumes auto draws it with the stencil (lavapipe: \
                the stencil pays from some 16384 on, and below makes no difference)",
+        unread: |values| Unread::unless(values, "volumes", &[Volumes::Auto], "all lights are drawn in the same way"),
         ..Setting::ROW
     },
     Setting {
@@ -117,6 +119,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 5.1",
         help: "Factor by which --packing fixed scales numbers from -1 to 1 into its format, which goes from -32 to 32; \
                32 uses every step of it, 1 a 32nd of them",
+        unread: |values| Unread::unless(values, "packing", &[PackingFormat::Fixed], "it packs without fixed point"),
         ..Setting::ROW
     },
     Setting {
@@ -203,30 +206,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "texels",
         paper: "Kircher 2009, 4",
         help: "Radius of --alpha-filter cone, in texels of the light buffer; it is doubled with --stipple 4x4",
-        ..Setting::ROW
-    },
-];
-
-/// Settings that are not read with some values of others.
-pub const CONDITIONS: &[Condition] = &[
-    Condition {
-        key: "light-roughness",
-        unread: |values| Unread::unless(values, "extras", &["off"], "each texel has its own roughness"),
-    },
-    Condition {
-        key: "stencil-least",
-        unread: |values| Unread::unless(values, "volumes", &[Volumes::Auto], "all lights are drawn in the same way"),
-    },
-    Condition {
-        key: CULL_BY.key,
-        unread: |values| Unread::unless(values, "volumes", &[Volumes::Tiled], "there are no tiles"),
-    },
-    Condition {
-        key: "fixed-range",
-        unread: |values| Unread::unless(values, "packing", &[PackingFormat::Fixed], "it packs without fixed point"),
-    },
-    Condition {
-        key: "cone-radius",
         unread: |values| Unread::unless(values, "alpha-filter", &[AlphaFilter::Cone], "its weights have no radius"),
+        ..Setting::ROW
     },
 ];

@@ -13,8 +13,8 @@ use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Kernel, StopBits};
 use crate::sampling::pattern::Pattern;
 use crate::settings::{PositionStorage, Values};
-use crate::techniques::Inputs;
 use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Bytes;
 use std::collections::BTreeMap;
 
@@ -71,6 +71,22 @@ pub struct Choices {
     /// The scene's own lights that this frame has.
     pub direct_count: u32,
 }
+
+/// Patterns that the settings choose.
+pub const PATTERNS: &[NamedPattern] = &[
+    NamedPattern {
+        name: "grid",
+        summary: "The interleaved pattern: each pixel is shaded with a subset of the virtual point lights",
+        keys: &["pattern"],
+        make: |values| Ok(Pattern::grid(values.pair("pattern"))),
+    },
+    NamedPattern {
+        name: "direct-grid",
+        summary: "The pattern of the scene's own lights with --direct interleaved, made by clustering sub-buffers",
+        keys: &["pattern", "direct-pattern"],
+        make: |values| Ok(Pattern::grid(direct_pattern(values, values.pair("pattern"))?)),
+    },
+];
 
 /// Workgroups that a list of texels is worth at least, where it has so many: the last one's threads may stand behind its end.
 const LEAST_WORKGROUPS: u64 = 4;

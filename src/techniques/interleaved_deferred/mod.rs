@@ -46,7 +46,8 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
-use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
+use super::notes::{self, Figures};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
@@ -59,7 +60,7 @@ use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
-use crate::settings::{CULL_CONDITIONS, Condition, LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::{Choices, Direct};
 use filter::Filtered;
@@ -86,11 +87,7 @@ impl Technique for InterleavedDeferred {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, SHADING, LIGHT_LISTS]
-    }
-
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS, CULL_CONDITIONS]
+        &[settings::SETTINGS, settings::SHADING, LIGHT_LISTS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -135,6 +132,21 @@ impl Technique for InterleavedDeferred {
             Direct::Full => {}
         }
         Ok(settings)
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        let vpls = figures.counter("vpls_found").zip(figures.counter("vpls"));
+        let dark = vpls.filter(|(found, wanted)| found < wanted).map(|(found, wanted)| {
+            format!(
+                "  note: light walks found places for {found} virtual point lights of {wanted}; the others are dark"
+            )
+        });
+        let composite = format!("{NAME}.composite");
+        dark.into_iter().chain(notes::direct_light(figures, Some(&composite))).collect()
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        choices::PATTERNS
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -2,7 +2,10 @@
 
 use super::choices::{BlendLights, Direct, StopAt};
 use super::road::{Filter, Form, Split, StorageKind};
-use crate::settings::{Condition, EMISSIVE, Kind, NORMAL_THRESHOLD, Setting, Unread, VPL_CLAMP, Values};
+use crate::settings::{
+    BRDF, CULL, CULL_BY, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, Setting, TEXELS, Unread,
+    VPL_CLAMP, Values, WORKGROUP,
+};
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
@@ -14,6 +17,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "px",
         paper: "Segovia 2006, 3",
         help: "Size of the interleaved pattern; each of its pixels has a light subset of its own",
+        unread: |values| Unread::with(values, "split", &[Split::None], "every pixel has all lights"),
         ..Setting::ROW
     },
     Setting {
@@ -38,6 +42,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, figure 3",
         help: "Where sub-buffers lie: in storage buffers, two texels a thread, or tiled in images; auto: images where \
                --split knows nothing else, otherwise buffers on software drivers and images elsewhere",
+        unread: without_copy,
         ..Setting::ROW
     },
     Setting {
@@ -46,6 +51,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "pull",
         help: "What a thread of a copy stands for: a texel that it writes (pull) or a texel that it reads (push), or a \
                pair of such texels in buffers",
+        unread: without_copy,
         ..Setting::ROW
     },
     Setting {
@@ -57,6 +63,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 3.3",
         help: "Size of a block for --split two-pass and tile, and for fragment in two passes; rounded up to whole \
                patterns",
+        unread: without_blocks,
         ..Setting::ROW
     },
     Setting {
@@ -66,6 +73,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 3.2, 4.2",
         help: "Passes of --split fragment: 1 uses one look-up texture, 2 splits into blocks and then translates the \
                blocks",
+        unread: |values| Unread::unless(values, "split", &[Split::Fragment], "it has no fragment programs"),
         ..Setting::ROW
     },
     Setting {
@@ -101,6 +109,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "subset",
         help: "Virtual point lights that shade BLEND surfaces, which no filter smooths: those of the pixel's subset, \
                or all",
+        unread: is_even,
         ..Setting::ROW
     },
     Setting {
@@ -114,7 +123,10 @@ pub const SETTINGS: &[Setting] = &[
         help: "Pattern of the scene's own lights with --direct interleaved; it divides --pattern and is made of \
                clusters of its sub-buffers; with fewer pixels to share the lights, each has more of them; auto: \
                --pattern",
-        ..Setting::ROW
+        unread: |values| {
+            Unread::unless(values, "direct", &[Direct::Interleaved], "no punctual light is in a subset")
+                .or_else(|| sums_all(values))
+        },
     },
     Setting {
         key: "filter",
@@ -123,6 +135,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 4.5",
         help: "Filter of the interleaved irradiance; a picture that is not interleaved (--split none, or pattern 1x1) \
                is not filtered",
+        unread: is_even,
         ..Setting::ROW
     },
     Setting {
@@ -132,6 +145,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "px",
         paper: "Segovia 2006, tables 2 and 3",
         help: "Taps of the filter in one direction, an odd number",
+        unread: is_unfiltered,
         ..Setting::ROW
     },
     Setting {
@@ -140,6 +154,11 @@ pub const SETTINGS: &[Setting] = &[
         default: "off",
         help: "Merge passes of --filter gauss: the composite runs over the filter's columns, and a one-pass gather \
                that pulls over its rows; the same pixels with fewer passes, and fewer stages to time and to look at",
+        unread: |values| {
+            is_even(values).or_else(|| {
+                Unread::unless(values, "filter", &[Filter::Gauss], "no pass walks rows and columns of buffers")
+            })
+        },
         ..Setting::ROW
     },
     Setting {
@@ -149,6 +168,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "px",
         help: "Standard deviation of the filter; 0: a third of the kernel, which weighs the pixels of a 4x4 pattern \
                most evenly",
+        unread: is_unfiltered,
         ..Setting::ROW
     },
     Setting {
@@ -159,9 +179,10 @@ pub const SETTINGS: &[Setting] = &[
         help: "Discontinuity at which the filter stops: one in the direction of the filter (directional), or one in \
                any of the three directions (any, the paper's single flag, which leaves pixels along an edge \
                unfiltered)",
+        unread: is_unfiltered,
         ..Setting::ROW
     },
-    NORMAL_THRESHOLD,
+    Setting { unread: is_unfiltered, ..NORMAL_THRESHOLD },
     Setting {
         key: "position-threshold",
         kind: Kind::Length,
@@ -169,8 +190,21 @@ pub const SETTINGS: &[Setting] = &[
         unit: "m",
         paper: "Segovia 2006, 4.5",
         help: "Distance from a pixel's tangent plane above which a neighbour lies across a discontinuity",
+        unread: is_unfiltered,
         ..Setting::ROW
     },
+];
+
+/// `settings::SHADING`, of which direct light alone reads `--brdf` and `--cull`.
+pub const SHADING: &[Setting] = &[
+    Setting { unread: without_direct, ..BRDF },
+    POSITION,
+    GEOMETRY,
+    Setting { unread: without_direct, ..CULL },
+    CULL_BY,
+    DIRECT_SHADOW,
+    TEXELS,
+    WORKGROUP,
 ];
 
 /// Every pixel that is shaded has all lights.
@@ -188,57 +222,19 @@ fn is_unfiltered(values: &Values) -> Option<Unread> {
         .or_else(|| Unread::unless(values, "filter", &[Filter::Gauss, Filter::GaussFast], "nothing is filtered"))
 }
 
-/// Settings that are not read with some values of others.
-pub const CONDITIONS: &[Condition] = &[
-    Condition {
-        key: "pattern",
-        unread: |values| Unread::with(values, "split", &[Split::None], "every pixel has all lights"),
-    },
-    Condition { key: "storage", unread: |values| Unread::unless(values, "split", Split::COPYING, "it copies nothing") },
-    Condition { key: "copy", unread: |values| Unread::unless(values, "split", Split::COPYING, "it copies nothing") },
-    Condition {
-        key: "block",
-        unread: |values| {
-            Unread::unless(values, "split", &[Split::TwoPass, Split::Tile, Split::Fragment], "it has no blocks")
-                .or_else(|| {
-                    let draws = values.is("split", Split::Fragment);
-                    let passes = || Unread::unless(values, "fragment-passes", &["2"], "one pass has no blocks");
-                    if draws { passes() } else { None }
-                })
-        },
-    },
-    Condition {
-        key: "fragment-passes",
-        unread: |values| Unread::unless(values, "split", &[Split::Fragment], "it has no fragment programs"),
-    },
-    Condition { key: "blend-lights", unread: is_even },
-    Condition {
-        key: "brdf",
-        unread: |values| Unread::with(values, "direct", &[Direct::None], "there is no direct light"),
-    },
-    Condition {
-        key: "cull",
-        unread: |values| Unread::with(values, "direct", &[Direct::None], "there is no direct light"),
-    },
-    Condition {
-        key: "direct-pattern",
-        unread: |values| {
-            Unread::unless(values, "direct", &[Direct::Interleaved], "no punctual light is in a subset")
-                .or_else(|| sums_all(values))
-        },
-    },
-    Condition { key: "filter", unread: is_even },
-    Condition { key: "kernel", unread: is_unfiltered },
-    Condition { key: "sigma", unread: is_unfiltered },
-    Condition { key: "discontinuity", unread: is_unfiltered },
-    Condition { key: "normal-threshold", unread: is_unfiltered },
-    Condition { key: "position-threshold", unread: is_unfiltered },
-    Condition {
-        key: "fuse",
-        unread: |values| {
-            is_even(values).or_else(|| {
-                Unread::unless(values, "filter", &[Filter::Gauss], "no pass walks rows and columns of buffers")
-            })
-        },
-    },
-];
+fn without_direct(values: &Values) -> Option<Unread> {
+    Unread::with(values, "direct", &[Direct::None], "there is no direct light")
+}
+
+fn without_copy(values: &Values) -> Option<Unread> {
+    Unread::unless(values, "split", Split::COPYING, "it copies nothing")
+}
+
+fn without_blocks(values: &Values) -> Option<Unread> {
+    let splits = [Split::TwoPass, Split::Tile, Split::Fragment];
+    Unread::unless(values, "split", &splits, "it has no blocks").or_else(|| {
+        let draws = values.is("split", Split::Fragment);
+        let passes = || Unread::unless(values, "fragment-passes", &["2"], "one pass has no blocks");
+        if draws { passes() } else { None }
+    })
+}

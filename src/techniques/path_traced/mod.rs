@@ -43,6 +43,7 @@ pub mod sample;
 pub mod settings;
 
 use super::closing::Closing;
+use super::notes::Figures;
 use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
@@ -59,7 +60,8 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays, Reads};
 use crate::scene::{AlphaMode, Light, Material};
-use crate::settings::{Brdf, Condition, LENS_CONDITIONS, Setting, TREE, Values};
+use crate::settings::written::SettingValue;
+use crate::settings::{Brdf, Setting, TREE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::{RaySource, Transport};
 use airlight::Air;
@@ -91,10 +93,6 @@ impl Technique for PathTraced {
         &[settings::SETTINGS, TREE]
     }
 
-    fn conditions(&self) -> &'static [&'static [Condition]] {
-        &[settings::CONDITIONS, LENS_CONDITIONS]
-    }
-
     fn aovs(&self) -> &'static [&'static str] {
         &[]
     }
@@ -107,6 +105,17 @@ impl Technique for PathTraced {
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        let Some(samples) = figures.counter("samples") else { return Vec::new() };
+        let (error, plural) = (figures.counter("estimated_error"), if samples == 1.0 { "" } else { "s" });
+        let words = error.map_or(String::new(), |error| format!(", estimated error {error:.5}"));
+        let most = figures.settings.get("until-error").and_then(SettingValue::as_f64).filter(|most| *most > 0.0);
+        let missed = most.filter(|most| error.is_some_and(|error| error > *most));
+        let missed =
+            missed.map(|most| format!("  note: --until-error {most} is not reached; a larger --spp would help"));
+        [format!("{samples} sample{plural} a pixel{words}")].into_iter().chain(missed).collect()
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -3,8 +3,8 @@
 use crate::choice::choices;
 use crate::resident::traced::TexelLevels;
 use crate::settings::{
-    APERTURE, BRDF, Condition, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, StackPlace,
-    Unread, VPL_CLAMP, Values, WORKGROUP,
+    APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP, Values,
+    WORKGROUP,
 };
 
 /// Paths a pixel, at most: float sums of more lose what a path adds.
@@ -77,6 +77,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "16",
         help: "Most surfaces, or places of --medium, that scatter a path with --transport full; from the fourth on it \
                may end by chance, unbiased",
+        unread: |values| {
+            Unread::unless(values, "transport", &[Transport::Full], "it fixes how often light is scattered")
+        },
         ..Setting::ROW
     },
     Setting {
@@ -141,20 +144,4 @@ pub const SETTINGS: &[Setting] = &[
     VPL_CLAMP,
     BRDF,
     WORKGROUP,
-];
-
-/// Settings that are not read with some values of others.
-pub const CONDITIONS: &[Condition] = &[
-    Condition {
-        key: "bounces",
-        unread: |values| {
-            Unread::unless(values, "transport", &[Transport::Full], "it fixes how often light is scattered")
-        },
-    },
-    Condition {
-        key: "stack-entries",
-        unread: |values| {
-            Unread::unless(values, "stack", &[StackPlace::Short], "it has room for all nodes that can wait")
-        },
-    },
 ];

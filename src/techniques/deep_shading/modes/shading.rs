@@ -2,110 +2,13 @@
 
 use crate::caps::Caps;
 use crate::error::{Error, Result};
-use crate::settings::{Condition, Unread, Values, readers};
+use crate::settings::{Values, readers};
 use crate::techniques::deep_shading::modes::pass_samples;
 use crate::techniques::deep_shading::modes::pool_size::PoolSize;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::NAME;
 use crate::techniques::deep_shading::settings::SETTINGS;
-
-/// Settings that not everything that is shaded reads.
-pub const CONDITIONS: &[Condition] = &[
-    Condition {
-        key: "guard-band",
-        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, NO_SPACE),
-    },
-    Condition {
-        key: "shading-scale",
-        unread: |values| {
-            Unread::unless(
-                values,
-                "shading",
-                &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::TextureSpace],
-                "it shades no pixels of shading space",
-            )
-        },
-    },
-    Condition {
-        key: "shading-warp",
-        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, NO_SPACE),
-    },
-    Condition {
-        key: "warp-falloff",
-        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, NO_SPACE),
-    },
-    Condition { key: "lists", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
-    Condition {
-        key: "list-access",
-        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples' colours are in images"),
-    },
-    Condition { key: "duplicates", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
-    Condition { key: "compaction", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
-    Condition { key: "zmax", unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS) },
-    Condition {
-        key: "address-buffer",
-        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS),
-    },
-    Condition {
-        key: "conservative",
-        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS),
-    },
-    Condition {
-        key: "shaded-triangles",
-        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Deep], NO_LISTS),
-    },
-    Condition {
-        key: "layer-from",
-        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples are drawn layer by layer"),
-    },
-    Condition {
-        key: "polygon-from",
-        unread: |values| {
-            Unread::unless(
-                values,
-                "shading",
-                &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::Ssaa, ShadingKind::TextureSpace],
-                "its triangles come from vertex shaders",
-            )
-        },
-    },
-    Condition {
-        key: "sample-tests",
-        unread: |values| {
-            Unread::unless(
-                values,
-                "shading",
-                ShadingKind::OF_SPACE,
-                "samples are drawn and coloured layer by layer, or as many at a time as an image has",
-            )
-        },
-    },
-    Condition {
-        key: "pass-samples",
-        unread: |values| Unread::unless(values, "shading", &[ShadingKind::Msaa], "samples are drawn one at a time"),
-    },
-    Condition {
-        key: "shading-cache",
-        unread: |values| Unread::unless(values, "shading", &[ShadingKind::IndirectGbuffer], "it has no cache"),
-    },
-    Condition {
-        key: "shading-textures",
-        unread: |values| {
-            Unread::unless(values, "shading", &[ShadingKind::TextureSpace], "it has no textures of its own")
-        },
-    },
-    Condition {
-        key: "shading-texture-size",
-        unread: |values| {
-            Unread::unless(values, "shading", &[ShadingKind::TextureSpace], "it has no textures of its own")
-        },
-    },
-];
-
-pub const NO_SPACE: &str = "it has no shading space";
-
-pub const NO_LISTS: &str = "it has no lists";
 
 /// What is shaded (`--shading`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,7 +33,7 @@ impl Shading {
     ///
     /// Errors: another setting is changed that it does not read; samples of a pass that `spp` is no multiple of (exit code 2).
     pub fn new(values: &Values, caps: &Caps, spp: u32) -> Result<Self> {
-        readers::require_read(CONDITIONS, SETTINGS, values)?;
+        readers::require_read(SETTINGS, values)?;
         Ok(match values.choice("shading") {
             ShadingKind::Deep => Self::Deep,
             ShadingKind::IndirectGbuffer => Self::IndirectGbuffer,

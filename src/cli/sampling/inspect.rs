@@ -1,0 +1,108 @@
+//! `quincunx sampling inspect`: what a pattern holds, as numbers, as a picture of its samples and of its spectrum.
+
+use super::arguments::{chosen, pattern_argument, subset, subset_argument};
+use super::{drawn, spectrum};
+use crate::cli::output;
+use crate::error::{Error, Result};
+use crate::job::require_folder;
+use crate::picture::image_file;
+use crate::techniques::patterns::ChosenPattern;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// The sub-verb with its arguments.
+pub fn command() -> Command {
+    let file = |name: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name("FILE.png").value_parser(value_parser!(PathBuf)).help(help)
+    };
+    Command::new("inspect")
+        .about(
+            "Print a pattern's period, samples, dimensions, subsets and distances; draw its samples and its spectrum",
+        )
+        .arg(pattern_argument())
+        .arg(
+            file("output", "File for a picture of the samples over the pixels of the period, coloured by subset")
+                .short('o'),
+        )
+        .arg(file("spectrum", "File for a picture of the spectrum: 0 in the middle, power 0 black, 1 grey, more white"))
+        .arg(spectrum::reach_argument().requires("spectrum"))
+        .arg(subset_argument())
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
+        .arg(output::quiet_flag())
+}
+
+/// Prints the numbers and writes the pictures.
+///
+/// Errors: no such pattern or subset, a spectrum that is too large, a file that cannot be written (exit code 2).
+pub fn run(matches: &ArgMatches) -> Result<()> {
+    let chosen = chosen(matches)?;
+    let subset = subset(matches, &chosen)?;
+    let [output, spectrum_file] = ["output", "spectrum"].map(|name| matches.get_one::<PathBuf>(name));
+    // Before anything is computed or written.
+    for path in [output, spectrum_file].into_iter().flatten() {
+        image_file::require_png(path)?;
+        require_folder(path)?;
+    }
+    if let (Some(path), true) = (output, output == spectrum_file) {
+        return Err(Error::request(format!("-o and --spectrum both name {}: give each its own file", path.display())));
+    }
+    if let Some(path) = spectrum_file {
+        image_file::write_srgb8(path, &drawn::spectrum(&spectrum::spectrum(matches, &chosen, subset)?))?;
+    }
+    if let Some(path) = output {
+        image_file::write_srgb8(path, &drawn::samples(&chosen.pattern, subset))?;
+    }
+    if matches.get_flag("json") {
+        return output::print(&format!("{:#}\n", document(&chosen)));
+    }
+    let mut text = String::new();
+    describe(&mut text, &chosen).expect("writing to a string");
+    output::print_text(matches, &text)
+}
+
+/// Names of all dimensions of a sample.
+fn dimensions(chosen: &ChosenPattern) -> Vec<&'static str> {
+    ["x", "y"].into_iter().chain(chosen.pattern.further().iter().map(|dimension| dimension.name())).collect()
+}
+
+fn document(chosen: &ChosenPattern) -> Value {
+    let pattern = &chosen.pattern;
+    let setting = |key: &&str| ((*key).to_owned(), Value::from(chosen.values.text(key)));
+    let settings: Map<String, Value> = chosen.named.keys.iter().map(setting).collect();
+    let [least, most] = pattern.samples_per_pixel();
+    json!({
+        "schema": 1,
+        "name": chosen.named.name,
+        "technique": chosen.technique.name(),
+        "settings": settings,
+        "period_px": pattern.period_px(),
+        "samples": pattern.samples().len(),
+        "samples_per_pixel": { "least": least, "most": most },
+        "dimensions": dimensions(chosen),
+        "subsets": pattern.subset_count(),
+        "least_distance_px": pattern.least_distance_px(),
+        "least_subset_distance_px": pattern.least_subset_distance_px(),
+    })
+}
+
+fn describe(text: &mut String, chosen: &ChosenPattern) -> std::fmt::Result {
+    let pattern = &chosen.pattern;
+    writeln!(text, "{}", chosen.spec())?;
+    writeln!(text, "   {}", chosen.named.summary)?;
+    writeln!(text, "   of {}", chosen.technique.name())?;
+    let [width, height] = pattern.period_px();
+    writeln!(text, "   period: {width}x{height} px")?;
+    let counts = match pattern.samples_per_pixel() {
+        [least, most] if least == most => format!("{least} a pixel"),
+        [least, most] => format!("{least} to {most} a pixel"),
+    };
+    writeln!(text, "   samples: {}, {counts}", pattern.samples().len())?;
+    writeln!(text, "   dimensions: {}", dimensions(chosen).join(", "))?;
+    writeln!(text, "   subsets: {}", pattern.subset_count())?;
+    if let (Some(all), Some(subset)) = (pattern.least_distance_px(), pattern.least_subset_distance_px()) {
+        writeln!(text, "   least distance: {all:.4} px, between samples of one subset {subset:.4} px")?;
+    }
+    Ok(())
+}

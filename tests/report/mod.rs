@@ -1,0 +1,30 @@
+//! Reports and rows are values: what a program reads from their JSON is what was written.
+
+use crate::support::program::Program;
+use quincunx::report::run::RunReport;
+use serde_json::Value;
+
+#[test]
+fn a_report_that_is_read_back_is_the_one_that_was_written() {
+    let program = Program::new();
+    let small = ["--size", "33x17", "-o", "a.png", "--report", "a.json"];
+    let reference = ["--reference", "auto", "--reference-spp", "2", "--max", "psnr=inf"];
+    for more in [
+        &["cornell", "--technique", "interleaved_deferred", "--vpls", "16", "--profile", "--statistics"][..],
+        &["cornell", "--technique", "inferred_lighting", "--aov", "geometry.normal"],
+        &["cornell", "--technique", "deep_shading", "--spp", "2"],
+        &["cornell", "--technique", "path_traced", "--spp", "2", "--until-error", "0.001"],
+        &[&["cornell", "--technique", "forward", "--exposure", "auto"][..], &reference].concat(),
+        // Nothing is in view: there is a note.
+        &["fence", "--technique", "deferred", "--background", "0,0,0", "--exposure", "-60"],
+    ] {
+        let arguments = [&["render"], more, &small].concat();
+        let ran = program.run(&arguments);
+        assert_eq!(ran.code, 0, "{more:?}: {}", ran.err);
+        let written: Value = serde_json::from_str(&std::fs::read_to_string(program.path("a.json")).unwrap()).unwrap();
+        let report: RunReport =
+            serde_json::from_value(written.clone()).unwrap_or_else(|error| panic!("{more:?}: {error}"));
+        assert_eq!(report.json().to_string(), written.to_string(), "{more:?}");
+        assert_eq!(report.text(), ran.out, "{more:?}");
+    }
+}
