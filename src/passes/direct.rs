@@ -6,7 +6,7 @@ use crate::bvh::{Bvh, LazyBvh};
 use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
-use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Edge, Gpu, upload};
 use crate::lights::LightSet;
 use crate::passes::cull;
 use crate::passes::texels::{LightLoad, Texels};
@@ -187,7 +187,19 @@ pub struct DirectGpu {
     pub masks: Option<Buffer>,
 }
 
+impl Edge<'_, DirectGpu> {
+    /// Masks of `--cull tiled` become readable as `access` says; None without them.
+    pub fn masks_to(self, access: Access) -> Option<Barrier> {
+        self.resource.masks.as_ref().map(|masks| masks.from(self.from).to(access))
+    }
+}
+
 impl DirectGpu {
+    /// Names the access that touched the masks last; all else is kept as it was uploaded.
+    pub fn from(&self, access: Access) -> Edge<'_, Self> {
+        Edge { resource: self, from: access.into() }
+    }
+
     /// Uploads `lights` and the tree. `has_masks`: the plan has those of `--cull tiled`.
     pub fn new(
         gpu: &Arc<Gpu>,

@@ -204,7 +204,7 @@ impl Frame for DeferredFrame {
             cull.record(cmd, NAME, gbuffer.from(written), frame, lights, masks)?;
             written = Access::ComputeSample;
         }
-        self.shade.record(cmd, frame, &self.direct, gbuffer.from(written), &self.color)?;
+        self.shade.record(cmd, frame, self.direct.from(Access::ComputeWrite), gbuffer.from(written), &self.color)?;
         if let (Some(blend), Some(lists)) = (&self.blend, &self.blend_lists) {
             let lights = BlendLights {
                 lights: &self.direct.lights,

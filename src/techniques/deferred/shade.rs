@@ -37,7 +37,7 @@ impl Shade {
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
-        direct: &DirectGpu,
+        direct: Edge<'_, DirectGpu>,
         gbuffer: Edge<'_, GBuffer>,
         color: &Image,
     ) -> Result<()> {
@@ -51,9 +51,9 @@ impl Shade {
         cmd.pass("deferred.shade", traffic, |cmd| {
             cmd.barriers(gbuffer.shading_to_sampled());
             cmd.barriers([color.discard(Access::ComputeWrite)]);
-            cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            cmd.barriers(direct.masks_to(Access::ComputeRead));
             let mut bound = gbuffer.resource.bound_shading();
-            bound.extend(direct.bound());
+            bound.extend(direct.resource.bound());
             bound.extend([("Frame", Bound::Buffer(frame)), ("color", Bound::Storage(color))]);
             let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
             cmd.dispatch(&self.pipeline, &[], &bound, groups)

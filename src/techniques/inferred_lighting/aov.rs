@@ -5,6 +5,7 @@
 use super::frame::{InferredFrame, Packed, Road};
 use super::light;
 use super::light::store::Store;
+use super::material::FilterGuides;
 use super::motion;
 use super::survivors::{Lit, Survivors};
 use crate::error::Result;
@@ -143,17 +144,24 @@ impl Frame for InferredFrame {
         }
         let from = geometry.from(written);
         match &self.road {
-            Road::Tiled(tiled) => tiled.record(cmd, &self.light_frame, &self.lights, from, &self.l_buffer)?,
+            Road::Tiled(tiled) => {
+                let lights = self.lights.from(Access::ComputeWrite);
+                tiled.record(cmd, &self.light_frame, lights, from, &self.l_buffer)?;
+            }
             Road::Drawn { volumes, packed } => {
                 let target = packed.as_ref().map_or(&self.l_buffer, |packed| &packed.sums);
                 volumes.record(cmd, &self.light_frame, &self.lights, from, target)?;
                 if let Some(Packed { pack, sums }) = packed.as_deref() {
-                    pack.record(cmd, &self.light_frame, sums, &self.l_buffer)?;
+                    pack.record(cmd, &self.light_frame, sums.from(Access::ColorWrite), &self.l_buffer)?;
                 }
             }
         }
         let last = light::last_access(self.in_halves);
-        self.material.record(cmd, frame, scene, geometry, self.l_buffer.from(last), self.lit_access())
+        let guides = FilterGuides {
+            dsf: geometry.dsf.from(Access::ColorWrite),
+            normals: geometry.normal.from(self.lit_access()),
+        };
+        self.material.record(cmd, frame, scene, geometry, guides, self.l_buffer.from(last))
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

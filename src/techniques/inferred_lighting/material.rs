@@ -94,6 +94,14 @@ pub struct FilterSettings {
     pub has_prepass: bool,
 }
 
+/// What tells the filter which texels of the light buffer belong to a surface.
+pub struct FilterGuides<'a> {
+    /// Linear depth, ids of object and normal group.
+    pub dsf: Edge<'a, Image>,
+    /// Read where the filter reads normals.
+    pub normals: Edge<'a, Image>,
+}
+
 /// What the pass draws.
 pub struct MaterialDraws {
     pub solid: DrawList,
@@ -184,15 +192,14 @@ impl Material {
         }
     }
 
-    /// `normal_from`: what read the normals last.
     pub fn record(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
         scene: &SceneGpu,
         geometry: &LowGeometry,
+        guides: FilterGuides<'_>,
         l_buffer: Edge<'_, Image>,
-        normal_from: Access,
     ) -> Result<()> {
         let extent = self.color.description.extent;
         let drawn = self.samples.as_ref().unwrap_or(&self.color);
@@ -214,12 +221,12 @@ impl Material {
             cmd.barriers([
                 self.rejections.from(Access::TransferWrite).to(Access::FragmentWrite),
                 l_buffer.to(Access::FragmentSample),
-                geometry.dsf.from(Access::ColorWrite).to(Access::FragmentSample),
+                guides.dsf.to(Access::FragmentSample),
                 drawn.discard(Access::ColorWrite),
             ]);
             let depth = depth_prepass::attach(cmd, &self.depth, self.prepass.is_some());
             if self.filter.kind.reads_normals() {
-                cmd.barriers([geometry.normal.from(normal_from).to(Access::FragmentSample)]);
+                cmd.barriers([guides.normals.to(Access::FragmentSample)]);
             }
             let [r, g, b] = self.background.to_array();
             let colors = [ColorTarget::new(drawn, Some(vk::ClearColorValue { float32: [r, g, b, 0.0] }))];

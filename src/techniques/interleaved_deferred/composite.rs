@@ -47,7 +47,7 @@ impl Composite {
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
-        direct: &DirectGpu,
+        direct: Edge<'_, DirectGpu>,
         gbuffer: Edge<'_, GBuffer>,
         filtered: Filtered<'_>,
         color: &Image,
@@ -63,9 +63,9 @@ impl Composite {
             cmd.barriers(gbuffer.shading_to_sampled());
             cmd.barriers([filtered.irradiance.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
             cmd.barriers(filtered.flags.iter().map(|flags| flags.to(Access::ComputeRead)));
-            cmd.barriers(direct.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            cmd.barriers(direct.masks_to(Access::ComputeRead));
             let mut bound = gbuffer.resource.bound_shading();
-            bound.extend(direct.bound());
+            bound.extend(direct.resource.bound());
             bound.extend([
                 ("Frame", Bound::Buffer(frame)),
                 ("Irradiance", Bound::Buffer(filtered.irradiance.resource)),

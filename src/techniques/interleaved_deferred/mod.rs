@@ -260,7 +260,8 @@ impl Frame for InterleavedFrame {
             }
             None => Filtered { irradiance: lit.irradiance, flags: None },
         };
-        self.composite.record(cmd, frame, &self.direct, gbuffer.from(surface), filtered, &self.color)?;
+        let direct = self.direct.from(Access::ComputeWrite);
+        self.composite.record(cmd, frame, direct, gbuffer.from(surface), filtered, &self.color)?;
         surface = surface.after(Access::ComputeSample);
         if let (Some(blend), Some(lists)) = (&self.blend, &self.blend_lists) {
             let lights = BlendLights {

@@ -4,7 +4,7 @@
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::techniques::inferred_lighting::resources::NAME;
 use ash::vk;
 use std::sync::Arc;
@@ -23,18 +23,15 @@ impl Pack {
     }
 
     /// `frame`: the block of the light buffer's extent.
-    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, sums: &Image, l_buffer: &Image) -> Result<()> {
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, sums: Edge<'_, Image>, l_buffer: &Image) -> Result<()> {
         let extent = l_buffer.description.extent;
         let pixels = extent.pixel_count();
         let traffic = Traffic { read_bytes: pixels * 16, written_bytes: pixels * 8, invocations: Some(pixels) };
         cmd.pass(&format!("{NAME}.pack"), traffic, |cmd| {
-            cmd.barriers([
-                sums.from(Access::ColorWrite).to(Access::ComputeSample),
-                l_buffer.discard(Access::ComputeWrite),
-            ]);
+            cmd.barriers([sums.to(Access::ComputeSample), l_buffer.discard(Access::ComputeWrite)]);
             let bound = [
                 ("Frame", Bound::Buffer(frame)),
-                ("sums", Bound::Sampled(sums, self.nearest.handle, Access::ComputeSample)),
+                ("sums", Bound::Sampled(sums.resource, self.nearest.handle, Access::ComputeSample)),
                 ("l_buffer", Bound::Storage(l_buffer)),
             ];
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);

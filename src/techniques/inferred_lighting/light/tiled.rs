@@ -38,7 +38,7 @@ impl Tiled {
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
-        lights: &DirectGpu,
+        lights: Edge<'_, DirectGpu>,
         geometry: Edge<'_, LowGeometry>,
         l_buffer: &Image,
     ) -> Result<()> {
@@ -52,9 +52,9 @@ impl Tiled {
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {
             cmd.barriers(geometry.lit_with_depth_to(Access::ComputeSample, Access::ComputeSample));
             cmd.barriers([l_buffer.discard(Access::ComputeWrite)]);
-            cmd.barriers(lights.masks.iter().map(|masks| masks.from(Access::ComputeWrite).to(Access::ComputeRead)));
+            cmd.barriers(lights.masks_to(Access::ComputeRead));
             let mut bound = geometry.resource.bound_with_depth(Access::ComputeSample, Access::ComputeSample);
-            bound.extend(lights.bound());
+            bound.extend(lights.resource.bound());
             bound.extend([("Frame", Bound::Buffer(frame)), ("l_buffer", Bound::Storage(l_buffer))]);
             let groups = self.pipeline.groups([extent.width, columns, 1]);
             cmd.dispatch(&self.pipeline, &[], &bound, groups)
