@@ -94,12 +94,12 @@ impl Technique for WithPass {
         self.technique.rivals()
     }
 
-    fn patterns(&self) -> &'static [NamedPattern] {
-        self.technique.patterns()
-    }
-
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
         self.technique.notes(figures)
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        self.technique.patterns()
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -31,6 +31,25 @@ pub fn edges(picture: &Picture) -> Vec<[f32; 3]> {
         .collect()
 }
 
+/// A method that a trait gains, and that is not handed on, would be a technique's own no more.
+#[test]
+fn every_method_is_handed_on() {
+    let read = |file: &str| std::fs::read_to_string(format!("{}/src/techniques/{file}", env!("CARGO_MANIFEST_DIR")));
+    let traits = syn::parse_file(&read("mod.rs").unwrap()).unwrap();
+    let own = read("own_pass.rs").unwrap();
+    let mut count = 0;
+    for item in traits.items {
+        let syn::Item::Trait(item) = item else { continue };
+        for member in item.items {
+            let syn::TraitItem::Fn(method) = member else { continue };
+            let name = method.sig.ident;
+            assert!(own.contains(&format!("fn {name}(")), "{}::{name} is not handed on", item.ident);
+            count += 1;
+        }
+    }
+    assert!(count > 25, "{count} methods");
+}
+
 fn with_edges(watched: &Watched, technique: &str, changes: Changes<'_>) -> Renderer {
     let wrapped = WithPass { technique: find(technique).unwrap(), pass: Arc::new(Edges::new().unwrap()) };
     let renderer = watched.session.renderer(&wrapped, &values(technique, changes), &[], Submits::One).unwrap();

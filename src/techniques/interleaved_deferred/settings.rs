@@ -128,7 +128,6 @@ pub const SETTINGS: &[Setting] = &[
             Unread::unless(values, "direct", &[Direct::Interleaved], "no punctual light is in a subset")
                 .or_else(|| sums_all(values))
         },
-        ..Setting::ROW
     },
     Setting {
         key: "filter",
