@@ -162,7 +162,7 @@ impl Job {
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
         let mut settings = settings(session, &renderer, values);
         if let Some(earlier) = &self.earlier {
-            earlier.begin(&mut renderer, &settings)?;
+            earlier.begin(&mut renderer, self.technique, &settings)?;
         }
         let memory = session.gpu.memory.snapshot();
         interrupt::check()?;

@@ -8,6 +8,7 @@ mod bench_rows;
 mod blended;
 mod budget;
 mod caps;
+mod changes;
 mod cli;
 mod collapse;
 mod compare;
