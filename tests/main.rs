@@ -5,6 +5,7 @@ mod animation;
 mod animation_broken;
 mod bench;
 mod bench_rows;
+mod bench_stages;
 mod blended;
 mod budget;
 mod caps;

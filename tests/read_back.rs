@@ -16,7 +16,7 @@ fn a_report_that_is_read_back_is_the_one_that_was_written() {
         &["cornell", "--technique", "path_traced", "--spp", "2", "--until-error", "0.001"],
         &[&["cornell", "--technique", "forward", "--exposure", "auto"][..], &reference].concat(),
         // Nothing is in view: there is a note.
-        &["fence", "--technique", "deferred", "--background", "0,0,0", "--exposure", "-60"],
+        &["fence", "--technique", "deferred", "--background", "0,0,0", "--exposure", "-32"],
     ] {
         let arguments = [&["render"], more, &small].concat();
         let ran = program.run(&arguments);
@@ -26,5 +26,6 @@ fn a_report_that_is_read_back_is_the_one_that_was_written() {
             serde_json::from_value(written.clone()).unwrap_or_else(|error| panic!("{more:?}: {error}"));
         assert_eq!(report.json().to_string(), written.to_string(), "{more:?}");
         assert_eq!(report.text(), ran.out, "{more:?}");
+        assert_eq!(report.notes.is_empty(), !more.contains(&"-32"), "{more:?}");
     }
 }

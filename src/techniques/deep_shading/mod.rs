@@ -55,6 +55,7 @@
 mod again;
 mod apart;
 mod baseline;
+mod bench_stages;
 mod brute;
 mod choices;
 mod contradictions;
@@ -85,6 +86,7 @@ mod touched;
 mod tuples;
 mod visibility;
 
+use super::bench_stage::BenchStage;
 use super::{Frame, Inputs, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
@@ -204,6 +206,10 @@ impl Technique for DeepShading {
 
     fn rivals(&self) -> Vec<Rival> {
         rivals::rivals()
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
     }
 
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {

@@ -195,7 +195,7 @@ pub const SETTINGS: &[Setting] = &[
 ];
 
 /// Splits that copy into sub-buffers.
-const COPYING: &[&str] = &["one-pass", "two-pass", "tile", "layered", "fragment"];
+pub const COPYING: &[&str] = &["one-pass", "two-pass", "tile", "layered", "fragment"];
 
 /// Every pixel that is shaded has all lights.
 fn sums_all(values: &Values) -> Option<Unread> {
