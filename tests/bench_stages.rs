@@ -3,6 +3,7 @@
 
 use crate::support::benched::lines;
 use crate::support::program::Program;
+use proc_macro2::{TokenStream, TokenTree};
 use quincunx::gpu::DeviceRequest;
 use quincunx::gpu::commands::Submits;
 use quincunx::job::Job;
@@ -126,14 +127,43 @@ fn code(text: &str) -> String {
     code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
-/// What is written between quotes.
-fn literals(code: &str) -> Vec<&str> {
-    code.split('"').skip(1).step_by(2).collect()
+/// Texts between quotes.
+fn literals(code: &str) -> Vec<String> {
+    fn walk(tokens: TokenStream, found: &mut Vec<String>) {
+        for token in tokens {
+            match token {
+                TokenTree::Group(group) => walk(group.stream(), found),
+                TokenTree::Literal(literal) => {
+                    let text = syn::parse_str::<syn::LitStr>(&literal.to_string()).map(|text| text.value());
+                    found.extend(text);
+                }
+                _ => {}
+            }
+        }
+    }
+    let mut found = Vec::new();
+    walk(code.parse().unwrap_or_else(|error| panic!("{error}: {code}")), &mut found);
+    found
 }
 
 /// Words of settings' letters.
 fn words(text: &str) -> BTreeSet<&str> {
     text.split(|letter: char| !letter.is_ascii_alphanumeric() && !"-_=".contains(letter)).collect()
+}
+
+/// Passes of techniques as their shaders name them: the first word below the technique.
+fn shader_passes() -> BTreeSet<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/techniques");
+    let mut shaders = Vec::new();
+    files(&root, &mut shaders);
+    let pass = |path: &PathBuf| {
+        let below: Vec<_> =
+            path.strip_prefix(&root).unwrap().with_extension("").iter().map(|part| part.to_owned()).collect();
+        Some(below.get(1)?.to_str()?.to_owned())
+    };
+    // The others are included.
+    shaders.retain(|path| path.extension().is_some_and(|extension| extension != "glsl"));
+    shaders.iter().filter_map(pass).collect()
 }
 
 /// Names of what one technique alone has, which `code` has in it.
@@ -142,23 +172,24 @@ fn particulars(code: &str) -> Vec<String> {
     for setting in ALL.iter().flat_map(|technique| settings_of(*technique)) {
         *readers.entry(setting.key).or_default() += 1;
     }
+    let texts = literals(code);
     let of_one = readers.into_iter().filter(|(_, count)| *count == 1).map(|(key, _)| key);
     let settings = of_one.filter(|key| {
         let flag = format!("--{key}");
-        let is_named = |literal: &&str| {
-            *literal == *key
+        let is_named = |literal: &String| {
+            literal == key
                 || words(literal)
                     .into_iter()
                     .any(|word| word == flag || word.split('=').next() == Some(key) && word.contains('='))
         };
-        literals(code).iter().any(is_named)
+        texts.iter().any(is_named)
     });
     let techniques = ALL.iter().map(|technique| technique.name()).filter(|name| {
         code.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').any(|word| word == *name)
     });
-    let passes = ALL.iter().flat_map(|technique| technique.bench_stages()).flat_map(|stage| stage.passes);
-    let passes = passes.copied().filter(|pass| literals(code).contains(pass));
-    settings.chain(techniques).chain(passes).map(str::to_owned).collect()
+    let passes: BTreeSet<String> = shader_passes();
+    let passes = passes.into_iter().filter(|pass| texts.contains(pass));
+    settings.chain(techniques).map(str::to_owned).chain(passes).collect()
 }
 
 /// Words that benchmarks have of their own: `bench rays`, a row's `baseline`.
@@ -178,7 +209,9 @@ fn the_benchmarks_know_no_technique() {
         "let values = changed(job, values, [(\"split\", \"none\")]);",
         "Error::request(\"--pattern 1x1 copies nothing\")",
         "format!(\"fuse=on\")",
-        "name.ends_with(\"composite\"); use crate::techniques::interleaved_deferred;",
+        "name.ends_with(\"composite\")",
+        "vec![\"mask\"]",
+        "use crate::techniques::interleaved_deferred;",
         "passes.contains(\"discontinuity\")",
     ] {
         assert!(!particulars(&code(planted)).is_empty(), "{planted}");

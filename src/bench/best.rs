@@ -1,5 +1,5 @@
-//! The best value of a setting that a sweep tries, such as the block of each pattern, and whether the sweep can distinguish
-//! it from its neighbours.
+//! The best value of a setting that a sweep tries, for each combination of the others, and whether the sweep can
+//! distinguish it from its neighbours.
 
 use super::faster;
 use super::row::BenchRow;

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Renderers on the device at once: pairs need company, and a long sweep must not need the memory of all its variants. Five
-/// blocks with an identity each stand in one group with their baseline, so that their own ratios are known.
+/// copies with an identity each stand in one group with their baseline, so that their own ratios are known.
 const MAX_RENDERERS: usize = 11;
 
 /// Place of the baseline among the probes.

@@ -1,5 +1,4 @@
-//! The picture of a technique's plain form, such as plain deferred shading of the same lights: what errors and overheads are
-//! measured against. One for each size, camera, scene of lights: what is left of a variant's settings.
+//! The picture of a technique's plain form (`Technique::plain`): what errors and overheads are measured against. One for each size, camera, scene of lights: what is left of a variant's settings.
 
 use super::candidate::{changed, without_unread};
 use super::what::What;
