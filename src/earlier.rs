@@ -8,14 +8,14 @@ use crate::error::{Error, Result};
 use crate::metrics::noise;
 use crate::picture::image_file::Texts;
 use crate::picture::{Aov, AovChannels, image_file};
-use crate::reference::recipe::NOT_OF_THE_PICTURE;
+use crate::reference::recipe::goes_along;
 use crate::report::run::header::{ESTIMATOR, SAMPLES, SCENE_HASH, SETTINGS, TECHNIQUE, VERSION};
 use crate::scene::Scene;
 use crate::session::Renderer;
 use crate::settings::Values;
 use crate::settings::written::{SettingValue, WrittenSettings, written};
-use crate::techniques::Technique;
 use crate::techniques::path_traced::settings::MOST_SAMPLES;
+use crate::techniques::{Technique, settings_of};
 use crate::units::Extent;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -99,8 +99,8 @@ impl Earlier {
     ///
     /// Errors, all of them with exit code 2: one of `settings` that shows in a picture was another; nothing is left to do,
     /// because it has as many samples, or as small an error, as are asked for.
-    pub fn begin(&self, renderer: &mut Renderer, settings: &WrittenSettings) -> Result<()> {
-        self.require_settings(settings)?;
+    pub fn begin(&self, renderer: &mut Renderer, technique: &dyn Technique, settings: &WrittenSettings) -> Result<()> {
+        self.require_settings(technique, settings)?;
         let count = self.sample_count;
         let most = settings.get("until-error").and_then(SettingValue::as_f64);
         let most = most.filter(|most| *most > 0.0 && count > 1);
@@ -113,10 +113,11 @@ impl Earlier {
         renderer.begin_with(self.sums.clone(), count).map_err(|error| self.within(error))
     }
 
-    fn require_settings(&self, ours: &WrittenSettings) -> Result<()> {
-        let theirs = self.settings()?;
+    fn require_settings(&self, technique: &dyn Technique, ours: &WrittenSettings) -> Result<()> {
+        let (theirs, known) = (self.settings()?, settings_of(technique));
         let keys = theirs.keys().map(String::as_str).chain(ours.iter().map(|(key, _)| key));
-        let mut shown = keys.filter(|key| !NOT_OF_THE_PICTURE.contains(key));
+        let row = |key: &str| known.iter().find(|setting| setting.key == key);
+        let mut shown = keys.filter(|key| row(key).is_none_or(goes_along));
         shown.try_for_each(|key| self.require_setting(&theirs, ours, key))
     }
 

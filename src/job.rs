@@ -183,7 +183,7 @@ impl Job {
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
         let settings = settings(session, &renderer, values);
         if let Some(earlier) = &self.earlier {
-            earlier.begin(&mut renderer, &settings)?;
+            earlier.begin(&mut renderer, self.technique, &settings)?;
         }
         let rendered = self.rendered(session, &renderer, settings, unfinished)?;
         let report = self.report(session, &renderer, &rendered, path)?;

@@ -3,7 +3,7 @@
 # (installed by apt where it is there, named for other systems). Sourced by tools/demo, test, check and .ci/run, which
 # run from the root of the checkout.
 #
-# A need is a thing that can be looked for, not a package: what came by another road than apt counts.
+# A need is a thing that can be looked for, not a package: what came by another way than apt counts.
 
 # Where tools/drivers unpacks drivers, and tools/test looks for them.
 # shellcheck disable=SC2034 # for the scripts that source this
@@ -30,19 +30,19 @@ need_rust() {
     fi
     local wanted found older
     wanted=$(sed -n 's/^rust-version *= *"\(.*\)"/\1/p' Cargo.toml)
-    local -a roads=(
+    local -a ways=(
         "rustup, for one user, without root:  curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh"
         "or your distribution's packages of rustc and cargo, where they are $wanted or newer"
         "then run this again"
     )
     if ! command -v cargo >/dev/null || ! command -v rustc >/dev/null; then
-        fail "no Rust toolchain: cargo and rustc, $wanted or newer, are needed" "${roads[@]}"
+        fail "no Rust toolchain: cargo and rustc, $wanted or newer, are needed" "${ways[@]}"
     fi
     found=$(rustc --version 2>/dev/null | sed -n 's/^rustc \([0-9][0-9.]*\).*/\1/p')
-    [ -n "$found" ] || fail "rustc does not say its version: $(rustc --version 2>&1 | head -n 1)" "${roads[@]}"
+    [ -n "$found" ] || fail "rustc does not say its version: $(rustc --version 2>&1 | head -n 1)" "${ways[@]}"
     older=$(printf '%s\n%s\n' "$wanted" "$found" | sort -V | head -n 1)
     if [ "$older" != "$wanted" ]; then
-        fail "rustc $found is too old: $wanted or newer is needed" "where rustup made it:  rustup update" "${roads[@]}"
+        fail "rustc $found is too old: $wanted or newer is needed" "where rustup made it:  rustup update" "${ways[@]}"
     fi
     say "Rust: $found, $wanted or newer is needed"
 }

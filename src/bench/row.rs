@@ -7,9 +7,11 @@ use super::reference::{Found, Reference, pass_ms};
 use super::rounds::Samples;
 use super::stats::{median, paired_ratio};
 use super::what::What;
+use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::job::{Job, settings};
 use crate::metrics;
+use crate::passes::filter::Filter;
 use crate::picture::Picture;
 use crate::reference::Asked;
 use crate::report::spread::Spread;
@@ -210,8 +212,9 @@ fn evaluations(row: &mut Value, member: &Member, times: &[f64]) {
 fn taps(row: &mut Value, member: &Member, times: &[f64]) {
     let pixel_ns = 1e6 * median(times) / member.variant.extent().pixel_count() as f64;
     row["ns_per_pixel"] = json!(pixel_ns);
-    if let Some(kernel) = row["settings"]["kernel"].as_f64() {
-        row["ns_per_tap"] = json!(pixel_ns / (2.0 * kernel));
+    let filter = row["settings"]["filter"].as_str().and_then(Filter::from_word).unwrap_or(Filter::None);
+    if let Some(taps) = row["settings"]["kernel"].as_f64().and_then(|kernel| filter.taps(kernel)) {
+        row["ns_per_tap"] = json!(pixel_ns / taps);
     }
 }
 

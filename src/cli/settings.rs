@@ -15,6 +15,13 @@ const HEAD: &str = "# Settings
 Each setting is a flag of `render`, `bench` and `memory`, an axis of `bench --sweep` and a key of a report's `settings`.
 A technique reads the common ones and those of its own section; a flag that it does not read is refused.
 
+Under *changes* stands what another value of a setting changes:
+
+- picture: the light of the pixels, so that it is another picture, or another estimate of it
+- samples: only where, or how many, samples are taken
+- file: only how a file shows that light
+- nothing: only what the picture costs, or what is written beside it
+
 `quincunx settings --markdown` prints this page.
 ";
 
@@ -67,8 +74,8 @@ fn markdown(listed: &Listed) -> String {
 
 /// `intro`: paragraphs before the table.
 fn section(text: &mut String, heading: &str, intro: &str, settings: &[Setting]) {
-    let head =
-        "| setting | default | range or choices | unit | paper | what it is |\n| --- | --- | --- | --- | --- | --- |";
+    let head = "| setting | default | range or choices | unit | changes | paper | what it is |\n\
+         | --- | --- | --- | --- | --- | --- | --- |";
     writeln!(text, "\n## {heading}\n\n{intro}{head}").expect("writing to a string");
     for setting in settings {
         let range = match setting.choices() {
@@ -79,7 +86,8 @@ fn section(text: &mut String, heading: &str, intro: &str, settings: &[Setting]) 
         let paper = [setting.symbol, setting.paper].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
         writeln!(
             text,
-            "| `--{key}` | `{default}` | {range} | {unit} | {} | {} |",
+            "| `--{key}` | `{default}` | {range} | {unit} | {} | {} | {} |",
+            setting.changes.name(),
             paper.join("; "),
             cell(setting.help)
         )

@@ -5,7 +5,7 @@ use crate::frame::View;
 use crate::keyed::Keyed;
 use crate::lights::LightSet;
 use crate::session::Session;
-use crate::settings::Values;
+use crate::settings::{Changes, Setting, Values};
 use crate::techniques::{self, Technique, settings_of};
 use crate::units::Extent;
 use serde_json::{Map, Value, json};
@@ -13,27 +13,13 @@ use serde_json::{Map, Value, json};
 /// Goes into every key; raised whenever the kept files, or what goes into a key, change.
 const FORMAT: u32 = 1;
 
-/// Settings that both techniques read and that are none of the picture's, or that say how many samples it has: they stay at
+/// Whether a reference has the value that its judged picture has, where both techniques read the setting: others stay at
 /// their defaults, so that one reference serves all of them.
-pub(crate) const NOT_OF_THE_PICTURE: &[&str] = &[
-    "exposure",
-    "tonemap",
-    "exr",
-    "allocation",
-    "alias",
-    "memory-budget",
-    "workgroup",
-    "texels",
-    "geometry",
-    "cull",
-    "cull-by",
-    "node-width",
-    "node-layout",
-    "stack",
-    "stack-entries",
-    SAMPLES,
-    "until-error",
-];
+///
+/// `--submit-ms` changes no picture and goes along: a device that aborts long submits aborts a reference's too.
+pub(crate) fn goes_along(setting: &Setting) -> bool {
+    setting.changes == Changes::Picture || setting.key == "submit-ms"
+}
 
 /// The seed of references: not the default one, so that a path-traced picture is not judged by its own samples.
 const SEED: &str = "2654435769";
@@ -92,7 +78,8 @@ impl Recipe {
         let mut own = techniques::defaults(technique);
         let mut set = |key: &str, text: &str| techniques::set(technique, &mut own, key, text);
         let reads = |key: &str| settings_of(technique).iter().any(|setting| setting.key == key);
-        for (key, text) in values.iter().filter(|(key, _)| reads(key) && !NOT_OF_THE_PICTURE.contains(key)) {
+        let along = |key: &str| settings_of(technique).iter().any(|setting| setting.key == key && goes_along(setting));
+        for (key, text) in values.iter().filter(|(key, _)| along(key)) {
             set(key, text)?;
         }
         let scattered = values.text("lights");
@@ -144,5 +131,22 @@ impl Recipe {
 
     pub fn extent(&self) -> Extent {
         self.values.extent("size")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keys of kept references hold every setting: a row that is classed otherwise would make all of them anew.
+    #[test]
+    fn a_reference_shares_what_changes_no_picture_and_how_many_samples_there_are() {
+        let settings = settings_of(techniques::find("path_traced").unwrap());
+        let own: Vec<&str> = settings.iter().filter(|row| !goes_along(row)).map(|row| row.key).collect();
+        let of_file = ["exposure", "tonemap", "exr"];
+        let of_memory = ["allocation", "alias", "memory-budget"];
+        let of_samples = ["spp", "until-error"];
+        let of_cost = ["workgroup", "node-width", "node-layout", "stack", "stack-entries"];
+        assert_eq!(own, [&of_file[..], &of_memory, &of_samples, &of_cost].concat());
     }
 }

@@ -43,7 +43,7 @@ pub enum Made {
 }
 
 /// Technique and settings in a place.
-pub type Road<'a> = (Place, &'a str, &'a [(&'static str, &'static str)]);
+pub type RenderRequest<'a> = (Place, &'a str, &'a [(&'static str, &'static str)]);
 
 /// What decides a picture: place, technique and settings.
 type Key = (Place, String, Vec<(&'static str, &'static str)>);
@@ -99,12 +99,12 @@ impl Bed {
     /// limit of the device.
     ///
     /// Errors: NaN, memory, a device that fails (exit codes 1 and 4).
-    pub fn render(&mut self, road: Road<'_>) -> Result<Made> {
-        let made = self.try_render(road);
+    pub fn render(&mut self, request: RenderRequest<'_>) -> Result<Made> {
+        let made = self.try_render(request);
         match made {
             Err(error) if matches!(error.kind(), ErrorKind::NoDevice | ErrorKind::Request) => {
                 Ok(Made::Refused(Refusal {
-                    of: road.1.to_owned(),
+                    of: request.1.to_owned(),
                     needs: error.message().to_owned(),
                     instead: String::new(),
                 }))
@@ -120,18 +120,18 @@ impl Bed {
     /// The same, made once for consecutive calls that need it.
     ///
     /// Errors: as `render`.
-    pub fn twin(&mut self, road: Road<'_>) -> Result<Made> {
-        let (place, technique, settings) = road;
+    pub fn twin(&mut self, request: RenderRequest<'_>) -> Result<Made> {
+        let (place, technique, settings) = request;
         let key = (place, technique.to_owned(), settings.to_vec());
         if let Some((_, made)) = self.twin.as_ref().filter(|(of, _)| *of == key) {
             return made.clone();
         }
-        let made = self.render(road);
+        let made = self.render(request);
         self.twin = Some((key, made.clone()));
         made
     }
 
-    fn try_render(&mut self, (place, technique, settings): Road<'_>) -> Result<Made> {
+    fn try_render(&mut self, (place, technique, settings): RenderRequest<'_>) -> Result<Made> {
         let job = case::job(place, technique, settings)?;
         let session = self.showing(place, &job.values, technique)?;
         if let Some(need) = unmet(job.technique, &job.values, session) {
@@ -148,7 +148,7 @@ impl Bed {
     /// A renderer with a submit a pass, in place of the method's.
     ///
     /// Errors: as `Session::renderer`, and as `gpu`.
-    pub fn profiled(&mut self, (place, technique, settings): Road<'_>) -> Result<Renderer> {
+    pub fn profiled(&mut self, (place, technique, settings): RenderRequest<'_>) -> Result<Renderer> {
         let job = case::job(place, technique, settings)?;
         self.showing(place, &job.values, technique)?.renderer(job.technique, &job.values, &[], Submits::PerPass)
     }

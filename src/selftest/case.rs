@@ -22,7 +22,7 @@ pub struct Group {
     /// Settings of every method, and of the twin if it is of the same technique.
     pub common: Settings,
     pub twin: Twin,
-    pub roads: &'static [Settings],
+    pub methods: &'static [Settings],
     pub must: Must,
 }
 
@@ -49,7 +49,7 @@ impl Place {
 #[derive(Clone, Copy, Debug)]
 pub enum Twin {
     /// The same technique by a plain method.
-    Road(Settings),
+    Method(Settings),
     /// Another technique, with all of its settings.
     Other(&'static str, Settings),
     /// The formula of the group's place.
@@ -66,27 +66,27 @@ pub const SIZE: (&str, &str) = ("size", "61x37");
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     pub group: &'static Group,
-    pub road: Settings,
+    pub method: Settings,
 }
 
 impl Case {
     /// Technique, group and the settings of the method: `deep_shading/lists/compaction=off`.
     pub fn name(&self) -> String {
         let Group { name, technique, .. } = self.group;
-        let road: Vec<String> = self.road.iter().map(|(key, text)| format!("{key}={text}")).collect();
-        let road = if road.is_empty() { "defaults".to_owned() } else { road.join(",") };
-        format!("{technique}/{name}/{road}")
+        let method: Vec<String> = self.method.iter().map(|(key, text)| format!("{key}={text}")).collect();
+        let method = if method.is_empty() { "defaults".to_owned() } else { method.join(",") };
+        format!("{technique}/{name}/{method}")
     }
 
     /// Every setting of the method that is not at its default.
     pub fn settings(&self) -> Vec<(&'static str, &'static str)> {
-        [&[SIZE], self.group.common, self.road].concat()
+        [&[SIZE], self.group.common, self.method].concat()
     }
 
     /// Technique and settings of the twin; None where it is no picture of the device.
     pub fn twin_settings(&self) -> Option<(&'static str, Vec<(&'static str, &'static str)>)> {
         match self.group.twin {
-            Twin::Road(road) => Some((self.group.technique, [&[SIZE], self.group.common, road].concat())),
+            Twin::Method(method) => Some((self.group.technique, [&[SIZE], self.group.common, method].concat())),
             Twin::Other(technique, settings) => Some((technique, [&[SIZE], settings].concat())),
             Twin::Formula | Twin::Nothing => None,
         }

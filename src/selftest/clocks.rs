@@ -5,7 +5,7 @@
 //! both sides what the device's clock may say of that time, on a busy machine too, and without any extension. Where the
 //! device reads both clocks at one moment (`gpu::calibration`), that is a second, finer look.
 
-use super::bed::{Bed, Road};
+use super::bed::{Bed, RenderRequest};
 use super::case::Place;
 use crate::error::Result;
 use crate::gpu::commands::{Submits, Traffic};
@@ -30,7 +30,7 @@ const BETWEEN: Duration = Duration::from_millis(100);
 const STAMPS: usize = 8;
 
 /// Frames of which each pass is timed by both clocks.
-const FRAMES: [Road<'static>; 2] = [
+const FRAMES: [RenderRequest<'static>; 2] = [
     (Place::Scene("cornell"), "interleaved_deferred", &[("size", "64x64"), ("vpls", "1024")]),
     (Place::Scene("cornell"), "deferred", &[("size", "64x64"), ("direct-shadow", "ray")]),
 ];
@@ -130,8 +130,8 @@ pub fn compare(bed: &mut Bed) -> Result<Clocks> {
         clocks.complaints.extend(calibrated.complaint());
         clocks.calibrated = Some(calibrated);
     }
-    for road in FRAMES {
-        let frame = Frame::of(bed, road)?;
+    for request in FRAMES {
+        let frame = Frame::of(bed, request)?;
         clocks.complaints.extend(frame.passes.iter().filter_map(Pass::complaint));
         clocks.frames.push(frame);
     }
@@ -200,8 +200,8 @@ impl Pass {
 
 impl Frame {
     /// The second of two frames: the first warms up.
-    fn of(bed: &mut Bed, road: Road<'static>) -> Result<Self> {
-        let renderer = bed.profiled(road)?;
+    fn of(bed: &mut Bed, request: RenderRequest<'static>) -> Result<Self> {
+        let renderer = bed.profiled(request)?;
         renderer.frame()?;
         let frame = renderer.frame()?;
         let pass = |(pass, time): (&crate::gpu::commands::RecordedPass, &crate::gpu::timing::PassTime)| Pass {
@@ -212,7 +212,7 @@ impl Frame {
         let passes: Vec<Pass> = renderer.passes().iter().zip(&frame.passes).map(pass).collect();
         let sum = |of: fn(&Pass) -> u64| passes.iter().map(of).sum::<u64>() as f64;
         let ratio = sum(|pass| pass.timestamp_ns) / sum(|pass| pass.wall_ns).max(1.0);
-        Ok(Self { technique: road.1, passes, ratio })
+        Ok(Self { technique: request.1, passes, ratio })
     }
 }
 

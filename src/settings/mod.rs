@@ -73,6 +73,31 @@ pub struct Part {
     pub max: f64,
 }
 
+/// What another value of a setting may change of a frame: the light of its pixels, before exposure and tone mapping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Changes {
+    /// It is another picture, or another estimate of it.
+    Picture,
+    /// Only where, or how many, samples are taken: the integral that they converge to stays.
+    Samples,
+    /// Only how a file shows it.
+    File,
+    /// Nothing of it: only what it costs, or what is written beside it. On the reference driver not a bit is another.
+    Nothing,
+}
+
+impl Changes {
+    /// In the words of the settings' page.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Picture => "picture",
+            Self::Samples => "samples",
+            Self::File => "file",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
 /// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
@@ -88,6 +113,7 @@ pub struct Setting {
     /// Where it comes from, or nothing.
     pub paper: &'static str,
     pub help: &'static str,
+    pub changes: Changes,
     /// What leaves it unread; None where something reads it. The values have every setting that this asks for.
     pub unread: fn(&Values) -> Option<Unread>,
 }
@@ -103,18 +129,22 @@ pub struct Unread {
 }
 
 impl Setting {
-    /// The base of rows, with nothing that only some of them have: `Setting { key: .., ..Setting::ROW }`.
-    pub const ROW: Self = Self {
-        key: "",
-        symbol: "",
-        kind: Kind::Choice(&[]),
-        auto: false,
-        default: "",
-        unit: "",
-        paper: "",
-        help: "",
-        unread: |_| None,
-    };
+    /// The base of a row: what it changes, and nothing that only some rows have:
+    /// `Setting { key: .., ..Setting::changing(Changes::Picture) }`.
+    pub const fn changing(changes: Changes) -> Self {
+        Self {
+            key: "",
+            symbol: "",
+            kind: Kind::Choice(&[]),
+            auto: false,
+            default: "",
+            unit: "",
+            paper: "",
+            help: "",
+            changes,
+            unread: |_| None,
+        }
+    }
 
     /// The words that a choice is one of, `auto` included; None of settings that are no choices.
     pub fn choices(&self) -> Option<Vec<&'static str>> {
@@ -343,7 +373,7 @@ mod tests {
             default: "4x4",
             unit: "px",
             paper: "Segovia 2006, 3",
-            ..Setting::ROW
+            ..Setting::changing(Changes::Picture)
         }
     }
 

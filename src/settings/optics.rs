@@ -1,6 +1,6 @@
 //! The rows of what lies between a surface and the film, which several techniques read.
 
-use super::{Kind, Part, Setting, Unread, Values};
+use super::{Changes, Kind, Part, Setting, Unread, Values};
 use crate::choice::choices;
 use crate::error::{Error, Result};
 
@@ -12,7 +12,7 @@ pub const APERTURE: Setting = Setting {
     unit: "m",
     paper: "Clarberg 2014, table 3",
     help: "Diameter of the camera's thin lens, which blurs what is out of focus; 0: a pinhole, all is sharp",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// Distance at which the lens makes a sharp picture.
@@ -28,7 +28,7 @@ pub const FOCUS: Setting = Setting {
         true => None,
         false => Unread::without(values, APERTURE.key, "through a pinhole all is sharp"),
     },
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// How far two eyes are apart.
@@ -41,7 +41,7 @@ pub const STEREO: Setting = Setting {
     help: "Distance between two eyes, one to the left and one to the right of the camera, each with a lens of \
            --aperture; both see what lies at --focus in the same place of the picture, and the picture written is the \
            left eye's; 0: one eye, the camera's",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 choices! {
@@ -62,7 +62,7 @@ pub const STEREO_EYES: Setting = Setting {
     help: "Eyes of --stereo to draw: both, which deep_shading shades at once as seen from the midpoint between them, \
            with the right eye's picture in the stage stereo.right; or one eye alone, as seen by that eye",
     unread: |values| Unread::without(values, STEREO.key, "there is one eye"),
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// How long the film is exposed.
@@ -74,7 +74,7 @@ pub const SHUTTER: Setting = Setting {
     paper: "Keller 2001, 3.2",
     help: "Times at which the shutter opens and closes, relative to --time; what animations move in between is blurred \
            along straight lines from its place at opening to its place at closing; none: a single moment",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// Whether a G-buffer holds how surfaces move on the screen.
@@ -86,7 +86,7 @@ pub const MOTION_VECTORS: Setting = Setting {
     help: "Write motion vectors in the geometry pass: how far each surface has moved on the screen since \
            --motion-interval before --time, in texels right and down, as two half floats in 4 bytes a texel (--aov \
            geometry.motion)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 /// How long before `--time` motion vectors begin.
@@ -98,7 +98,7 @@ pub const MOTION_INTERVAL: Setting = Setting {
     paper: "Kircher 2009, 2.1",
     help: "Time of one frame, over which --motion-vectors are measured; motion begins at 0 s at the earliest",
     unread: |values| Unread::unless(values, MOTION_VECTORS.key, &["on"], "there are no motion vectors"),
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 /// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads
@@ -139,5 +139,5 @@ pub const MEDIUM: Setting = Setting {
     paper: "Dubla 2009, 3.4",
     help: "Homogeneous medium: its coefficients of scattering (S) and absorption (A), and the mean cosine of the \
            scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };

@@ -80,10 +80,14 @@ pub fn without_unread(settings: &[Setting], values: &Values) -> Values {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::Kind;
+    use crate::settings::{Changes, Kind};
 
-    const ROAD: Setting =
-        Setting { key: "road", kind: Kind::Choice(&["short", "long", "none"]), default: "short", ..Setting::ROW };
+    const ROAD: Setting = Setting {
+        key: "road",
+        kind: Kind::Choice(&["short", "long", "none"]),
+        default: "short",
+        ..Setting::changing(Changes::Picture)
+    };
     const WIDTH: Setting = Setting {
         key: "width",
         kind: Kind::Integer { min: 0, max: 9 },

@@ -6,7 +6,7 @@
 //! at 0.0001 %; at 0.1 % the RMSE of the fence is 0.103 instead of 0.061.
 
 use super::tables::{DirectShadow, GeometryChoice};
-use super::{Kind, Setting, Unread, Values};
+use super::{Changes, Kind, Setting, Unread, Values};
 use crate::choice::choices;
 
 /// `DIRECT_SHADOW` with shadow maps among its choices.
@@ -17,7 +17,7 @@ pub const MAPPED_DIRECT_SHADOW: Setting = Setting {
     paper: "map: Clarberg 2014, 6",
     help: "Lights that cast shadows, and how: none; directional lights by rays (sun); every punctual light by rays \
            (ray); or, with techniques that have them, every punctual light by shadow maps (map)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 choices! {
@@ -52,7 +52,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         help: "When shadow maps are drawn: anew in every frame and set of samples, as in the paper (frame), or once \
                before the first, with their time in a row of its own (once); the same picture",
         unread: without_maps,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "shadow-map-size",
@@ -63,7 +63,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         help: "Width and height of a shadow map; spot and directional lights have one map each, point lights and spots \
                wider than 178 degrees six each",
         unread: without_maps,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shadow-filter",
@@ -74,7 +74,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
                filter (bilinear) or, where depth formats cannot be filtered, in the shader (gather, the plain way to \
                the same picture); auto: bilinear where the device has it, gather elsewhere",
         unread: without_maps,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shadow-bias",
@@ -83,7 +83,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         unit: "m",
         help: "Distance by which a point moves towards the light before its shadow map is read, to cover rounding",
         unread: without_maps,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shadow-slope-bias",
@@ -93,7 +93,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
                this many texels; 2 is the reach of four comparisons",
         unread: without_maps,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shadow-casters",
@@ -102,7 +102,7 @@ pub const SHADOW_MAPS: &[Setting] = &[
         help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
                plain way to the same bits)",
         unread: without_maps,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
 ];
 

@@ -1,6 +1,6 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
-use super::{Kind, Setting, Unread};
+use super::{Changes, Kind, Setting, Unread};
 use crate::choice::choices;
 use crate::memory::{Strategy, alias};
 use crate::picture::image_file::ExrPrecision;
@@ -14,7 +14,7 @@ pub const COMMON: &[Setting] = &[
         default: "1280x720",
         unit: "px",
         help: "Width and height of the picture",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "camera",
@@ -22,7 +22,7 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         help: "Camera of the scene, by index or name; `framing`: one that frames the whole scene from three quarters \
                above, on the side that most front faces look to; a scene without a camera gets this one",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "time",
@@ -30,28 +30,28 @@ pub const COMMON: &[Setting] = &[
         default: "0",
         unit: "s",
         help: "Moment of the animations that is drawn; nothing else moves",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "animation",
         kind: Kind::Text("all|none|INDEX|NAME"),
         default: "all",
         help: "Animations of the file to play: all of them at once, none (the rest pose), or one by index or name",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "seed",
         kind: Kind::Integer { min: 0, max: u32::MAX as u64 },
         default: "1",
         help: "Seed of everything that is scattered or sampled",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "lights",
         kind: Kind::Text("N[:SEED]"),
         default: "0",
         help: "Scatter N point lights within the scene's bounds, in addition to its own lights",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "exposure",
@@ -62,28 +62,28 @@ pub const COMMON: &[Setting] = &[
         help: "Exposure of PNG output; at 0, white diffuse under radiance 1 is 1.0; auto: brings the log average of \
                the light in the picture to 0.18 (Reinhard et al. 2002), and with --frames uses the exposure of the \
                first frame that is not black; stages that --aov writes beside a PNG stay at exposure 0 then",
-        ..Setting::ROW
+        ..Setting::changing(Changes::File)
     },
     Setting {
         key: "tonemap",
         kind: Kind::Choice(ToneMap::WORDS),
         default: "clip",
         help: "Tone-mapping operator of PNG output",
-        ..Setting::ROW
+        ..Setting::changing(Changes::File)
     },
     Setting {
         key: "exr",
         kind: Kind::Choice(ExrPrecision::WORDS),
         default: "float",
         help: "Precision of the numbers in EXR files",
-        ..Setting::ROW
+        ..Setting::changing(Changes::File)
     },
     Setting {
         key: "background",
         kind: Kind::Color,
         default: "0",
         help: "Radiance where no surface is",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "ambient",
@@ -91,7 +91,7 @@ pub const COMMON: &[Setting] = &[
         default: "auto",
         help: "Radiance that reaches surfaces from all directions; auto: 0 where the scene has lights, 0.3 with the \
                default rig",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "rig",
@@ -100,14 +100,14 @@ pub const COMMON: &[Setting] = &[
         help: "Add a key light of 3 lux from the camera's upper left and an ambient radiance of 0.3; default: only to \
                a scene without punctual lights in which emissive surfaces, if there are any, make less than half of it \
                visible; always: in addition to the scene's own lights; none: never",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "sun",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
         help: "Whether directional lights shine",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "light-cutoff",
@@ -115,7 +115,7 @@ pub const COMMON: &[Setting] = &[
         default: "0.002",
         unit: "lux",
         help: "Irradiance at which a punctual light without a range of its own is cut off; 0: never",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "allocation",
@@ -124,7 +124,7 @@ pub const COMMON: &[Setting] = &[
         help: "How memory is allocated for resources: as ranges one after the other in shared memory blocks (linear), \
                as one memory block for each (dedicated), or as ranges in shared memory blocks wherever there is room \
                (tlsf)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "alias",
@@ -132,7 +132,7 @@ pub const COMMON: &[Setting] = &[
         default: "greedy",
         help: "How resources of a frame that never live in the same pass share bytes: placed by the best of a few \
                orders (greedy), by a search for the least sum (optimal), or not at all (off)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "submit-ms",
@@ -144,7 +144,7 @@ pub const COMMON: &[Setting] = &[
                take seconds: passes are submitted one by one, dispatches in bands of rows and paths in groups of \
                samples, each as large as took this long before; 0: a frame is one submit; auto: 100 on GPUs, 0 on \
                software drivers; the same picture",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "memory-budget",
@@ -152,7 +152,7 @@ pub const COMMON: &[Setting] = &[
         default: "none",
         help: "Most bytes that the memory blocks of one heap may sum up to; an allocation beyond it is refused; none: \
                the heap's size",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "texture-limit",
@@ -163,7 +163,7 @@ pub const COMMON: &[Setting] = &[
         help: "Longest side of a texture in pixels; larger textures start at a coarser mip level; 0: no limit; auto: \
                no limit, or, where the scene would take more than three quarters of the heap or of --memory-budget, \
                the greatest power of two with which it does not",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
 ];
 
@@ -191,7 +191,7 @@ pub const BRDF: Setting = Setting {
     kind: Kind::Choice(Brdf::WORDS),
     default: "ggx",
     help: "Reflectance model of surfaces under direct light",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// Workgroup size of every compute shader whose invocations are pixels.
@@ -200,7 +200,7 @@ pub const WORKGROUP: Setting = Setting {
     kind: Kind::Pair { min: 1, max: 256 },
     default: "64x1",
     help: "Width and height of compute workgroups, in invocations",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 /// How near virtual point lights count.
@@ -210,7 +210,7 @@ pub const VPL_CLAMP: Setting = Setting {
     default: "2%",
     unit: "m",
     help: "Least distance at which a virtual point light is evaluated; surfaces nearer than this get no more light",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// Whether emissive triangles light others.
@@ -221,7 +221,7 @@ pub const EMISSIVE: Setting = Setting {
     default: "auto",
     help: "Whether emissive triangles light other surfaces; auto: off where the scene has punctual lights, because \
            maps carry both",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 choices! {
@@ -241,7 +241,7 @@ pub const GEOMETRY: Setting = Setting {
     default: "culled",
     help: "Solid surfaces to draw, nearest first: only the clusters of triangles that the camera may see (culled), or \
            all of them (the plain way to the same picture)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 choices! {
@@ -264,7 +264,7 @@ pub const DIRECT_SHADOW: Setting = Setting {
     kind: Kind::Choice(TRACED_SHADOW),
     default: "sun",
     help: "Lights that cast shadows by rays: none, directional lights (sun), or every punctual light (ray)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// Whether shaders count.
@@ -276,7 +276,7 @@ pub const INSTRUMENT: Setting = Setting {
     paper: "Clarberg 2014, 4.1",
     help: "Whether shaders count what is shaded, listed and missing; auto: on, except where times are measured (bench, \
            --profile), because threads that count wait for each other",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 choices! {
@@ -298,7 +298,7 @@ pub const CULL_BY: Setting = Setting {
     help: "What makes a tile's list of lights: one invocation, or a workgroup that shares out the tile's pixels and \
            the lights; auto: an invocation on software drivers, a workgroup elsewhere; the same lists",
     unread: |values| Unread::unless(values, CULL.key, &[CullChoice::Tiled], "there are no tiles"),
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 /// How much two normals of one surface may differ.
@@ -309,7 +309,7 @@ pub const NORMAL_THRESHOLD: Setting = Setting {
     paper: "Segovia 2006, 4.5",
     help: "Difference of two normals, as 1 - cos of the angle between them, above which two neighbouring pixels lie \
            across a discontinuity",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// How many pixels a thread works on.
@@ -322,7 +322,7 @@ pub const TEXELS: Setting = Setting {
     help: "Most pixels that one thread shades, compares or filters one after the other, reading once what they share; \
            1 is the plain way to the same picture; fewer are used where lights cast shadow rays; auto: 32 on lavapipe \
            of Mesa 22, 16 on other software drivers, 1 elsewhere",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 choices! {
@@ -344,7 +344,7 @@ pub const LIGHT_LISTS: &[Setting] = &[Setting {
     help: "Punctual lights that are evaluated for a surface shaded while it is drawn (every surface of forward, and \
            BLEND surfaces): those whose range reaches the box around its object, or around a piece of a BLEND surface \
            (object), or every light (none, the plain way to the same picture)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 }];
 
 /// Settings of what is drawn with several samples a pixel (`passes::resolve`).
@@ -355,7 +355,7 @@ pub const MULTISAMPLE: &[Setting] = &[Setting {
     paper: "Kircher 2009, 3",
     help: "Samples of a pixel that are tested for coverage and depth and then averaged; each surface is shaded once a \
            pixel",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Samples)
 }];
 
 /// Whether techniques that draw the scene with its materials draw depth first.
@@ -365,7 +365,7 @@ pub const DEPTH_PREPASS: Setting = Setting {
     default: "on",
     help: "Draw depth first, so that no surface is shaded that another one hides; the same picture (with --msaa 1 to \
            the bit)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 choices! {
@@ -394,7 +394,7 @@ pub const POSITION: Setting = Setting {
     paper: "Segovia 2006, 4.1",
     help: "How the G-buffer stores positions: as half floats (the paper's), as 16-bit fractions of the scene's box \
            (unorm16), as the depth buffer, or as 32-bit floats (the most exact, for comparison)",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Picture)
 };
 
 /// Which lights direct lighting evaluates for a pixel.
@@ -404,7 +404,7 @@ pub const CULL: Setting = Setting {
     default: "none",
     help: "Lights that are evaluated for a pixel in direct lighting: all of them (none), or a list for each tile \
            of 16x16 pixels (tiled); the same picture",
-    ..Setting::ROW
+    ..Setting::changing(Changes::Nothing)
 };
 
 /// Settings of shading with a G-buffer, which several techniques read.

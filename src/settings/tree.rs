@@ -7,7 +7,7 @@
 //! is won. A short stack does 0.6 to 0.8 of a whole one's rays. Orders of nodes differ by no more than the
 //! measurement's noise.
 
-use super::{Kind, Setting, Unread};
+use super::{Changes, Kind, Setting, Unread};
 use crate::choice::choices;
 
 choices! {
@@ -36,7 +36,7 @@ pub const TREE: &[Setting] = &[
         kind: Kind::Choice(&["2", "4"]),
         default: "4",
         help: "Children of a node of the tree that rays walk; nodes of 4 join nodes of 2, and one read tests all four",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "node-layout",
@@ -45,7 +45,7 @@ pub const TREE: &[Setting] = &[
         help: "Order of the tree's nodes in memory: each node before all below its first child (depth-first), before \
                all that are as deep as it (breadth-first), or the upper half of the levels before each tree of the \
                lower half, and so on within the halves (van-emde-boas)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "stack",
@@ -55,7 +55,7 @@ pub const TREE: &[Setting] = &[
         help: "Where a ray keeps the nodes that it has yet to visit: in private memory, in workgroup memory (shared), \
                or in a private stack of --stack-entries with a trail that finds from the root what did not fit \
                (short); auto: workgroup memory where it is large enough, private memory elsewhere",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "stack-entries",
@@ -66,6 +66,6 @@ pub const TREE: &[Setting] = &[
         unread: |values| {
             Unread::unless(values, "stack", &[StackPlace::Short], "it has room for all nodes that can wait")
         },
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
 ];

@@ -13,11 +13,11 @@ use serde_json::Value;
 #[test]
 fn every_road_copies_as_many_bytes() {
     let program = Program::new();
-    let roads = ["--sweep", "split=one-pass,two-pass,tile,layered,fragment", "--sweep", "fragment-passes=2,1"];
+    let methods = ["--sweep", "split=one-pass,two-pass,tile,layered,fragment", "--sweep", "fragment-passes=2,1"];
     for (what, bytes) in [("split", 64 * 48 * 16), ("gather", 64 * 48 * 8)] {
-        let rows = lines(&program.run(&bench(what, &[&roads[..], &["--json", "--quiet"]].concat())).fine().out);
+        let rows = lines(&program.run(&bench(what, &[&methods[..], &["--json", "--quiet"]].concat())).fine().out);
         let measured: Vec<&Value> = rows.iter().filter(|row| row["skipped"].is_null()).collect();
-        assert_eq!(measured.len(), 6, "{what}: a road each, and fragment's two");
+        assert_eq!(measured.len(), 6, "{what}: a method each, and fragment's two");
         for row in measured {
             assert_eq!(row["copied_bytes"], bytes, "{what}: {row:#}");
             let ms = row["stage_ms"]["median"].as_f64().unwrap();
@@ -92,9 +92,9 @@ fn an_axis_that_nothing_reads_is_refused_or_its_points_are_one() {
         program.fails(&bench(what, &blocks), 2, &words);
     }
     program.fails(&bench("frame", &["--filter", "none", "--kernel", "7"]), 2, &["--kernel 7 with --filter none"]);
-    let roads = ["--sweep", "split=one-pass,two-pass"];
+    let methods = ["--sweep", "split=one-pass,two-pass"];
     let folder = ["--quiet", "-o", "out"];
-    program.run(&bench("split", &[&roads[..], &blocks, &folder].concat())).fine();
+    program.run(&bench("split", &[&methods[..], &blocks, &folder].concat())).fine();
     let summary: Value = serde_json::from_str(&read(&program, "out/summary.json")).unwrap();
     let rows = summary["rows"].as_array().unwrap();
     let measured: Vec<&Value> = rows.iter().filter(|row| row["skipped"].is_null()).collect();
@@ -128,9 +128,9 @@ fn an_axis_that_no_technique_has_is_answered_with_one_that_is_like_it() {
 #[test]
 fn fair_rows_shade_as_many_texels_a_thread() {
     let program = Program::new();
-    let roads = ["--sweep", "split=none,branch,stencil,remap", "--json", "--quiet"];
+    let methods = ["--sweep", "split=none,branch,stencil,remap", "--json", "--quiet"];
     let large = ["bench", "shade", "cornell", "--size", "128x128", "--vpls", "16", "--repeat", "1"];
-    let run = |more: &[&str]| lines(&program.run(&[&large[..], &roads, more].concat()).fine().out);
+    let run = |more: &[&str]| lines(&program.run(&[&large[..], &methods, more].concat()).fine().out);
     let texels = |rows: &[Value]| rows.iter().map(|row| row["settings"]["texels"].clone()).collect::<Vec<_>>();
     assert_eq!(texels(&run(&["--fair"])), [1, 1, 1, 1]);
     // Each pixel of branch, and each fragment of stencil, has a thread of its own: rows say so, and are not fair with others.

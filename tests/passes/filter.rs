@@ -9,7 +9,7 @@ use quincunx::gpu::{Access, Buffer, Commands, Gpu, readback, upload};
 use quincunx::memory::kinds::Use;
 use quincunx::passes::decode;
 use quincunx::passes::filter::gauss::Gauss;
-use quincunx::passes::filter::{Kernel, StopBits};
+use quincunx::passes::filter::{FilterSetup, Kernel, StopBits};
 use quincunx::units::Extent;
 use std::sync::Arc;
 
@@ -179,10 +179,12 @@ fn run_texels(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2]
     upload::buffer(gpu, &source, &halves, Access::ComputeRead).unwrap();
     upload::buffer(gpu, &flag_buffer, bytemuck::cast_slice(&flags), Access::ComputeRead).unwrap();
     let workgroup = [("WORKGROUP_X", workgroup[0]), ("WORKGROUP_Y", workgroup[1])];
-    let gauss = Gauss::new(gpu, &workgroup, frame.extent, pitch, kernel, texels).unwrap();
+    let (extent, row_pitch) = (frame.extent, pitch);
+    let setup = FilterSetup { label: "test", workgroup: &workgroup, extent, row_pitch, kernel, texels };
+    let gauss = Gauss::new(gpu, &setup).unwrap();
     let mut cmd = Commands::begin(gpu, "test", Submits::One).unwrap();
     let readable = Access::ComputeRead;
-    gauss.record(&mut cmd, "test", source.from(readable), flag_buffer.from(readable), &between, &target).unwrap();
+    gauss.record(&mut cmd, source.from(readable), flag_buffer.from(readable), &between, &target).unwrap();
     cmd.finish().unwrap().run().unwrap();
     let bytes = readback::buffer(gpu, &target, target.bytes, Access::ComputeWrite).unwrap();
     require_silence(gpu, "the filter by itself");

@@ -8,7 +8,7 @@ use quincunx::metrics;
 use quincunx::picture::{Picture, image_file};
 
 /// Methods that make one picture by different shaders, and others that have shaders of their own.
-const ROADS: [&str; 19] = [
+const METHODS: [&str; 19] = [
     "cornell --technique interleaved_deferred --size 64x36 --split tile --cull tiled",
     "cornell --technique interleaved_deferred --size 64x36 --split branch",
     "cornell --technique interleaved_deferred --size 48x27 --vpls 64 --split depth",
@@ -96,9 +96,9 @@ fn pictures_of_shaders_that_round_otherwise_are_the_same_to_the_eye() {
         pretend::COMMANDS[5],
         pretend::COMMANDS[9],
         pretend::COMMANDS[14],
-        ROADS[2],
-        ROADS[6],
-        ROADS[11],
+        METHODS[2],
+        METHODS[6],
+        METHODS[11],
     ];
     let changed: usize =
         commands.iter().map(|command| hold(&program, &layer, command, &["contract=1,last-bit=1"])).sum();
@@ -112,7 +112,7 @@ fn pictures_of_all_roads_are_the_same_to_the_eye_by_each_seed() {
     let Some(layer) = Layer::built() else { return };
     let program = Program::new();
     let modes = ["contract=1", "contract=2", "contract=3", "last-bit=1", "last-bit=2", "last-bit=3"];
-    for command in ROADS.iter().chain(&pretend::COMMANDS) {
+    for command in METHODS.iter().chain(&pretend::COMMANDS) {
         hold(&program, &layer, command, &modes);
     }
 }

@@ -1,3 +1,4 @@
 //! The table of settings.
 
+mod changes;
 mod unread;

@@ -1,15 +1,67 @@
 //! Separable Gaussian that walks until a discontinuity: Segovia 2006, section 4.5 (B). Shader: gauss.comp.
 //! reads  an irradiance buffer and flags, frame order      writes  a buffer between the directions, then the target
 
-use super::Kernel;
+use super::{FilterMethod, FilterPass, FilterSetup, Kernel};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::GaussParams;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::plan::{Plan, Resources};
 use crate::units::Extent;
 use std::sync::Arc;
 
+/// The filter of `--filter gauss`.
+pub struct GaussMethod;
+
+/// Both directions with what they write.
+struct GaussFilter {
+    gauss: Gauss,
+    rows: Buffer,
+    irradiance: Buffer,
+}
+
+impl FilterMethod for GaussMethod {
+    fn taps(&self, kernel_taps: f64) -> f64 {
+        2.0 * kernel_taps
+    }
+
+    fn plan(&self, plan: &mut Plan, setup: &FilterSetup<'_>, source: String, flags: String) -> String {
+        let (read, written) = (Access::ComputeRead, Access::ComputeWrite);
+        let [rows, irradiance] = ["rows", "irradiance"].map(|what| setup.resource(what));
+        plan.buffer("filter", &rows, setup.irradiance_bytes());
+        plan.buffer("filter", &irradiance, setup.irradiance_bytes());
+        let between = [(rows.clone(), written), (rows, read), (irradiance.clone(), written)];
+        plan.pass(setup.label.to_owned(), [(source, read), (flags, read)].into_iter().chain(between));
+        irradiance
+    }
+
+    fn build(&self, gpu: &Arc<Gpu>, resources: &mut Resources, setup: &FilterSetup<'_>) -> Result<Box<dyn FilterPass>> {
+        Ok(Box::new(GaussFilter {
+            gauss: Gauss::new(gpu, setup)?,
+            rows: resources.buffer(&setup.resource("rows")),
+            irradiance: resources.buffer(&setup.resource("irradiance")),
+        }))
+    }
+}
+
+impl FilterPass for GaussFilter {
+    fn record(
+        &self,
+        cmd: &mut Commands,
+        source: Edge<'_, Buffer>,
+        flags: Edge<'_, Buffer>,
+    ) -> Result<Edge<'_, Buffer>> {
+        self.gauss.record(cmd, source, flags, &self.rows, &self.irradiance)?;
+        Ok(self.irradiance.from(Access::ComputeWrite))
+    }
+
+    fn irradiance(&self) -> &Buffer {
+        &self.irradiance
+    }
+}
+
 pub struct Gauss {
+    label: String,
     pipeline: ComputePipeline,
     extent: Extent,
     row_pitch: u32,
@@ -18,31 +70,23 @@ pub struct Gauss {
 }
 
 impl Gauss {
-    /// `workgroup`: WORKGROUP_X and WORKGROUP_Y. `texels`: how many a thread filters, at least 1.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        workgroup: &[(&str, u32)],
-        extent: Extent,
-        row_pitch: u32,
-        kernel: Kernel,
-        texels: u32,
-    ) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, setup: &FilterSetup<'_>) -> Result<Self> {
+        let FilterSetup { label, workgroup, extent, row_pitch, kernel, texels } = *setup;
         let constants = [workgroup, &[("TEXELS", texels), ("RADIUS", kernel.radius())]].concat();
         let pipeline = ComputePipeline::new(gpu, &crate::gpu::shader::passes::filter::gauss::COMP, &constants)?;
-        Ok(Self { pipeline, extent, row_pitch, kernel, texels })
+        Ok(Self { label: label.to_owned(), pipeline, extent, row_pitch, kernel, texels })
     }
 
     /// Both directions.
     pub fn record(
         &self,
         cmd: &mut Commands,
-        technique: &str,
         source: Edge<'_, Buffer>,
         flags: Edge<'_, Buffer>,
         between: &Buffer,
         target: &Buffer,
     ) -> Result<()> {
-        cmd.pass(&format!("{technique}.filter"), self.traffic(&[true, false]), |cmd| {
+        cmd.pass(&self.label, self.traffic(&[true, false]), |cmd| {
             self.rows(cmd, source, flags, between)?;
             cmd.barriers([
                 between.from(Access::ComputeWrite).to(Access::ComputeRead),
@@ -56,13 +100,12 @@ impl Gauss {
     pub fn record_rows(
         &self,
         cmd: &mut Commands,
-        technique: &str,
         source: Edge<'_, Buffer>,
         flags: Edge<'_, Buffer>,
         target: &Buffer,
     ) -> Result<()> {
         let traffic = self.traffic(&[true]);
-        cmd.pass(&format!("{technique}.filter"), traffic, |cmd| self.rows(cmd, source, flags, target))
+        cmd.pass(&self.label, traffic, |cmd| self.rows(cmd, source, flags, target))
     }
 
     fn rows(

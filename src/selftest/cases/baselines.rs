@@ -74,8 +74,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[]),
-        roads: AGAIN,
+        twin: Twin::Method(&[]),
+        methods: AGAIN,
         must: SAME,
     },
     Group {
@@ -83,13 +83,13 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[
+        twin: Twin::Method(&[
             ("depth-prepass", "off"),
             ("light-lists", "none"),
             ("light-buffer", "storage"),
             EVERYTHING[0],
         ]),
-        roads: &[
+        methods: &[
             &[],
             &[("depth-prepass", "off")],
             &[("light-lists", "none")],
@@ -104,8 +104,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(WHOLE),
-        roads: CUT,
+        twin: Twin::Method(WHOLE),
+        methods: CUT,
         must: SAME,
     },
     Group {
@@ -113,8 +113,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: FENCE,
         common: &[],
-        twin: Twin::Road(&[("light-lists", "none"), EVERYTHING[0]]),
-        roads: &[&[], &[("depth-prepass", "off")]],
+        twin: Twin::Method(&[("light-lists", "none"), EVERYTHING[0]]),
+        methods: &[&[], &[("depth-prepass", "off")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -122,8 +122,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[("supersample", "4")]),
-        roads: &[&[("msaa", "4")], &[("msaa", "8")]],
+        twin: Twin::Method(&[("supersample", "4")]),
+        methods: &[&[("msaa", "4")], &[("msaa", "8")]],
         must: Must::Near(EDGES),
     },
     Group {
@@ -131,8 +131,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[("msaa", "4")],
-        twin: Twin::Road(&[("depth-prepass", "off")]),
-        roads: &[&[]],
+        twin: Twin::Method(&[("depth-prepass", "off")]),
+        methods: &[&[]],
         must: Must::Near(PREPASS),
     },
     Group {
@@ -140,8 +140,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[("direct-shadow", "map"), ("shadow-map-size", "256")],
-        twin: Twin::Road(&[("shadow-filter", "gather"), ("shadow-casters", "all")]),
-        roads: &[&[("shadow-filter", "gather")]],
+        twin: Twin::Method(&[("shadow-filter", "gather"), ("shadow-casters", "all")]),
+        methods: &[&[("shadow-filter", "gather")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -149,8 +149,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[("direct-shadow", "map"), ("shadow-map-size", "256")],
-        twin: Twin::Road(&[("shadow-filter", "gather")]),
-        roads: &[&[("shadow-filter", "bilinear")]],
+        twin: Twin::Method(&[("shadow-filter", "gather")]),
+        methods: &[&[("shadow-filter", "bilinear")]],
         must: Must::Near(FILTER),
     },
     Group {
@@ -159,7 +159,7 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[("brdf", "lambert")],
         twin: Twin::Other("forward", &[("brdf", "lambert"), ("direct-shadow", "ray")]),
-        roads: &[
+        methods: &[
             &[("direct-shadow", "map"), ("shadow-map-size", "256"), ("shadow-filter", "nearest")],
             &[("direct-shadow", "map"), ("shadow-map-size", "256")],
         ],
@@ -171,7 +171,7 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[("brdf", "lambert"), ("direct-shadow", "ray"), ("supersample", "4")],
         twin: Twin::Other("path_traced", PATHS_OF_DIRECT_LIGHT),
-        roads: &[&[]],
+        methods: &[&[]],
         must: Must::Near(TRACED),
     },
     Group {
@@ -179,8 +179,8 @@ pub const GROUPS: &[Group] = &[
         technique: "deferred",
         place: LAMPS,
         common: &[("cull", "tiled")],
-        twin: Twin::Road(&[]),
-        roads: AGAIN,
+        twin: Twin::Method(&[]),
+        methods: AGAIN,
         must: SAME,
     },
     Group {
@@ -188,8 +188,8 @@ pub const GROUPS: &[Group] = &[
         technique: "deferred",
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[("cull", "none"), ("texels", "1"), EVERYTHING[0]]),
-        roads: &[
+        twin: Twin::Method(&[("cull", "none"), ("texels", "1"), EVERYTHING[0]]),
+        methods: &[
             &[("cull", "none")],
             &[("cull", "tiled"), ("cull-by", "invocation")],
             &[("cull", "tiled"), ("cull-by", "workgroup")],
@@ -204,8 +204,8 @@ pub const GROUPS: &[Group] = &[
         technique: "deferred",
         place: LAMPS,
         common: &[("direct-shadow", "ray")],
-        twin: Twin::Road(&[("cull", "none")]),
-        roads: &[&[("cull", "tiled")], &[("workgroup", "8x8")]],
+        twin: Twin::Method(&[("cull", "none")]),
+        methods: &[&[("cull", "tiled")], &[("workgroup", "8x8")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -213,8 +213,8 @@ pub const GROUPS: &[Group] = &[
         technique: "deferred",
         place: LAMPS,
         common: &[("cull", "tiled"), ("direct-shadow", "ray")],
-        twin: Twin::Road(WHOLE),
-        roads: CUT,
+        twin: Twin::Method(WHOLE),
+        methods: CUT,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -222,8 +222,8 @@ pub const GROUPS: &[Group] = &[
         technique: "deferred",
         place: LAMPS,
         common: &[("brdf", "lambert"), ("direct-shadow", "none")],
-        twin: Twin::Road(&[("position", "float")]),
-        roads: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
+        twin: Twin::Method(&[("position", "float")]),
+        methods: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
         must: Must::Near(POSITIONS),
     },
     Group {
@@ -232,7 +232,7 @@ pub const GROUPS: &[Group] = &[
         place: FENCE,
         common: &[("position", "float")],
         twin: Twin::Other("forward", &[]),
-        roads: &[&[]],
+        methods: &[&[]],
         must: Must::Near(DEFERRED),
     },
     Group {
@@ -240,8 +240,8 @@ pub const GROUPS: &[Group] = &[
         technique: "deferred",
         place: FENCE,
         common: &[],
-        twin: Twin::Road(&[("light-lists", "none")]),
-        roads: &[&[], &[("cull", "tiled")]],
+        twin: Twin::Method(&[("light-lists", "none")]),
+        methods: &[&[], &[("cull", "tiled")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -250,7 +250,7 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[("brdf", "lambert"), ("direct-shadow", "ray")],
         twin: Twin::Other("path_traced", PATHS_OF_DIRECT_LIGHT),
-        roads: &[&[]],
+        methods: &[&[]],
         must: Must::Near(TRACED_EDGES),
     },
 ];

@@ -15,7 +15,7 @@ const FEW: (&str, &str) = ("spp", "2");
 const LENS: (&str, &str) = ("aperture", "0.2");
 const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
 const RAY: (&str, &str) = ("visibility", "ray");
-const ALONE: Twin = Twin::Road(&[("lists", "none")]);
+const ALONE: Twin = Twin::Method(&[("lists", "none")]);
 
 const SAMPLES: Bounds = Bounds {
     apart: 0.1,
@@ -59,8 +59,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[FEW, LENS],
-        twin: Twin::Road(&[]),
-        roads: AGAIN,
+        twin: Twin::Method(&[]),
+        methods: AGAIN,
         must: SAME,
     },
     Group {
@@ -69,7 +69,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, LENS],
         twin: ALONE,
-        roads: LISTS,
+        methods: LISTS,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -78,7 +78,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, LENS],
         twin: ALONE,
-        roads: CONSERVATIVE,
+        methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -87,7 +87,7 @@ pub const GROUPS: &[Group] = &[
         place: HALL,
         common: &[FEW],
         twin: ALONE,
-        roads: CONSERVATIVE,
+        methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -96,7 +96,7 @@ pub const GROUPS: &[Group] = &[
         place: HALL,
         common: &[FEW, LENS, ("guard-band", "8"), ("shading-scale", "0.5")],
         twin: ALONE,
-        roads: CONSERVATIVE,
+        methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -105,7 +105,7 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[FEW, LENS],
         twin: Twin::Nothing,
-        roads: &[&[("conservative", "none")]],
+        methods: &[&[("conservative", "none")]],
         must: Must::LackSamples,
     },
     Group {
@@ -114,7 +114,7 @@ pub const GROUPS: &[Group] = &[
         place: FENCE,
         common: &[FEW, ("camera", "rotor"), ("shutter", "0,0.1")],
         twin: ALONE,
-        roads: &[
+        methods: &[
             &[("conservative", "geometry")],
             &[("conservative", "vertex")],
             &[("conservative", "hardware")],
@@ -128,7 +128,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, LENS, ("reconstruct", "on")],
         twin: ALONE,
-        roads: &[&[], &[("list-access", "addresses")]],
+        methods: &[&[], &[("list-access", "addresses")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -137,7 +137,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, LENS, ("shading-warp", "foveated")],
         twin: ALONE,
-        roads: &[&[("conservative", "geometry")], &[("conservative", "vertex")]],
+        methods: &[&[("conservative", "geometry")], &[("conservative", "vertex")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -146,7 +146,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, ("stereo", "0.1")],
         twin: ALONE,
-        roads: &[&[], &[("conservative", "vertex")]],
+        methods: &[&[], &[("conservative", "vertex")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -154,8 +154,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[FEW, LENS],
-        twin: Twin::Road(&[("visibility", "repeat-frame")]),
-        roads: &[
+        twin: Twin::Method(&[("visibility", "repeat-frame")]),
+        methods: &[
             &[("visibility", "repeat-draw"), ("layer-from", "vertex")],
             &[("visibility", "repeat-draw"), ("layer-from", "geometry")],
             &[("visibility", "instancing"), ("layer-from", "vertex")],
@@ -169,8 +169,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[FEW, LENS],
-        twin: Twin::Road(&[("visibility", "repeat-frame")]),
-        roads: &[&[STOCHASTIC, ("sample-tests", "layers"), ("polygon-from", "vertex")], &[RAY]],
+        twin: Twin::Method(&[("visibility", "repeat-frame")]),
+        methods: &[&[STOCHASTIC, ("sample-tests", "layers"), ("polygon-from", "vertex")], &[RAY]],
         must: Must::Near(SAMPLES),
     },
     Group {
@@ -178,8 +178,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: FENCE,
         common: &[FEW, STOCHASTIC, ("camera", "rotor"), ("shutter", "0,0.1")],
-        twin: Twin::Road(&[("sample-tests", "layers"), ("polygon-from", "vertex"), ("lists", "none")]),
-        roads: &[
+        twin: Twin::Method(&[("sample-tests", "layers"), ("polygon-from", "vertex"), ("lists", "none")]),
+        methods: &[
             &[("sample-tests", "layers"), ("polygon-from", "vertex")],
             &[("sample-tests", "loop"), ("polygon-from", "vertex")],
             &[("sample-tests", "layers"), ("polygon-from", "geometry")],
@@ -193,7 +193,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, LENS, RAY],
         twin: ALONE,
-        roads: &[&[("lists", "linked")], &[("lists", "direct")], &[("lists", "direct"), ("compaction", "off")]],
+        methods: &[&[("lists", "linked")], &[("lists", "direct")], &[("lists", "direct"), ("compaction", "off")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -201,8 +201,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[FEW, LENS],
-        twin: Twin::Road(WHOLE),
-        roads: CUT,
+        twin: Twin::Method(WHOLE),
+        methods: CUT,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -210,8 +210,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[("spp", "4"), LENS, ("brdf", "lambert")],
-        twin: Twin::Road(&[("shading", "deep")]),
-        roads: &[
+        twin: Twin::Method(&[("shading", "deep")]),
+        methods: &[
             &[("shading", "ssaa")],
             &[("shading", "msaa"), ("pass-samples", "1")],
             &[("shading", "msaa"), ("pass-samples", "4")],
@@ -224,8 +224,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[("spp", "8"), LENS, ("brdf", "lambert")],
-        twin: Twin::Road(&[("shading", "deep")]),
-        roads: &[&[("shading", "msaa"), ("pass-samples", "8")]],
+        twin: Twin::Method(&[("shading", "deep")]),
+        methods: &[&[("shading", "msaa"), ("pass-samples", "8")]],
         must: Must::Near(SHARED),
     },
     Group {
@@ -233,8 +233,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[FEW, ("direct-shadow", "map"), ("shadow-map-size", "128"), ("shadow-filter", "gather")],
-        twin: Twin::Road(&[("lists", "none"), ("shadow-casters", "all")]),
-        roads: &[&[], &[("shadow-casters", "all")]],
+        twin: Twin::Method(&[("lists", "none"), ("shadow-casters", "all")]),
+        methods: &[&[], &[("shadow-casters", "all")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -242,8 +242,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[FEW, ("direct-shadow", "map"), ("shadow-map-size", "128")],
-        twin: Twin::Road(&[("shadow-filter", "gather")]),
-        roads: &[&[("shadow-filter", "bilinear")], &[("shadow-filter", "nearest")]],
+        twin: Twin::Method(&[("shadow-filter", "gather")]),
+        methods: &[&[("shadow-filter", "bilinear")], &[("shadow-filter", "nearest")]],
         must: Must::Near(SHARED),
     },
 ];

@@ -21,7 +21,7 @@ const IN_THE_MIDDLE: [(&str, &str); 2] = [("spp", "1"), ("tuples", "1")];
 
 const fn group(name: &'static str, technique: &'static str, form: ClosedForm, common: Settings) -> Group {
     let must = if matches!(form, ClosedForm::Empty) { EXACT } else { Must::Near(FORMULA) };
-    Group { name, technique, place: Place::Formula(form), common, twin: Twin::Formula, roads: &[&[]], must }
+    Group { name, technique, place: Place::Formula(form), common, twin: Twin::Formula, methods: &[&[]], must }
 }
 
 const fn empty(technique: &'static str, common: Settings) -> Group {

@@ -52,8 +52,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: FENCE,
         common: &[],
-        twin: Twin::Road(&[]),
-        roads: AGAIN,
+        twin: Twin::Method(&[]),
+        methods: AGAIN,
         must: SAME,
     },
     Group {
@@ -61,8 +61,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: FENCE,
         common: &[],
-        twin: Twin::Road(&[("volumes", "tiled"), ("texels", "1"), ("depth-prepass", "off"), EVERYTHING[0]]),
-        roads: &[
+        twin: Twin::Method(&[("volumes", "tiled"), ("texels", "1"), ("depth-prepass", "off"), EVERYTHING[0]]),
+        methods: &[
             &[("volumes", "tiled"), ("cull-by", "invocation")],
             &[("volumes", "tiled"), ("cull-by", "workgroup")],
             &[("volumes", "tiled"), ("workgroup", "8x8")],
@@ -79,8 +79,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: FENCE,
         common: &[("stipple", "4x4"), ("alpha-filter", "bilinear"), ("extras", "off"), ("packing", "rgba8")],
-        twin: Twin::Road(&[("volumes", "tiled")]),
-        roads: &[&[("volumes", "stencil")], &[("volumes", "scissor")]],
+        twin: Twin::Method(&[("volumes", "tiled")]),
+        methods: &[&[("volumes", "stencil")], &[("volumes", "scissor")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -88,8 +88,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[("direct-shadow", "ray")],
-        twin: Twin::Road(&[("volumes", "tiled")]),
-        roads: &[&[("volumes", "stencil")], &[("volumes", "scissor")]],
+        twin: Twin::Method(&[("volumes", "tiled")]),
+        methods: &[&[("volumes", "stencil")], &[("volumes", "scissor")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -97,8 +97,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[AT_FRAME_SIZE, ("brdf", "lambert"), ("volumes", "both")],
-        twin: Twin::Road(&[("direct-shadow", "ray")]),
-        roads: &[&[("shadow-volumes", "64"), ("direct-shadow", "none")]],
+        twin: Twin::Method(&[("direct-shadow", "ray")]),
+        methods: &[&[("shadow-volumes", "64"), ("direct-shadow", "none")]],
         must: Must::Near(STENCIL_AND_RAYS),
     },
     Group {
@@ -106,8 +106,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[("depth-prepass", "off")]),
-        roads: &[&[("depth-prepass", "on")]],
+        twin: Twin::Method(&[("depth-prepass", "off")]),
+        methods: &[&[("depth-prepass", "on")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -115,8 +115,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(WHOLE),
-        roads: CUT,
+        twin: Twin::Method(WHOLE),
+        methods: CUT,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -124,8 +124,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[("volumes", "scissor")],
-        twin: Twin::Road(&[("l-buffer", "float")]),
-        roads: &[&[("l-buffer", "half")], &[("l-buffer", "fixed")]],
+        twin: Twin::Method(&[("l-buffer", "float")]),
+        methods: &[&[("l-buffer", "half")], &[("l-buffer", "fixed")]],
         must: Must::Near(HALVES),
     },
     Group {
@@ -133,8 +133,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[("packing", "words")]),
-        roads: &[&[("packing", "rgba8")], &[("packing", "fixed")]],
+        twin: Twin::Method(&[("packing", "words")]),
+        methods: &[&[("packing", "rgba8")], &[("packing", "fixed")]],
         must: Must::Near(HALVES),
     },
     Group {
@@ -143,7 +143,7 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[AT_FRAME_SIZE, ("brdf", "lambert"), ("direct-shadow", "none")],
         twin: Twin::Other("deferred", &[("brdf", "lambert"), ("position", "depth"), ("direct-shadow", "none")]),
-        roads: &[
+        methods: &[
             &[("light-filter", "dsf")],
             &[("light-filter", "bilinear")],
             &[("light-filter", "nearest")],
@@ -157,8 +157,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: LAMPS,
         common: &[],
-        twin: Twin::Road(&[("light-fetch", "texels")]),
-        roads: &[&[("light-fetch", "sampler")]],
+        twin: Twin::Method(&[("light-fetch", "texels")]),
+        methods: &[&[("light-fetch", "sampler")]],
         must: Must::Near(SAMPLER),
     },
     Group {
@@ -167,7 +167,7 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[],
         twin: Twin::Other("forward", &[("supersample", "4")]),
-        roads: &[&[("msaa", "4"), AT_FRAME_SIZE], &[("msaa", "8"), AT_FRAME_SIZE]],
+        methods: &[&[("msaa", "4"), AT_FRAME_SIZE], &[("msaa", "8"), AT_FRAME_SIZE]],
         must: Must::Near(EDGES),
     },
 ];

@@ -58,8 +58,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS],
-        twin: Twin::Road(&[]),
-        roads: AGAIN,
+        twin: Twin::Method(&[]),
+        methods: AGAIN,
         must: SAME,
     },
     Group {
@@ -67,8 +67,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS, ("pattern", "4x4"), UNFILTERED],
-        twin: Twin::Road(&[("split", "branch"), ("texels", "1"), EVERYTHING[0]]),
-        roads: &SPLITS,
+        twin: Twin::Method(&[("split", "branch"), ("texels", "1"), EVERYTHING[0]]),
+        methods: &SPLITS,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -76,8 +76,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: HALL,
         common: &[VPLS, ("pattern", "3x2"), ("cull", "tiled")],
-        twin: Twin::Road(&[("split", "branch")]),
-        roads: &[
+        twin: Twin::Method(&[("split", "branch")]),
+        methods: &[
             &[("split", "one-pass"), ("cull-by", "invocation")],
             &[("split", "one-pass"), ("cull-by", "workgroup")],
             &[("split", "two-pass"), ("storage", "image"), ("block", "9x4")],
@@ -91,8 +91,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS],
-        twin: Twin::Road(&[("split", "none")]),
-        roads: &[
+        twin: Twin::Method(&[("split", "none")]),
+        methods: &[
             &[("pattern", "1x1")],
             &[("pattern", "1x1"), ("split", "tile")],
             &[("pattern", "1x1"), ("split", "fragment")],
@@ -105,8 +105,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS],
-        twin: Twin::Road(&[("texels", "1"), ("workgroup", "64x1")]),
-        roads: &[&[("texels", "4")], &[("workgroup", "8x8")], &[("texels", "16"), ("workgroup", "16x8")]],
+        twin: Twin::Method(&[("texels", "1"), ("workgroup", "64x1")]),
+        methods: &[&[("texels", "4")], &[("workgroup", "8x8")], &[("texels", "16"), ("workgroup", "16x8")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -114,8 +114,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS],
-        twin: Twin::Road(&[("fuse", "off")]),
-        roads: &[&[("fuse", "on")], &[("fuse", "on"), ("split", "branch")], &[("fuse", "on"), ("split", "layered")]],
+        twin: Twin::Method(&[("fuse", "off")]),
+        methods: &[&[("fuse", "on")], &[("fuse", "on"), ("split", "branch")], &[("fuse", "on"), ("split", "layered")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -123,8 +123,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS, ("kernel", "9")],
-        twin: Twin::Road(&[("filter", "gauss")]),
-        roads: &[&[("filter", "gauss-fast")]],
+        twin: Twin::Method(&[("filter", "gauss")]),
+        methods: &[&[("filter", "gauss-fast")]],
         must: Must::Near(HALF_TEXELS),
     },
     Group {
@@ -132,8 +132,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[("vpls", "256")],
-        twin: Twin::Road(&[("split", "none")]),
-        roads: &[&[]],
+        twin: Twin::Method(&[("split", "none")]),
+        methods: &[&[]],
         must: Must::Near(CONVERGED),
     },
     Group {
@@ -141,8 +141,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS, ("split", "branch"), UNFILTERED],
-        twin: Twin::Road(&[("position", "float")]),
-        roads: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
+        twin: Twin::Method(&[("position", "float")]),
+        methods: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
         must: Must::Near(super::baselines::POSITIONS),
     },
     Group {
@@ -150,8 +150,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: FENCE,
         common: &[VPLS],
-        twin: Twin::Road(&[("light-lists", "none"), ("split", "branch")]),
-        roads: &[&[], &[("split", "tile")]],
+        twin: Twin::Method(&[("light-lists", "none"), ("split", "branch")]),
+        methods: &[&[], &[("split", "tile")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -159,8 +159,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS],
-        twin: Twin::Road(WHOLE),
-        roads: CUT,
+        twin: Twin::Method(WHOLE),
+        methods: CUT,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -168,8 +168,8 @@ pub const GROUPS: &[Group] = &[
         technique: NAME,
         place: CORNELL,
         common: &[VPLS],
-        twin: Twin::Road(&[("allocation", "linear")]),
-        roads: &[&[("allocation", "dedicated")], &[("allocation", "tlsf")]],
+        twin: Twin::Method(&[("allocation", "linear")]),
+        methods: &[&[("allocation", "dedicated")], &[("allocation", "tlsf")]],
         must: SAME,
     },
 ];

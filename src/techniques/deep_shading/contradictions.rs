@@ -63,12 +63,12 @@ pub fn require_direct(values: &Values) -> Result<()> {
 /// Errors: the device draws triangles itself that shading space has bent (exit code 2).
 pub fn require_straight(values: &Values) -> Result<()> {
     let asked = values.unless_auto("conservative", Values::choice);
-    if let Some(road @ (Conservative::Hardware | Conservative::Plain)) = asked
+    if let Some(conservative @ (Conservative::Hardware | Conservative::Plain)) = asked
         && values.is("shading-warp", Warp::Foveated)
     {
-        let road = road.name();
+        let conservative = conservative.name();
         let why = "triangles are not straight in a foveated shading space";
-        return Err(Error::request(format!("--conservative {road}: {why}"))
+        return Err(Error::request(format!("--conservative {conservative}: {why}"))
             .within(NAME)
             .note("--conservative geometry and vertex draw polygons that enclose them"));
     }

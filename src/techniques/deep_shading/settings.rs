@@ -1,8 +1,8 @@
 //! The settings that only this technique reads.
 
 use crate::settings::{
-    APERTURE, BRDF, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES, Setting,
-    Unread, Values,
+    APERTURE, BRDF, Changes, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES,
+    Setting, Unread, Values,
 };
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
@@ -31,7 +31,7 @@ pub const SETTINGS: &[Setting] = &[
                buffer that samples point to (indirect-gbuffer; Liktor and Dachsbacher 2012); or the texels of a \
                texture of each draw, which is then drawn with that texture (texture-space; Andersson et al. 2014; \
                meshes need atlases)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shading-textures",
@@ -41,7 +41,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Number of textures of --shading texture-space, which is how many draws are shaded and drawn at a time; \
                the same picture",
         unread: without_textures,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "shading-texture-size",
@@ -52,7 +52,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Texels along a side of the finest level of each texture of --shading texture-space: the most with which \
                a mesh's atlas is shaded",
         unread: without_textures,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shading-cache",
@@ -63,7 +63,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Entries of the cache in which --shading indirect-gbuffer finds what has been seen before; what a full \
                cache forgets is shaded again, to the same picture; auto: as many as samples",
         unread: |values| Unread::unless(values, "shading", &[ShadingKind::IndirectGbuffer], "it has no cache"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "pass-samples",
@@ -74,7 +74,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Samples a pixel that --shading msaa draws at once; --spp takes as many passes as it needs; auto: the \
                most of these that the device has and that divide --spp",
         unread: |values| Unread::unless(values, "shading", &[ShadingKind::Msaa], "samples are drawn one at a time"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "visibility",
@@ -85,7 +85,7 @@ pub const SETTINGS: &[Setting] = &[
                each draw is (repeat-draw); each draw has an instance for each tuple (instancing); a geometry shader \
                makes a triangle for each tuple (replicate); a polygon around each triangle's blur is drawn, and a \
                shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "layer-from",
@@ -96,7 +96,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Stage that writes the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a \
                geometry shader that passes triangles through; the same samples; auto: vertex where the device can",
         unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples are drawn layer by layer"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "polygon-from",
@@ -115,7 +115,7 @@ pub const SETTINGS: &[Setting] = &[
                 "its triangles come from vertex shaders",
             )
         },
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "sample-tests",
@@ -135,7 +135,7 @@ pub const SETTINGS: &[Setting] = &[
                 "samples are drawn and coloured layer by layer, or as many at a time as an image has",
             )
         },
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "spp",
@@ -144,7 +144,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "8",
         paper: "Clarberg 2014, 6",
         help: "Samples a pixel in one set of buffers, for each eye with --stereo",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "tuples",
@@ -155,14 +155,14 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.2",
         help: "Number of tuples, places in a pixel, on the lens and in time, that all samples share, spread over a \
                table of N/n pixels; a multiple of --spp; for each eye with --stereo; auto: four times --spp",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "accumulate",
         kind: Kind::Integer { min: 1, max: 4096 },
         default: "1",
         help: "Number of sets of --spp samples a pixel that are averaged to the picture, each with tuples of its own",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "guard-band",
@@ -173,7 +173,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Width of the border of shading space around the frame, for what blur brings in; samples that are \
                farther out are shaded one by one",
         unread: without_space,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shading-scale",
@@ -189,7 +189,7 @@ pub const SETTINGS: &[Setting] = &[
                 "it shades no pixels of shading space",
             )
         },
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shading-warp",
@@ -199,7 +199,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Where shading space is finer: nowhere (even), or in its middle, which is as fine as an even one \
                (foveated); visibility stays as fine",
         unread: without_space,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "warp-falloff",
@@ -209,7 +209,7 @@ pub const SETTINGS: &[Setting] = &[
                space is 1 + c r times as wide across and (1 + c r)^2 times as long towards the rim; shading space then \
                has 1/(1 + c)^2 of the pixels",
         unread: without_space,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "lists",
@@ -220,7 +220,7 @@ pub const SETTINGS: &[Setting] = &[
                lists that rays fill at once, without a SPID a sample, with --visibility ray (direct); or not, each \
                sample being shaded where it is seen, at its shading point (none, the plain way to the same picture)",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "list-access",
@@ -232,7 +232,7 @@ pub const SETTINGS: &[Setting] = &[
                the device binds, or by the buffers' addresses, at any length; the same picture; auto: addresses where \
                a buffer is longer than that range",
         unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples' colours are in images"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "duplicates",
@@ -243,7 +243,7 @@ pub const SETTINGS: &[Setting] = &[
                since, so that no triangle is listed twice (avoided), or it does not (tolerated, the paper's way); the \
                same picture",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "compaction",
@@ -252,7 +252,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.3",
         help: "Sort the lists and store their first M = 16 triangles in a row; the same picture",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "zmax",
@@ -262,7 +262,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Leave out, before a list is read, triangles that lie behind all that samples saw at that pixel of \
                shading space; the same picture",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "address-buffer",
@@ -271,7 +271,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.3",
         help: "Keep the address of each sample's colour; off: find it again by following links; the same picture",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "conservative",
@@ -285,7 +285,7 @@ pub const SETTINGS: &[Setting] = &[
                auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
                triangle covers, to measure what the others cost and how much has no colour then",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "shaded-triangles",
@@ -295,7 +295,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Triangles that are drawn into shading space: those that are in a list, for which insertion marks one \
                bit each (listed), or all of the scene, as in the paper and with --lists direct (all); the same picture",
         unread: without_lists,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "reconstruct",
@@ -304,7 +304,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.5",
         help: "Filter what is blurred, in layers of depth, as far as its blur allows (not the paper's filter); off: \
                take the mean of each pixel's own samples",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     INSTRUMENT,
     APERTURE,

@@ -2,7 +2,7 @@
 //! the light buffer's size: a pixel of the frame
 //! shows the texel that it lies in.
 
-use super::frame::{InferredFrame, Packed, Road};
+use super::frame::{InferredFrame, LightPass, Packed};
 use super::light;
 use super::light::store::Store;
 use super::material::FilterGuides;
@@ -143,12 +143,12 @@ impl Frame for InferredFrame {
             written = Access::ComputeSample;
         }
         let from = geometry.from(written);
-        match &self.road {
-            Road::Tiled(tiled) => {
+        match &self.light_pass {
+            LightPass::Tiled(tiled) => {
                 let lights = self.lights.from(Access::ComputeWrite);
                 tiled.record(cmd, &self.light_frame, lights, from, &self.l_buffer)?;
             }
-            Road::Drawn { volumes, packed } => {
+            LightPass::Drawn { volumes, packed } => {
                 let target = packed.as_ref().map_or(&self.l_buffer, |packed| &packed.sums);
                 volumes.record(cmd, &self.light_frame, &self.lights, from, target)?;
                 if let Some(Packed { pack, sums }) = packed.as_deref() {
@@ -188,9 +188,9 @@ impl Frame for InferredFrame {
         if let Store::Fixed { .. } = self.store {
             counters.insert("light_texels_cut", cut_texels(self, gpu)? as f64);
         }
-        match &self.road {
-            Road::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
-            Road::Drawn { volumes, .. } => {
+        match &self.light_pass {
+            LightPass::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
+            LightPass::Drawn { volumes, .. } => {
                 let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
                 let evaluated = volumes.evaluations();
                 counters.insert("lights_counted_into_stencil", volumes.counted_lights() as f64);

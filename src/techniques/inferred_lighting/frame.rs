@@ -26,7 +26,7 @@ use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
 use std::sync::Arc;
 
 /// How lights reach the L-buffer.
-pub(super) enum Road {
+pub(super) enum LightPass {
     Tiled(Tiled),
     /// Without `packed` blended into the L-buffer itself.
     Drawn {
@@ -44,7 +44,7 @@ pub(super) struct Packed {
 pub struct InferredFrame {
     pub(super) geometry_pass: Geometry,
     pub(super) cull: Option<Cull>,
-    pub(super) road: Road,
+    pub(super) light_pass: LightPass,
     pub(super) material: Material,
     pub(super) geometry: LowGeometry,
     pub(super) l_buffer: Image,
@@ -114,17 +114,20 @@ impl InferredFrame {
             };
             LightVolumes::new(gpu, &settings, resources, lights, inputs.view, light_extent)
         };
-        let road = match (choices.volumes, choices.in_halves) {
+        let light_pass = match (choices.volumes, choices.in_halves) {
             (Volumes::Tiled, _) => {
                 let constants = [&constants[..], &[choices.store.constant()]].concat();
-                Road::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
+                LightPass::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
             }
-            (_, true) => Road::Drawn { volumes: Box::new(volumes(light::HALF_FORMAT, resources)?), packed: None },
+            (_, true) => LightPass::Drawn { volumes: Box::new(volumes(light::HALF_FORMAT, resources)?), packed: None },
             (_, false) => {
                 let constants = [&choices.shading.workgroup_constants()[..], &[choices.store.constant()]].concat();
                 let pack = Pack::new(gpu, &constants)?;
                 let packed = Packed { pack, sums: resources.image(&light::sums()) };
-                Road::Drawn { volumes: Box::new(volumes(PICTURE_FORMAT, resources)?), packed: Some(Box::new(packed)) }
+                LightPass::Drawn {
+                    volumes: Box::new(volumes(PICTURE_FORMAT, resources)?),
+                    packed: Some(Box::new(packed)),
+                }
             }
         };
         let survivors = (!stippled.is_empty()).then(|| {
@@ -145,7 +148,7 @@ impl InferredFrame {
         let material_constants = choices.material_constants();
         Ok(Self {
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, choices.shading.cull_by)).transpose()?,
-            road,
+            light_pass,
             geometry: LowGeometry::new(gpu, resources, choices)?,
             geometry_pass: Geometry::new(gpu, scene, low_list, stippled, depth_range_m, choices, earlier)?,
             material: Material::new(gpu, resources, scene, draws, filter, &material_constants, background)?,
@@ -166,7 +169,7 @@ impl InferredFrame {
 impl InferredFrame {
     /// How the light pass left what it read.
     pub(super) fn lit_access(&self) -> Access {
-        if matches!(self.road, Road::Tiled(_)) { Access::ComputeSample } else { Access::FragmentSample }
+        if matches!(self.light_pass, LightPass::Tiled(_)) { Access::ComputeSample } else { Access::FragmentSample }
     }
 
     /// The access that read the normals last.

@@ -7,8 +7,8 @@ use super::layer_names;
 use super::light::Volumes;
 use super::light::store::Sums;
 use crate::settings::{
-    BRDF, CULL_BY, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS, NORMAL_THRESHOLD,
-    Setting, TEXELS, Unread, WORKGROUP,
+    BRDF, CULL_BY, Changes, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS,
+    NORMAL_THRESHOLD, Setting, TEXELS, Unread, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -30,7 +30,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.2",
         help: "Width and height of the geometry pass and the light pass; auto: 0.625 of the frame, so 800x450 for \
                1280x720",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "extras",
@@ -39,7 +39,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.1",
         help: "Write roughness and material id in the geometry pass, 4 bytes a texel; off: every highlight is as wide \
                as --light-roughness says",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "light-roughness",
@@ -48,7 +48,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.2",
         help: "Roughness of every surface in the light pass with --extras off",
         unread: |values| Unread::unless(values, "extras", &["off"], "each texel has its own roughness"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     MOTION_VECTORS,
     MOTION_INTERVAL,
@@ -61,7 +61,7 @@ pub const SETTINGS: &[Setting] = &[
                draw for each light, over the whole frame (quad), within the rectangle that bounds its reach (scissor), \
                where its volume meets a surface (stencil, depth-fail), or within both limits (both); auto: both, but \
                without the stencil for lights smaller than --stencil-least",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "stencil-least",
@@ -72,7 +72,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Number of texels in a light's rectangle from which --volumes auto draws it with the stencil (lavapipe: \
                the stencil pays from some 16384 on, and below makes no difference)",
         unread: |values| Unread::unless(values, "volumes", &[Volumes::Auto], "all lights are drawn in the same way"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "shadow-volumes",
@@ -83,7 +83,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Number of lights that cast stencil shadow volumes of all closed opaque and MASK surfaces, instead of \
                the rays of --direct-shadow: directional lights first, then those of most flux; not with --volumes \
                tiled",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "l-buffer",
@@ -92,7 +92,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 2.2, 5.1",
         help: "How the L-buffer sums up light: in 32 bits and packed once, to half floats (float) or to 16 bits of \
                fixed point (fixed); or blended in half floats, as in the paper (half)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "light-range",
@@ -101,7 +101,7 @@ pub const SETTINGS: &[Setting] = &[
         unit: "lx",
         paper: "Kircher 2009, 5.1",
         help: "Most light that --l-buffer fixed can hold; brighter texels are clamped to it, and counted",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "packing",
@@ -110,7 +110,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 5",
         help: "Format in which the geometry pass writes a texel's two 16-bit numbers: one word (words), the bytes of \
                four channels (rgba8), or two channels of fixed point (fixed)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "fixed-range",
@@ -120,7 +120,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Factor by which --packing fixed scales numbers from -1 to 1 into its format, which goes from -32 to 32; \
                32 uses every step of it, 1 a 32nd of them",
         unread: |values| Unread::unless(values, "packing", &[PackingFormat::Fixed], "it packs without fixed point"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "light-filter",
@@ -131,7 +131,7 @@ pub const SETTINGS: &[Setting] = &[
                which takes those of the pixel's object and normal group (dsf); whatever they show, bilinear or the \
                nearest one; or by normal and distance from the tangent plane, with weights that fall off (bilateral, a \
                joint bilateral filter) or that are 0 or 1 (discontinuity: Segovia 2006, 4.5)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "light-fetch",
@@ -141,7 +141,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How the four texels of a solid surface's pixel are read where all of them belong to that surface: one \
                by one (texels), or blended by the sampler in a single fetch, with the device's precision of position \
                (sampler)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "depth-threshold",
@@ -150,7 +150,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 3.1",
         help: "Most by which a sample of the filter may differ, as a part of the pixel's depth: in depth, or, where \
                normals decide, in distance from the tangent plane",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "alpha",
@@ -159,7 +159,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 4, 6",
         help: "How BLEND surfaces are drawn: stippled into the light buffer and blended (blend), or as solid surfaces \
                where their alpha is at least 0.5 (test)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "stipple",
@@ -169,7 +169,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 4",
         help: "Texels at which BLEND surfaces are lit: one in four (2x2, which leaves 3 layers over the solid one) or \
                one in sixteen (4x4, 15 layers)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "assignment",
@@ -179,7 +179,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How BLEND surfaces share the layers of the stipple: those that overlap on the screen get different \
                ones, nearest first (overlap, not the paper's); in rotation from the nearest on (depth); or as \
                --stipple-layers says, the rest in rotation in the order of the file (static)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "stipple-layers",
@@ -188,7 +188,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 4",
         help: "Layers of the stipple for --assignment static, 1 to 3 or 15, for BLEND surfaces by the name of their \
                node or material; these go before quincunx_stipple_layer in the extras of a file's nodes and materials",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "alpha-filter",
@@ -197,7 +197,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 4",
         help: "Weights of the four samples nearest to a fragment of a BLEND surface: falling to 0 at --cone-radius \
                (cone), or bilinear",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "cone-radius",
@@ -207,6 +207,6 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Kircher 2009, 4",
         help: "Radius of --alpha-filter cone, in texels of the light buffer; it is doubled with --stipple 4x4",
         unread: |values| Unread::unless(values, "alpha-filter", &[AlphaFilter::Cone], "its weights have no radius"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
 ];

@@ -2,13 +2,13 @@
 
 use super::choices::Choices;
 use super::frame::InterleavedFrame;
-use super::road::Road;
-use super::road::{Filter, Split};
-use super::roads::Roads;
+use super::split_method::{Split, SplitMethod};
+use super::split_passes::SplitPasses;
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
+use crate::passes::filter::Filter;
 use crate::picture::{Aov, AovChannels};
 use crate::settings::Values;
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -29,10 +29,10 @@ pub const AOVS: &[&str] =
 pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String)> {
     let mut left_out = Vec::new();
     let split = values.choice::<Split>("split").name();
-    if choices.road != Road::Subsample {
+    if choices.split != SplitMethod::Subsample {
         left_out.push((UPSCALED, format!("--split {split} interpolates nothing; subsample does")));
     }
-    if choices.road.copies().is_none() {
+    if choices.split.copies().is_none() {
         for stage in [SPLIT, GATHERED] {
             left_out.push((
                 stage,
@@ -43,7 +43,7 @@ pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String
         left_out.push((GATHERED, "with --fuse on the gather filters what it reads; --fuse off makes it".to_owned()));
     }
     if choices.filter == Filter::None {
-        let why = match choices.road.sums_all() {
+        let why = match choices.split.sums_all() {
             true => format!("with --split {split} all lights are summed, and nothing is filtered"),
             false if choices.subset_count() == 1 => {
                 "with --pattern 1x1 all lights are summed, and nothing is filtered".to_owned()
@@ -66,25 +66,27 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
     }
     let filter = || frame.filter.as_ref().expect("a stage that the settings leave out is refused");
     let rgb = |values: Vec<[f32; 3]>| Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(values) });
-    match (name, &frame.roads) {
-        (SPLIT, Roads::SubBuffers(road)) => {
-            let last = road.copies.storage.read(Stage::Compute);
-            rgb(side_by_side(frame, gpu, &road.surface.normal, last, decode::normal)?)
+    match (name, &frame.split_passes) {
+        (SPLIT, SplitPasses::SubBuffers(sub_buffers)) => {
+            let last = sub_buffers.copies.storage.read(Stage::Compute);
+            rgb(side_by_side(frame, gpu, &sub_buffers.surface.normal, last, decode::normal)?)
         }
-        (SHADED, Roads::SubBuffers(road)) => {
-            let last = road.copies.storage.read(road.copies.stage());
-            rgb(side_by_side(frame, gpu, &road.shaded, last, decode::halves)?)
+        (SHADED, SplitPasses::SubBuffers(sub_buffers)) => {
+            let last = sub_buffers.copies.storage.read(sub_buffers.copies.stage());
+            rgb(side_by_side(frame, gpu, &sub_buffers.shaded, last, decode::halves)?)
         }
-        (SHADED, Roads::Subsample { cells: shaded, .. }) => {
+        (SHADED, SplitPasses::Subsample { cells: shaded, .. }) => {
             let texels = texels(gpu, shaded, decode::halves)?;
             rgb(cells(frame, &texels))
         }
-        (UPSCALED, Roads::Subsample { irradiance, .. }) => rgb(in_frame_order(frame, gpu, irradiance)?),
+        (UPSCALED, SplitPasses::Subsample { irradiance, .. }) => rgb(in_frame_order(frame, gpu, irradiance)?),
         (
             SHADED,
-            Roads::Branch { irradiance, .. } | Roads::Strided { irradiance, .. } | Roads::Masked { irradiance, .. },
+            SplitPasses::Branch { irradiance, .. }
+            | SplitPasses::Strided { irradiance, .. }
+            | SplitPasses::Masked { irradiance, .. },
         ) => rgb(in_frame_order(frame, gpu, irradiance)?),
-        (GATHERED, Roads::SubBuffers(road)) => rgb(in_frame_order(frame, gpu, &road.gathered)?),
+        (GATHERED, SplitPasses::SubBuffers(sub_buffers)) => rgb(in_frame_order(frame, gpu, &sub_buffers.gathered)?),
         (FLAGS, _) => {
             let flags = &filter().flags;
             let bytes = readback::buffer(gpu, flags, flags.bytes, Access::ComputeRead)?;

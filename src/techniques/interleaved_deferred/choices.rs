@@ -1,7 +1,7 @@
 //! The choices that the settings make, and what is refused because it cannot be made.
 
 use super::mapping::mapping;
-use super::road::{Copier, Copies, Filter, Form, MaskKind, Road};
+use super::split_method::{Copier, Copies, Form, MaskKind, SplitMethod};
 use super::sub_buffers::Storage;
 use super::subsets::subsets;
 use crate::caps::Caps;
@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
-use crate::passes::filter::{Kernel, StopBits};
+use crate::passes::filter::{Filter, Kernel, StopBits};
 use crate::sampling::pattern::Pattern;
 use crate::settings::{PositionStorage, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -48,7 +48,7 @@ choices! {
 #[derive(Clone, Debug)]
 pub struct Choices {
     pub shading: ShadingSettings,
-    pub road: Road,
+    pub split: SplitMethod,
     /// 1x1 with `--split none`: one subset of all lights.
     pub mapping: MappingParams,
     pub filter: Filter,
@@ -98,21 +98,21 @@ impl Choices {
     /// Errors: settings that contradict each other, or that this device cannot do (exit code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let Inputs { values, lights, scene, view, caps, .. } = inputs;
-        let road = Road::new(values, caps)?;
-        let pattern = if road == Road::None { [1, 1] } else { values.pair("pattern") };
-        let has_blocks = road.copies().is_some_and(|copies| copies.has_blocks());
+        let split = SplitMethod::new(values, caps)?;
+        let pattern = if split == SplitMethod::None { [1, 1] } else { values.pair("pattern") };
+        let has_blocks = split.copies().is_some_and(|copies| copies.has_blocks());
         let block = if has_blocks { rounded(values.sides("block"), pattern) } else { pattern };
         let mapping = mapping(view.extent, pattern, block);
         // Only a picture whose pixels have different lights has anything to filter.
-        let interleaved = !road.sums_all() && mapping.subset_count() > 1;
+        let interleaved = !split.sums_all() && mapping.subset_count() > 1;
         let filter = if interleaved { values.choice("filter") } else { Filter::None };
         let direct: Direct = values.choice("direct");
         let direct_pattern =
-            if road.sums_all() || direct != Direct::Interleaved { [1, 1] } else { direct_pattern(values, pattern)? };
-        let light_pattern = if road.sums_all() { [1, 1] } else { pattern };
+            if split.sums_all() || direct != Direct::Interleaved { [1, 1] } else { direct_pattern(values, pattern)? };
+        let light_pattern = if split.sums_all() { [1, 1] } else { pattern };
         let choices = Self {
             shading: ShadingSettings::new(values, lights, scene, caps),
-            road,
+            split,
             mapping,
             filter,
             kernel: kernel(values)?,
@@ -148,14 +148,14 @@ impl Choices {
     /// Errors: a limit of the stencil or of the device (exit code 2).
     fn check_device(&self, pattern: &str, caps: &Caps) -> Result<()> {
         let (subset_count, limits) = (self.mapping.subset_count(), &caps.limits);
-        if self.road == Road::Masked(MaskKind::Stencil) && subset_count > STENCIL_SUBSETS {
+        if self.split == SplitMethod::Masked(MaskKind::Stencil) && subset_count > STENCIL_SUBSETS {
             return Err(Error::request(format!(
                 "{NAME}: --split stencil with the {subset_count} subsets of --pattern {pattern}: \
                  eight bits of stencil tell {STENCIL_SUBSETS} apart"
             ))
             .note("a smaller --pattern, or --split depth"));
         }
-        let Some(copies) = self.road.copies() else { return Ok(()) };
+        let Some(copies) = self.split.copies() else { return Ok(()) };
         let padded = self.mapping.padded();
         if copies.storage == Storage::Image && padded.width.max(padded.height) > limits.max_image_side_px {
             let limit = limits.max_image_side_px;
@@ -205,7 +205,7 @@ impl Choices {
             ("sigma", format!("{}", self.kernel.sigma)),
             ("texels", self.list_texels().to_string()),
         ]);
-        if let Some(copies) = self.road.copies() {
+        if let Some(copies) = self.split.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
             resolved.insert("storage", storage.to_owned());
             if copies.has_blocks() {
@@ -219,7 +219,7 @@ impl Choices {
     /// How blended surfaces meet the virtual point lights.
     pub fn blend_params(&self, least_squared: f32) -> BlendParams {
         let all = blend::all_lights(least_squared);
-        if !self.blend_subsets || self.road.sums_all() {
+        if !self.blend_subsets || self.split.sums_all() {
             return all;
         }
         let [pattern_x, pattern_y] = [self.mapping.pattern_x, self.mapping.pattern_y];
@@ -229,7 +229,7 @@ impl Choices {
     /// Whether the gather walks the rows of the filter: where one compute shader pulls each pixel.
     pub fn gather_filters(&self) -> bool {
         let pulls = |copies: Copies| copies.by == Copier::OnePass && copies.form == Form::Pull;
-        self.fused && self.road.copies().is_some_and(pulls)
+        self.fused && self.split.copies().is_some_and(pulls)
     }
 
     /// Punctual lights that are joined to the subsets.
@@ -240,8 +240,8 @@ impl Choices {
     /// Pixels that meet virtual lights in a frame.
     pub fn shaded_pixel_count(&self) -> u64 {
         let mapping = &self.mapping;
-        match self.road {
-            Road::Subsample => mapping.sub_texel_count(),
+        match self.split {
+            SplitMethod::Subsample => mapping.sub_texel_count(),
             _ => u64::from(mapping.width_px) * u64::from(mapping.height_px),
         }
     }
@@ -264,7 +264,7 @@ impl Choices {
 
     /// Texels that a thread shades with one reading of its list of lights; 1 where each pixel finds its own.
     pub fn list_texels(&self) -> u32 {
-        if matches!(self.road, Road::Branch | Road::Masked(_)) {
+        if matches!(self.split, SplitMethod::Branch | SplitMethod::Masked(_)) {
             return 1;
         }
         let joined = self.joined_count().div_ceil(self.direct_subset_count());

@@ -2,7 +2,7 @@
 //! reads  the G-buffer, the irradiance, the punctual lights      writes  composite.color  image, RGBA32F, frame extent
 
 use super::choices::Choices;
-use super::filter::Filtered;
+use super::filter::FilteredIrradiance;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::CompositeParams;
@@ -49,7 +49,7 @@ impl Composite {
         frame: &Buffer,
         direct: Edge<'_, DirectGpu>,
         gbuffer: Edge<'_, GBuffer>,
-        filtered: Filtered<'_>,
+        filtered: FilteredIrradiance<'_>,
         color: &Image,
     ) -> Result<()> {
         let extent = color.description.extent;

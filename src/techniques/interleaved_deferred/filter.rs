@@ -1,105 +1,90 @@
-//! Discontinuities and the filter that stops at them (Segovia 2006, section 4.5), as this technique has them: both
-//! directions in a pass of their own, or, with `--fuse on`, the rows here and the columns in the composite.
+//! Discontinuities and the filter that stops at them (Segovia 2006, section 4.5), as this technique has them: a pass of
+//! their own, or, with `--fuse on`, the Gaussian's rows here or in the gather and its columns in the composite.
 //! reads  the G-buffer, irradiance in frame order      writes  discontinuity.flags, filter.rows or filter.irradiance
 
 use super::choices::Choices;
-use super::discontinuity::{self, Discontinuity};
-use super::road::Filter;
 use crate::error::Result;
 use crate::gpu::shader::structs::DiscontinuityParams;
-use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
+use crate::passes::filter::discontinuity::{self, Discontinuity};
 use crate::passes::filter::gauss::Gauss;
-use crate::passes::filter::gauss_fast::GaussFast;
+use crate::passes::filter::{Filter, FilterPass, FilterSetup};
 use crate::passes::gbuffer::GBuffer;
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
 use crate::techniques::interleaved_deferred::resources::NAME;
-use ash::vk;
 use std::sync::Arc;
 
 /// Discontinuities, the filter, and what they write.
 pub struct FilterStage {
     discontinuity: Discontinuity,
     pub flags: Buffer,
-    gauss: AnyGauss,
+    place: FilterPlace,
 }
 
+/// Where irradiance is filtered.
 #[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
-enum AnyGauss {
-    Walk {
-        gauss: Gauss,
-        rows: Buffer,
-        irradiance: Buffer,
-    },
-    Fast {
-        gauss: GaussFast,
-        between: [Image; 2],
-        irradiance: Buffer,
-    },
+enum FilterPlace {
+    /// In a pass of its own.
+    OwnPass(Box<dyn FilterPass>),
     /// The composite walks the columns.
-    Rows {
-        gauss: Gauss,
-        rows: Buffer,
-    },
+    Rows { gauss: Gauss, rows: Buffer },
     /// And the gather the rows.
     InGather,
 }
 
 /// What the composite reads.
-pub struct Filtered<'a> {
+pub struct FilteredIrradiance<'a> {
     /// In frame order.
     pub irradiance: Edge<'a, Buffer>,
     /// Where its columns are still to be walked: where walks end.
     pub flags: Option<Edge<'a, Buffer>>,
 }
 
-/// Full name of a resource of this technique.
-fn full(what: &str) -> String {
-    format!("{NAME}.{what}")
+/// Calls `made` with what the filter is made for.
+fn with_setup<T>(choices: &Choices, made: impl FnOnce(&FilterSetup<'_>) -> T) -> T {
+    let Choices { shading, mapping, kernel, .. } = choices;
+    made(&FilterSetup {
+        label: &format!("{NAME}.filter"),
+        workgroup: &shading.workgroup_constants(),
+        extent: mapping.extent(),
+        row_pitch: mapping.row_pitch(),
+        kernel: *kernel,
+        texels: shading.texels.of_filter(),
+    })
+}
+
+fn plan_discontinuities(plan: &mut Plan, choices: &Choices) {
+    discontinuity::plan(plan, NAME, choices.mapping.frame_texel_count(), choices.shading.position);
 }
 
 /// Plans the discontinuities where they come before the gather, because it filters.
 pub fn plan_before_gather(plan: &mut Plan, choices: &Choices) {
     if choices.gather_filters() {
-        discontinuity::plan(plan, &choices.mapping, choices.shading.position);
+        plan_discontinuities(plan, choices);
     }
 }
 
 /// Plans resources and passes behind irradiance in frame order, `source`; returns what the composite reads.
 pub fn plan(plan: &mut Plan, choices: &Choices, source: String) -> Vec<String> {
+    let flags = discontinuity::flags(NAME);
     if choices.filter == Filter::None {
         return vec![source];
     }
     if choices.gather_filters() {
-        return vec![source, discontinuity::flags()];
+        return vec![source, flags];
     }
-    discontinuity::plan(plan, &choices.mapping, choices.shading.position);
-    let (read, written, sampled) = (Access::ComputeRead, Access::ComputeWrite, Access::ComputeSample);
-    let [rows, target] = ["filter.rows", "filter.irradiance"].map(full);
-    let bytes = choices.mapping.frame_texel_count() * 8;
-    let mut touches = vec![(source, read), (discontinuity::flags(), read)];
-    if choices.filter == Filter::GaussFast {
-        for image in [full("filter.packed"), rows.clone()] {
-            let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
-            plan.image("filter", &image, choices.mapping.extent(), vk::Format::R16G16B16A16_SFLOAT, usage);
-            touches.extend([(image.clone(), written), (image, sampled)]);
+    plan_discontinuities(plan, choices);
+    with_setup(choices, |setup| {
+        if !choices.fused {
+            return vec![choices.filter.plan(plan, setup, source, flags)];
         }
-    } else {
-        plan.buffer("filter", &rows, bytes);
-        touches.push((rows.clone(), written));
-    }
-    let filtered = if choices.fused {
-        vec![rows, discontinuity::flags()]
-    } else {
-        if choices.filter == Filter::Gauss {
-            touches.push((rows, read));
-        }
-        plan.buffer("filter", &target, bytes);
-        touches.push((target.clone(), written));
-        vec![target]
-    };
-    plan.pass(full("filter"), touches);
-    filtered
+        let rows = setup.resource("rows");
+        plan.buffer("filter", &rows, setup.irradiance_bytes());
+        let read = [source, flags.clone()].map(|buffer| (buffer, Access::ComputeRead));
+        plan.pass(setup.label.to_owned(), read.into_iter().chain([(rows.clone(), Access::ComputeWrite)]));
+        vec![rows, flags]
+    })
 }
 
 impl FilterStage {
@@ -110,34 +95,24 @@ impl FilterStage {
         resources: &mut Resources,
         choices: &Choices,
     ) -> Result<Option<Self>> {
-        let Choices { shading, mapping, kernel, .. } = choices;
-        let (extent, pitch) = (mapping.extent(), mapping.row_pitch());
-        let workgroup = shading.workgroup_constants();
-        let walk = || Gauss::new(gpu, &workgroup, extent, pitch, *kernel, shading.texels.of_filter());
-        let gauss = match choices.filter {
-            Filter::None => return Ok(None),
-            Filter::GaussFast => AnyGauss::Fast {
-                gauss: GaussFast::new(gpu, &workgroup, extent, pitch, *kernel)?,
-                between: ["filter.packed", "filter.rows"].map(|what| resources.image(&full(what))),
-                irradiance: resources.buffer(&full("filter.irradiance")),
-            },
-            Filter::Gauss if choices.gather_filters() => AnyGauss::InGather,
-            Filter::Gauss if choices.fused => {
-                AnyGauss::Rows { gauss: walk()?, rows: resources.buffer(&full("filter.rows")) }
-            }
-            Filter::Gauss => AnyGauss::Walk {
-                gauss: walk()?,
-                rows: resources.buffer(&full("filter.rows")),
-                irradiance: resources.buffer(&full("filter.irradiance")),
-            },
-        };
+        let place = with_setup(choices, |setup| {
+            Ok(if choices.gather_filters() {
+                Some(FilterPlace::InGather)
+            } else if choices.fused {
+                let rows = resources.buffer(&setup.resource("rows"));
+                Some(FilterPlace::Rows { gauss: Gauss::new(gpu, setup)?, rows })
+            } else {
+                choices.filter.build(gpu, resources, setup)?.map(FilterPlace::OwnPass)
+            })
+        })?;
+        let Some(place) = place else { return Ok(None) };
         let params = DiscontinuityParams {
             normal_threshold: inputs.values.number("normal-threshold") as f32,
             position_threshold: inputs.values.length("position-threshold", inputs.scene.lasting_bounds().diagonal()),
-            row_pitch: pitch,
+            row_pitch: choices.mapping.row_pitch(),
         };
-        let discontinuity = Discontinuity::new(gpu, shading, params)?;
-        Ok(Some(Self { discontinuity, flags: resources.buffer(&discontinuity::flags()), gauss }))
+        let discontinuity = Discontinuity::new(gpu, NAME, &choices.shading, params)?;
+        Ok(Some(Self { discontinuity, flags: resources.buffer(&discontinuity::flags(NAME)), place }))
     }
 
     /// The discontinuities, where a gather that filters needs them.
@@ -147,7 +122,7 @@ impl FilterStage {
         frame: &Buffer,
         gbuffer: Edge<'_, GBuffer>,
     ) -> Result<Option<Edge<'_, Buffer>>> {
-        if !matches!(self.gauss, AnyGauss::InGather) {
+        if !matches!(self.place, FilterPlace::InGather) {
             return Ok(None);
         }
         self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
@@ -161,34 +136,29 @@ impl FilterStage {
         frame: &Buffer,
         gbuffer: Edge<'_, GBuffer>,
         source: Edge<'a, Buffer>,
-    ) -> Result<Filtered<'a>> {
+    ) -> Result<FilteredIrradiance<'a>> {
         let read_flags = Some(self.flags.from(Access::ComputeRead));
-        if !matches!(self.gauss, AnyGauss::InGather) {
+        if !matches!(self.place, FilterPlace::InGather) {
             self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
         }
         let flags = self.flags.from(Access::ComputeWrite);
-        Ok(match &self.gauss {
-            AnyGauss::Walk { gauss, rows, irradiance } => {
-                gauss.record(cmd, NAME, source, flags, rows, irradiance)?;
-                Filtered { irradiance: irradiance.from(Access::ComputeWrite), flags: None }
+        Ok(match &self.place {
+            FilterPlace::OwnPass(filter) => {
+                FilteredIrradiance { irradiance: filter.record(cmd, source, flags)?, flags: None }
             }
-            AnyGauss::Fast { gauss, between: [packed, rows], irradiance } => {
-                gauss.record(cmd, NAME, source, flags, [packed, rows], irradiance)?;
-                Filtered { irradiance: irradiance.from(Access::ComputeWrite), flags: None }
+            FilterPlace::Rows { gauss, rows } => {
+                gauss.record_rows(cmd, source, flags, rows)?;
+                FilteredIrradiance { irradiance: rows.from(Access::ComputeWrite), flags: read_flags }
             }
-            AnyGauss::Rows { gauss, rows } => {
-                gauss.record_rows(cmd, NAME, source, flags, rows)?;
-                Filtered { irradiance: rows.from(Access::ComputeWrite), flags: read_flags }
-            }
-            AnyGauss::InGather => Filtered { irradiance: source, flags: read_flags },
+            FilterPlace::InGather => FilteredIrradiance { irradiance: source, flags: read_flags },
         })
     }
 
     /// The finished irradiance; None where only the composite knows it.
     pub fn irradiance(&self) -> Option<&Buffer> {
-        match &self.gauss {
-            AnyGauss::Walk { irradiance, .. } | AnyGauss::Fast { irradiance, .. } => Some(irradiance),
-            AnyGauss::Rows { .. } | AnyGauss::InGather => None,
+        match &self.place {
+            FilterPlace::OwnPass(filter) => Some(filter.irradiance()),
+            FilterPlace::Rows { .. } | FilterPlace::InGather => None,
         }
     }
 }

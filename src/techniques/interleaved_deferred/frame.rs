@@ -3,8 +3,8 @@
 use super::choices::Choices;
 use super::composite::Composite;
 use super::filter::FilterStage;
-use super::roads::Roads;
 use super::shade::{ShadeGpu, SubsetLights};
+use super::split_passes::SplitPasses;
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
 use crate::gpu::{Buffer, Gpu, Image};
@@ -38,7 +38,7 @@ pub struct InterleavedFrame {
     /// The composite shades every punctual light.
     pub is_lit_fully: bool,
     pub shade: ShadeGpu,
-    pub roads: Roads,
+    pub split_passes: SplitPasses,
     pub filter: Option<FilterStage>,
     pub composite: Composite,
     pub color: Image,
@@ -79,7 +79,7 @@ impl InterleavedFrame {
                 has_emissive,
             )?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position, shading.cull_by)).transpose()?,
-            roads: Roads::new(gpu, resources, choices)?,
+            split_passes: SplitPasses::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, choices, has_emissive, direct.masks.is_some(), lit_count)?,
             color: resources.image(&format!("{NAME}.composite.color")),

@@ -2,7 +2,7 @@
 //! fullscreen.vert, mask.frag.
 //! writes  mask.stencil  image, 5 B a pixel, with a driver's padding 8 (depth unused), or mask.depth  image, 4 B a pixel
 
-use super::road::MaskKind;
+use super::split_method::MaskKind;
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline, StencilUse};
 use crate::gpu::shader::structs::MappingParams;

@@ -27,7 +27,7 @@
 mod aov;
 mod choices;
 pub mod composite;
-pub mod discontinuity;
+pub mod drawn_irradiance;
 pub mod filter;
 mod frame;
 pub mod gather;
@@ -35,13 +35,12 @@ pub mod lookup;
 pub mod mapping;
 pub mod mask;
 mod plan;
-pub mod rendered;
 mod resources;
-pub mod road;
-mod roads;
 pub mod settings;
 pub mod shade;
 pub mod split;
+pub mod split_method;
+mod split_passes;
 pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
@@ -56,6 +55,7 @@ use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
 use crate::passes::blend::{self, BlendLights, SolidPicture};
 use crate::passes::cull::CullLights;
+use crate::passes::filter::Filter;
 use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
@@ -63,10 +63,10 @@ use crate::resident::SceneGpu;
 use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::{Choices, Direct};
-use filter::Filtered;
+use filter::FilteredIrradiance;
 use frame::{FrameLights, InterleavedFrame};
-use road::Road;
 use shade::SubsetLights;
+use split_method::SplitMethod;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -100,8 +100,10 @@ impl Technique for InterleavedDeferred {
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
         let mut needs: Vec<Need> = [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect();
-        if let Ok(road) = Road::new(values, caps) {
-            needs.extend(road.needs(values));
+        if let Ok(split) = SplitMethod::new(values, caps) {
+            needs.extend(split.needs(values));
+            let filter: Filter = values.choice("filter");
+            needs.extend(filter.need().filter(|_| !split.sums_all()));
         }
         needs
     }
@@ -250,15 +252,15 @@ impl Frame for InterleavedFrame {
         if flags.is_some() {
             surface = surface.after(Access::ComputeSample);
         }
-        let lit = self.roads.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface), flags)?;
-        surface = lit.readers;
+        let gathered = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface), flags)?;
+        surface = gathered.readers;
         let filtered = match &self.filter {
             Some(filter) => {
-                let filtered = filter.record(cmd, frame, gbuffer.from(surface), lit.irradiance)?;
+                let filtered = filter.record(cmd, frame, gbuffer.from(surface), gathered.irradiance)?;
                 surface = surface.after(Access::ComputeSample);
                 filtered
             }
-            None => Filtered { irradiance: lit.irradiance, flags: None },
+            None => FilteredIrradiance { irradiance: gathered.irradiance, flags: None },
         };
         let direct = self.direct.from(Access::ComputeWrite);
         self.composite.record(cmd, frame, direct, gbuffer.from(surface), filtered, &self.color)?;

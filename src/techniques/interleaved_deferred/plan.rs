@@ -2,8 +2,8 @@
 
 use super::choices::Choices;
 use super::filter;
-use super::roads;
 use super::shade;
+use super::split_passes;
 use crate::error::Result;
 use crate::gpu::Access;
 use crate::lights::object_lists::ObjectLists;
@@ -34,7 +34,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, blended: &ObjectLists) -> Re
         plan.pass(full("cull"), gbuffer::surface(NAME, shading.position).into_iter().chain([written]));
     }
     filter::plan_before_gather(&mut plan, choices);
-    let gathered = roads::plan(&mut plan, choices);
+    let gathered = split_passes::plan(&mut plan, choices);
     let filtered = filter::plan(&mut plan, choices, gathered);
     let mut composed = gbuffer::shading(NAME, shading.position, has_emissive);
     composed.extend(masks.map(|technique| cull::masks(technique, Access::ComputeRead)));

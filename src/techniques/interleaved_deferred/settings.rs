@@ -1,10 +1,11 @@
 //! The settings of interleaved deferred shading.
 
 use super::choices::{BlendLights, Direct, StopAt};
-use super::road::{Filter, Form, Split, StorageKind};
+use super::split_method::{Form, Split, StorageKind};
+use crate::passes::filter::Filter;
 use crate::settings::{
-    BRDF, CULL, CULL_BY, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, Setting, TEXELS, Unread,
-    VPL_CLAMP, Values, WORKGROUP,
+    BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, Setting, TEXELS,
+    Unread, VPL_CLAMP, Values, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -18,7 +19,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 3",
         help: "Size of the interleaved pattern; each of its pixels has a light subset of its own",
         unread: |values| Unread::with(values, "split", &[Split::None], "every pixel has all lights"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "split",
@@ -32,7 +33,7 @@ pub const SETTINGS: &[Setting] = &[
                all (remap). With a copy into n x m sub-buffers and back: in one pass (one-pass), in two passes by \
                blocks (two-pass), through workgroup memory (tile), into the layers of an image (layered), or by \
                fragment programs and look-up textures (fragment)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "storage",
@@ -43,7 +44,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Where sub-buffers lie: in storage buffers, two texels a thread, or tiled in images; auto: images where \
                --split knows nothing else, otherwise buffers on software drivers and images elsewhere",
         unread: without_copy,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "copy",
@@ -52,7 +53,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What a thread of a copy stands for: a texel that it writes (pull) or a texel that it reads (push), or a \
                pair of such texels in buffers",
         unread: without_copy,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "block",
@@ -64,7 +65,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Size of a block for --split two-pass and tile, and for fragment in two passes; rounded up to whole \
                patterns",
         unread: without_blocks,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "fragment-passes",
@@ -74,7 +75,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Passes of --split fragment: 1 uses one look-up texture, 2 splits into blocks and then translates the \
                blocks",
         unread: |values| Unread::unless(values, "split", &[Split::Fragment], "it has no fragment programs"),
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "vpls",
@@ -82,7 +83,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "256",
         paper: "Segovia 2006, 6",
         help: "Number of virtual point lights, made by Instant Radiosity",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "vpl-bounces",
@@ -90,7 +91,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "1",
         paper: "Segovia 2006, 6.2",
         help: "Most surfaces that one light walk lands on",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     VPL_CLAMP,
     EMISSIVE,
@@ -101,7 +102,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 4.6",
         help: "How the scene's own lights are shaded: on every pixel by --brdf (full), in the subsets as diffuse light \
                (interleaved), or not at all (none)",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "blend-lights",
@@ -110,7 +111,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Virtual point lights that shade BLEND surfaces, which no filter smooths: those of the pixel's subset, \
                or all",
         unread: is_even,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "direct-pattern",
@@ -127,6 +128,7 @@ pub const SETTINGS: &[Setting] = &[
             Unread::unless(values, "direct", &[Direct::Interleaved], "no punctual light is in a subset")
                 .or_else(|| sums_all(values))
         },
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "filter",
@@ -136,7 +138,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Filter of the interleaved irradiance; a picture that is not interleaved (--split none, or pattern 1x1) \
                is not filtered",
         unread: is_even,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "kernel",
@@ -146,7 +148,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, tables 2 and 3",
         help: "Taps of the filter in one direction, an odd number",
         unread: is_unfiltered,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "fuse",
@@ -159,7 +161,7 @@ pub const SETTINGS: &[Setting] = &[
                 Unread::unless(values, "filter", &[Filter::Gauss], "no pass walks rows and columns of buffers")
             })
         },
-        ..Setting::ROW
+        ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "sigma",
@@ -169,7 +171,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Standard deviation of the filter; 0: a third of the kernel, which weighs the pixels of a 4x4 pattern \
                most evenly",
         unread: is_unfiltered,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "discontinuity",
@@ -180,7 +182,7 @@ pub const SETTINGS: &[Setting] = &[
                any of the three directions (any, the paper's single flag, which leaves pixels along an edge \
                unfiltered)",
         unread: is_unfiltered,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting { unread: is_unfiltered, ..NORMAL_THRESHOLD },
     Setting {
@@ -191,7 +193,7 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Segovia 2006, 4.5",
         help: "Distance from a pixel's tangent plane above which a neighbour lies across a discontinuity",
         unread: is_unfiltered,
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
 ];
 

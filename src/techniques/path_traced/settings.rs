@@ -3,8 +3,8 @@
 use crate::choice::choices;
 use crate::resident::traced::TexelLevels;
 use crate::settings::{
-    APERTURE, BRDF, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP, Values,
-    WORKGROUP,
+    APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP,
+    Values, WORKGROUP,
 };
 
 /// Paths a pixel, at most: float sums of more lose what a path adds.
@@ -51,7 +51,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         help: "Paths a pixel, one each time the frame is run; with --until-error, the most; auto: 64, with \
                --until-error 65536",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "until-error",
@@ -59,7 +59,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "0",
         help: "Estimated relative standard error of the pixels (root of the mean square) at which rendering stops, if \
                --spp is not reached before; 0: never, all of --spp is used",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "transport",
@@ -69,7 +69,7 @@ pub const SETTINGS: &[Setting] = &[
                surface more too (one-bounce); what is scattered once, by a surface or by --medium (single-scatter); or \
                what is scattered by either as often as --bounces says (full). The first two are dimmed by --medium, \
                and lose what it scatters",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "bounces",
@@ -80,14 +80,14 @@ pub const SETTINGS: &[Setting] = &[
         unread: |values| {
             Unread::unless(values, "transport", &[Transport::Full], "it fixes how often light is scattered")
         },
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "light-visibility",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",
         help: "Whether the scene's own lights cast shadows; off: they shine through everything",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "vpl-visibility",
@@ -97,7 +97,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Whether light between surfaces is stopped by what stands between them; off: the light that infinitely \
                many virtual point lights without shadows would give, diffuse and with --vpl-clamp, from a separate \
                light walk for each pixel",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "ambient-visibility",
@@ -106,7 +106,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Light surfaces from all around by --ambient and --background, as light that other surfaces stop and \
                scatter; off: as in all other techniques, each visible surface reflects all of --ambient, which goes no \
                further, and --background is seen but lights nothing",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "punctual",
@@ -114,7 +114,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         help: "Whether point, spot and directional lights shine; off: emissive triangles light the scene even where \
                --emissive is auto",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "rays",
@@ -123,7 +123,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What rays are traced through: a tree built by this program and walked by the shader (tree); or the \
                driver's own acceleration structure, by ray queries, where the device has them (query). The same \
                picture, except for rays that graze an edge",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "texture-level",
@@ -132,7 +132,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Mip level of textures that rays read: 0, the finest, which the paths of a pixel average; or the one \
                whose texels are as wide as the ray's cone, which needs fewer paths, blurs surfaces seen at a slant, \
                and takes a third more memory",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     APERTURE,
     FOCUS,

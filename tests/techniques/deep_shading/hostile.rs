@@ -49,26 +49,26 @@ fn require_whole(watched: &Watched, common: Changes<'_>) -> Counters {
     // The other one than `auto` chooses.
     plain.extend(has(&watched.session.gpu.caps, Feature::GeometryShader).then_some(("conservative", "vertex")));
     let mut first = None;
-    for (visibility, roads) in [("repeat-frame", &[&[][..], &plain][..]), ("stochastic", &[&[]])] {
+    for (visibility, methods) in [("repeat-frame", &[&[][..], &plain][..]), ("stochastic", &[&[]])] {
         let common = both(&[SIZE, ("spp", "4"), ("tuples", "8"), ("visibility", visibility)], common);
-        let counted = |road: Changes<'_>| {
-            let renderer = watched.render(DEEP, &both(&common, road));
+        let counted = |method: Changes<'_>| {
+            let renderer = watched.render(DEEP, &both(&common, method));
             (renderer.picture().unwrap(), renderer.measured_counters().unwrap())
         };
         let (picture, alone) = counted(&[("lists", "none")]);
         assert_eq!(alone["samples_without_colour"], 0.0, "{common:?} without lists: {alone:?}");
         assert_eq!(alone["shader_invocations"], alone["samples_seen"], "{common:?}");
-        for road in roads {
-            let (found, counters) = counted(road);
-            assert_eq!(counters["samples_without_colour"], 0.0, "{common:?} {road:?}: {counters:?}");
-            assert_eq!(counters["samples_seen"], alone["samples_seen"], "{common:?} {road:?}");
+        for method in methods {
+            let (found, counters) = counted(method);
+            assert_eq!(counters["samples_without_colour"], 0.0, "{common:?} {method:?}: {counters:?}");
+            assert_eq!(counters["samples_seen"], alone["samples_seen"], "{common:?} {method:?}");
             let strays = counters["samples_outside_shading_space"] + counters["samples_of_full_lists"];
             let asked = counters["listed_primitives"] + strays;
-            assert_eq!(counters["shader_invocations"], asked, "{common:?} {road:?}: {counters:?}");
+            assert_eq!(counters["shader_invocations"], asked, "{common:?} {method:?}: {counters:?}");
             if watched.session.gpu.caps.identity.is_software() {
-                assert_eq!(found.hash().unwrap(), picture.hash().unwrap(), "{common:?} {road:?}");
+                assert_eq!(found.hash().unwrap(), picture.hash().unwrap(), "{common:?} {method:?}");
             } else {
-                assert!(found.pixels.iter().flatten().all(|channel| channel.is_finite()), "{common:?} {road:?}");
+                assert!(found.pixels.iter().flatten().all(|channel| channel.is_finite()), "{common:?} {method:?}");
             }
             first.get_or_insert(counters);
         }

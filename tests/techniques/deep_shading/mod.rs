@@ -28,7 +28,7 @@ const SIZE: (&str, &str) = ("size", "161x91");
 const FOVEATED: (&str, &str) = ("shading-warp", "foveated");
 
 /// Ways to the same picture; the first shades every sample by itself.
-const ROADS: [Changes<'_>; 11] = [
+const METHODS: [Changes<'_>; 11] = [
     &[("lists", "none")],
     &[],
     &[("compaction", "off")],
@@ -50,21 +50,21 @@ fn visibilities(shading: &str) -> Vec<&'static str> {
 
 /// Both software methods of conservative rasterisation, where the driver has them.
 fn conservative(watched: &Watched) -> Vec<&'static str> {
-    let mut roads = vec!["vertex"];
+    let mut methods = vec!["vertex"];
     if has(&watched.session.gpu.caps, Feature::GeometryShader) {
-        roads.push("geometry");
+        methods.push("geometry");
     }
-    roads
+    methods
 }
 
 #[track_caller]
 fn require_one_picture(watched: &Watched, common: Changes<'_>) {
     let common = &both(common, &[("size", "97x55")]);
-    let first = watched.picture(DEEP, &both(common, ROADS[0]));
-    let of_hulls = conservative(watched).into_iter().map(|road| vec![("conservative", road)]);
-    for road in ROADS[1..].iter().map(|road| road.to_vec()).chain(of_hulls) {
-        let found = watched.picture(DEEP, &both(common, &road));
-        require_same(&watched.session.gpu, &found, &first, &(&road, common));
+    let first = watched.picture(DEEP, &both(common, METHODS[0]));
+    let of_hulls = conservative(watched).into_iter().map(|method| vec![("conservative", method)]);
+    for method in METHODS[1..].iter().map(|method| method.to_vec()).chain(of_hulls) {
+        let found = watched.picture(DEEP, &both(common, &method));
+        require_same(&watched.session.gpu, &found, &first, &(&method, common));
     }
 }
 
@@ -131,17 +131,17 @@ fn samples_that_shading_space_has_no_place_for_are_shaded_too() {
 fn without_conservative_rasterisation_samples_at_rims_have_no_colour() {
     let watched = Watched::open("hall:triangles=8000");
     let common = [SIZE, ("spp", "4"), ("aperture", "0.1"), ("brdf", "lambert")];
-    let counted = |road| {
-        let counters = watched.render(DEEP, &both(&common, &[("conservative", road)])).measured_counters().unwrap();
+    let counted = |method| {
+        let counters = watched.render(DEEP, &both(&common, &[("conservative", method)])).measured_counters().unwrap();
         ["samples_without_colour", "shader_invocations", "shading_pixels_drawn", "listed_primitives", "samples_seen"]
             .map(|name| counters[name])
     };
     let [plainly_missing, plainly_shaded, plainly_drawn, plainly_listed, seen] = counted("none");
-    for road in conservative(&watched) {
-        let [missing, shaded, drawn, listed, _] = counted(road);
-        assert_eq!([missing, listed], [0.0, plainly_listed], "{road}");
-        assert!(shaded <= drawn, "{road}: {shaded} of {drawn}");
-        assert!(drawn > 1.1 * plainly_drawn && plainly_shaded < shaded, "{road}: {drawn} and {plainly_drawn}");
+    for method in conservative(&watched) {
+        let [missing, shaded, drawn, listed, _] = counted(method);
+        assert_eq!([missing, listed], [0.0, plainly_listed], "{method}");
+        assert!(shaded <= drawn, "{method}: {shaded} of {drawn}");
+        assert!(drawn > 1.1 * plainly_drawn && plainly_shaded < shaded, "{method}: {drawn} and {plainly_drawn}");
     }
     assert!(plainly_missing > 0.0 && plainly_missing < 0.5 * seen, "{plainly_missing} of {seen}");
 }
@@ -149,16 +149,16 @@ fn without_conservative_rasterisation_samples_at_rims_have_no_colour() {
 #[test]
 fn triangles_without_a_list_are_not_drawn() {
     let watched = Watched::open("hall:triangles=8000");
-    let counted = |triangles, road| {
+    let counted = |triangles, method| {
         let changes =
-            [SIZE, ("spp", "2"), ("brdf", "lambert"), ("shaded-triangles", triangles), ("conservative", road)];
+            [SIZE, ("spp", "2"), ("brdf", "lambert"), ("shaded-triangles", triangles), ("conservative", method)];
         let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
         ["shading_pixels_drawn", "shader_invocations"].map(|name| counters[name])
     };
-    for road in conservative(&watched).into_iter().chain(["none"]) {
-        let ([fewer, shaded], [all, as_many]) = (counted("listed", road), counted("all", road));
-        println!("{road}: {fewer} of {all} drawn, {shaded} shaded");
-        assert!(shaded == as_many && fewer < 0.7 * all, "{road}: {fewer} of {all}, {shaded} and {as_many}");
+    for method in conservative(&watched).into_iter().chain(["none"]) {
+        let ([fewer, shaded], [all, as_many]) = (counted("listed", method), counted("all", method));
+        println!("{method}: {fewer} of {all} drawn, {shaded} shaded");
+        assert!(shaded == as_many && fewer < 0.7 * all, "{method}: {fewer} of {all}, {shaded} and {as_many}");
     }
 }
 
@@ -204,16 +204,16 @@ fn a_foveated_space_shades_less_towards_the_rim() {
 fn what_is_shaded_is_what_is_listed_and_nothing_is_missing() {
     let watched = Watched::open("hall:triangles=8000");
     let common = [SIZE, ("spp", "8"), ("aperture", "0.2"), ("focus", "6")];
-    for road in &ROADS[1..6] {
-        let counters = watched.render(DEEP, &both(&common, road)).measured_counters().unwrap();
-        assert_eq!(counters["shader_invocations"], counters["listed_primitives"], "{road:?}");
+    for method in &METHODS[1..6] {
+        let counters = watched.render(DEEP, &both(&common, method)).measured_counters().unwrap();
+        assert_eq!(counters["shader_invocations"], counters["listed_primitives"], "{method:?}");
         for key in ["samples_without_colour", "listed_again"] {
-            assert_eq!(counters[key], 0.0, "{road:?}: {key}");
+            assert_eq!(counters[key], 0.0, "{method:?}: {key}");
         }
         let rate = counters["shaded_per_pixel"];
-        assert!((1.0..2.5).contains(&rate), "{road:?}: {rate}");
+        assert!((1.0..2.5).contains(&rate), "{method:?}: {rate}");
     }
-    let alone = watched.render(DEEP, &both(&common, ROADS[0])).measured_counters().unwrap();
+    let alone = watched.render(DEEP, &both(&common, METHODS[0])).measured_counters().unwrap();
     assert_eq!(alone["shader_invocations"], alone["samples_seen"]);
 }
 
@@ -315,8 +315,8 @@ fn memory_is_what_the_paper_s_table_says() {
 fn touched_bytes_are_what_shaders_count() {
     let program = Program::new();
     let common = ["render", "cornell", "--technique", DEEP, "--size", "161x91", "--aperture", "0.2", "--json"];
-    for road in [&[][..], &["--compaction", "off"], &["--address-buffer", "off", "--guard-band", "0"]] {
-        let json = program.run(&[&common, road].concat()).fine().json();
+    for method in [&[][..], &["--compaction", "off"], &["--address-buffer", "off", "--guard-band", "0"]] {
+        let json = program.run(&[&common, method].concat()).fine().json();
         let count =
             |key: &str| json["counters"][key].as_u64().or(json["counters"][key].as_f64().map(|count| count as u64));
         let count = |key: &str| count(key).unwrap_or_else(|| panic!("{key}: {json:#}"));
@@ -328,20 +328,20 @@ fn touched_bytes_are_what_shaders_count() {
         };
         let strays = count("samples_outside_shading_space") + count("samples_of_full_lists");
         let (listed, nodes) = (count("listed_primitives"), count("nodes_written"));
-        assert!(nodes >= listed + strays && nodes <= count("samples_seen"), "{road:?}: {nodes} nodes of {listed}");
+        assert!(nodes >= listed + strays && nodes <= count("samples_seen"), "{method:?}: {nodes} nodes of {listed}");
         let colors = listed + count("listed_again") + strays;
-        assert_eq!(touched("lists.nodes", "touched_bytes"), Some(8 * nodes), "{road:?}");
-        assert_eq!(touched("shade.colors", "touched_bytes"), Some(8 * colors), "{road:?}");
-        assert_eq!(touched("lists.begins", "touched_bytes"), touched("lists.begins", "bytes"), "{road:?}");
+        assert_eq!(touched("lists.nodes", "touched_bytes"), Some(8 * nodes), "{method:?}");
+        assert_eq!(touched("shade.colors", "touched_bytes"), Some(8 * colors), "{method:?}");
+        assert_eq!(touched("lists.begins", "touched_bytes"), touched("lists.begins", "bytes"), "{method:?}");
         assert_eq!(count("lists_beyond_16"), 0);
         let rows = touched("lists.linear", "bytes").map(|_| 4 * (listed + count("lists")));
-        assert_eq!(touched("lists.linear", "touched_bytes"), rows, "{road:?}");
+        assert_eq!(touched("lists.linear", "touched_bytes"), rows, "{method:?}");
         let addresses = touched("lists.addresses", "bytes").map(|_| 4 * count("samples_seen"));
-        assert_eq!(touched("lists.addresses", "touched_bytes"), addresses, "{road:?}");
+        assert_eq!(touched("lists.addresses", "touched_bytes"), addresses, "{method:?}");
         let group = 8 * nodes + 8 * colors + touched("lists.begins", "bytes").unwrap();
-        assert_eq!(json["memory"]["touched_groups"]["deep_shading_buffer"], group, "{road:?}");
+        assert_eq!(json["memory"]["touched_groups"]["deep_shading_buffer"], group, "{method:?}");
         let all = json["memory"]["groups"]["deep_shading_buffer"].as_u64().unwrap();
-        assert!(3 * group < 2 * all, "{road:?}: {group} of {all}");
+        assert!(3 * group < 2 * all, "{method:?}: {group} of {all}");
     }
     // Nobody counts: nothing is said.
     let json = program.run(&[&common[..], &["--instrument", "off"]].concat()).fine().json();

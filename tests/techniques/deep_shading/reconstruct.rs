@@ -26,7 +26,7 @@ const LENS: Changes<'_> = &[SIZE, ("aperture", "0.8"), ("focus", "5")];
 const BOTH: Changes<'_> = &[SIZE, ("camera", "rotor"), ("aperture", "0.2"), ("focus", "4")];
 
 /// The lists' ways to a sample's colour.
-const ROADS: [Changes<'_>; 4] = [
+const METHODS: [Changes<'_>; 4] = [
     &[("lists", "none")],
     &[("list-access", "addresses")],
     &[("address-buffer", "off")],
@@ -43,9 +43,9 @@ fn every_road_to_a_sample_s_colour_comes_to_one_picture() {
         let first = watched.picture(DEEP, &common);
         let sharp = watched.picture(DEEP, &both(&common, &[("reconstruct", "off")]));
         assert_ne!(first.pixels, sharp.pixels, "something is blurred");
-        for road in ROADS {
-            let found = watched.picture(DEEP, &both(&common, road));
-            require_same(&watched.session.gpu, &found, &first, &(road, &common));
+        for method in METHODS {
+            let found = watched.picture(DEEP, &both(&common, method));
+            require_same(&watched.session.gpu, &found, &first, &(method, &common));
         }
     }
 }

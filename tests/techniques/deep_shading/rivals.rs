@@ -26,7 +26,7 @@ fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f
 
 #[track_caller]
 fn require_oracle_s(watched: &Watched, common: Changes<'_>) {
-    let [oracle, indirect] = [ORACLE, INDIRECT].map(|road| watched.picture(DEEP, &both(common, &[road])));
+    let [oracle, indirect] = [ORACLE, INDIRECT].map(|method| watched.picture(DEEP, &both(common, &[method])));
     require_same(&watched.session.gpu, &indirect, &oracle, &common);
 }
 

@@ -42,17 +42,17 @@ fn layered(watched: &Watched) -> Option<(&'static str, &'static str)> {
     (features.layer_from_vertex_shader || features.geometry_shader).then_some(("visibility", "instancing"))
 }
 
-/// The bits that every sample shaded by itself makes, by `roads`.
+/// The bits that every sample shaded by itself makes, by `methods`.
 #[track_caller]
-fn require_one_pair(watched: &Watched, common: Changes<'_>, roads: &[Changes<'_>]) {
+fn require_one_pair(watched: &Watched, common: Changes<'_>, methods: &[Changes<'_>]) {
     let alone = eyes(watched, &both(common, &[("lists", "none")]));
     assert_ne!(alone[0].pixels, alone[1].pixels, "{common:?}");
-    for road in roads {
-        let renderer = watched.render_stages(DEEP, &both(common, road), &[RIGHT]);
+    for method in methods {
+        let renderer = watched.render_stages(DEEP, &both(common, method), &[RIGHT]);
         for (found, alone) in eyes_of(watched, &renderer).iter().zip(&alone) {
-            require_same(&watched.session.gpu, found, alone, &(road, common));
+            require_same(&watched.session.gpu, found, alone, &(method, common));
         }
-        assert_eq!(renderer.measured_counters().unwrap()["samples_without_colour"], 0.0, "{road:?} with {common:?}");
+        assert_eq!(renderer.measured_counters().unwrap()["samples_without_colour"], 0.0, "{method:?} with {common:?}");
     }
 }
 

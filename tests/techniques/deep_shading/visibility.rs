@@ -93,7 +93,7 @@ fn lists_of_rays_come_to_the_bits_of_every_sample_by_itself() {
 }
 
 #[track_caller]
-fn require_the_same_bits(kind: (&str, &str), roads: &[Changes<'_>]) {
+fn require_the_same_bits(kind: (&str, &str), methods: &[Changes<'_>]) {
     // Polygons as large as a layer are tested in each of its pixels.
     let blurred = [("size", "65x37"), kind, ("spp", "2"), ("tuples", "8")];
     let watched = Watched::open("hall:triangles=8000");
@@ -102,23 +102,27 @@ fn require_the_same_bits(kind: (&str, &str), roads: &[Changes<'_>]) {
         [("aperture", "0.3"), ("focus", "6"), ("guard-band", "64")],
         [("aperture", "2"), ("focus", "2"), ("guard-band", "0")],
     ] {
-        require_one_picture(&watched, &both(&blurred, &lens), roads);
+        require_one_picture(&watched, &both(&blurred, &lens), methods);
     }
-    require_one_picture(&rotor("fence:lights=6"), &both(&blurred, &[("camera", "rotor"), ("accumulate", "2")]), roads);
+    require_one_picture(
+        &rotor("fence:lights=6"),
+        &both(&blurred, &[("camera", "rotor"), ("accumulate", "2")]),
+        methods,
+    );
 }
 
 #[track_caller]
-fn require_one_picture(watched: &Watched, changes: Changes<'_>, roads: &[Changes<'_>]) {
+fn require_one_picture(watched: &Watched, changes: Changes<'_>, methods: &[Changes<'_>]) {
     let alone = watched.picture(DEEP, &both(changes, &[("lists", "none")]));
     let mut listed = None;
-    for road in roads {
-        let renderer = watched.render(DEEP, &both(changes, road));
-        require_same(&watched.session.gpu, &renderer.picture().unwrap(), &alone, &(road, changes));
+    for method in methods {
+        let renderer = watched.render(DEEP, &both(changes, method));
+        require_same(&watched.session.gpu, &renderer.picture().unwrap(), &alone, &(method, changes));
         let counters = renderer.measured_counters().unwrap();
-        assert_eq!(counters["samples_without_colour"], 0.0, "{road:?} with {changes:?}");
+        assert_eq!(counters["samples_without_colour"], 0.0, "{method:?} with {changes:?}");
         // The pairs of triangle and shading pixel: the host's lists, made otherwise, have those of the device.
         let pairs = ["samples_outside_shading_space", "listed_primitives", "listed_digest"].map(|key| counters[key]);
-        assert_eq!(*listed.get_or_insert(pairs), pairs, "{road:?} with {changes:?}");
+        assert_eq!(*listed.get_or_insert(pairs), pairs, "{method:?} with {changes:?}");
     }
 }
 

@@ -88,9 +88,9 @@ fn every_road_of_the_lights_leaves_the_same_l_buffer() {
         let watched = Watched::open(spec);
         for size in [("160x90", "100x56"), ("97x53", "40x91")] {
             let common = both(&[("size", size.0), ("light-size", size.1)], more);
-            let of = |road: Changes<'_>| {
+            let of = |method: Changes<'_>| {
                 let names = ["light.l_buffer.irradiance", "light.l_buffer.highlight"];
-                let renderer = watched.render_stages(NAME, &both(&common, road), &names);
+                let renderer = watched.render_stages(NAME, &both(&common, method), &names);
                 (names.map(|name| renderer.aov(name).unwrap().channels), renderer.picture().unwrap())
             };
             let first = of(&ways[0]);

@@ -267,11 +267,11 @@ fn every_road_of_the_lights_leaves_the_same_shadows() {
     let near = Light { range: Some(3.0), ..point_light(vec3(-0.4, 2.6, 0.8), 30.0) };
     let watched = Watched::with_scene(table(vec![above(), near, sun(vec3(0.3, -1.0, -0.2))], view()));
     for casting in ["1", "2", "3"] {
-        let of = |road: &str| irradiance(&watched, &[("shadow-volumes", casting), ("volumes", road)]);
+        let of = |method: &str| irradiance(&watched, &[("shadow-volumes", casting), ("volumes", method)]);
         let first = of("scissor");
         // Volumes of shadow are drawn after those of light, and `tiled` draws none.
-        for road in words_but(NAME, "volumes", &["tiled", "scissor"]).into_iter().chain(["auto"]) {
-            assert!(of(road) == first, "{casting} lights, {road}: another L-buffer");
+        for volumes in words_but(NAME, "volumes", &["tiled", "scissor"]).into_iter().chain(["auto"]) {
+            assert!(of(volumes) == first, "{casting} lights, {volumes}: another L-buffer");
         }
     }
 }

@@ -206,10 +206,11 @@ fn contradictions_are_refused_with_what_would_work() {
     // As many subsets as the stencil can distinguish, and more by depth.
     let stencil = [size, ("pattern", "16x16"), ("vpls", "256")];
     let [stencil, branch] =
-        ["stencil", "branch"].map(|road| watched.picture(TECHNIQUE, &both(&stencil, &[("split", road)])));
+        ["stencil", "branch"].map(|method| watched.picture(TECHNIQUE, &both(&stencil, &[("split", method)])));
     require_same(&watched.session.gpu, &stencil, &branch, &"stencil");
     let depth = [("size", "65x64"), ("pattern", "64x64"), ("vpls", "4096")];
-    let [depth, branch] = ["depth", "branch"].map(|road| watched.picture(TECHNIQUE, &both(&depth, &[("split", road)])));
+    let [depth, branch] =
+        ["depth", "branch"].map(|method| watched.picture(TECHNIQUE, &both(&depth, &[("split", method)])));
     require_same(&watched.session.gpu, &depth, &branch, &"depth");
 }
 

@@ -2,7 +2,7 @@
 //! reads  gather.blocks.irradiance  block layout      writes  gather.irradiance  buffer, frame order, 8 B a pixel
 
 use super::super::choices::Choices;
-use super::super::road::{Copies, Form};
+use super::super::split_method::{Copies, Form};
 use super::super::sub_buffers::Texels;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

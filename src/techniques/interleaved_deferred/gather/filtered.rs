@@ -3,7 +3,7 @@
 //! reads  shade.irradiance  sub-buffers, discontinuity.flags      writes  filter.rows  buffer, frame order, 8 B a pixel
 
 use super::super::choices::Choices;
-use super::super::road::Copies;
+use super::super::split_method::Copies;
 use super::super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

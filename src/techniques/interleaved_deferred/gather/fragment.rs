@@ -4,9 +4,9 @@
 //! writes  gather.irradiance  buffer, frame order, by way of gather.drawn; between two passes gather.blocks.irradiance
 
 use super::super::choices::Choices;
+use super::super::drawn_irradiance::{self, DrawnIrradiance};
 use super::super::lookup::{self, Lookup};
-use super::super::rendered::{self, Rendered};
-use super::super::road::Copier;
+use super::super::split_method::Copier;
 use super::super::sub_buffers::Texels;
 use crate::error::Result;
 use crate::gpu::pipeline::GraphicsPipeline;
@@ -28,7 +28,7 @@ pub fn plan(plan: &mut Plan, mapping: &MappingParams, by: Copier) {
         }
         Copier::OnePass | Copier::TwoPass | Copier::Tile => return,
     }
-    Rendered::plan(plan, "gather", mapping);
+    DrawnIrradiance::plan(plan, "gather", mapping);
 }
 
 /// The fragment program with one of its look-up textures.
@@ -39,7 +39,7 @@ struct Program {
 
 impl Program {
     fn new(gpu: &Arc<Gpu>, lookup: Lookup) -> Result<Self> {
-        let formats = [rendered::FORMAT];
+        let formats = [drawn_irradiance::FORMAT];
         Ok(Self { pipeline: GraphicsPipeline::new(gpu, &fullscreen::description(&FRAG, &formats))?, lookup })
     }
 
@@ -54,7 +54,7 @@ impl Program {
 /// The program that ends in frame order, and the image that it draws.
 struct LastProgram {
     program: Program,
-    rendered: Rendered,
+    drawn: DrawnIrradiance,
 }
 
 impl LastProgram {
@@ -68,14 +68,14 @@ impl LastProgram {
     ) -> Result<()> {
         let pixels = mapping.extent().pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * (8 + lookup::TEXEL_BYTES) + self.rendered.bytes(),
-            written_bytes: pixels * 8 + self.rendered.bytes(),
+            read_bytes: pixels * (8 + lookup::TEXEL_BYTES) + self.drawn.bytes(),
+            written_bytes: pixels * 8 + self.drawn.bytes(),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
             cmd.barriers([source.to(Access::FragmentSample)]);
             let draws = |cmd: &mut Commands| self.program.draw(cmd, source.resource);
-            self.rendered.record(cmd, mapping, None, irradiance, draws)
+            self.drawn.record(cmd, mapping, None, irradiance, draws)
         })
     }
 }
@@ -88,7 +88,7 @@ impl FragmentGather {
         let mapping = &choices.mapping;
         let tiled_of = |pixel| Some(mapping.tiled_of(mapping.texel_of_pixel(pixel)));
         let program = Program::new(gpu, Lookup::new(gpu, resources, "gather.lookup", tiled_of)?)?;
-        Ok(Self(LastProgram { program, rendered: Rendered::new(resources, "gather") }))
+        Ok(Self(LastProgram { program, drawn: DrawnIrradiance::new(resources, "gather") }))
     }
 
     pub fn record(
@@ -119,7 +119,10 @@ impl FragmentGatherBlocks {
         Ok(Self {
             translate: Program::new(gpu, translate)?,
             between,
-            blocks: LastProgram { program: Program::new(gpu, blocks)?, rendered: Rendered::new(resources, "gather") },
+            blocks: LastProgram {
+                program: Program::new(gpu, blocks)?,
+                drawn: DrawnIrradiance::new(resources, "gather"),
+            },
         })
     }
 

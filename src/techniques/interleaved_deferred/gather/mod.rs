@@ -11,13 +11,13 @@ mod traffic;
 pub mod translate;
 
 use super::choices::Choices;
-use super::discontinuity;
-use super::rendered::Rendered;
-use super::road::{Copier, Copies};
+use super::drawn_irradiance::DrawnIrradiance;
+use super::split_method::{Copier, Copies};
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
+use crate::passes::filter::discontinuity;
 use crate::plan::{Plan, Resources};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use blocks::GatherBlocks;
@@ -49,11 +49,11 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) 
     fragment::plan(plan, mapping, copies.by);
     let mut source = vec![(shaded, storage.read(stage))];
     if choices.gather_filters() {
-        source.push((discontinuity::flags(), Access::ComputeRead));
+        source.push((discontinuity::flags(NAME), Access::ComputeRead));
     }
     let target = match stage {
         Stage::Compute => vec![(gathered.clone(), Access::ComputeWrite)],
-        Stage::Fragment => Rendered::touches("gather").to_vec(),
+        Stage::Fragment => DrawnIrradiance::touches("gather").to_vec(),
     };
     if copies.is_two_pass() {
         storage.plan(plan, "irradiance", "gather.blocks.irradiance", mapping, 8, stage);

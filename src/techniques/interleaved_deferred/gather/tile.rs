@@ -3,8 +3,8 @@
 //! writes  gather.irradiance  buffer, frame order, 8 B a pixel      holds  a block of it in workgroup memory
 
 use super::super::choices::Choices;
-use super::super::road::Copies;
 use super::super::split::tile::constants;
+use super::super::split_method::Copies;
 use super::super::sub_buffers::Texels;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

@@ -2,7 +2,7 @@
 //! reads  shade.irradiance  sub-buffers      writes  gather.blocks.irradiance  block layout, 8 B a texel
 
 use super::super::choices::Choices;
-use super::super::road::{Copies, Form};
+use super::super::split_method::{Copies, Form};
 use super::super::sub_buffers::Texels;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

@@ -4,9 +4,9 @@
 //! writes  shade.irradiance  buffer, frame order, 8 B a pixel, by way of shade.drawn
 
 use super::super::choices::Choices;
+use super::super::drawn_irradiance::{self, DrawnIrradiance};
 use super::super::mask::Mask;
-use super::super::rendered::{self, Rendered};
-use super::super::road::MaskKind;
+use super::super::split_method::MaskKind;
 use super::ShadeGpu;
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline, StencilUse};
@@ -29,13 +29,13 @@ pub struct Masked<'a> {
 
 pub struct ShadeMasked {
     pipeline: GraphicsPipeline,
-    rendered: Rendered,
+    drawn: DrawnIrradiance,
 }
 
 impl ShadeMasked {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, kind: MaskKind) -> Result<Self> {
         let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name()]);
-        let formats = [rendered::FORMAT];
+        let formats = [drawn_irradiance::FORMAT];
         let (compare, stencil) = match kind {
             MaskKind::Stencil => (vk::CompareOp::ALWAYS, Some(StencilUse::RequireEqual)),
             MaskKind::Depth => (vk::CompareOp::EQUAL, None),
@@ -48,7 +48,7 @@ impl ShadeMasked {
             ..fullscreen::description(shader, &formats)
         };
         let pipeline = GraphicsPipeline::new(gpu, &description)?;
-        Ok(Self { pipeline, rendered: Rendered::new(resources, "shade") })
+        Ok(Self { pipeline, drawn: DrawnIrradiance::new(resources, "shade") })
     }
 
     pub fn record(
@@ -65,8 +65,8 @@ impl ShadeMasked {
         let tested_bytes = u64::from(mapping.subset_count()) * pixels * mask.resource.kind.tested_bytes();
         let traffic = Traffic {
             // Every draw tests every pixel; each pixel is shaded once.
-            read_bytes: pixels * gbuffer.resource.surface_bytes() + tested_bytes + self.rendered.bytes(),
-            written_bytes: pixels * 8 + self.rendered.bytes(),
+            read_bytes: pixels * gbuffer.resource.surface_bytes() + tested_bytes + self.drawn.bytes(),
+            written_bytes: pixels * 8 + self.drawn.bytes(),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
@@ -75,7 +75,7 @@ impl ShadeMasked {
             let mut bound = shade.bound(frame, direct);
             bound.extend(gbuffer.resource.bound_surface());
             let depth = Some((&mask.resource.image, None, Access::DepthTest));
-            self.rendered.record(cmd, mapping, depth, irradiance, |cmd| {
+            self.drawn.record(cmd, mapping, depth, irradiance, |cmd| {
                 cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound)?;
                 for subset in 0..mapping.subset_count() {
                     if mask.resource.kind == MaskKind::Stencil {

@@ -5,7 +5,7 @@
 
 use super::super::choices::Choices;
 use super::super::lookup::{self, Lookup};
-use super::super::road::Copier;
+use super::super::split_method::Copier;
 use super::super::sub_buffers::{Surface, words_format};
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};

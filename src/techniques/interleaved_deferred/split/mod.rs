@@ -9,7 +9,7 @@ pub mod tile;
 pub mod translate;
 
 use super::choices::Choices;
-use super::road::{Copier, Copies};
+use super::split_method::{Copier, Copies};
 use super::sub_buffers::Surface;
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;

@@ -3,7 +3,7 @@
 //! writes  split.position  sub-buffers, 4, 8 or 16 B a texel      split.normal  sub-buffers, 8 B a texel
 
 use super::super::choices::Choices;
-use super::super::road::{Copies, Form};
+use super::super::split_method::{Copies, Form};
 use super::super::sub_buffers::Surface;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

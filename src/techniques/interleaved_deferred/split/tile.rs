@@ -3,7 +3,7 @@
 //! writes  split.position, split.normal      holds  a block of both in workgroup memory
 
 use super::super::choices::Choices;
-use super::super::road::Copies;
+use super::super::split_method::Copies;
 use super::super::sub_buffers::Surface;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

@@ -2,7 +2,7 @@
 //! reads   split.blocks.position, split.blocks.normal      writes  split.position, split.normal
 
 use super::super::choices::Choices;
-use super::super::road::{Copies, Form};
+use super::super::split_method::{Copies, Form};
 use super::super::sub_buffers::Surface;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;

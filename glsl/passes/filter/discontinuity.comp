@@ -1,6 +1,6 @@
 // Discontinuity buffer (DB): does a pixel differ from its three positive neighbours? Segovia 2006, section 4.5.
 // Bit 0: from +x, bit 1: from +y, bit 2: from +xy. The paper's flag is whether any bit is set.
-// Pass: src/techniques/interleaved_deferred/discontinuity.rs.
+// Pass: src/passes/filter/discontinuity.rs.
 // variants: POSITION=half|unorm16|depth|float
 #version 460
 #include "passes/gbuffer_read.glsl"

@@ -10,27 +10,27 @@
 
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::{DiscontinuityParams, MappingParams};
-use crate::gpu::shader::techniques::interleaved_deferred::discontinuity::COMP_VARIANTS;
+use crate::gpu::shader::passes::filter::discontinuity::COMP_VARIANTS;
+use crate::gpu::shader::structs::DiscontinuityParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::Plan;
 use crate::settings::PositionStorage;
-use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
-/// Full name of the flags.
-pub fn flags() -> String {
-    format!("{NAME}.discontinuity.flags")
+/// Full name of the flags of `technique`.
+pub fn flags(technique: &str) -> String {
+    format!("{technique}.discontinuity.flags")
 }
 
-/// Plans the flags and their pass.
-pub fn plan(plan: &mut Plan, mapping: &MappingParams, position: PositionStorage) {
-    plan.buffer("discontinuity", flags(), mapping.frame_texel_count() * 4);
-    let surface = gbuffer::surface(NAME, position);
-    plan.pass(format!("{NAME}.discontinuity"), surface.into_iter().chain([(flags(), Access::ComputeWrite)]));
+/// Plans the flags of `technique` and their pass. `texel_count`: pixels of the frame, and what pads its rows.
+pub fn plan(plan: &mut Plan, technique: &str, texel_count: u64, position: PositionStorage) {
+    let flags = flags(technique);
+    plan.buffer("discontinuity", &flags, texel_count * 4);
+    let surface = gbuffer::surface(technique, position);
+    plan.pass(format!("{technique}.discontinuity"), surface.into_iter().chain([(flags, Access::ComputeWrite)]));
 }
 
 /// Columns that a thread flags at most: 1024x768 take 7.9 ms with 1, 6.5 with 2, 6.3 with 4, 9.7 with 8 (rows of 8; lavapipe
@@ -38,6 +38,7 @@ pub fn plan(plan: &mut Plan, mapping: &MappingParams, position: PositionStorage)
 const MOST_COLUMNS: u32 = 2;
 
 pub struct Discontinuity {
+    label: String,
     pipeline: ComputePipeline,
     params: DiscontinuityParams,
     /// Pixels that a thread flags: a rectangle.
@@ -46,12 +47,19 @@ pub struct Discontinuity {
 }
 
 impl Discontinuity {
-    pub fn new(gpu: &Arc<Gpu>, settings: &ShadingSettings, params: DiscontinuityParams) -> Result<Self> {
+    /// The pass of `technique`.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        technique: &str,
+        settings: &ShadingSettings,
+        params: DiscontinuityParams,
+    ) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
         let rows = settings.texels.of_filter();
         let columns = rows.min(MOST_COLUMNS);
         let constants = [&settings.workgroup_constants()[..], &[("COLUMNS", columns), ("ROWS", rows)]].concat();
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, columns, rows })
+        let pipeline = ComputePipeline::new(gpu, shader, &constants)?;
+        Ok(Self { label: format!("{technique}.discontinuity"), pipeline, params, columns, rows })
     }
 
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, gbuffer: Edge<'_, GBuffer>, flags: &Buffer) -> Result<()> {
@@ -65,7 +73,7 @@ impl Discontinuity {
             written_bytes: pixels * 4,
             invocations: Some(threads),
         };
-        cmd.pass(&format!("{NAME}.discontinuity"), traffic, |cmd| {
+        cmd.pass(&self.label, traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers([flags.discard(Access::ComputeWrite)]);
             let mut bound = gbuffer.resource.bound_surface();

@@ -15,11 +15,11 @@ use ash::vk;
 pub const FORMAT: vk::Format = vk::Format::R32G32_UINT;
 
 /// The image that is drawn into.
-pub struct Rendered {
+pub struct DrawnIrradiance {
     image: Image,
 }
 
-impl Rendered {
+impl DrawnIrradiance {
     /// Plans `what`.drawn, an image of the frame's extent.
     pub fn plan(plan: &mut Plan, what: &str, mapping: &MappingParams) {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;

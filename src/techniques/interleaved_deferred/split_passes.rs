@@ -1,10 +1,9 @@
 //! The split of a frame on the device: from the G-buffer to irradiance in frame order.
 
 use super::choices::Choices;
+use super::drawn_irradiance::DrawnIrradiance;
 use super::gather::{self, Gather};
 use super::mask::{self, Mask};
-use super::rendered::Rendered;
-use super::road::{Copies, Road};
 use super::shade::ShadeGpu;
 use super::shade::branch::ShadeBranch;
 use super::shade::masked::{Masked, ShadeMasked};
@@ -12,6 +11,7 @@ use super::shade::strided::{Dispatches, ShadeStrided};
 use super::shade::sub_buffers::ShadeSubBuffers;
 use super::shade::subsample::ShadeSubsample;
 use super::split::{self, Split};
+use super::split_method::{Copies, SplitMethod};
 use super::sub_buffers::{Stage, Surface, Texels};
 use super::upscale::Upscale;
 use crate::error::Result;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 /// How pixels meet their lights.
 #[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
-pub enum Roads {
+pub enum SplitPasses {
     Branch { shade: ShadeBranch, irradiance: Buffer },
     Strided { shade: ShadeStrided, irradiance: Buffer },
     Subsample { shade: ShadeSubsample, cells: Buffer, upscale: Upscale, irradiance: Buffer },
@@ -44,7 +44,7 @@ pub struct SubBuffers {
 }
 
 /// The irradiance that a split leaves.
-pub struct Lit<'a> {
+pub struct GatheredIrradiance<'a> {
     /// In frame order.
     pub irradiance: Edge<'a, Buffer>,
     /// The access that has read the G-buffer's surface.
@@ -53,18 +53,18 @@ pub struct Lit<'a> {
 
 /// Plans resources and passes from the G-buffer on; returns the name of the irradiance in frame order.
 pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
-    let Choices { shading, road, mapping, .. } = choices;
+    let Choices { shading, split, mapping, .. } = choices;
     let frame_bytes = mapping.frame_texel_count() * 8;
     let (shaded, shade) = (format!("{NAME}.shade.irradiance"), format!("{NAME}.shade"));
     let surface = |stage: Stage| gbuffer::surface_as(NAME, shading.position, stage.samples()).into_iter();
     let (read, written) = (Access::ComputeRead, Access::ComputeWrite);
-    match road {
-        Road::None | Road::Branch | Road::Indirect | Road::Remap => {
+    match split {
+        SplitMethod::None | SplitMethod::Branch | SplitMethod::Indirect | SplitMethod::Remap => {
             plan.buffer("irradiance", &shaded, frame_bytes);
             plan.pass(shade, surface(Stage::Compute).chain([(shaded.clone(), written)]));
             shaded
         }
-        Road::Subsample => {
+        SplitMethod::Subsample => {
             let upscaled = format!("{NAME}.upscale.irradiance");
             plan.buffer("irradiance", &shaded, mapping.sub_texel_count() * 8);
             plan.buffer("irradiance", &upscaled, frame_bytes);
@@ -72,15 +72,15 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
             plan.pass(format!("{NAME}.upscale"), [(shaded, read), (upscaled.clone(), written)]);
             upscaled
         }
-        Road::Masked(kind) => {
+        SplitMethod::Masked(kind) => {
             mask::plan(plan, *kind, mapping);
             plan.buffer("irradiance", &shaded, frame_bytes);
-            Rendered::plan(plan, "shade", mapping);
+            DrawnIrradiance::plan(plan, "shade", mapping);
             let tested = (kind.resource(), Access::DepthTest);
-            plan.pass(shade, surface(Stage::Fragment).chain([tested]).chain(Rendered::touches("shade")));
+            plan.pass(shade, surface(Stage::Fragment).chain([tested]).chain(DrawnIrradiance::touches("shade")));
             shaded
         }
-        Road::Copy(copies) => {
+        SplitMethod::Copy(copies) => {
             split::plan(plan, choices, *copies);
             let storage = copies.storage;
             storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, Stage::Compute);
@@ -91,31 +91,31 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
     }
 }
 
-impl Roads {
+impl SplitPasses {
     /// Takes what `plan` put in.
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         let shading = &choices.shading;
         let mut buffer = |what: &str| resources.buffer(&format!("{NAME}.{what}.irradiance"));
-        Ok(match choices.road {
-            Road::Branch => Self::Branch { shade: ShadeBranch::new(gpu, choices)?, irradiance: buffer("shade") },
-            Road::None | Road::Indirect | Road::Remap => {
-                let per_subset = choices.road == Road::Indirect;
+        Ok(match choices.split {
+            SplitMethod::Branch => Self::Branch { shade: ShadeBranch::new(gpu, choices)?, irradiance: buffer("shade") },
+            SplitMethod::None | SplitMethod::Indirect | SplitMethod::Remap => {
+                let per_subset = choices.split == SplitMethod::Indirect;
                 let dispatches = if per_subset { Dispatches::PerSubset } else { Dispatches::One };
                 let shade = ShadeStrided::new(gpu, choices, dispatches)?;
                 Self::Strided { shade, irradiance: buffer("shade") }
             }
-            Road::Subsample => Self::Subsample {
+            SplitMethod::Subsample => Self::Subsample {
                 shade: ShadeSubsample::new(gpu, choices)?,
                 cells: buffer("shade"),
                 upscale: Upscale::new(gpu, shading)?,
                 irradiance: buffer("upscale"),
             },
-            Road::Masked(kind) => {
+            SplitMethod::Masked(kind) => {
                 let irradiance = buffer("shade");
                 let mask = Mask::new(gpu, resources, kind)?;
                 Self::Masked { mask, shade: ShadeMasked::new(gpu, resources, choices, kind)?, irradiance }
             }
-            Road::Copy(copies) => Self::SubBuffers(SubBuffers {
+            SplitMethod::Copy(copies) => Self::SubBuffers(SubBuffers {
                 copies,
                 gathered: resources.buffer(&format!("{NAME}.{}", gather::target(choices))),
                 split: Split::new(gpu, resources, choices, copies)?,
@@ -136,7 +136,7 @@ impl Roads {
         direct: &DirectGpu,
         gbuffer: Edge<'_, GBuffer>,
         flags: Option<Edge<'_, Buffer>>,
-    ) -> Result<Lit<'_>> {
+    ) -> Result<GatheredIrradiance<'_>> {
         let mapping = lights.mapping();
         let (irradiance, last, stage) = match self {
             Self::Branch { shade, irradiance } => {
@@ -166,6 +166,6 @@ impl Roads {
                 (gathered, last, copies.stage())
             }
         };
-        Ok(Lit { irradiance: irradiance.from(last), readers: gbuffer.from.after(stage.samples()) })
+        Ok(GatheredIrradiance { irradiance: irradiance.from(last), readers: gbuffer.from.after(stage.samples()) })
     }
 }

@@ -41,7 +41,7 @@ choices! {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
+pub enum SplitMethod {
     /// Every light on every pixel: plain deferred shading, another sum.
     None,
     /// All lights at one pixel of each pattern, interpolated: another sum.
@@ -97,16 +97,7 @@ choices! {
     }
 }
 
-choices! {
-    /// The filter of the interleaved irradiance (`--filter`).
-    pub enum Filter {
-        "gauss" => Gauss,
-        "gauss-fast" => GaussFast,
-        "none" => None,
-    }
-}
-
-impl Road {
+impl SplitMethod {
     /// The split that `--split`, `--storage`, `--copy` and `--fragment-passes` ask for on a device.
     ///
     /// Errors: they contradict each other (exit code 2).
@@ -134,7 +125,7 @@ impl Road {
         Ok(Self::Copy(Copies { by, storage, form }))
     }
 
-    /// What it needs of a device, with the filter behind it.
+    /// What it needs of a device.
     pub fn needs(self, values: &Values) -> Vec<Need> {
         let split: Split = values.choice("split");
         let mut needs = Vec::new();
@@ -152,9 +143,6 @@ impl Road {
                 need(of, Ability::StoreWordPairs, instead);
             }
             _ => {}
-        }
-        if values.is("filter", Filter::GaussFast) && !self.sums_all() {
-            need("--filter gauss-fast".to_owned(), Ability::StoreWordPairs, "--filter gauss filters in buffers");
         }
         needs
     }
@@ -260,11 +248,11 @@ mod tests {
         for (key, text) in [("split", split), ("storage", storage)] {
             values.set(SETTINGS.iter().find(|setting| setting.key == key).unwrap(), text).unwrap();
         }
-        Ok(Road::new(&values, &caps)?.copies().expect("it copies").storage)
+        Ok(SplitMethod::new(&values, &caps)?.copies().expect("it copies").storage)
     }
 
     #[test]
-    fn auto_is_what_the_device_and_the_road_do_best() {
+    fn auto_is_what_the_device_and_the_split_do_best() {
         for (driver, stores_words, split, storage) in [
             ("lavapipe-22.3.6", true, "one-pass", Storage::Buffer),
             ("intel-arc-a770", true, "one-pass", Storage::Image),
