@@ -2,7 +2,9 @@
 //!
 //! Passes: gbuffer, shade, blend (where the scene has BLEND surfaces).
 //!
-//! Differs from the paper: so far it is plain deferred shading with a factor, and equals `deferred` at `--light-scale 1`.
+//! Differs from the paper: so far it is plain deferred shading with a factor.
+//!
+//! It equals `deferred` at `--light-scale 1`.
 
 mod settings;
 mod shade;

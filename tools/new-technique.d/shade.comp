@@ -3,8 +3,8 @@
 #version 460
 #include "passes/composite.glsl"
 
-// --light-scale
-layout(constant_id = 90) const float LIGHT_SCALE = 1.0;
+// --light-scale. Numbers below 60 are each technique's own (glsl/README.md).
+layout(constant_id = 5) const float LIGHT_SCALE = 1.0;
 
 void main() {
     set_point(0u, true);
