@@ -66,7 +66,7 @@ fn at_the_frame_s_size_it_is_deferred_shading() {
 }
 
 #[test]
-fn every_road_of_the_lights_leaves_the_same_l_buffer() {
+fn every_method_of_the_lights_leaves_the_same_l_buffer() {
     let methods: [Changes<'_>; 9] = [
         &[("volumes", "tiled")],
         &[("volumes", "tiled"), ("cull-by", "workgroup")],

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_road_that_reads_no_block_has_no_best_one() {
+    fn a_method_that_reads_no_block_has_no_best_one() {
         let axes = axes(&["split=one-pass,two-pass".to_owned(), "block=8".to_owned()]).unwrap();
         let of = |split: &str, unread: &[&str]| json!({ "asked": { "split": split, "block": "8" }, "unread_axes": unread, "ratio": { "mean": 1.0 } });
         let found = best(&axes, &[of("one-pass", &["block"]), of("two-pass", &[])]);
