@@ -117,7 +117,7 @@ fn an_interrupted_self_test_ends_with_130_and_writes_nothing() {
 
 /// Shading space stays empty: the picture of the lists is none, and that of every sample by itself is as it was.
 #[test]
-fn samples_without_colour_fail_the_road_that_lost_them() {
+fn samples_without_colour_fail_the_method_that_lost_them() {
     let outcome =
         tried(hooked(without_shading_space), &["deep_shading/lists/zmax=off", "deep_shading/sun", "forward/sun"]);
     require_failed(&outcome, &["deep_shading/sun/defaults", "deep_shading/lists/zmax=off"]);

@@ -21,6 +21,13 @@ impl<R> Clone for Edge<'_, R> {
 
 impl<R> Copy for Edge<'_, R> {}
 
+impl<R> Edge<'_, R> {
+    /// The same resource after one more access: what a pass hands on of what it was handed.
+    pub fn after(self, access: Access) -> Self {
+        Self { from: self.from.after(access), ..self }
+    }
+}
+
 /// One barrier: a resource, its last accesses, its next one.
 #[derive(Clone, Copy, Debug)]
 pub struct Barrier {

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 /// What a method draws into on the way, or writes twice, is not what is copied.
 #[test]
-fn every_road_copies_as_many_bytes() {
+fn every_method_copies_as_many_bytes() {
     let program = Program::new();
     let methods = ["--sweep", "split=one-pass,two-pass,tile,layered,fragment", "--sweep", "fragment-passes=2,1"];
     for (what, bytes) in [("split", 64 * 48 * 16), ("gather", 64 * 48 * 8)] {

@@ -282,7 +282,7 @@ fn memory_that_is_refused_leaves_nothing_behind() {
 
 /// The same of methods with images, look-up textures and resources between two passes.
 #[test]
-fn memory_that_is_refused_on_any_road_leaves_nothing_behind() {
+fn memory_that_is_refused_on_any_method_leaves_nothing_behind() {
     counted(Strategy::Dedicated, "cornell", |watched| {
         let before = watched.session.gpu.memory.snapshot();
         for split in ["two-pass", "layered", "fragment", "stencil"] {

@@ -108,7 +108,7 @@ fn pictures_of_shaders_that_round_otherwise_are_the_same_to_the_eye() {
 /// `tools/test --run-ignored only pretend::rounding --no-capture` prints the figures.
 #[test]
 #[ignore = "238 renders, some ten minutes"]
-fn pictures_of_all_roads_are_the_same_to_the_eye_by_each_seed() {
+fn pictures_of_all_methods_are_the_same_to_the_eye_by_each_seed() {
     let Some(layer) = Layer::built() else { return };
     let program = Program::new();
     let modes = ["contract=1", "contract=2", "contract=3", "last-bit=1", "last-bit=2", "last-bit=3"];

@@ -35,7 +35,7 @@ fn require_one_hash(watched: &Watched, technique: &str, common: Changes<'_>, var
     hashes.into_keys().next().unwrap()
 }
 
-fn require_every_road_is_branch(size: &str, patterns: &[&str]) {
+fn require_every_method_is_branch(size: &str, patterns: &[&str]) {
     let watched = Watched::open("cornell");
     let splits = splits();
     let mut seen = Vec::new();
@@ -53,18 +53,18 @@ fn require_every_road_is_branch(size: &str, patterns: &[&str]) {
 }
 
 #[test]
-fn every_road_is_branch_for_every_pattern() {
-    require_every_road_is_branch("192x108", &["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"]);
+fn every_method_is_branch_for_every_pattern() {
+    require_every_method_is_branch("192x108", &["1x1", "2x2", "3x2", "4x4", "5x7", "8x6", "8x8"]);
 }
 
 /// The frame is divided by none of the patterns but the first, and by no SIMD width.
 #[test]
-fn every_road_is_branch_for_every_pattern_where_nothing_divides_the_frame() {
-    require_every_road_is_branch("191x107", &["1x1", "3x2", "5x7", "8x8"]);
+fn every_method_is_branch_for_every_pattern_where_nothing_divides_the_frame() {
+    require_every_method_is_branch("191x107", &["1x1", "3x2", "5x7", "8x8"]);
 }
 
 #[test]
-fn every_road_is_branch_behind_every_filter() {
+fn every_method_is_branch_behind_every_filter() {
     let watched = Watched::open("cornell");
     let (splits, filters) = (splits(), words(INTERLEAVED, "filter"));
     let mut hashes = Vec::new();
@@ -113,7 +113,7 @@ fn fused_passes_are_fewer() {
 }
 
 #[test]
-fn shared_bytes_change_no_pixel_on_any_road() {
+fn shared_bytes_change_no_pixel_with_any_method() {
     let watched = Watched::open("cornell");
     for split in splits() {
         let common = both(&[("vpls", "64"), ("size", "97x53"), ("pattern", "3x2")], &split);
@@ -270,7 +270,7 @@ fn culling_changes_no_pixel_of_a_map() {
 /// The depth buffer holds positions: lists of lights, the split and the filter sample it, and BLEND surfaces test it
 /// last.
 #[test]
-fn every_road_is_branch_under_blended_surfaces() {
+fn every_method_is_branch_under_blended_surfaces() {
     let watched = Watched::open("hall:triangles=8000");
     let common = [("size", "161x91"), ("vpls", "32"), ("position", "depth"), ("cull", "tiled")];
     require_one_picture(&watched, INTERLEAVED, &common, &changes(&splits()));

@@ -33,8 +33,8 @@ pub fn plan(plan: &mut Plan, technique: &str, texel_count: u64, position: Positi
     plan.pass(format!("{technique}.discontinuity"), surface.into_iter().chain([(flags, Access::ComputeWrite)]));
 }
 
-/// Columns that a thread flags at most: 1024x768 take 7.9 ms with 1, 6.5 with 2, 6.3 with 4, 9.7 with 8 (rows of 8; lavapipe
-/// 22.3.6).
+/// Columns that a thread flags at most: 1024x768 take 7.9 ms with 1, 6.5 with 2, 6.3 with 4, 9.7 with 8 (rows of 8;
+/// lavapipe 22.3.6).
 const MOST_COLUMNS: u32 = 2;
 
 pub struct Discontinuity {
@@ -62,7 +62,14 @@ impl Discontinuity {
         Ok(Self { label: format!("{technique}.discontinuity"), pipeline, params, columns, rows })
     }
 
-    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, gbuffer: Edge<'_, GBuffer>, flags: &Buffer) -> Result<()> {
+    /// Hands the G-buffer on as it leaves it.
+    pub fn record<'a>(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'a, GBuffer>,
+        flags: &Buffer,
+    ) -> Result<Edge<'a, GBuffer>> {
         let extent = gbuffer.resource.extent();
         let pixels = extent.pixel_count();
         let [across, down] = [extent.width.div_ceil(self.columns), extent.height.div_ceil(self.rows)];
@@ -80,6 +87,7 @@ impl Discontinuity {
             bound.extend([("Frame", Bound::Buffer(frame)), ("Flags", Bound::Buffer(flags))]);
             let groups = self.pipeline.groups([across, down, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
-        })
+        })?;
+        Ok(gbuffer.after(Access::ComputeSample))
     }
 }

@@ -1,8 +1,8 @@
 //! Edge-aware filters of an irradiance buffer, one file each, and the discontinuities that they stop at.
 //!
 //! A filter is a `FilterMethod` (what it needs, plans and counts) that builds a `FilterPass` (what it records);
-//! `Filter` is the table of them. Names of passes and resources are the technique's: a filter begins them with the label
-//! that it is given.
+//! `Filter` is the table of them. Names of passes and resources are the technique's: a filter begins them with the
+//! label that it is given.
 
 mod all;
 pub mod discontinuity;

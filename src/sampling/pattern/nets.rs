@@ -49,4 +49,15 @@ mod tests {
         assert_ne!(pattern, Pattern::nets([2, 2], 8, 7, 2));
         assert_eq!(Pattern::nets([1, 1], 1, 7, 0).samples()[0].place_px, [0.5; 2]);
     }
+
+    /// Each purpose has pairs of its own, and each run a stretch of its own.
+    #[test]
+    fn numbers_are_those_of_the_sequence() {
+        let pair = |index, purpose| sobol::pair(index, sobol::pair_seed(sobol::pixel_seed([0, 0], 7), purpose));
+        for (index, sample) in (3 * 32..).zip(Pattern::nets([2, 2], 8, 7, 3).samples()) {
+            assert_eq!(sample.place_px, pair(index, 0));
+            assert_eq!([sample.further[1], sample.further[2]], pair(index, 1));
+            assert_eq!(sample.further[0], pair(index, 2)[0]);
+        }
+    }
 }

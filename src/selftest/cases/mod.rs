@@ -61,9 +61,9 @@ mod tests {
 
     /// Every choice of every setting is tried, so that a new one is not forgotten here.
     #[test]
-    fn every_choice_of_a_road_is_among_the_cases() {
+    fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_ROADS: [&str; 23] = [
+        const NO_METHODS: [&str; 23] = [
             "rig",
             "sun",
             "brdf",
@@ -92,7 +92,7 @@ mod tests {
         for technique in ALL {
             for setting in settings_of(*technique) {
                 let Kind::Choice(choices) = setting.kind else { continue };
-                if setting.changes == Changes::File || NO_ROADS.contains(&setting.key) {
+                if setting.changes == Changes::File || NO_METHODS.contains(&setting.key) {
                     continue;
                 }
                 for choice in choices.iter().filter(|choice| **choice != "auto") {

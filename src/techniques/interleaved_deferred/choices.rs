@@ -63,8 +63,8 @@ pub struct Choices {
     pub blend_subsets: bool,
     /// The pattern that virtual point lights are dealt out over, n x m; 1x1 where every light is summed.
     pub light_pattern: Pattern,
-    /// The pattern that the joined lights are dealt out over, i x j: it divides the split's. 1x1 where none are joined and
-    /// where every light is summed: no pixel lacks any of them.
+    /// The pattern that the joined lights are dealt out over, i x j: it divides the split's. 1x1 where none are joined
+    /// and where every light is summed: no pixel lacks any of them.
     pub direct_pattern: Pattern,
     /// Virtual point lights.
     pub vpl_count: u32,

@@ -43,15 +43,16 @@ impl Composite {
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }
 
-    pub fn record(
+    /// Hands the G-buffer on as it leaves it.
+    pub fn record<'a>(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
         direct: Edge<'_, DirectGpu>,
-        gbuffer: Edge<'_, GBuffer>,
+        gbuffer: Edge<'a, GBuffer>,
         filtered: FilteredIrradiance<'_>,
         color: &Image,
-    ) -> Result<()> {
+    ) -> Result<Edge<'a, GBuffer>> {
         let extent = color.description.extent;
         let pixels = extent.pixel_count();
         let traffic = Traffic {
@@ -74,6 +75,7 @@ impl Composite {
             bound.extend(filtered.flags.iter().map(|flags| ("Flags", Bound::Buffer(flags.resource))));
             let groups = self.pipeline.groups([extent.width, extent.height.div_ceil(self.texels), 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
-        })
+        })?;
+        Ok(gbuffer.after(Access::ComputeSample))
     }
 }

@@ -115,43 +115,48 @@ impl FilterStage {
         Ok(Some(Self { discontinuity, flags: resources.buffer(&discontinuity::flags(NAME)), place }))
     }
 
-    /// The discontinuities, where a gather that filters needs them.
-    pub fn record_before_gather(
-        &self,
+    /// The discontinuities, where a gather that filters needs them. Hands the G-buffer on as it leaves it.
+    pub fn record_before_gather<'a>(
+        &'a self,
         cmd: &mut Commands,
         frame: &Buffer,
-        gbuffer: Edge<'_, GBuffer>,
-    ) -> Result<Option<Edge<'_, Buffer>>> {
+        gbuffer: Edge<'a, GBuffer>,
+    ) -> Result<(Edge<'a, GBuffer>, Option<Edge<'a, Buffer>>)> {
         if !matches!(self.place, FilterPlace::InGather) {
-            return Ok(None);
+            return Ok((gbuffer, None));
         }
-        self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
-        Ok(Some(self.flags.from(Access::ComputeWrite)))
+        let gbuffer = self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
+        Ok((gbuffer, Some(self.flags.from(Access::ComputeWrite))))
     }
 
-    /// Records the work that is left after the irradiance is in frame order.
+    /// Records the work that is left after the irradiance is in frame order. Hands the G-buffer on as it leaves it.
     pub fn record<'a>(
         &'a self,
         cmd: &mut Commands,
         frame: &Buffer,
-        gbuffer: Edge<'_, GBuffer>,
+        gbuffer: Edge<'a, GBuffer>,
         source: Edge<'a, Buffer>,
-    ) -> Result<FilteredIrradiance<'a>> {
+    ) -> Result<(Edge<'a, GBuffer>, FilteredIrradiance<'a>)> {
+        let flagged = |cmd: &mut Commands| {
+            let gbuffer = self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
+            Ok((gbuffer, self.flags.from(Access::ComputeWrite)))
+        };
+        // The gather or the rows have read them.
         let read_flags = Some(self.flags.from(Access::ComputeRead));
-        if !matches!(self.place, FilterPlace::InGather) {
-            self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
-        }
-        let flags = self.flags.from(Access::ComputeWrite);
-        Ok(match &self.place {
+        match &self.place {
             FilterPlace::OwnPass(filter) => {
-                FilteredIrradiance { irradiance: filter.record(cmd, source, flags)?, flags: None }
+                let (gbuffer, flags) = flagged(cmd)?;
+                let irradiance = filter.record(cmd, source, flags)?;
+                Ok((gbuffer, FilteredIrradiance { irradiance, flags: None }))
             }
             FilterPlace::Rows { gauss, rows } => {
+                let (gbuffer, flags) = flagged(cmd)?;
                 gauss.record_rows(cmd, source, flags, rows)?;
-                FilteredIrradiance { irradiance: rows.from(Access::ComputeWrite), flags: read_flags }
+                let irradiance = rows.from(Access::ComputeWrite);
+                Ok((gbuffer, FilteredIrradiance { irradiance, flags: read_flags }))
             }
-            FilterPlace::InGather => FilteredIrradiance { irradiance: source, flags: read_flags },
-        })
+            FilterPlace::InGather => Ok((gbuffer, FilteredIrradiance { irradiance: source, flags: read_flags })),
+        }
     }
 
     /// The finished irradiance; None where only the composite knows it.

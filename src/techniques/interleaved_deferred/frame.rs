@@ -1,16 +1,17 @@
-//! Interleaved deferred shading on the device: its passes and its resources. `mod.rs` records them.
+//! Interleaved deferred shading on the device: its passes and its resources, and the passes that not every frame has.
+//! `mod.rs` has their order.
 
 use super::choices::Choices;
 use super::composite::Composite;
-use super::filter::FilterStage;
+use super::filter::{FilterStage, FilteredIrradiance};
 use super::shade::{ShadeGpu, SubsetLights};
 use super::split_passes::SplitPasses;
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
-use crate::gpu::{Buffer, Gpu, Image};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
-use crate::passes::blend::{self, Blend, BlendTarget};
-use crate::passes::cull::Cull;
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
+use crate::passes::cull::{Cull, CullLights};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, GBufferPass};
 use crate::plan::Resources;
@@ -99,5 +100,74 @@ impl InterleavedFrame {
             is_lit_fully: choices.direct_full,
             shade,
         })
+    }
+
+    /// The G-buffer, as it is drawn.
+    pub fn record_gbuffer(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<Edge<'_, GBuffer>> {
+        self.gbuffer_pass.record(cmd, NAME, frame, scene, &self.gbuffer)?;
+        Ok(self.gbuffer.from(Access::ColorWrite))
+    }
+
+    /// Masks of the punctual lights, where they are culled.
+    pub fn record_cull<'a>(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'a, GBuffer>,
+    ) -> Result<Edge<'a, GBuffer>> {
+        let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) else { return Ok(gbuffer) };
+        let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
+        cull.record(cmd, NAME, gbuffer, frame, lights, masks)?;
+        Ok(gbuffer.after(Access::ComputeSample))
+    }
+
+    /// Discontinuities before the gather, where it filters.
+    pub fn record_flags_of_gather<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'a, GBuffer>,
+    ) -> Result<(Edge<'a, GBuffer>, Option<Edge<'a, Buffer>>)> {
+        match &self.filter {
+            Some(filter) => filter.record_before_gather(cmd, frame, gbuffer),
+            None => Ok((gbuffer, None)),
+        }
+    }
+
+    /// Discontinuities and the filter, where there is one.
+    pub fn record_filter<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'a, GBuffer>,
+        irradiance: Edge<'a, Buffer>,
+    ) -> Result<(Edge<'a, GBuffer>, FilteredIrradiance<'a>)> {
+        match &self.filter {
+            Some(filter) => filter.record(cmd, frame, gbuffer, irradiance),
+            None => Ok((gbuffer, FilteredIrradiance { irradiance, flags: None })),
+        }
+    }
+
+    /// Blended surfaces over the picture, where there are any.
+    pub fn record_blend(
+        &self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        frame: &Buffer,
+        gbuffer: Edge<'_, GBuffer>,
+        picture: Edge<'_, Image>,
+    ) -> Result<()> {
+        let (Some(blend), Some(lists)) = (&self.blend, &self.blend_lists) else { return Ok(()) };
+        let lights = BlendLights {
+            lights: &self.direct.lights,
+            vpls: &self.shade.vpls,
+            subsets: &self.shade.subsets,
+            bvh_nodes: &self.direct.bvh_nodes,
+            bvh_triangles: &self.direct.bvh_triangles,
+            lists,
+            shadow_maps: None,
+        };
+        let solid = SolidPicture { depth: gbuffer.resource.depth_edge(gbuffer.from), color: picture };
+        blend.record(cmd, NAME, frame, scene, &lights, solid)
     }
 }

@@ -52,11 +52,10 @@ use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_vi
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
-use crate::gpu::{Access, AccessSet, Buffer, Commands, Gpu, Image};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
 use crate::lights::{LightSet, vpl};
-use crate::passes::blend::{self, BlendLights, SolidPicture};
-use crate::passes::cull::CullLights;
+use crate::passes::blend;
 use crate::passes::filter::Filter;
 use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
@@ -65,7 +64,6 @@ use crate::resident::SceneGpu;
 use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::{Choices, Direct};
-use filter::FilteredIrradiance;
 use frame::{FrameLights, InterleavedFrame};
 use shade::SubsetLights;
 use split_method::SplitMethod;
@@ -247,49 +245,15 @@ impl Prepared for PreparedInterleaved {
 
 impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
-        let gbuffer = &self.gbuffer;
-        self.gbuffer_pass.record(cmd, NAME, frame, scene, gbuffer)?;
-        let mut surface = AccessSet::from(Access::ColorWrite);
-        if let (Some(cull), Some(masks)) = (&self.cull, &self.direct.masks) {
-            let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
-            cull.record(cmd, NAME, gbuffer.from(surface), frame, lights, masks)?;
-            surface = surface.after(Access::ComputeSample);
-        }
-        let flags = match &self.filter {
-            Some(filter) => filter.record_before_gather(cmd, frame, gbuffer.from(surface))?,
-            None => None,
-        };
-        if flags.is_some() {
-            surface = surface.after(Access::ComputeSample);
-        }
-        let gathered = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer.from(surface), flags)?;
-        surface = gathered.readers;
-        let filtered = match &self.filter {
-            Some(filter) => {
-                let filtered = filter.record(cmd, frame, gbuffer.from(surface), gathered.irradiance)?;
-                surface = surface.after(Access::ComputeSample);
-                filtered
-            }
-            None => FilteredIrradiance { irradiance: gathered.irradiance, flags: None },
-        };
+        // Each pass is handed the G-buffer as the one before it left it.
+        let gbuffer = self.record_gbuffer(cmd, scene, frame)?;
+        let gbuffer = self.record_cull(cmd, frame, gbuffer)?;
+        let (gbuffer, flags) = self.record_flags_of_gather(cmd, frame, gbuffer)?;
+        let (gbuffer, irradiance) = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer, flags)?;
+        let (gbuffer, irradiance) = self.record_filter(cmd, frame, gbuffer, irradiance)?;
         let direct = self.direct.from(Access::ComputeWrite);
-        self.composite.record(cmd, frame, direct, gbuffer.from(surface), filtered, &self.color)?;
-        surface = surface.after(Access::ComputeSample);
-        if let (Some(blend), Some(lists)) = (&self.blend, &self.blend_lists) {
-            let lights = BlendLights {
-                lights: &self.direct.lights,
-                vpls: &self.shade.vpls,
-                subsets: &self.shade.subsets,
-                bvh_nodes: &self.direct.bvh_nodes,
-                bvh_triangles: &self.direct.bvh_triangles,
-                lists,
-                shadow_maps: None,
-            };
-            let solid =
-                SolidPicture { depth: gbuffer.depth_edge(surface), color: self.color.from(Access::ComputeWrite) };
-            blend.record(cmd, NAME, frame, scene, &lights, solid)?;
-        }
-        Ok(())
+        let gbuffer = self.composite.record(cmd, frame, direct, gbuffer, irradiance, &self.color)?;
+        self.record_blend(cmd, scene, frame, gbuffer, self.color.from(Access::ComputeWrite))
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

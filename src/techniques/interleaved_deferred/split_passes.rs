@@ -15,7 +15,7 @@ use super::split_method::{Copies, SplitMethod};
 use super::sub_buffers::{Stage, Surface, Texels};
 use super::upscale::Upscale;
 use crate::error::Result;
-use crate::gpu::{Access, AccessSet, Buffer, Commands, Edge, Gpu};
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::{Plan, Resources};
@@ -41,14 +41,6 @@ pub struct SubBuffers {
     pub shaded: Texels,
     gather: Gather,
     pub gathered: Buffer,
-}
-
-/// The irradiance that a split leaves.
-pub struct GatheredIrradiance<'a> {
-    /// In frame order.
-    pub irradiance: Edge<'a, Buffer>,
-    /// The access that has read the G-buffer's surface.
-    pub readers: AccessSet,
 }
 
 /// Plans resources and passes from the G-buffer on; returns the name of the irradiance in frame order.
@@ -127,16 +119,17 @@ impl SplitPasses {
         })
     }
 
-    /// Records split, shade and gather, or what replaces them. `flags`: as `Gather::record`.
-    pub fn record(
-        &self,
+    /// Records split, shade and gather, or what replaces them; hands the G-buffer on as it leaves it, and irradiance in
+    /// frame order. `flags`: as `Gather::record`.
+    pub fn record<'a>(
+        &'a self,
         cmd: &mut Commands,
         frame: &Buffer,
         lights: &ShadeGpu,
         direct: &DirectGpu,
-        gbuffer: Edge<'_, GBuffer>,
+        gbuffer: Edge<'a, GBuffer>,
         flags: Option<Edge<'_, Buffer>>,
-    ) -> Result<GatheredIrradiance<'_>> {
+    ) -> Result<(Edge<'a, GBuffer>, Edge<'a, Buffer>)> {
         let mapping = lights.mapping();
         let (irradiance, last, stage) = match self {
             Self::Branch { shade, irradiance } => {
@@ -166,6 +159,6 @@ impl SplitPasses {
                 (gathered, last, copies.stage())
             }
         };
-        Ok(GatheredIrradiance { irradiance: irradiance.from(last), readers: gbuffer.from.after(stage.samples()) })
+        Ok((gbuffer.after(stage.samples()), irradiance.from(last)))
     }
 }

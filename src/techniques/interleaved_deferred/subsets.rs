@@ -13,8 +13,8 @@ use glam::{Vec3, Vec4};
 
 /// Stretches of the two lists for each of the n * m sub-buffers, in the order of the subsets of `pattern`.
 ///
-/// `direct_pattern` divides `pattern`: both are grids. Virtual lights give their odd ones to the first subsets, punctual lights to the last,
-/// so that with one pattern for both the sums differ by at most one too.
+/// `direct_pattern` divides `pattern`: both are grids. Virtual lights give their odd ones to the first subsets, punctual
+/// lights to the last, so that with one pattern for both the sums differ by at most one too.
 pub fn subsets(pattern: &Pattern, direct_pattern: &Pattern, vpl_count: u32, light_count: u32) -> Vec<SubsetBlock> {
     let [[n, m], [i, j]] = [pattern, direct_pattern].map(Pattern::period_px);
     assert!(n.is_multiple_of(i) && m.is_multiple_of(j), "{i}x{j} does not divide {n}x{m}");

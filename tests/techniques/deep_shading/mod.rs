@@ -74,7 +74,7 @@ fn turning(spec: &str) -> Scene {
 }
 
 #[test]
-fn every_road_shades_as_every_sample_by_itself_would_be() {
+fn every_method_shades_as_every_sample_by_itself_would_be() {
     let watched = Watched::open("cornell");
     for common in [
         &[SIZE, ("spp", "4")][..],
@@ -87,13 +87,13 @@ fn every_road_shades_as_every_sample_by_itself_would_be() {
 }
 
 #[test]
-fn every_road_is_one_under_a_lens_with_textures_and_glass() {
+fn every_method_is_one_under_a_lens_with_textures_and_glass() {
     let watched = Watched::open("hall:triangles=8000");
     require_one_picture(&watched, &[SIZE, ("spp", "4"), ("aperture", "0.3"), ("focus", "6")]);
 }
 
 #[test]
-fn every_road_is_one_while_things_move_with_holes_and_glass() {
+fn every_method_is_one_while_things_move_with_holes_and_glass() {
     for spec in ["fence:lights=6", "fence:lights=6,alpha=mask"] {
         let watched = Watched::with_scene(turning(spec));
         require_one_picture(&watched, &[SIZE, ("camera", "rotor"), ("spp", "4"), ("accumulate", "2")]);
@@ -102,7 +102,7 @@ fn every_road_is_one_while_things_move_with_holes_and_glass() {
 
 /// Under the paper's shadow-mapped lights, whose maps are of the middle of the exposure.
 #[test]
-fn every_road_is_one_under_shadow_maps() {
+fn every_method_is_one_under_shadow_maps() {
     let maps = [SIZE, ("direct-shadow", "map"), ("shadow-map-size", "128"), ("spp", "2"), ("tuples", "2")];
     let exposed = moving("chess:triangles=12000", [0.0, 0.2]);
     let watched = Watched::with_scene(exposed);

@@ -34,7 +34,7 @@ const METHODS: [Changes<'_>; 4] = [
 ];
 
 #[test]
-fn every_road_to_a_sample_s_colour_comes_to_one_picture() {
+fn every_method_to_a_sample_s_colour_comes_to_one_picture() {
     for (watched, common) in [
         (Watched::open("hall:triangles=8000"), both(LENS, &[("spp", "2")])),
         (Watched::with_scene(rotor()), both(BOTH, &[("spp", "2"), ("accumulate", "2")])),

@@ -57,7 +57,7 @@ fn require_one_pair(watched: &Watched, common: Changes<'_>, methods: &[Changes<'
 }
 
 #[test]
-fn every_road_shades_both_eyes_as_every_sample_by_itself_would_be() {
+fn every_method_shades_both_eyes_as_every_sample_by_itself_would_be() {
     let watched = Watched::open("cornell");
     let common =
         [("size", "49x29"), ("spp", "2"), ("tuples", "8"), ("stereo", "0.2"), ("aperture", "0.05"), ("focus", "3")];

@@ -72,7 +72,7 @@ fn at_the_frame_s_size_it_is_deferred_shading() {
 }
 
 #[test]
-fn every_road_of_the_lights_leaves_the_same_l_buffer() {
+fn every_method_of_the_lights_leaves_the_same_l_buffer() {
     let mut ways = ways(NAME, &["volumes", "cull-by"]);
     ways.extend([
         vec![("volumes", "tiled"), ("texels", "1"), ("workgroup", "8x8")],

@@ -263,7 +263,7 @@ fn lights_beside_those_with_volumes_keep_their_own_shadows() {
 }
 
 #[test]
-fn every_road_of_the_lights_leaves_the_same_shadows() {
+fn every_method_of_the_lights_leaves_the_same_shadows() {
     let near = Light { range: Some(3.0), ..point_light(vec3(-0.4, 2.6, 0.8), 30.0) };
     let watched = Watched::with_scene(table(vec![above(), near, sun(vec3(0.3, -1.0, -0.2))], view()));
     for casting in ["1", "2", "3"] {

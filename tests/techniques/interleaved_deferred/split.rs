@@ -87,7 +87,7 @@ fn every_block_brings_every_sub_buffer_back() {
 }
 
 #[test]
-fn both_roads_shade_the_same_irradiance() {
+fn both_methods_shade_the_same_irradiance() {
     let watched = Watched::open("cornell");
     let common = [("size", "97x53"), ("pattern", "5x7"), ("vpls", "128")];
     let gathered = watched.rgb(&watched.render_stages(TECHNIQUE, &common, STAGES), "gather.irradiance");
