@@ -22,7 +22,7 @@ pub use tables::{
 };
 pub use tree::{NodeOrder, StackPlace, TREE};
 
-use crate::choice::Choice;
+use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};
 use glam::Vec3;
@@ -73,28 +73,17 @@ pub struct Part {
     pub max: f64,
 }
 
-/// What another value of a setting may change of a frame: the light of its pixels, before exposure and tone mapping.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Changes {
-    /// It is another picture, or another estimate of it.
-    Picture,
-    /// Only where, or how many, samples are taken: the integral that they converge to stays.
-    Samples,
-    /// Only how a file shows it.
-    File,
-    /// Nothing of it: only what it costs, or what is written beside it. On the reference driver not a bit is another.
-    Nothing,
-}
-
-impl Changes {
-    /// In the words of the settings' page.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Picture => "picture",
-            Self::Samples => "samples",
-            Self::File => "file",
-            Self::Nothing => "nothing",
-        }
+choices! {
+    /// What another value of a setting may change of a frame: the light of its pixels, before exposure and tone mapping.
+    pub enum Changes {
+        /// It is another picture, or another estimate of it.
+        "picture" => Picture,
+        /// Only where, or how many, samples are taken: the integral that they converge to stays.
+        "samples" => Samples,
+        /// Only how a file shows it.
+        "file" => File,
+        /// Nothing of it: only what it costs, or what is written beside it. On the reference driver not a bit is another.
+        "nothing" => Nothing,
     }
 }
 

@@ -97,6 +97,17 @@ impl Pictures<'_> {
     }
 }
 
+/// What `Setting::changing` leaves empty and no row may.
+#[test]
+fn every_row_has_a_key_a_help_and_a_possible_default() {
+    for technique in techniques::ALL {
+        for row in settings_of(*technique) {
+            assert!(!row.key.is_empty() && !row.help.is_empty(), "{}: {row:?}", technique.name());
+            settings::Values::defaults(&[row]).set(&row, row.default).unwrap();
+        }
+    }
+}
+
 /// Settings of the device that is opened, which a picture's values do not reach: tests/collapse.rs and tests/budget.rs.
 const OF_DEVICE: [&str; 2] = ["allocation", "memory-budget"];
 

@@ -141,7 +141,7 @@ impl Technique for DeepShading {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, SHADOW_MAPS]
+        &[settings::SETTINGS, settings::SHARED, SHADOW_MAPS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {

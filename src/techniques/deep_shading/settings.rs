@@ -306,16 +306,11 @@ pub const SETTINGS: &[Setting] = &[
                take the mean of each pixel's own samples",
         ..Setting::changing(Changes::Picture)
     },
-    INSTRUMENT,
-    APERTURE,
-    FOCUS,
-    STEREO,
-    STEREO_EYES,
-    SHUTTER,
-    BRDF,
-    GEOMETRY,
-    MAPPED_DIRECT_SHADOW,
 ];
+
+/// Rows that other techniques have too.
+pub const SHARED: &[Setting] =
+    &[INSTRUMENT, APERTURE, FOCUS, STEREO, STEREO_EYES, SHUTTER, BRDF, GEOMETRY, MAPPED_DIRECT_SHADOW];
 
 fn without_space(values: &Values) -> Option<Unread> {
     Unread::unless(values, "shading", ShadingKind::OF_SPACE, "it has no shading space")
