@@ -10,11 +10,12 @@ use crate::job::Job;
 use crate::picture::Picture;
 use crate::session::Session;
 use crate::settings::Values;
+use crate::techniques::bench_stage::{BenchStage, Copying};
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Renderers on the device at once: pairs need company, and a long sweep must not need the memory of all its variants. Five
-/// blocks with an identity each stand in one group with their baseline, so that their own ratios are known.
+/// copies with an identity each stand in one group with their baseline, so that their own ratios are known.
 const MAX_RENDERERS: usize = 11;
 
 /// Place of the baseline among the probes.
@@ -30,7 +31,7 @@ pub struct Member {
     pub variant: Rc<Variant>,
     /// Place among the probes.
     pub probe: usize,
-    /// The same kernel at pattern 1x1; for copying stages only.
+    /// The same kernel moving each texel to its own place; for copying stages only.
     pub identity: Option<Companion>,
     /// vkCmdCopyBuffer of as many bytes; for copying stages only.
     pub copy: Option<Companion>,
@@ -113,10 +114,8 @@ impl Group {
 
     /// Identity and copy, of a copying stage.
     fn companions(&mut self, ground: &Ground<'_>, variant: &Variant, values: &Values) -> [Option<Companion>; 2] {
-        if !ground.what.copies() {
-            return [None, None];
-        }
-        [Some(self.identity(ground, values)), Some(self.copy(ground, variant.result_bytes()))]
+        let Some(copying) = variant.stage.and_then(BenchStage::copying) else { return [None, None] };
+        [Some(self.identity(ground, copying, values)), Some(self.copy(ground, variant.result_bytes()))]
     }
 
     fn push(&mut self, probe: Rc<dyn Probe>) -> usize {
@@ -124,9 +123,9 @@ impl Group {
         self.probes.len() - 1
     }
 
-    /// Variants that differ in their pattern only share it.
-    fn identity(&mut self, ground: &Ground<'_>, values: &Values) -> Companion {
-        let identity = identity_values(ground.job, values)?;
+    /// Variants that differ only in what the identity settles share it.
+    fn identity(&mut self, ground: &Ground<'_>, copying: &Copying, values: &Values) -> Companion {
+        let identity = identity_values(ground.job, copying, values)?;
         let key = format!("{identity:?}");
         if let Some(known) = self.identities.get(&key) {
             return known.clone();
@@ -173,11 +172,10 @@ pub fn is_of_memory(error: &Error) -> bool {
     error.kind() == ErrorKind::Memory
 }
 
-/// The settings of the identity: the same kernel and storage at pattern 1x1. A copy's time does not depend on what is
-/// copied, so one virtual point light is enough for it; at 1x1 every pixel would meet all of them.
-fn identity_values(job: &Job, values: &Values) -> Result<Values> {
-    let identity = changed(job, values, [("pattern", "1x1"), ("direct-pattern", "auto")]).map_err(|error| {
-        Error::request(format!("there is no copy at pattern 1x1 to compare with: {}", error.message()))
+/// The settings of the identity: the same kernel and storage, moving each texel to its own place.
+fn identity_values(job: &Job, copying: &Copying, values: &Values) -> Result<Values> {
+    let identity = changed(job, values, copying.identity_settings.iter().copied()).map_err(|error| {
+        Error::request(format!("there is no copy at {} to compare with: {}", copying.identity, error.message()))
     })?;
-    Ok(changed(job, &identity, [("vpls", "1")]).unwrap_or(identity))
+    Ok(changed(job, &identity, copying.spare.iter().copied()).unwrap_or(identity))
 }

@@ -1,7 +1,7 @@
 //! What else ran on the machine while rows were measured: processors' time that went to other processes, and to other
 //! guests of the same host. Linux reports both (proc(5)); on other systems neither is known.
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 /// From this part of all processors' time on a machine is busy. A software driver works on all processors, so what others
 /// take of them a frame waits for: 5 % is about how wide the intervals of nine rounds are on a machine of two.
@@ -24,11 +24,15 @@ pub struct Ticks {
     own: u64,
 }
 
-/// Parts of all processors' time, 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A row's `machine`: parts of all processors' time, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Load {
+    /// Part that other processes took.
     pub other_cpu_share: f64,
+    /// Part that other guests of the host took.
     pub steal_share: f64,
+    /// Whether both together are over `BUSY_SHARE`.
+    pub busy: bool,
 }
 
 impl Ticks {
@@ -62,21 +66,12 @@ impl Load {
         // The process's ticks are counted apart from the machine's, and may be one ahead.
         let other = passed(|ticks| ticks.busy).saturating_sub(passed(|ticks| ticks.own));
         let share = |ticks: u64| ticks as f64 / all as f64;
-        (all >= LEAST_TICKS)
-            .then(|| Self { other_cpu_share: share(other), steal_share: share(passed(|one| one.steal)) })
+        (all >= LEAST_TICKS).then(|| Self::of(share(other), share(passed(|one| one.steal))))
     }
 
-    /// Name in rows.
-    pub fn json(self) -> Value {
-        let Self { other_cpu_share, steal_share } = self;
-        let busy = other_cpu_share + steal_share > BUSY_SHARE;
-        json!({ "other_cpu_share": other_cpu_share, "steal_share": steal_share, "busy": busy })
+    fn of(other_cpu_share: f64, steal_share: f64) -> Self {
+        Self { other_cpu_share, steal_share, busy: other_cpu_share + steal_share > BUSY_SHARE }
     }
-}
-
-/// Whether a row was measured while the machine was busy; rows of which nothing is known were not.
-pub fn is_busy(row: &Value) -> bool {
-    row["machine"]["busy"] == true
 }
 
 #[cfg(test)]
@@ -99,10 +94,8 @@ mod tests {
         let after = ticks([1500, 30, 170, 5340, 70, 10, 10, 60], [800, 100]);
         let load = Load::between(before, after).unwrap();
         assert!((load.other_cpu_share - 0.04).abs() < 1e-12 && (load.steal_share - 0.04).abs() < 1e-12, "{load:?}");
-        assert_eq!(load.json()["busy"], true, "together they are over a twentieth");
-        let quiet = Load { steal_share: 0.0, ..load };
-        assert_eq!(quiet.json()["busy"], false);
-        assert!(is_busy(&json!({ "machine": load.json() })) && !is_busy(&json!({ "machine": null })));
+        assert!(load.busy, "together they are over a twentieth");
+        assert!(!Load::of(load.other_cpu_share, 0.0).busy);
     }
 
     #[test]

@@ -4,11 +4,12 @@
 //! A B A B, so that drift of the machine falls on all of them; ratios are of the same round, and to the baseline of the
 //! same group. Rows are written when their group is done.
 
-pub mod blocks;
+pub mod best;
 pub mod candidate;
 pub mod copy;
 pub mod faster;
 pub mod group;
+pub mod head;
 pub mod machine;
 pub mod pareto;
 pub mod rays;
@@ -21,5 +22,6 @@ pub mod stats;
 pub mod summary;
 pub mod sweep;
 pub mod table;
+pub mod units;
 pub mod variant;
 pub mod what;

@@ -1,25 +1,20 @@
 //! The Pareto set of time and error: the variants that no other beats in both, as far as their intervals show.
 
 use super::faster;
-use serde_json::{Value, json};
+use super::row::BenchRow;
 
-/// The row's errors against the reference that was asked for, else against `--split none`.
-pub fn errors(row: &Value) -> &Value {
-    if row["errors"].is_object() { &row["errors"] } else { &row["error_against_none"] }
-}
-
-/// The row's time ratio to the baseline and the RMSE of its `errors`, each better when less. None where one of them is
+/// The row's time ratio to the baseline and the RMSE of its errors, each better when less. None where one of them is
 /// missing, or there is no interval: then it is unknown whether another is faster.
-fn place(row: &Value) -> Option<[f64; 2]> {
-    row["ratio"]["interval_95"][1].as_f64()?;
-    Some([row["ratio"]["mean"].as_f64()?, errors(row)["rmse"].as_f64()?])
+fn place(row: &BenchRow) -> Option<[f64; 2]> {
+    row.interval()?;
+    Some([row.ratio.as_ref()?.mean, row.best_known_errors()?.rmse])
 }
 
 /// Marks the rows of the set: no other with at most their error is proven to be faster. Those that are in it because
 /// the intervals do not decide are marked with the rows that they are not told apart from.
-pub fn mark(rows: &mut [Value]) {
+pub fn mark(rows: &mut [BenchRow]) {
     let places: Vec<_> = rows.iter().map(place).collect();
-    let marks: Vec<Option<Vec<Value>>> = (0..rows.len())
+    let marks: Vec<Option<Vec<String>>> = (0..rows.len())
         .map(|index| {
             let [time, error] = places[index]?;
             let rivals = || {
@@ -30,35 +25,34 @@ pub fn mark(rows: &mut [Value]) {
                 return None;
             }
             let quicker = rivals().filter(|(_, [theirs, _])| *theirs < time);
-            Some(quicker.map(|(other, _)| rows[other]["variant"].clone()).collect())
+            Some(quicker.map(|(other, _)| rows[other].variant.clone()).collect())
         })
         .collect();
     for (row, untold) in rows.iter_mut().zip(marks) {
-        // Kept rows may be anything but a map, which takes no keys.
-        let (Some(untold), Some(row)) = (untold, row.as_object_mut()) else { continue };
-        row.insert("pareto".to_owned(), json!(true));
-        if !untold.is_empty() {
-            row.insert("pareto_not_told_from".to_owned(), json!(untold));
-        }
+        row.pareto = untold.is_some().then_some(true);
+        row.pareto_not_told_from = untold.filter(|untold| !untold.is_empty());
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::stats::Ratio;
+    use crate::metrics::Metrics;
 
-    fn row(variant: &str, ratio: f64, reach: f64, rmse: f64) -> Value {
-        let interval = [ratio - reach, ratio + reach];
-        json!({
-            "variant": variant,
-            "ratio": { "mean": ratio, "interval_95": interval },
-            "error_against_none": { "rmse": rmse },
-        })
+    fn row(variant: &str, ratio: f64, reach: f64, rmse: f64) -> BenchRow {
+        let interval = Some([ratio - reach, ratio + reach]);
+        BenchRow {
+            variant: variant.to_owned(),
+            ratio: Some(Ratio { mean: ratio, interval, pairs: 3 }),
+            error_against_none: Some(Metrics { rmse, ..Metrics::EQUAL }),
+            ..BenchRow::default()
+        }
     }
 
-    fn marked(mut rows: Vec<Value>) -> Vec<bool> {
+    fn marked(mut rows: Vec<BenchRow>) -> Vec<bool> {
         mark(&mut rows);
-        rows.iter().map(|row| row["pareto"] == true).collect()
+        rows.iter().map(|row| row.pareto == Some(true)).collect()
     }
 
     #[test]
@@ -71,9 +65,9 @@ mod tests {
             row("d", 0.2, 0.02, 0.05),
             // As bad as the first, and slower.
             row("e", 1.5, 0.1, 0.0),
-            json!({ "variant": "x", "skipped": "impossible" }),
-            json!({ "ratio": { "mean": 0.1, "interval_95": [0.1, 0.1] } }),
-            json!(7),
+            BenchRow { skipped: Some("impossible".to_owned()), ..BenchRow::default() },
+            BenchRow { error_against_none: None, ..row("x", 0.1, 0.0, 0.0) },
+            BenchRow::default(),
         ];
         assert_eq!(marked(rows), [true, true, false, true, false, false, false, false]);
         assert_eq!(marked(Vec::new()), [false; 0]);
@@ -83,12 +77,11 @@ mod tests {
     fn a_rival_that_is_not_told_to_be_faster_beats_nobody() {
         let mut rows = vec![row("a", 0.5, 0.1, 0.0), row("b", 0.6, 0.1, 0.01), row("c", 0.9, 0.1, 0.01)];
         mark(&mut rows);
-        let told: Vec<_> =
-            rows.iter().map(|row| (row["pareto"] == true, row["pareto_not_told_from"].clone())).collect();
-        assert_eq!(told, [(true, Value::Null), (true, json!(["a"])), (false, Value::Null)]);
+        let told: Vec<_> = rows.iter().map(|row| (row.pareto, row.pareto_not_told_from.clone())).collect();
+        assert_eq!(told, [(Some(true), None), (Some(true), Some(vec!["a".to_owned()])), (None, None)]);
         // One round, or two, have no interval: nothing is marked.
         let mut few = row("a", 0.5, 0.0, 0.0);
-        few["ratio"]["interval_95"] = Value::Null;
+        few.ratio.as_mut().unwrap().interval = None;
         assert_eq!(marked(vec![few, row("b", 0.6, 0.1, 0.01)]), [false, true]);
     }
 }

@@ -1,241 +1,255 @@
-//! A row: one variant's settings, times, bytes and error, as a JSON document of one line.
+//! A row: one variant's settings, times, bytes and errors, as a JSON document of one line.
+//!
+//! Rows of earlier versions lack keys that were added since: what is not there is None, or empty. Keys that this version
+//! does not know are kept as they are.
 
-use super::candidate::Candidate;
-use super::group::{BASELINE, Companion, Ground, Member};
 use super::machine::Load;
-use super::reference::{Found, Reference, pass_ms};
-use super::rounds::Samples;
-use super::stats::{median, paired_ratio};
-use super::what::What;
-use crate::choice::Choice;
-use crate::error::{Error, Result};
-use crate::job::{Job, settings};
-use crate::metrics;
-use crate::passes::filter::Filter;
-use crate::picture::Picture;
-use crate::reference::Asked;
+use super::stats::Ratio;
+use super::units::UnitTimes;
+use crate::caps::Identity;
+use crate::keyed::Keyed;
+use crate::metrics::Metrics;
+use crate::report::errors::{Errors, ReferenceIdentity};
+use crate::report::memory::MemorySums;
+use crate::report::nullable::present;
 use crate::report::spread::Spread;
-use crate::settings::Values;
-use crate::settings::written::SettingValue;
-use crate::techniques::Technique;
+use crate::settings::written::WrittenSettings;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
-/// What every row of a run shares.
-pub struct Head<'a> {
-    pub ground: Ground<'a>,
+/// Its fields are the keys of the JSON document, in their order.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BenchRow {
+    /// Number of the set of keys.
+    pub schema: u32,
+    /// The word after `bench`.
+    pub bench: String,
+    /// What the row sets, in words.
+    pub variant: String,
+    pub device: Option<Identity>,
+    /// Commit of the program.
+    pub commit: String,
+    pub scene: SceneName,
+    /// The technique's name.
+    pub technique: String,
+    /// Settings as they were typed, those at their defaults left out; None in rows of before it was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asked: Option<WrittenSettings>,
+    /// Every setting as it was used; as it was typed where the row was not measured.
+    pub settings: WrittenSettings,
+    /// Rounds.
     pub repeat: usize,
-    /// The baseline's label.
+    /// The variant that ratios are to.
+    pub baseline: String,
+    /// True with `--fair`; else None.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fair: Option<bool>,
+    /// What `errors` are against; None without `--reference`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference: Option<ReferenceIdentity>,
+    /// Axes of the sweep that the row does not read; None where it reads them all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unread_axes: Option<Vec<String>>,
+    /// The command that repeats it, a word an entry; None, as all that follows, of a row that was not measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<Vec<String>>,
+    /// Shared by rows that were measured in the same rounds, and by no others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// What else the machine did; null where nobody tells.
+    #[serde(deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub machine: Option<Option<Load>>,
+    /// `wall` or `timestamps`: what times are by.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clock: Option<String>,
+    /// Hash of its picture, hexadecimal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image_hash: Option<String>,
+    /// Milliseconds of whole frames; None where a stage was timed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame_ms: Option<Spread>,
+    /// Milliseconds of the stage's passes; None where frames were timed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stage_ms: Option<Spread>,
+    /// Median milliseconds of each timed pass, by its full name; null where no memory was left to time them.
+    #[serde(deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub pass_ms: Option<Option<Keyed<f64>>>,
+    /// Time of the baseline in parts of the row's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_up: Option<SpeedUp>,
+    /// Time in parts of the baseline's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<Ratio>,
+    /// Bytes that the timed passes read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bytes_read: Option<u64>,
+    /// Bytes that the timed passes write.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bytes_written: Option<u64>,
+    /// Bytes that the technique asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub planned_bytes: Option<u64>,
+    /// As the report of its command has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub memory: Option<MemorySums>,
+    /// As the report of its command has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub counters: Option<BTreeMap<String, f64>>,
+    /// A copy beside the same kernel moving each texel to its own place; None of other stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub identity: Option<Beside>,
+    /// A copy beside vkCmdCopyBuffer of as many bytes; None of other stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub copy: Option<Beside>,
+    /// Bytes that a copy leaves; None of other stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub copied_bytes: Option<u64>,
+    /// Those, 10^9 a second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub copied_gb_per_s: Option<f64>,
+    #[serde(flatten)]
+    pub unit_times: UnitTimes,
+    /// Errors against the technique's plain form; None where it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_against_none: Option<Metrics>,
+    /// Nanoseconds of one light at one pixel in the plain form; None of stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evaluation_ns: Option<f64>,
+    /// Milliseconds of the passes that the plain form does not have; None of stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overhead_ms: Option<f64>,
+    /// Milliseconds of a pass of one light, null where no memory was left to time it; None of stages.
+    #[serde(deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub light_pass_ms: Option<Option<f64>>,
+    /// `overhead_ms` in such passes, null as `light_pass_ms`; None of stages.
+    #[serde(deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub overhead_light_passes: Option<Option<f64>>,
+    /// `overhead_ms` in evaluations of a light for each pixel; None of stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overhead_evaluations_per_pixel: Option<f64>,
+    /// Why there is no plain form to compare with; None where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_skipped: Option<String>,
+    /// Errors against `reference`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Errors>,
+    /// Why there are none although a reference was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors_skipped: Option<String>,
+    /// Why it was not measured; None where it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skipped: Option<String>,
+    /// True for rows of the Pareto set, in a summary; else None.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pareto: Option<bool>,
+    /// Variants with a shorter time that the intervals do not tell it from, in a summary; None where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pareto_not_told_from: Option<Vec<String>>,
+    /// Keys that this version does not know.
+    #[serde(flatten)]
+    pub other: Map<String, Value>,
+}
+
+/// Which scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SceneName {
+    /// Built-in name with parameters, or path.
+    #[serde(default)]
+    pub name: String,
+    /// BLAKE3 of what is drawn, hexadecimal.
+    pub hash: String,
+}
+
+/// A ratio, and the variant that it is to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpeedUp {
+    #[serde(flatten)]
+    pub ratio: Ratio,
     pub baseline: String,
 }
 
-/// The rounds in which a row was measured.
-pub struct Rounds {
-    /// Shared by the rows of a group, and by no others.
-    pub group: String,
-    /// Times of every probe of the group.
-    pub samples: Vec<Samples>,
-    /// What else the machine did meanwhile; None where the system does not report it.
-    pub load: Option<Load>,
+/// A copy's time in parts of another's, or why there is no other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Beside {
+    Measured {
+        #[serde(flatten)]
+        ratio: Ratio,
+        /// Milliseconds of the other.
+        ms: Spread,
+    },
+    Skipped {
+        skipped: String,
+    },
 }
 
-impl Head<'_> {
-    /// The keys that say what a row is of; `key` reads these. Settings are as they were typed: their resolved values
-    /// are known when they are made.
-    pub fn row(&self, candidate: &Candidate) -> Value {
-        let Ground { job, session, what, is_fair } = &self.ground;
-        let settings: Map<String, Value> =
-            candidate.settings.iter().map(|(key, text)| (key.clone(), json!(SettingValue::of(text)))).collect();
-        let mut row = json!({
-            "schema": 1,
-            "bench": what.name(),
-            "variant": candidate.label,
-            "device": session.gpu.caps.identity,
-            "commit": env!("QUINCUNX_COMMIT"),
-            "scene": { "name": session.scene.name, "hash": session.scene.hash },
-            "technique": candidate.job.technique.name(),
-            "asked": candidate.asked,
-            "settings": settings,
-            "repeat": self.repeat,
-            "baseline": self.baseline,
-        });
-        if *is_fair {
-            row["fair"] = json!(true);
-        }
-        if let Some(asked) = &job.reference {
-            row["reference"] = json!(asked.identity());
-        }
-        row
-    }
-
-    /// The row of a variant that cannot be, and why.
-    pub fn skipped(&self, candidate: &Candidate, error: &Error) -> Value {
-        let mut row = self.row(candidate);
-        row["skipped"] = json!(error.message());
-        row
-    }
-
-    /// The row of a variant that was measured, in `rounds`.
-    ///
-    /// Errors: the picture holds NaN or infinity (exit code 1); the device fails (4).
-    pub fn measured(
-        &self,
-        candidate: &Candidate,
-        member: &Member,
-        picture: &Picture,
-        rounds: &Rounds,
-        reference: &Found,
-    ) -> Result<Value> {
-        let Ground { job, session, what, .. } = &self.ground;
-        let renderer = &member.variant.renderer;
-        let samples = &rounds.samples;
-        let values = candidate.values.as_ref().map_err(Error::clone)?;
-        let times = samples[member.probe].totals_ms();
-        let baseline = samples[BASELINE].totals_ms();
-        let [read, written] = member.variant.traffic_bytes();
-        let mut row = self.row(candidate);
-        row["settings"] = json!(settings(session, renderer, values));
-        if !candidate.unread_axes.is_empty() {
-            row["unread_axes"] = json!(candidate.unread_axes);
-        }
-        row["command"] = json!(repeating_command(job, *what, candidate.job.technique, values));
-        row["group"] = json!(rounds.group);
-        row["machine"] = json!(rounds.load.map(Load::json));
-        row["clock"] = json!(renderer.clock().name());
-        row["image_hash"] = json!(picture.hash()?);
-        row[what.time_key()] = json!(Spread::of(&times));
-        row["pass_ms"] = self.pass_ms(candidate, member, samples)?;
-        row["speed_up"] = paired_ratio(&baseline, &times).json();
-        row["speed_up"]["baseline"] = json!(self.baseline);
-        row["ratio"] = paired_ratio(&times, &baseline).json();
-        row["bytes_read"] = json!(read);
-        row["bytes_written"] = json!(written);
-        row["planned_bytes"] = json!(renderer.plan.bytes());
-        row["memory"] = json!(session.memory_table(renderer, None)?.touched_as(&renderer.touched_bytes()?).sums());
-        row["counters"] = json!(renderer.measured_counters()?);
-        match what {
-            What::Split | What::Gather => copies(&mut row, member, samples),
-            What::Shade => evaluations(&mut row, member, &times),
-            What::Filter => taps(&mut row, member, &times),
-            What::Frame => {}
-        }
-        match reference {
-            Ok(reference) => {
-                let comparison = metrics::compare(picture, &reference.picture, metrics::DEFAULT_THRESHOLD)?;
-                row["error_against_none"] = json!(comparison.metrics);
-                overhead(&mut row, picture, reference);
-            }
-            Err(error) => row["reference_skipped"] = json!(error.message()),
-        }
-        Ok(row)
-    }
-
-    /// Median milliseconds of each timed pass. A frame is one submit: its passes are timed in frames of their own.
-    fn pass_ms(&self, candidate: &Candidate, member: &Member, samples: &[Samples]) -> Result<Value> {
-        let Ground { session, what, .. } = &self.ground;
-        let passes: Vec<(String, f64)> = if *what == What::Frame {
-            let values = candidate.values.as_ref().map_err(Error::clone)?;
-            match pass_ms(&candidate.job, session, values)? {
-                Some(passes) => passes,
-                None => return Ok(Value::Null),
-            }
-        } else {
-            let names = member.variant.stage.iter().map(|index| member.variant.renderer.passes()[*index].name.clone());
-            names.zip(samples[member.probe].part_medians_ms()).collect()
-        };
-        Ok(Value::Object(passes.into_iter().map(|(name, ms)| (name, json!(ms))).collect::<Map<_, _>>()))
-    }
-}
-
-/// What says that two rows are of the same measurement.
-pub fn key(row: &Value) -> String {
-    let parts = ["bench", "technique", "device", "commit", "repeat", "baseline", "variant", "reference", "fair"];
-    let mut key: Vec<&Value> = parts.iter().map(|part| &row[*part]).collect();
-    key.extend([&row["scene"]["hash"], asked(row)]);
-    json!(key).to_string()
-}
-
-/// Settings as they were typed: what a row's are by name. Rows of earlier versions have these as their settings.
-pub fn asked(row: &Value) -> &Value {
-    if row["asked"].is_object() { &row["asked"] } else { &row["settings"] }
-}
-
-/// The `render` command of a variant: every setting that is not at its default; pass times where a stage is timed.
-fn repeating_command(job: &Job, what: What, technique: &'static dyn Technique, values: &Values) -> Vec<String> {
-    let defaults = Job::new(&job.scene, technique).values;
-    let mut command = ["quincunx", "render", &job.scene, "--technique", technique.name()].map(str::to_owned).to_vec();
-    for (key, default) in defaults.iter() {
-        if values.text(key) != default {
-            command.extend([format!("--{key}"), values.text(key).to_owned()]);
+impl Beside {
+    /// None where there is no other.
+    pub fn ratio(&self) -> Option<&Ratio> {
+        match self {
+            Self::Measured { ratio, .. } => Some(ratio),
+            Self::Skipped { .. } => None,
         }
     }
-    command.extend(job.reference.iter().flat_map(Asked::arguments));
-    if what != What::Frame {
-        command.push("--profile".to_owned());
-    }
-    command
 }
 
-/// A copy beside the identity shader and beside vkCmdCopyBuffer.
-fn copies(row: &mut Value, member: &Member, samples: &[Samples]) {
-    let times = samples[member.probe].totals_ms();
-    let against = |companion: &Companion| match companion {
-        Ok(probe) => {
-            let theirs = samples[*probe].totals_ms();
-            let mut entry = paired_ratio(&times, &theirs).json();
-            entry["ms"] = json!(Spread::of(&theirs));
-            entry
-        }
-        Err(error) => json!({ "skipped": error.message() }),
-    };
-    if let Some(identity) = &member.identity {
-        row["identity"] = against(identity);
+impl BenchRow {
+    /// What says that two rows are of the same measurement.
+    pub fn key(&self) -> String {
+        json!([
+            self.bench,
+            self.technique,
+            self.device,
+            self.commit,
+            self.repeat,
+            self.baseline,
+            self.variant,
+            self.reference,
+            self.fair,
+            self.scene.hash,
+            self.asked(),
+        ])
+        .to_string()
     }
-    if let Some(copy) = &member.copy {
-        row["copy"] = against(copy);
-        let bytes = member.variant.result_bytes();
-        row["copied_bytes"] = json!(bytes);
-        // Bytes over milliseconds are kilobytes a second.
-        row["copied_gb_per_s"] = json!(bytes as f64 / median(&times) / 1e6);
+
+    /// Settings as they were typed: what a row's are by name. Rows of earlier versions have these as their settings.
+    pub fn asked(&self) -> &WrittenSettings {
+        self.asked.as_ref().unwrap_or(&self.settings)
     }
-}
 
-/// Nanoseconds for each light of a pixel's subset at each pixel that is shaded.
-fn evaluations(row: &mut Value, member: &Member, times: &[f64]) {
-    let renderer = &member.variant.renderer;
-    let Some(lights) = renderer.counters.get("subset_lights_per_pixel") else { return };
-    // `--split subsample` shades one pixel of each pattern.
-    let shaded = renderer.counters.get("shaded_pixels").copied().unwrap_or(0.0);
-    row["ns_per_evaluation"] = json!(1e6 * median(times) / (shaded * lights).max(1.0));
-}
-
-/// Nanoseconds a pixel, discontinuities included, and of those for each tap of both directions.
-fn taps(row: &mut Value, member: &Member, times: &[f64]) {
-    let pixel_ns = 1e6 * median(times) / member.variant.extent().pixel_count() as f64;
-    row["ns_per_pixel"] = json!(pixel_ns);
-    let filter = row["settings"]["filter"].as_str().and_then(Filter::from_word).unwrap_or(Filter::None);
-    if let Some(taps) = row["settings"]["kernel"].as_f64().and_then(|kernel| filter.taps(kernel)) {
-        row["ns_per_tap"] = json!(pixel_ns / taps);
+    /// The text of a setting as it was typed; empty where it was not.
+    pub fn asked_text(&self, key: &str) -> String {
+        self.asked().get(key).map(ToString::to_string).unwrap_or_default()
     }
-}
 
-/// What a frame has beside plain deferred shading, in evaluations of one light at each pixel.
-fn overhead(row: &mut Value, picture: &Picture, reference: &Reference) {
-    let (Some(cost), Some(passes)) = (&reference.cost, row["pass_ms"].as_object()) else { return };
-    // With --fuse on the composite does a part of the filter's work.
-    let is_fused = row["settings"]["fuse"] == "on";
-    let own: f64 = passes
-        .iter()
-        .map(|(name, ms)| (name, ms.as_f64().unwrap_or_default()))
-        .map(|(name, ms)| match cost.pass_ms.get(name) {
-            None => ms,
-            Some(plain_ms) if is_fused && name.ends_with(".composite") => (ms - plain_ms).max(0.0),
-            Some(_) => 0.0,
-        })
-        .sum();
-    let pixels = picture.extent.pixel_count() as f64;
-    row["evaluation_ns"] = json!(cost.evaluation_ns);
-    row["overhead_ms"] = json!(own);
-    row["light_pass_ms"] = json!(cost.light_pass_ms);
-    row["overhead_light_passes"] = json!(cost.light_pass_ms.map(|pass| own / pass.max(1e-9)));
-    row["overhead_evaluations_per_pixel"] = json!(1e6 * own / (pixels * cost.evaluation_ns).max(1e-9));
+    /// Times of the frame, or of the stage; None where it was not measured.
+    pub fn times_ms(&self) -> Option<&Spread> {
+        self.frame_ms.as_ref().or(self.stage_ms.as_ref())
+    }
+
+    /// The errors against the reference that was asked for, else against the plain form.
+    pub fn best_known_errors(&self) -> Option<&Metrics> {
+        self.errors.as_ref().map(|errors| &errors.metrics).or(self.error_against_none.as_ref())
+    }
+
+    /// Ends of the interval of its time ratio; None where there is none.
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        self.ratio.as_ref()?.interval.filter(|ends| ends.iter().all(|end| end.is_finite()))
+    }
+
+    pub fn was_measured(&self) -> bool {
+        self.skipped.is_none()
+    }
+
+    /// Whether the machine was busy meanwhile; rows of which nothing is known were measured on a quiet one.
+    pub fn is_busy(&self) -> bool {
+        self.machine.flatten().is_some_and(|load| load.busy)
+    }
+
+    /// As rows are written: one line, without its end.
+    pub fn line(&self) -> String {
+        serde_json::to_string(self).expect("its keys are texts")
+    }
 }

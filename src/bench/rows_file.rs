@@ -1,9 +1,8 @@
 //! `rows.jsonl`: rows appended as they are found, one line and one write each, so that what is there is always valid.
 
-use super::row::key;
+use super::row::BenchRow;
 use crate::error::{Error, Result};
 use crate::units::Bytes;
-use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -30,7 +29,7 @@ pub struct RowsFile {
     file: Option<File>,
     /// Whole lines that stay; what follows them was torn off by the end of a process.
     kept_bytes: u64,
-    kept: HashMap<String, Value>,
+    kept: HashMap<String, BenchRow>,
 }
 
 impl RowsFile {
@@ -72,10 +71,11 @@ impl RowsFile {
         self.kept_bytes = whole as u64;
         let lines = bytes[..whole].split(|byte| *byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty());
         for (index, line) in lines {
-            let row: Value = serde_json::from_slice(line).ok().filter(Value::is_object).ok_or_else(|| {
-                self.error(&format!("line {} is not a row", index + 1)).note("remove the line, or use --force")
+            let row: BenchRow = serde_json::from_slice(line).map_err(|error| {
+                let why = format!("line {} is not a row: {error}", index + 1);
+                self.error(&why).note("remove the line, or use --force")
             })?;
-            self.kept.insert(key(&row), row);
+            self.kept.insert(row.key(), row);
         }
         Ok(())
     }
@@ -85,15 +85,15 @@ impl RowsFile {
     }
 
     /// The row of the same measurement as `head`, which has the keys that say what a row is of.
-    pub fn kept(&self, head: &Value) -> Option<&Value> {
-        self.kept.get(&key(head))
+    pub fn kept(&self, head: &BenchRow) -> Option<&BenchRow> {
+        self.kept.get(&head.key())
     }
 
     /// Appends a row.
     ///
     /// Errors: it cannot be written (exit code 2).
-    pub fn append(&mut self, row: &Value) -> Result<()> {
-        self.write(format!("{row}\n").as_bytes()).map_err(|error| self.error(&error.to_string()))
+    pub fn append(&mut self, row: &BenchRow) -> Result<()> {
+        self.write(format!("{}\n", row.line()).as_bytes()).map_err(|error| self.error(&error.to_string()))
     }
 
     fn write(&mut self, line: &[u8]) -> std::io::Result<()> {
@@ -109,10 +109,11 @@ impl RowsFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
-    fn row(variant: &str) -> Value {
-        json!({ "bench": "frame", "variant": variant, "scene": { "hash": "h" }, "repeat": 3 })
+    fn row(variant: &str) -> BenchRow {
+        let text =
+            format!(r#"{{ "bench": "frame", "variant": "{variant}", "scene": {{ "hash": "h" }}, "repeat": 3 }}"#);
+        serde_json::from_str(&text).unwrap()
     }
 
     #[test]
@@ -128,10 +129,10 @@ mod tests {
         let mut rows = RowsFile::open(folder.path(), Existing::Resume).unwrap();
         assert_eq!(rows.kept(&row("a")), Some(&row("a")));
         assert_eq!(rows.kept(&row("b")), None);
-        assert_eq!(rows.kept(&json!({ "bench": "split", "variant": "a" })), None);
+        assert_eq!(rows.kept(&BenchRow { bench: "split".to_owned(), ..row("a") }), None);
         rows.append(&row("b")).unwrap();
         let text = std::fs::read(&path).unwrap();
-        assert_eq!(text, [&whole[..], format!("{}\n", row("b")).as_bytes()].concat());
+        assert_eq!(text, [&whole[..], format!("{}\n", row("b").line()).as_bytes()].concat());
     }
 
     #[test]
@@ -156,11 +157,18 @@ mod tests {
         let refused = |existing| RowsFile::open(folder.path(), existing).err().unwrap();
         let error = refused(Existing::Refuse);
         assert!(error.exit_code() == 2 && error.to_string().contains("--resume"), "{error}");
-        let error = refused(Existing::Resume);
-        assert!(error.exit_code() == 2 && error.message().contains("line 2 is not a row"), "{error}");
+        for (line, why) in
+            [("nothing", "expected ident"), ("[]", ""), (r#"{"ratio":7}"#, "Ratio"), ("{\"schema\":-1}", "u32")]
+        {
+            std::fs::write(&path, format!("{{}}\n{line}\n")).unwrap();
+            let error = refused(Existing::Resume);
+            assert!(error.exit_code() == 2 && error.message().contains("line 2 is not a row"), "{error}");
+            assert!(error.message().contains(why), "{error}");
+        }
+        std::fs::write(&path, "{}\nnothing\n").unwrap();
         let mut rows = RowsFile::open(folder.path(), Existing::Overwrite).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "{}\nnothing\n");
         rows.append(&row("a")).unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), format!("{}\n", row("a")));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), format!("{}\n", row("a").line()));
     }
 }

@@ -2,9 +2,10 @@
 
 use super::candidate::{Candidate, require_readers};
 use super::group::{Ground, Group, is_of_memory};
+use super::head::{Head, Rounds};
 use super::machine::{Load, Ticks};
 use super::reference::References;
-use super::row::{Head, Rounds};
+use super::row::BenchRow;
 use super::rows_file::RowsFile;
 use super::sweep::{self, Axis};
 use super::variant::Variant;
@@ -14,7 +15,6 @@ use crate::gpu::DeviceRequest;
 use crate::interrupt;
 use crate::job::{Job, judge};
 use crate::session::Session;
-use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::rc::Rc;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -37,7 +37,7 @@ pub struct Request<'a> {
 #[derive(Debug)]
 pub struct Rows {
     /// In the order of the grid: those of this run and those that were kept.
-    pub rows: Vec<Value>,
+    pub rows: Vec<BenchRow>,
     /// The user stopped it: these are the rows of the groups that ended before.
     pub interrupted: bool,
     /// Whether the gates of the job's reference hold in all rows of this run.
@@ -49,7 +49,7 @@ pub trait Observer {
     /// A row is known, and written where rows are written.
     ///
     /// Errors: it cannot be shown (exit code 2).
-    fn row(&mut self, row: &Value) -> Result<()>;
+    fn row(&mut self, row: &BenchRow) -> Result<()>;
 
     /// `done` of `all` steps of equal work, about.
     fn step(&mut self, done: usize, all: usize);
@@ -111,7 +111,7 @@ struct Sweep<'a> {
     /// Impossible points found while the baseline was looked for.
     refused: Vec<(usize, Error)>,
     /// By place in the grid.
-    rows: Vec<Option<Value>>,
+    rows: Vec<Option<BenchRow>>,
     references: References,
     gates: Result<()>,
     file: Option<&'a mut RowsFile>,
@@ -232,11 +232,11 @@ impl<'a> Sweep<'a> {
             if let Some(asked) = &self.head.ground.job.reference {
                 match asked.judge(picture, job.technique, values, session) {
                     Ok(judged) => {
-                        row["errors"] = json!(judged.errors);
+                        row.errors = Some(judged.errors);
                         let gates = judged.gates.map_err(|error| error.within(&candidate.label));
                         self.gates = std::mem::replace(&mut self.gates, Ok(())).and(gates);
                     }
-                    Err(error) if is_impossible(&error) => row["errors_skipped"] = json!(error.message()),
+                    Err(error) if is_impossible(&error) => row.errors_skipped = Some(error.message().to_owned()),
                     Err(error) => return Err(error),
                 }
             }
@@ -254,7 +254,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// A row is written before it is shown.
-    fn emit(&mut self, index: usize, row: Value) -> Result<()> {
+    fn emit(&mut self, index: usize, row: BenchRow) -> Result<()> {
         if let Some(file) = &mut self.file {
             file.append(&row)?;
         }

@@ -1,27 +1,24 @@
 //! Medians, paired ratios and their 95 % interval.
 
+use crate::report::nullable::{interval, or_nan};
 use crate::report::spread;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 /// Rounds that an interval takes: Student's factor is 12.7 for two, whose intervals go from nothing to 10^17 and say
 /// nothing, and 4.3 for three.
 pub const LEAST_PAIRS: usize = 3;
 
 /// How many times as long one thing takes as another.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ratio {
-    /// Geometric mean of the paired ratios.
+    /// Geometric mean of the paired ratios; null in JSON where it is not finite.
+    #[serde(deserialize_with = "or_nan")]
     pub mean: f64,
     /// 95 % interval of that mean; None with fewer than `LEAST_PAIRS`.
+    #[serde(default, rename = "interval_95", deserialize_with = "interval")]
     pub interval: Option<[f64; 2]>,
+    /// Rounds that both were measured in.
     pub pairs: usize,
-}
-
-impl Ratio {
-    /// As rows write it.
-    pub fn json(&self) -> Value {
-        json!({ "mean": self.mean, "interval_95": self.interval, "pairs": self.pairs })
-    }
 }
 
 /// Ratio of `long` to `short`, where `long[i]` and `short[i]` were measured in the same round; at least one pair, all

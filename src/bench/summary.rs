@@ -1,12 +1,17 @@
-//! The summary of a sweep: all its rows with the Pareto set marked, the best blocks, what was skipped and why.
+//! The summary of a sweep: all its rows with the Pareto set marked, the best values, what was skipped and why.
 
-use super::machine::{BUSY_SHARE, is_busy};
+use super::best::{self, Best};
+use super::machine::BUSY_SHARE;
+use super::pareto;
+use super::row::BenchRow;
 use super::stats::LEAST_PAIRS;
 use super::sweep::Axis;
 use super::table::{MARK, Table};
 use super::what::What;
-use super::{blocks, pareto};
+use crate::caps::Identity;
 use crate::error::Result;
+use crate::techniques;
+use crate::techniques::bench_stage::flags;
 use crate::whole_file::write_whole;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -15,35 +20,36 @@ use std::path::Path;
 /// A finished sweep, or the part of it that was.
 pub struct Summary {
     what: What,
-    rows: Vec<Value>,
-    best_blocks: Vec<Value>,
+    rows: Vec<BenchRow>,
+    best: Vec<Best>,
     command: Vec<String>,
 }
 
 impl Summary {
     /// `rows`: at least one, in the order of the grid; `command`: the argv that repeats it.
-    pub fn new(what: What, axes: &[Axis], mut rows: Vec<Value>, command: &[String]) -> Self {
+    pub fn new(what: What, axes: &[Axis], mut rows: Vec<BenchRow>, command: &[String]) -> Self {
         pareto::mark(&mut rows);
-        // Where a stage is no copy, its blocks are another's choice.
-        let best_blocks = if what.copies() { blocks::best(axes, &rows) } else { Vec::new() };
-        Self { what, rows, best_blocks, command: command.to_vec() }
+        // What another stage's sweeps tell is no choice of this one's.
+        let best = what.tuned().map_or_else(Vec::new, |key| best::best(key, axes, &rows));
+        Self { what, rows, best, command: command.to_vec() }
     }
 
     pub fn json(&self) -> Value {
         let first = &self.rows[0];
+        let errors = if first.reference.is_none() { "error_against_none.rmse" } else { "errors.rmse" };
         json!({
             "schema": 1,
             "bench": self.what.name(),
             "command": self.command,
-            "device": first["device"],
-            "commit": first["commit"],
-            "scene": first["scene"],
-            "technique": first["technique"],
-            "baseline": first["baseline"],
-            "repeat": first["repeat"],
-            "pareto_of": ["ratio.mean", if first["reference"].is_null() { "error_against_none.rmse" } else { "errors.rmse" }],
+            "device": first.device,
+            "commit": first.commit,
+            "scene": first.scene,
+            "technique": first.technique,
+            "baseline": first.baseline,
+            "repeat": first.repeat,
+            "pareto_of": ["ratio.mean", errors],
             "rows": self.rows,
-            "best_blocks": self.best_blocks,
+            "best_blocks": self.best,
         })
     }
 
@@ -81,44 +87,43 @@ impl Summary {
 
     fn place(&self) -> String {
         let first = &self.rows[0];
-        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-        let device = &first["device"];
-        let software = if device["type"] == "cpu" { ", software driver" } else { "" };
-        format!(
-            "{} on {} ({}{software})",
-            word(&first["scene"]["name"]),
-            word(&device["name"]),
-            word(&device["driver_info"])
-        )
+        let device = first.device.as_ref();
+        let software = if device.is_some_and(Identity::is_software) { ", software driver" } else { "" };
+        let (name, driver) = device.map_or(("", ""), |device| (&device.name, &device.driver_info));
+        format!("{} on {name} ({driver}{software})", first.scene.name)
     }
 
     fn legend(&self) -> String {
-        let baseline = self.rows[0]["baseline"].as_str().unwrap_or_default();
-        let errors = self.rows[0]["reference"]["name"].as_str().unwrap_or("--split none");
-        let rounds = &self.rows[0]["repeat"];
-        let told = match rounds.as_u64() {
-            Some(few) if few < LEAST_PAIRS as u64 => {
+        let first = &self.rows[0];
+        let (baseline, rounds) = (&first.baseline, first.repeat);
+        let told = match rounds {
+            few if few < LEAST_PAIRS => {
                 format!("below {LEAST_PAIRS} rounds no interval is printed, and no two rows are told apart")
             }
             _ => format!("{MARK}: no row with at most its rmse is faster by the interval of their ratio"),
         };
-        format!("time ratios to {baseline}, of {rounds} rounds; errors against {errors}; {told}")
+        let errors = self.reference().map_or_else(String::new, |name| format!("errors against {name}; "));
+        format!("time ratios to {baseline}, of {rounds} rounds; {errors}{told}")
+    }
+
+    /// What errors are against: the reference that was asked for, else the plain form of the first technique that has one.
+    fn reference(&self) -> Option<String> {
+        let asked = self.rows[0].reference.as_ref().map(|reference| reference.name.clone());
+        let plain = |row: &BenchRow| Some(flags(techniques::find(&row.technique).ok()?.plain()?.settings));
+        asked.or_else(|| self.rows.iter().find_map(plain))
     }
 
     fn notes(&self) -> Vec<String> {
-        let skipped = self.rows.iter().filter_map(|row| {
-            let reason = row["skipped"].as_str()?;
-            Some(format!("skipped {}: {reason}", row["variant"].as_str().unwrap_or_default()))
-        });
-        self.best_blocks.iter().map(blocks::sentence).chain(self.untold()).chain(self.busy()).chain(skipped).collect()
+        let skipped =
+            self.rows.iter().filter_map(|row| Some(format!("skipped {}: {}", row.variant, row.skipped.as_ref()?)));
+        self.best.iter().map(Best::sentence).chain(self.untold()).chain(self.busy()).chain(skipped).collect()
     }
 
     /// Rows that are in the Pareto set because there were too few rounds.
     fn untold(&self) -> Option<String> {
-        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-        let pair = |row: &Value| {
-            let rivals: Vec<String> = row["pareto_not_told_from"].as_array()?.iter().map(word).collect();
-            Some(format!("{} ({})", word(&row["variant"]), rivals.join(", ")))
+        let pair = |row: &BenchRow| {
+            let rivals = row.pareto_not_told_from.as_ref()?;
+            Some(format!("{} ({})", row.variant, rivals.join(", ")))
         };
         let pairs: Vec<String> = self.rows.iter().filter_map(pair).collect();
         let which = pairs.join("; ");
@@ -129,8 +134,8 @@ impl Summary {
 
     /// Rows whose times others have had a part in.
     fn busy(&self) -> Option<String> {
-        let count = self.rows.iter().filter(|row| is_busy(row)).count();
-        let all = self.rows.iter().filter(|row| row["skipped"].is_null()).count();
+        let count = self.rows.iter().filter(|row| row.is_busy()).count();
+        let all = self.rows.iter().filter(|row| row.was_measured()).count();
         let percent = 100.0 * BUSY_SHARE;
         (count > 0).then(|| {
             format!(
@@ -144,29 +149,37 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::machine::Load;
+    use crate::bench::row::SceneName;
+    use crate::bench::stats::Ratio;
+    use crate::metrics::Metrics;
 
-    fn row(variant: &str, ratio: f64, rmse: f64) -> Value {
-        json!({
-            "variant": variant,
-            "baseline": "a",
-            "repeat": 5,
-            "scene": { "name": "box" },
-            "device": { "name": "d", "type": "cpu", "driver_info": "i" },
-            "ratio": { "mean": ratio, "interval_95": [0.9 * ratio, 1.1 * ratio] },
-            "error_against_none": { "rmse": rmse },
-        })
+    fn row(variant: &str, ratio: f64, rmse: f64) -> BenchRow {
+        let (name, driver_info) = ("d".to_owned(), "i".to_owned());
+        let (device_type, driver, api) = ("cpu".to_owned(), String::new(), String::new());
+        BenchRow {
+            variant: variant.to_owned(),
+            baseline: "a".to_owned(),
+            repeat: 5,
+            technique: "interleaved_deferred".to_owned(),
+            scene: SceneName { name: "box".to_owned(), hash: String::new() },
+            device: Some(Identity { name, device_type, driver, driver_info, api }),
+            ratio: Some(Ratio { mean: ratio, interval: Some([0.9 * ratio, 1.1 * ratio]), pairs: 5 }),
+            error_against_none: Some(Metrics { rmse, ..Metrics::EQUAL }),
+            ..BenchRow::default()
+        }
     }
 
     #[test]
     fn a_kept_row_may_say_anything() {
         let mut kept = row("a", 1e308, f64::MAX);
-        kept["bytes_read"] = json!(u64::MAX);
-        kept["bytes_written"] = json!(u64::MAX);
+        kept.bytes_read = Some(u64::MAX);
+        kept.bytes_written = Some(u64::MAX);
         // Longer than a column can be padded to.
-        kept["variant"] = json!("x".repeat(70_000));
-        kept["settings"] = json!([1, { "block": null }]);
-        let rows = vec![kept, json!({}), json!({ "ratio": 7, "device": [] })];
-        for what in [What::Frame, What::Split, What::Shade] {
+        kept.variant = "x".repeat(70_000);
+        let empty = BenchRow { technique: "none of these".to_owned(), ..BenchRow::default() };
+        let rows = vec![kept, empty, row("b", f64::NAN, f64::NAN)];
+        for what in What::all() {
             let summary = Summary::new(what, &[], rows.clone(), &[]);
             assert!(summary.text().contains("xxx") && summary.markdown().contains("xxx"));
         }
@@ -175,12 +188,12 @@ mod tests {
     #[test]
     fn a_summary_marks_the_pareto_set_and_says_what_was_skipped() {
         let mut skipped = row("c", 0.0, 0.0);
-        skipped["skipped"] = json!("it cannot be");
-        skipped["ratio"] = Value::Null;
+        skipped.skipped = Some("it cannot be".to_owned());
+        skipped.ratio = None;
         let rows = vec![row("a", 1.0, 0.0), row("b", 2.0, 0.0), skipped];
         let summary = Summary::new(What::Frame, &[], rows, &["quincunx".to_owned()]);
-        let marks: Vec<&Value> = summary.rows.iter().map(|row| &row["pareto"]).collect();
-        assert_eq!(marks, [&json!(true), &Value::Null, &Value::Null]);
+        let marks: Vec<Option<bool>> = summary.rows.iter().map(|row| row.pareto).collect();
+        assert_eq!(marks, [Some(true), None, None]);
         let text = summary.text();
         assert!(text.starts_with("box on d (i, software driver)\n"), "{text}");
         assert!(text.contains("skipped c: it cannot be") && !text.contains("busy"), "{text}");
@@ -192,9 +205,9 @@ mod tests {
 
     #[test]
     fn two_rounds_tell_nothing_and_say_so() {
-        let few = |mut row: Value| {
-            row["repeat"] = json!(2);
-            row["ratio"]["interval_95"] = Value::Null;
+        let few = |mut row: BenchRow| {
+            row.repeat = 2;
+            row.ratio.as_mut().unwrap().interval = None;
             row
         };
         let summary = Summary::new(What::Frame, &[], vec![few(row("a", 1.0, 0.0)), few(row("b", 2.0, 0.0))], &[]);
@@ -206,8 +219,8 @@ mod tests {
     #[test]
     fn rows_of_a_busy_machine_are_marked_and_counted() {
         let mut busy = row("a", 1.0, 0.0);
-        busy["machine"] = json!({ "other_cpu_share": 0.2, "steal_share": 0.0, "busy": true });
-        let text = Summary::new(What::Shade, &[], vec![busy, row("b", 2.0, 0.0)], &[]).text();
+        busy.machine = Some(Some(Load { other_cpu_share: 0.2, steal_share: 0.0, busy: true }));
+        let text = Summary::new(What::Stage("shade"), &[], vec![busy, row("b", 2.0, 0.0)], &[]).text();
         assert!(text.contains("1 of 2 rows were measured while the machine was busy: over 5 %"), "{text}");
         let lines: Vec<&str> = text.lines().filter(|line| line.ends_with("  busy")).collect();
         assert!(lines.len() == 1 && lines[0].starts_with("a "), "{text}");

@@ -19,7 +19,7 @@ pub fn axes(texts: &[String]) -> Result<Vec<Axis>> {
     let mut axes: Vec<Axis> = Vec::new();
     for text in texts {
         let wrong = |why: &str| {
-            Error::request(format!("--sweep {text}: {why}")).note("for example --sweep pattern=2x2,4x4,8x8")
+            Error::request(format!("--sweep {text}: {why}")).note("for example --sweep size=640x360,1280x720")
         };
         let (key, values) = text.split_once('=').ok_or_else(|| wrong("it must be KEY=VALUE,VALUE,..."))?;
         let key = key.trim_start_matches("--");

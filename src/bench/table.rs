@@ -1,10 +1,11 @@
 //! Rows as a table: which columns a benchmark has, in plain text or Markdown.
 
-use super::machine::is_busy;
-use super::pareto::errors;
+use super::row::{BenchRow, Beside};
+use super::stats::Ratio;
+use super::units;
 use super::what::What;
+use crate::techniques::bench_stage::Unit;
 use crate::units::Bytes;
-use serde_json::Value;
 
 /// Mark of the Pareto set.
 pub const MARK: &str = "*";
@@ -12,20 +13,23 @@ pub const MARK: &str = "*";
 /// How much of a variant's name a table shows: kept rows come from a file, and a column is padded to 65,535 at most.
 const MOST_NAME_CHARS: usize = 1000;
 
+/// What a column says of a row; None where it says nothing.
+type Cell = Box<dyn Fn(&BenchRow) -> Option<String>>;
+
 /// One column: a title, and what it says of a row.
 struct Column {
     title: &'static str,
-    cell: fn(&Value) -> Option<String>,
+    cell: Cell,
     /// Left out where it says nothing of any row.
     is_optional: bool,
 }
 
 impl Column {
-    fn new(title: &'static str, cell: fn(&Value) -> Option<String>) -> Self {
-        Self { title, cell, is_optional: false }
+    fn new(title: &'static str, cell: impl Fn(&BenchRow) -> Option<String> + 'static) -> Self {
+        Self { title, cell: Box::new(cell), is_optional: false }
     }
 
-    fn optional(title: &'static str, cell: fn(&Value) -> Option<String>) -> Self {
+    fn optional(title: &'static str, cell: impl Fn(&BenchRow) -> Option<String> + 'static) -> Self {
         Self { is_optional: true, ..Self::new(title, cell) }
     }
 }
@@ -35,77 +39,92 @@ pub struct Table {
     lines: Vec<Vec<String>>,
 }
 
-fn fixed(value: &Value, digits: usize) -> Option<String> {
-    value.as_f64().map(|value| format!("{value:.digits$}"))
+fn fixed(value: f64, digits: usize) -> String {
+    format!("{value:.digits$}")
 }
 
 /// A paired ratio with its interval.
-pub fn ratio(entry: &Value) -> Option<String> {
-    let mean = fixed(&entry["mean"], 3)?;
-    let side = |index: usize| fixed(&entry["interval_95"][index], 3);
-    Some(match (side(0), side(1)) {
-        (Some(low), Some(high)) => format!("{mean} ({low} to {high})"),
-        _ => mean,
-    })
+pub fn ratio(ratio: &Ratio) -> String {
+    let mean = fixed(ratio.mean, 3);
+    match ratio.interval {
+        Some([low, high]) => format!("{mean} ({} to {})", fixed(low, 3), fixed(high, 3)),
+        None => mean,
+    }
 }
 
-fn bytes(value: &Value) -> Option<String> {
-    value.as_u64().map(|bytes| Bytes(bytes).to_string())
+fn bytes(bytes: u64) -> String {
+    Bytes(bytes).to_string()
 }
 
 /// Read and written.
-fn moved(row: &Value) -> Option<String> {
+fn moved(row: &BenchRow) -> Option<String> {
     // Kept rows come from a file: their sum may be any.
-    let sum = row["bytes_read"].as_u64()?.checked_add(row["bytes_written"].as_u64()?)?;
-    Some(Bytes(sum).to_string())
+    row.bytes_read?.checked_add(row.bytes_written?).map(bytes)
+}
+
+fn beside(entry: &Option<Beside>) -> Option<String> {
+    entry.as_ref()?.ratio().map(ratio)
+}
+
+/// The columns of what is particular to `what`.
+fn own_columns(what: What) -> Vec<Column> {
+    let mut units: Vec<Unit> = Vec::new();
+    for count in what.stages().iter().flat_map(|(_, stage)| stage.counts()) {
+        if !units.contains(&count.unit) {
+            units.push(count.unit);
+        }
+    }
+    let mut columns = Vec::new();
+    if what == What::Frame || units.contains(&Unit::Evaluation) {
+        let texels = |row: &BenchRow| row.settings.get("texels")?.as_f64().map(|texels| texels.to_string());
+        columns.push(Column::optional("texels a thread", texels));
+    }
+    if what.copies() {
+        columns.extend([
+            Column::new("to identity (95 %)", |row| beside(&row.identity)),
+            Column::new("to copy buffer (95 %)", |row| beside(&row.copy)),
+            Column::new("GB/s", |row| row.copied_gb_per_s.map(|gb| fixed(gb, 2))),
+            Column::new("copied", |row| row.copied_bytes.map(bytes)),
+        ]);
+    }
+    columns.extend(units.into_iter().map(|unit| {
+        let (title, digits) = units::column(unit);
+        Column::optional(title, move |row| row.unit_times.get(unit).map(|ns| fixed(ns, digits)))
+    }));
+    if what == What::Frame {
+        let overhead = |row: &BenchRow| row.overhead_evaluations_per_pixel.map(|count| fixed(count, 2));
+        columns.push(Column::new("overhead, evals/pixel", overhead));
+    }
+    columns
 }
 
 fn columns(what: What) -> Vec<Column> {
-    let median: fn(&Value) -> Option<String> = match what {
-        What::Frame => |row| fixed(&row["frame_ms"]["median"], 3),
-        _ => |row| fixed(&row["stage_ms"]["median"], 3),
-    };
-    let mut columns =
-        vec![Column::new("median ms", median), Column::new("time ratio (95 %)", |row| ratio(&row["ratio"]))];
-    let texels =
-        || Column::optional("texels a thread", |row| row["settings"]["texels"].as_u64().map(|one| one.to_string()));
-    columns.extend(match what {
-        What::Split | What::Gather => vec![
-            Column::new("to identity (95 %)", |row| ratio(&row["identity"])),
-            Column::new("to copy buffer (95 %)", |row| ratio(&row["copy"])),
-            Column::new("GB/s", |row| fixed(&row["copied_gb_per_s"], 2)),
-            Column::new("copied", |row| bytes(&row["copied_bytes"])),
-        ],
-        What::Shade => vec![texels(), Column::new("ns/evaluation", |row| fixed(&row["ns_per_evaluation"], 3))],
-        What::Filter => vec![
-            Column::new("ns/pixel", |row| fixed(&row["ns_per_pixel"], 2)),
-            Column::new("ns/tap", |row| fixed(&row["ns_per_tap"], 3)),
-        ],
-        What::Frame => {
-            vec![texels(), Column::new("overhead, evals/pixel", |row| fixed(&row["overhead_evaluations_per_pixel"], 2))]
-        }
-    });
+    let mut columns = vec![
+        Column::new("median ms", |row| row.times_ms().map(|times| fixed(times.median, 3))),
+        Column::new("time ratio (95 %)", |row| row.ratio.as_ref().map(ratio)),
+    ];
+    columns.extend(own_columns(what));
     columns.extend([
         Column::new("moved", moved),
-        Column::new("memory peak", |row| bytes(&row["memory"]["peak_bytes"])),
-        Column::new("rmse", |row| fixed(&errors(row)["rmse"], 5)),
-        Column::new("flip", |row| fixed(&errors(row)["flip"], 4)),
-        Column::new("Pareto", |row| (row["pareto"] == true).then(|| MARK.to_owned())),
-        Column::optional("machine", |row| is_busy(row).then(|| "busy".to_owned())),
+        Column::new("memory peak", |row| row.memory.as_ref().map(|memory| bytes(memory.peak_bytes))),
+        Column::new("rmse", |row| row.best_known_errors().map(|errors| fixed(errors.rmse, 5))),
+        Column::new("flip", |row| row.best_known_errors().map(|errors| fixed(errors.flip, 4))),
+        Column::new("Pareto", |row| (row.pareto == Some(true)).then(|| MARK.to_owned())),
+        Column::optional("machine", |row| row.is_busy().then(|| "busy".to_owned())),
     ]);
     columns
 }
 
 impl Table {
     /// A table of the rows that were measured.
-    pub fn new(what: What, rows: &[Value]) -> Self {
-        let measured = || rows.iter().filter(|row| row["skipped"].is_null());
+    pub fn new(what: What, rows: &[BenchRow]) -> Self {
+        let measured = || rows.iter().filter(|row| row.was_measured());
         let mut columns = columns(what);
         columns.retain(|column| !column.is_optional || measured().any(|row| (column.cell)(row).is_some()));
         let titles = std::iter::once("variant").chain(columns.iter().map(|column| column.title));
         let mut lines = vec![titles.map(str::to_owned).collect::<Vec<_>>()];
         for row in measured() {
-            let name = row["variant"].as_str().unwrap_or_default().chars().take(MOST_NAME_CHARS).collect();
+            let name = row.variant.chars().take(MOST_NAME_CHARS).collect();
             let cells = columns.iter().map(|column| (column.cell)(row).unwrap_or_else(|| "-".to_owned()));
             lines.push(std::iter::once(name).chain(cells).collect());
         }

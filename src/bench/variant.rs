@@ -6,27 +6,34 @@ use crate::error::{Error, Result};
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
 use crate::techniques::Technique;
+use crate::techniques::bench_stage::BenchStage;
 use crate::units::Extent;
 
 /// A renderer whose frame, or whose stage, is timed.
 pub struct Variant {
     pub renderer: Renderer,
+    /// What is timed; None: whole frames.
+    pub stage: Option<&'static BenchStage>,
     /// Indices of the passes that are timed, in order, at least one.
-    pub stage: Vec<usize>,
-    what: What,
+    pub passes: Vec<usize>,
 }
 
 impl Variant {
     /// Makes the renderer; no frame runs.
     ///
-    /// Errors: impossible settings, or settings that leave the stage out (exit code 2); memory (4).
+    /// Errors: impossible settings, a technique without the stage, or settings that leave it out (exit code 2); memory (4).
     pub fn new(session: &Session, technique: &dyn Technique, what: What, values: &Values) -> Result<Self> {
+        let stage = what.stage_of(technique)?;
         let renderer = session.renderer(technique, values, &[], what.submits())?;
-        let stage = what.passes(technique.name(), renderer.passes());
-        if stage.is_empty() || what.is_fused(values) {
-            return Err(Error::request(what.absence(technique.name(), values)));
+        let is_timed =
+            |index: &usize| stage.is_none_or(|stage| stage.has(technique.name(), &renderer.passes()[*index].name));
+        let passes: Vec<usize> = (0..renderer.passes().len()).filter(is_timed).collect();
+        match stage {
+            Some(stage) if passes.is_empty() || stage.is_fused(values) => {
+                Err(Error::request(stage.absence(technique.name(), values)))
+            }
+            _ => Ok(Self { renderer, stage, passes }),
         }
-        Ok(Self { renderer, stage, what })
     }
 
     pub fn extent(&self) -> Extent {
@@ -35,18 +42,19 @@ impl Variant {
 
     /// Bytes read and written by the passes that are timed.
     pub fn traffic_bytes(&self) -> [u64; 2] {
-        let passes = self.stage.iter().map(|index| self.renderer.passes()[*index].traffic);
+        let passes = self.passes.iter().map(|index| self.renderer.passes()[*index].traffic);
         passes.fold([0, 0], |[read, written], pass| [read + pass.read_bytes, written + pass.written_bytes])
     }
 
     /// Bytes that the stage leaves for what comes behind it, whatever it wrote on the way: of a copy, what is copied.
     pub fn result_bytes(&self) -> u64 {
-        let (plan, last) = (&self.renderer.plan, *self.stage.last().expect("at least one pass"));
+        let (plan, last) = (&self.renderer.plan, *self.passes.last().expect("at least one pass"));
         let touches = |pass: usize, resource: usize| {
             plan.passes[pass].touches.iter().filter(move |touch| touch.resource == resource)
         };
         let is_left = |resource: &usize| {
-            let is_written = self.stage.iter().any(|pass| touches(*pass, *resource).any(|touch| touch.access.writes()));
+            let is_written =
+                self.passes.iter().any(|pass| touches(*pass, *resource).any(|touch| touch.access.writes()));
             let mut behind = last + 1..plan.passes.len();
             let is_used = behind.any(|pass| touches(pass, *resource).next().is_some());
             is_written && (is_used || plan.resources[*resource].read_back)
@@ -70,14 +78,14 @@ impl Probe for Variant {
     /// so that each finds its inputs, and the caches, as a frame leaves them.
     fn measure(&self) -> Result<Vec<f64>> {
         let milliseconds = |ns: u64| ns as f64 / 1e6;
-        if self.what == What::Frame {
+        if self.stage.is_none() {
             return Ok(vec![milliseconds(self.renderer.frame()?.figure_ns(self.renderer.clock()))]);
         }
-        let last = self.stage.last().expect("at least one pass");
+        let last = self.passes.last().expect("at least one pass");
         let frame = self.renderer.frame_first(last + 1)?;
         let clock = self.renderer.clock();
         let time =
             |index: &usize| frame.passes[*index].figure_ns(clock).expect("a submit a pass has a wall time a pass");
-        Ok(self.stage.iter().map(time).map(milliseconds).collect())
+        Ok(self.passes.iter().map(time).map(milliseconds).collect())
     }
 }

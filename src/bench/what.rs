@@ -1,50 +1,72 @@
-//! What a benchmark times: a whole frame, or the passes of one stage of it.
+//! What a benchmark times: a whole frame, or one stage of it.
 
-use crate::gpu::commands::{RecordedPass, Submits};
-use crate::settings::Values;
+use crate::error::{Error, Result};
+use crate::gpu::commands::Submits;
+use crate::techniques::bench_stage::BenchStage;
+use crate::techniques::{self, Technique};
 
 /// The word after `bench`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
-    Split,
-    Shade,
-    Gather,
-    Filter,
     Frame,
+    /// The stage of this name, of each technique that has it.
+    Stage(&'static str),
 }
 
 impl What {
-    pub const ALL: [Self; 5] = [Self::Split, Self::Shade, Self::Gather, Self::Filter, Self::Frame];
+    /// Every stage once, in the order of the techniques, and the frame.
+    pub fn all() -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for stage in techniques::ALL.iter().flat_map(|technique| technique.bench_stages()) {
+            if !all.contains(&Self::Stage(stage.name)) {
+                all.push(Self::Stage(stage.name));
+            }
+        }
+        all.push(Self::Frame);
+        all
+    }
 
     /// As the command line and the rows write it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Split => "split",
-            Self::Shade => "shade",
-            Self::Gather => "gather",
-            Self::Filter => "filter",
             Self::Frame => "frame",
+            Self::Stage(name) => name,
         }
     }
 
     /// One line for the help.
-    pub fn summary(self) -> &'static str {
-        match self {
-            Self::Split => {
-                "Copy of the G-buffer into sub-buffers, beside the same kernel at pattern 1x1 and vkCmdCopyBuffer"
+    pub fn summary(self) -> String {
+        let stages = self.stages();
+        match &stages[..] {
+            [] => "Whole frames, one submit each".to_owned(),
+            [(first, stage), others @ ..] => {
+                let others: Vec<&str> = others.iter().map(|(technique, _)| *technique).collect();
+                let also = if others.is_empty() { String::new() } else { format!("; also of {}", others.join(", ")) };
+                format!("{} ({first}{also})", stage.summary)
             }
-            Self::Shade => "Pass that shades with the lights of the subsets, in nanoseconds an evaluation",
-            Self::Gather => {
-                "Copy of the irradiance back to the frame, beside the same kernel at 1x1 and vkCmdCopyBuffer"
-            }
-            Self::Filter => "Discontinuity buffer and the filter that reads it, in nanoseconds a pixel and a tap",
-            Self::Frame => "Whole frames, one submit each",
         }
     }
 
-    /// The row's key of its times.
-    pub fn time_key(self) -> &'static str {
-        if self == Self::Frame { "frame_ms" } else { "stage_ms" }
+    /// Techniques with a stage of this name, each with its own; none for frames.
+    pub fn stages(self) -> Vec<(&'static str, &'static BenchStage)> {
+        let named = |technique: &&'static dyn Technique| {
+            let stage = technique.bench_stages().iter().find(|stage| self == Self::Stage(stage.name))?;
+            Some((technique.name(), stage))
+        };
+        techniques::ALL.iter().filter_map(named).collect()
+    }
+
+    /// The stage of `technique`; None for frames.
+    ///
+    /// Errors: it has no such stage (exit code 2, and which it has).
+    pub fn stage_of(self, technique: &dyn Technique) -> Result<Option<&'static BenchStage>> {
+        let Self::Stage(name) = self else { return Ok(None) };
+        let stages = technique.bench_stages();
+        stages.iter().find(|stage| stage.name == name).map(Some).ok_or_else(|| {
+            let names: Vec<&str> = stages.iter().map(|stage| stage.name).collect();
+            let (its_own, technique) = (names.join(", "), technique.name());
+            Error::request(format!("{technique} has no stage {name}; `bench` times its stages {its_own}, and frame"))
+        })
     }
 
     /// A stage is timed by the wall clock of a submit a pass.
@@ -54,74 +76,47 @@ impl What {
 
     /// Whether it moves texels and computes nothing, so that a plain copy is its measure.
     pub fn copies(self) -> bool {
-        matches!(self, Self::Split | Self::Gather)
+        self.stages().iter().any(|(_, stage)| stage.copying().is_some())
     }
 
-    /// Indices of the passes that belong to it: `TECHNIQUE.STAGE` and `TECHNIQUE.STAGE.*`, of a frame all.
-    pub fn passes(self, technique: &str, passes: &[RecordedPass]) -> Vec<usize> {
-        let stages: &[&str] = match self {
-            Self::Frame => return (0..passes.len()).collect(),
-            // The filter has no other reader of its flags.
-            Self::Filter => &["discontinuity", "filter"],
-            _ => &[self.name()],
-        };
-        let belongs = |name: &str| {
-            let stage = name.strip_prefix(technique).and_then(|rest| rest.strip_prefix('.'));
-            stage.is_some_and(|stage| {
-                stages
-                    .iter()
-                    .any(|known| stage.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')))
-            })
-        };
-        passes.iter().enumerate().filter(|(_, pass)| belongs(&pass.name)).map(|(index, _)| index).collect()
-    }
-
-    /// Whether its work is done in passes that do other work too.
-    pub fn is_fused(self, values: &Values) -> bool {
-        let mut settings = values.iter();
-        matches!(self, Self::Gather | Self::Filter) && settings.any(|(key, text)| key == "fuse" && text == "on")
-    }
-
-    /// Why a frame with these settings has none of its passes, or none that do nothing else.
-    pub fn absence(self, technique: &str, values: &Values) -> String {
-        let text = |key: &str| values.iter().find(|(known, _)| *known == key).map(|(_, text)| text);
-        match (self, text("split"), text("pattern"), text("filter")) {
-            _ if self.is_fused(values) => {
-                format!("--fuse on: {technique} has no passes of the {} alone", self.name())
-            }
-            (Self::Split, Some(split), ..) => format!("--split {split} makes no copy"),
-            (Self::Gather, Some(split), ..) => format!("--split {split} makes no copy, and gathers nothing"),
-            (Self::Filter, .., Some("none")) => "--filter none filters nothing".to_owned(),
-            (Self::Filter, Some(split), Some(pattern), _) => {
-                format!("--split {split} --pattern {pattern} is not interleaved: nothing is filtered")
-            }
-            _ => format!("{technique} has no pass {technique}.{}", self.name()),
-        }
+    /// The setting whose best value a sweep of it tells; None where there is none.
+    pub fn tuned(self) -> Option<&'static str> {
+        self.stages().iter().find_map(|(_, stage)| Some(stage.copying()?.tuned))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::Traffic;
 
     #[test]
-    fn a_stage_is_its_pass_and_the_passes_below_it() {
-        let names = [
-            "t.gbuffer",
-            "t.split.blocks",
-            "t.split.translate",
-            "t.splitting",
-            "t.shade",
-            "t.discontinuity",
-            "t.filter",
-        ];
-        let passes = names.map(|name| RecordedPass { name: name.to_owned(), traffic: Traffic::default() });
-        assert_eq!(What::Split.passes("t", &passes), [1, 2]);
-        assert_eq!(What::Shade.passes("t", &passes), [4]);
-        assert_eq!(What::Filter.passes("t", &passes), [5, 6]);
-        assert_eq!(What::Gather.passes("t", &passes), [0usize; 0]);
-        assert_eq!(What::Frame.passes("t", &passes).len(), 7);
-        assert_eq!(What::Split.passes("other", &passes), [0usize; 0]);
+    fn every_stage_is_named_once_and_says_whose_it_is() {
+        let all = What::all();
+        let mut names: Vec<&str> = all.iter().map(|what| what.name()).collect();
+        assert!(!names.contains(&"rays"), "a verb of its own");
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+        let shade = What::Stage("shade").summary();
+        assert!(shade.contains("(interleaved_deferred; also of deep_shading, deferred, forward)"), "{shade}");
+        assert!(What::Stage("split").copies() && !What::Stage("shade").copies() && !What::Frame.copies());
+        assert_eq!(What::Stage("gather").tuned(), Some("block"));
+        for technique in techniques::ALL {
+            let own: Vec<&str> = technique.bench_stages().iter().map(|stage| stage.name).collect();
+            assert!(!own.is_empty() && own.iter().all(|name| all.contains(&What::Stage(name))), "{own:?}");
+        }
+    }
+
+    #[test]
+    fn a_technique_without_a_stage_says_which_it_has() {
+        let deferred = techniques::find("deferred").unwrap();
+        let error = What::Stage("gather").stage_of(deferred).err().unwrap();
+        assert_eq!(error.exit_code(), 2);
+        assert_eq!(
+            error.message(),
+            "deferred has no stage gather; `bench` times its stages gbuffer, cull, shade, and frame"
+        );
+        assert!(What::Frame.stage_of(deferred).unwrap().is_none());
     }
 }

@@ -4,6 +4,7 @@ use super::listed::Listed;
 use super::output;
 use super::{job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
+use crate::bench::row::BenchRow;
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
 use crate::bench::summary::Summary;
@@ -11,11 +12,10 @@ use crate::bench::sweep;
 use crate::bench::what::What;
 use crate::error::{Error, Result};
 use crate::progress::{Pace, Stage, say};
-use crate::techniques;
-use crate::techniques::settings_of;
+use crate::techniques::bench_stage::BenchStage;
+use crate::techniques::{self, Technique, settings_of};
 use clap::error::{ContextKind, ContextValue};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use serde_json::Value;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -23,23 +23,42 @@ use std::time::Instant;
 pub fn command(listed: &Listed) -> Command {
     Command::new("bench")
         .about("Measure settings against each other: a frame, or one stage of it")
-        .after_help(
+        .after_help(format!(
             "Each command prints a row for each combination of settings, and a table at the end. Compare ratios: they are \
-             taken within one round of one run, while milliseconds drift.",
-        )
+             taken within one round of one run, while milliseconds drift.\n\nStages of each technique:\n{}",
+            stages_of_techniques()
+        ))
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands(
-            What::ALL
+            What::all()
+                .into_iter()
                 .map(|what| reference_args::with_reference_args(job_args::with_job_args(listed, sub_command(what)))),
         )
         .subcommand(rays::command())
 }
 
+/// A line a technique: which stages it has.
+fn stages_of_techniques() -> String {
+    let widest = techniques::ALL.iter().map(|technique| technique.name().len()).max().unwrap_or(0);
+    let line = |technique: &&dyn Technique| {
+        let names: Vec<&str> = technique.bench_stages().iter().map(|stage| stage.name).collect();
+        format!("  {:<widest$}  {}", technique.name(), names.join(", "))
+    };
+    techniques::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// What a stage is of each technique that has it, a paragraph each.
+fn summaries(what: What) -> String {
+    let paragraph = |(technique, stage): &(&str, &BenchStage)| format!("{technique}: {}", stage.summary);
+    what.stages().iter().map(paragraph).collect::<Vec<_>>().join("\n\n")
+}
+
 fn sub_command(what: What) -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).requires("output");
-    Command::new(what.name())
-        .about(what.summary())
+    let command = Command::new(what.name()).about(what.summary());
+    let command = if what.stages().len() > 1 { command.long_about(summaries(what)) } else { command };
+    command
         .arg(
             Arg::new("sweep")
                 .long("sweep")
@@ -84,7 +103,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     if name == rays::NAME {
         return rays::run(matches);
     }
-    let what = What::ALL.into_iter().find(|what| what.name() == name).expect("clap knows these only");
+    let what = What::all().into_iter().find(|what| what.name() == name).expect("clap knows these only");
     let mut job = job_args::job(matches, argv)?;
     job.reference = reference_args::asked(matches)?;
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
@@ -154,8 +173,8 @@ struct Rounds {
 }
 
 impl Observer for Rounds {
-    fn row(&mut self, row: &Value) -> Result<()> {
-        if self.json { output::print(&format!("{row}\n")) } else { Ok(()) }
+    fn row(&mut self, row: &BenchRow) -> Result<()> {
+        if self.json { output::print(&format!("{}\n", row.line())) } else { Ok(()) }
     }
 
     fn step(&mut self, done: usize, all: usize) {

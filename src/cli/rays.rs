@@ -99,7 +99,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     drop(stage);
     let rows = report::rows(&measured, &gpu, &scene, &request);
     if matches.get_flag("json") {
-        print(&rows.iter().map(|row| format!("{row}\n")).collect::<String>())?;
+        print(&rows.iter().map(|row| format!("{}\n", row.line())).collect::<String>())?;
     } else {
         print_text(matches, &report::text(&rows))?;
     }

@@ -212,3 +212,18 @@ impl std::ops::BitOr for Access {
         AccessSet::from(self).with(other)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What was written is waited for by the reader: who comes after it waits for readers alone.
+    #[test]
+    fn a_reader_that_waited_for_all_leaves_readers() {
+        let drawn = Access::ComputeWrite | Access::GraphicsRead;
+        assert_eq!(drawn.read_by(Access::ComputeRead), Access::GraphicsRead | Access::ComputeRead);
+        assert_eq!(AccessSet::from(Access::FragmentWrite).read_by(Access::ComputeRead), Access::ComputeRead.into());
+        // `after` is of a writer that stood alone, or of readers that no writer stands among.
+        assert_eq!(drawn.after(Access::ComputeRead), Access::ComputeRead.into());
+    }
+}

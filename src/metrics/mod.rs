@@ -55,6 +55,10 @@ impl Metrics {
     /// The names, as the command line and the reports write them, in the order of `values`.
     pub const NAMES: [&'static str; 7] = ["rmse", "relmse", "psnr", "ssim", "flip", "hdr_flip", "over_threshold"];
 
+    /// Those of equal pictures.
+    pub const EQUAL: Self =
+        Self { rmse: 0.0, relmse: 0.0, psnr: f64::INFINITY, ssim: 1.0, flip: 0.0, hdr_flip: 0.0, over_threshold: 0.0 };
+
     /// Those of light: a picture whose file holds none above 1 is cut in them.
     pub const OF_LIGHT: [&'static str; 4] = ["rmse", "relmse", "hdr_flip", "over_threshold"];
 
@@ -187,16 +191,7 @@ mod tests {
     fn equal_pictures_have_no_error() {
         let [picture, _] = formula_pictures(24, 16);
         let comparison = compare(&picture.to_picture(), &picture.to_picture(), DEFAULT_THRESHOLD).unwrap();
-        let expected = Metrics {
-            rmse: 0.0,
-            relmse: 0.0,
-            psnr: f64::INFINITY,
-            ssim: 1.0,
-            flip: 0.0,
-            hdr_flip: 0.0,
-            over_threshold: 0.0,
-        };
-        assert_eq!(comparison.metrics, expected);
+        assert_eq!(comparison.metrics, Metrics::EQUAL);
         assert_eq!(
             serde_json::to_string(&comparison.metrics).unwrap(),
             r#"{"rmse":0.0,"relmse":0.0,"psnr":null,"ssim":1.0,"flip":0.0,"hdr_flip":0.0,"over_threshold":0.0}"#

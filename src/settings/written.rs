@@ -14,7 +14,7 @@ pub enum SettingValue {
     Text(String),
 }
 
-/// Values of settings by key, in the order of their table.
+/// Values of settings by key, in the order of `Values`.
 pub type WrittenSettings = Keyed<SettingValue>;
 
 impl SettingValue {

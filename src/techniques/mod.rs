@@ -6,6 +6,7 @@
 //! frame, in the order of the paper's overview figure.
 
 mod all;
+pub mod bench_stage;
 pub mod bindable;
 mod closing;
 pub mod deep_shading;
@@ -34,6 +35,7 @@ use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
 use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
 use crate::settings::{COMMON, DirectShadow, INSTRUMENT, Setting, Values};
+use bench_stage::{BenchStage, PlainForm};
 use glam::Vec2;
 use notes::Figures;
 use std::collections::BTreeMap;
@@ -135,6 +137,15 @@ pub trait Technique: Sync {
     /// Methods whose memory its paper compares with.
     fn rivals(&self) -> Vec<Rival> {
         Vec::new()
+    }
+
+    /// What benchmarks can time of it, at least one stage.
+    fn bench_stages(&self) -> &'static [BenchStage];
+
+    /// What it is without what it is for, and errors and overheads of benchmarks are measured against; None where it has
+    /// no such form.
+    fn plain(&self) -> Option<&'static PlainForm> {
+        None
     }
 
     /// What a report says of its figures, a line an entry.
@@ -284,13 +295,24 @@ pub fn set(technique: &dyn Technique, values: &mut Values, key: &str, value: &st
 
 /// `values` of `technique` for frames that are timed: what `--instrument auto` would count is not.
 pub fn timed(technique: &dyn Technique, values: &Values) -> Values {
-    let mut timed = values.clone();
-    if let Some(setting) = settings_of(technique).iter().find(|setting| setting.key == INSTRUMENT.key)
-        && values.unless_auto(INSTRUMENT.key, Values::is_on).is_none()
-    {
-        timed.set(setting, "off").expect("a choice of the setting");
+    match values.iter().find(|(key, _)| *key == INSTRUMENT.key) {
+        Some((_, "auto")) => instrumented(technique, values, "off"),
+        _ => values.clone(),
     }
-    timed
+}
+
+/// `values` of `technique` for frames that are counted, and not timed.
+pub fn counted(technique: &dyn Technique, values: &Values) -> Values {
+    instrumented(technique, values, "on")
+}
+
+/// The same where the technique counts nothing.
+fn instrumented(technique: &dyn Technique, values: &Values, choice: &str) -> Values {
+    let mut changed = values.clone();
+    if let Some(setting) = settings_of(technique).iter().find(|setting| setting.key == INSTRUMENT.key) {
+        changed.set(setting, choice).expect("a choice of the setting");
+    }
+    changed
 }
 
 /// Whether path tracing must let the scene's own lights cast shadows to compute what `--direct-shadow` does, and

@@ -4,6 +4,7 @@
 //! pass's resources are planned with the technique's, its barriers are checked like theirs, its time stands beside
 //! theirs. examples/own_pass.rs is a pass whole.
 
+use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::Figures;
 use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Sums, Technique};
 use crate::caps::Caps;
@@ -96,6 +97,14 @@ impl Technique for WithPass {
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
         self.technique.notes(figures)
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        self.technique.bench_stages()
+    }
+
+    fn plain(&self) -> Option<&'static PlainForm> {
+        self.technique.plain()
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {

@@ -2,6 +2,7 @@
 
 mod rays;
 mod rows;
+mod stages;
 
 use crate::support::benched::{bench, lines, read};
 use crate::support::program::{Program, quincunx};
@@ -156,7 +157,7 @@ fn a_bad_request_measures_nothing() {
     }
     program.fails(&bench("gather", &["--technique", "deferred"]), 2, &["--vpls"]);
     let deferred = ["bench", "gather", "lamps:objects=3,lights=3", "--size", "33x17", "--technique", "deferred"];
-    program.fails(&deferred, 2, &["deferred has no pass deferred.gather"]);
+    program.fails(&deferred, 2, &["deferred has no stage gather", "gbuffer, cull, shade, and frame"]);
     let sweep = ["--sweep", "pattern=2x2,0x1"];
     for (baseline, word) in
         [("pattern=4x4", "no such combination"), ("pattern=0x1", "--pattern 0x1"), ("4x4", "KEY=VALUE")]

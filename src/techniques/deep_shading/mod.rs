@@ -65,6 +65,7 @@
 //! without a colour. Without blur it is `forward --supersample` with samples in other places.
 
 mod baseline;
+mod bench_stages;
 mod brute;
 mod buffer_addresses;
 mod choices;
@@ -99,6 +100,7 @@ mod touched;
 mod tuples;
 mod visibility;
 
+use super::bench_stage::BenchStage;
 use super::{HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
@@ -210,6 +212,10 @@ impl Technique for DeepShading {
 
     fn rivals(&self) -> Vec<Rival> {
         rivals::rivals()
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {

@@ -3,8 +3,10 @@
 //!
 //! Passes: gbuffer, cull (with `--cull tiled`), shade, blend (where the scene has BLEND surfaces).
 
+mod bench_stages;
 pub mod shade;
 
+use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
@@ -73,6 +75,10 @@ impl Technique for Deferred {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
     }
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {

@@ -19,12 +19,14 @@
 //! Why this way: a list is found by the draw's push constants. An index of the object in the fragment shader would be one
 //! more thing to interpolate for every technique that shares the vertex stage.
 
+mod bench_stages;
 mod choices;
 pub mod material;
 mod plan;
 mod resources;
 mod settings;
 
+use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
@@ -99,6 +101,10 @@ impl Technique for Forward {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
     }
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {

@@ -16,6 +16,7 @@
 
 mod aov;
 mod assignment;
+mod bench_stages;
 mod choices;
 mod cull;
 pub mod encoding;
@@ -30,6 +31,7 @@ mod settings;
 mod stipple;
 mod survivors;
 
+use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
 use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Ability, Caps, Need};
@@ -132,6 +134,10 @@ impl Technique for InferredLighting {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
     }
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {

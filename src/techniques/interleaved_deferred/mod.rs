@@ -25,6 +25,7 @@
 //! every split except `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
 
 mod aov;
+mod bench_stages;
 mod choices;
 pub mod composite;
 pub mod drawn_irradiance;
@@ -45,6 +46,7 @@ pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
 
+use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
@@ -134,6 +136,14 @@ impl Technique for InterleavedDeferred {
             Direct::Full => {}
         }
         Ok(settings)
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
+    }
+
+    fn plain(&self) -> Option<&'static PlainForm> {
+        Some(&bench_stages::PLAIN)
     }
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {

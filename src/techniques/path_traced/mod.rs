@@ -38,10 +38,12 @@
 //! the limit of `interleaved_deferred --split none` with ever more virtual point lights.
 
 mod airlight;
+mod bench_stages;
 mod resources;
 pub mod sample;
 pub mod settings;
 
+use super::bench_stage::BenchStage;
 use super::closing::Closing;
 use super::notes::Figures;
 use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique};
@@ -105,6 +107,10 @@ impl Technique for PathTraced {
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
     }
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {

@@ -3,16 +3,16 @@
 #![no_main]
 
 use libfuzzer_sys::{Corpus, fuzz_target};
+use quincunx::bench::row::BenchRow;
 use quincunx::bench::rows_file::{Existing, NAME, RowsFile};
 use quincunx::bench::summary::Summary;
 use quincunx::bench::sweep;
 use quincunx::bench::what::What;
-use serde_json::{Value, json};
 use std::sync::LazyLock;
 use tempfile::TempDir;
 
 static FOLDER: LazyLock<TempDir> = LazyLock::new(quincunx_fuzz::memory_folder);
-const WHATS: [What; 5] = [What::Frame, What::Split, What::Gather, What::Shade, What::Filter];
+static WHATS: LazyLock<Vec<What>> = LazyLock::new(What::all);
 
 fuzz_target!(init: quincunx_fuzz::seeds::write_if_asked("rows"), |bytes: &[u8]| -> Corpus {
     let Some((which, bytes)) = bytes.split_first() else { return Corpus::Reject };
@@ -26,13 +26,13 @@ fuzz_target!(init: quincunx_fuzz::seeds::write_if_asked("rows"), |bytes: &[u8]| 
         }
     };
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n"));
-    let rows: Vec<Value> = lines.filter_map(|line| serde_json::from_slice(line).ok()).collect();
+    let rows: Vec<BenchRow> = lines.filter_map(|line| serde_json::from_slice(line).ok()).collect();
     assert!(rows.iter().all(|row| file.kept(row).is_some()), "a row that is there is not found again");
     let whole: usize = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-    let more = json!({"bench": "frame", "variant": "more"});
+    let more = BenchRow { bench: "frame".to_owned(), variant: "more".to_owned(), ..BenchRow::default() };
     file.append(&more).unwrap();
     let after = std::fs::read(&path).unwrap();
-    assert_eq!(after, [&bytes[..whole], format!("{more}\n").as_bytes()].concat());
+    assert_eq!(after, [&bytes[..whole], format!("{}\n", more.line()).as_bytes()].concat());
     if !rows.is_empty() {
         let axes = sweep::axes(&["pattern=2x2,4x4".to_owned(), "block=8,16".to_owned()]).unwrap();
         let summary = Summary::new(WHATS[usize::from(*which) % WHATS.len()], &axes, rows, &["quincunx".to_owned()]);

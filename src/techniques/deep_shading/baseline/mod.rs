@@ -96,7 +96,7 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
 }
 
 pub struct Baseline {
-    sample: TupleDraws,
+    tuple_draws: TupleDraws,
     pub colors: Image,
     depth: Image,
     /// Texels are fetched: it only has to be there.
@@ -129,7 +129,7 @@ impl Baseline {
         };
         let pipeline = |alpha| pipeline(gpu, scene, choices, &stages, fragment(scene, choices, alpha));
         Ok(Self {
-            sample: TupleDraws::of([pipeline("opaque")?, pipeline("tested")?], stages),
+            tuple_draws: TupleDraws::of([pipeline("opaque")?, pipeline("tested")?], stages),
             colors: resources.image(&full(COLORS)),
             depth: resources.image(&full(DEPTH)),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
@@ -182,7 +182,7 @@ impl Baseline {
                 return textures.record(
                     cmd,
                     DrawInputs { bound: &bound, ..inputs },
-                    &self.sample,
+                    &self.tuple_draws,
                     |cmd, lists, is_first| {
                         if !is_first {
                             // What was drawn before is tested and kept.
@@ -196,7 +196,7 @@ impl Baseline {
                     },
                 );
             }
-            let sets = self.sample.sets(cmd, &bound)?;
+            let sets = self.tuple_draws.sets(cmd, &bound)?;
             self.draw(cmd, inputs, &[(inputs.list, &sets)], true);
             Ok(())
         })
@@ -220,7 +220,7 @@ impl Baseline {
             };
             for (list, sets) in lists {
                 let repeats = repeat_frame::repeats(first_tuple);
-                self.sample.draw(cmd, DrawInputs { list, ..inputs }, sets, &repeats);
+                self.tuple_draws.draw(cmd, DrawInputs { list, ..inputs }, sets, &repeats);
             }
             cmd.end_rendering();
         }

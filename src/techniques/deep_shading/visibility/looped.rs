@@ -58,7 +58,7 @@ pub fn touches() -> [(String, Access); 3] {
 }
 
 pub struct LoopedSamples {
-    sample: TupleDraws,
+    tuple_draws: TupleDraws,
     nearest: Buffer,
     spids: Spids,
     table: TupleTable,
@@ -90,7 +90,7 @@ impl LoopedSamples {
             GraphicsPipeline::new(gpu, &description)
         };
         Ok(Self {
-            sample: TupleDraws::of([pipeline("opaque")?, pipeline("tested")?], stages),
+            tuple_draws: TupleDraws::of([pipeline("opaque")?, pipeline("tested")?], stages),
             nearest: resources.buffer(&full(NEAREST)),
             spids: Spids::new(gpu, scene, resources, choices, primitives)?,
             table: choices.table,
@@ -115,11 +115,11 @@ impl LoopedSamples {
         cmd.clear(&self.nearest);
         cmd.barriers([self.nearest.from(Access::TransferWrite).to(Access::FragmentWrite)]);
         bound.push(("Nearest", Bound::Buffer(&self.nearest)));
-        let sets = self.sample.sets(cmd, &bound)?;
+        let sets = self.tuple_draws.sets(cmd, &bound)?;
         cmd.begin_rendering(inputs.frame, &[], None);
         let step = self.table.tuples_of_eye();
         let eyes = Repeats { tuples: 0..self.table.tuple_count(), step, instance_count: 1 };
-        self.sample.draw(cmd, inputs, &sets, &eyes);
+        self.tuple_draws.draw(cmd, inputs, &sets, &eyes);
         cmd.end_rendering();
         cmd.barriers([self.nearest.from(Access::FragmentWrite).to(Access::GraphicsRead)]);
         self.spids.record(cmd, inputs, &bound, samples)

@@ -92,19 +92,19 @@ pub fn record(
         begin_counters(cmd, counters);
         let mut bound = inputs.bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
-        let sample = match rasterizer {
+        let tuple_draws = match rasterizer {
             SampleRasterizer::Loop(looped) => return looped.record(cmd, inputs, bound, samples),
-            SampleRasterizer::Layers(sample) => sample,
+            SampleRasterizer::Layers(tuple_draws) => tuple_draws,
         };
         let layers = samples.spids.description.layers();
         let repeats = visibility.repeats(inputs.scene, &cmd.gpu().caps.limits, layers);
-        let sets = sample.sets(cmd, &bound)?;
+        let sets = tuple_draws.sets(cmd, &bound)?;
         visibility.for_layers(&repeats, layers, |at, repeats| {
             samples.begin(cmd, at);
             if let Layers::One(tuple) = at {
                 cmd.set_scissor([0, 0], inputs.table.inside(inputs.frame, tuple));
             }
-            sample.draw(cmd, inputs, &sets, repeats);
+            tuple_draws.draw(cmd, inputs, &sets, repeats);
             cmd.end_rendering();
         });
         Ok(())

@@ -111,14 +111,14 @@ impl TextureSpace {
     }
 
     /// All draws, as many at a time as there are textures: claimed, shaded, and then drawn by `draw`, which gets them
-    /// with the sets that `sample` binds for each and whether they are the first.
+    /// with the sets that `tuple_draws` binds for each and whether they are the first.
     ///
     /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(
         &self,
         cmd: &mut Commands,
         inputs: DrawInputs<'_>,
-        sample: &TupleDraws,
+        tuple_draws: &TupleDraws,
         mut draw: impl FnMut(&mut Commands, &[(&DrawList, &PipelineSets)], bool),
     ) -> Result<()> {
         let mut sets = Vec::new();
@@ -128,7 +128,7 @@ impl TextureSpace {
             sets.push(SlotSets {
                 claim: self.claim.set(cmd, &bound)?,
                 shade: self.shade.set(cmd, &bound)?,
-                apply: sample.sets(cmd, &bound)?,
+                apply: tuple_draws.sets(cmd, &bound)?,
             });
         }
         let [claims, shades] = [|set: &SlotSets| set.claim, |set: &SlotSets| set.shade]
