@@ -1,6 +1,6 @@
 //! The settings that only this technique reads, and the common ones that it reads too.
 
-use crate::settings::{BRDF, DIRECT_SHADOW, GEOMETRY, Kind, Setting, WORKGROUP};
+use crate::settings::{BRDF, Changes, DIRECT_SHADOW, GEOMETRY, Kind, Setting, WORKGROUP};
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
@@ -8,7 +8,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Number { min: 0.0, max: 1000.0 },
         default: "1",
         help: "Factor of the light of the scene's lights on solid surfaces",
-        ..Setting::ROW
+        ..Setting::changing(Changes::Picture)
     },
     BRDF,
     DIRECT_SHADOW,
