@@ -54,8 +54,8 @@ impl Serialize for Neighbour {
     }
 }
 
-/// For each combination of the other axes that reads `key`: its value with the least time ratio, and its neighbours in the
-/// order of the sweep. Empty where `key` was not swept.
+/// For each combination of the other axes that reads `key`: its value with the least time ratio, and its neighbours in
+/// the order of the sweep. Empty where `key` was not swept.
 ///
 /// A value is the best if it is proven to be faster than its neighbours, by the interval of the ratio of times that
 /// were taken in the same rounds; without three of those the answer is None.

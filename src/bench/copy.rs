@@ -31,8 +31,8 @@ impl BufferCopy {
         };
         let [source, target] = [make("source")?, make("target")?];
         let mut cmd = Commands::begin(gpu, "bench", Submits::PerPass)?;
-        // Memory that was never written may be one page of zeros, which copies from the cache. And a copying stage, too, reads
-        // what a pass has just written.
+        // Memory that was never written may be one page of zeros, which copies from the cache. And a copying stage,
+        // too, reads what a pass has just written.
         let fill = Traffic { written_bytes: bytes, ..Traffic::default() };
         cmd.pass("bench.fill", fill, |cmd| {
             cmd.barriers([source.discard(Access::TransferWrite)]);

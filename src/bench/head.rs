@@ -45,8 +45,8 @@ pub struct Rounds {
 }
 
 impl Head<'_> {
-    /// The keys that say what a row is of. Settings are as they were typed: their resolved values are known when they are
-    /// made.
+    /// The keys that say what a row is of. Settings are as they were typed: their resolved values are known when they
+    /// are made.
     pub fn row(&self, candidate: &Candidate) -> BenchRow {
         let Ground { job, session, what, is_fair } = &self.ground;
         let text = |(key, text): (&String, &String)| (key.clone(), SettingValue::Text(text.clone()));

@@ -1,4 +1,5 @@
-//! The picture of a technique's plain form (`Technique::plain`): what errors and overheads are measured against. One for each size, camera, scene of lights: what is left of a variant's settings.
+//! The picture of a technique's plain form (`Technique::plain`): what errors and overheads are measured against. One
+//! for each size, camera, scene of lights: what is left of a variant's settings.
 
 use super::candidate::{changed, without_unread};
 use super::what::What;
@@ -44,8 +45,8 @@ pub struct References {
 }
 
 impl References {
-    /// The reference of a variant with these values, or why there is none: the technique has no plain form, or no memory
-    /// is left beside the variants.
+    /// The reference of a variant with these values, or why there is none: the technique has no plain form, or no
+    /// memory is left beside the variants.
     ///
     /// Errors: the device fails (exit code 4).
     pub fn of(&mut self, job: &Job, session: &Session, what: What, values: &Values) -> Result<Found> {
@@ -75,8 +76,8 @@ fn without_plain(technique: &dyn Technique) -> Error {
     Error::request(format!("{} has no plain form to compare with; {}", technique.name(), others.join(", ")))
 }
 
-/// `values` of the plain form: what changes nothing of it, and what nothing reads, is at its default, so that a sweep of
-/// these has one reference.
+/// `values` of the plain form: what changes nothing of it, and what nothing reads, is at its default, so that a sweep
+/// of these has one reference.
 ///
 /// Errors: they are impossible (exit code 2).
 fn plain(form: &PlainForm, job: &Job, values: &Values) -> Result<Values> {

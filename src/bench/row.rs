@@ -1,7 +1,7 @@
 //! A row: one variant's settings, times, bytes and errors, as a JSON document of one line.
 //!
-//! Rows of earlier versions lack keys that were added since: what is not there is None, or empty. Keys that this version
-//! does not know are kept as they are.
+//! Rows of earlier versions lack keys that were added since: what is not there is None, or empty. Keys that this
+//! version does not know are kept as they are.
 
 use super::machine::Load;
 use super::stats::Ratio;

@@ -106,7 +106,8 @@ impl Summary {
         format!("time ratios to {baseline}, of {rounds} rounds; {errors}{told}")
     }
 
-    /// What errors are against: the reference that was asked for, else the plain form of the first technique that has one.
+    /// What errors are against: the reference that was asked for, else the plain form of the first technique that has
+    /// one.
     fn reference(&self) -> Option<String> {
         let asked = self.rows[0].reference.as_ref().map(|reference| reference.name.clone());
         let plain = |row: &BenchRow| Some(flags(techniques::find(&row.technique).ok()?.plain()?.settings));

@@ -21,7 +21,8 @@ pub struct Variant {
 impl Variant {
     /// Makes the renderer; no frame runs.
     ///
-    /// Errors: impossible settings, a technique without the stage, or settings that leave it out (exit code 2); memory (4).
+    /// Errors: impossible settings, a technique without the stage, or settings that leave it out (exit code 2); memory
+    /// (4).
     pub fn new(session: &Session, technique: &dyn Technique, what: What, values: &Values) -> Result<Self> {
         let stage = what.stage_of(technique)?;
         let renderer = session.renderer(technique, values, &[], what.submits())?;

@@ -1,5 +1,5 @@
-//! What a benchmark can time of a technique: its stages, what their work is counted in, and the plain picture that errors
-//! and overheads are measured against.
+//! What a benchmark can time of a technique: its stages, what their work is counted in, and the plain picture that
+//! errors and overheads are measured against.
 
 use crate::settings::Values;
 use crate::settings::written::{SettingValue, WrittenSettings};
@@ -83,7 +83,7 @@ pub struct Done<'a> {
     pub extent: Extent,
 }
 
-/// A technique without what it is for: the plain way to shade each pixel with all of its lights.
+/// The plain form of a technique: each pixel shaded with all of the lights that the technique shares out.
 #[derive(Clone, Copy)]
 pub struct PlainForm {
     /// Settings that make it.

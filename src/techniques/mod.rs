@@ -142,8 +142,7 @@ pub trait Technique: Sync {
     /// What benchmarks can time of it, at least one stage.
     fn bench_stages(&self) -> &'static [BenchStage];
 
-    /// What it is without what it is for, and errors and overheads of benchmarks are measured against; None where it has
-    /// no such form.
+    /// The plain form that errors and overheads of benchmarks are measured against; None where it has none.
     fn plain(&self) -> Option<&'static PlainForm> {
         None
     }

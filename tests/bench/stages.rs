@@ -77,7 +77,7 @@ fn a_stages_work_is_counted_in_its_unit() {
         let (median, each) = (row["stage_ms"]["median"].as_f64().unwrap(), row[unit].as_f64().unwrap());
         let work = 1e6 * median / each;
         assert!((work - work.round()).abs() < 1e-6 * work, "{stage}: {work} is no count");
-        // Of a picture of 512 pixels: four samples each, and a path.
+        // The picture has 512 pixels: four samples each, and a path.
         let expected = match (stage, technique) {
             ("visibility", _) => Some(4.0 * 512.0),
             ("sample", _) => Some(512.0),

@@ -1,5 +1,5 @@
-//! What a benchmark times of deep shading. What shaders count, `--instrument on` counts: a benchmark takes it from a frame
-//! that it does not time.
+//! What a benchmark times of deep shading. What shaders count, `--instrument on` counts: a benchmark takes it from a
+//! frame that it does not time.
 
 use crate::techniques::bench_stage::{BenchStage, Count, Done, PIXELS, SHADOW_MAPS, Unit, Work, never};
 
