@@ -1,8 +1,8 @@
 //! What a benchmark can time of a technique: its stages, what their work is counted in, and the plain picture that
 //! errors and overheads are measured against.
 
-use crate::settings::Values;
 use crate::settings::written::{SettingValue, WrittenSettings};
+use crate::settings::{DirectShadow, Values};
 use crate::units::Extent;
 use std::collections::BTreeMap;
 
@@ -197,8 +197,8 @@ pub const SHADOW_MAPS: BenchStage = BenchStage {
     made_with: &[("direct-shadow", "map")],
     fused_by: None,
     left_out: |values| {
-        let shadow = values.text("direct-shadow");
-        (shadow != "map").then(|| format!("--direct-shadow {shadow} draws no shadow maps"))
+        let shadow: DirectShadow = values.choice("direct-shadow");
+        (shadow != DirectShadow::Map).then(|| format!("--direct-shadow {} draws no shadow maps", shadow.name()))
     },
 };
 

@@ -108,7 +108,7 @@ fn every_row_has_a_key_a_help_and_a_possible_default() {
     }
 }
 
-/// Settings of the device that is opened, which a picture's values do not reach: tests/collapse.rs and tests/budget.rs.
+/// Settings of the device that is opened, which a picture's values do not reach: tests/techniques/collapse.rs and tests/memory/budget.rs.
 const OF_DEVICE: [&str; 2] = ["allocation", "memory-budget"];
 
 /// Compares each value of each such row of the technique's own tables, or of the common one; `least`: how many values.

@@ -1,6 +1,9 @@
 //! What a benchmark times of deep shading. What shaders count, `--instrument on` counts: a benchmark takes it from a
 //! frame that it does not time.
 
+use super::modes::lists::Lists;
+use super::modes::shading_kind::ShadingKind;
+use crate::settings::Values;
 use crate::techniques::bench_stage::{BenchStage, Count, Done, PIXELS, SHADOW_MAPS, Unit, Work, never};
 
 /// Samples of all eyes, covered or not.
@@ -14,6 +17,14 @@ fn eyes(done: &Done<'_>) -> f64 {
     if is_both && done.number("stereo").is_some_and(|metres| metres > 0.0) { 2.0 } else { 1.0 }
 }
 
+fn shading(values: &Values) -> &'static str {
+    values.choice::<ShadingKind>("shading").name()
+}
+
+fn shaded_at_once(values: &Values) -> Option<String> {
+    Some(format!("--shading {} draws and shades in one pass: `bench draw` times it", shading(values)))
+}
+
 pub const STAGES: &[BenchStage] = &[
     BenchStage {
         name: "visibility",
@@ -22,11 +33,9 @@ pub const STAGES: &[BenchStage] = &[
         work: Work::Counted(&[SAMPLES]),
         made_with: &[],
         fused_by: None,
-        left_out: |values| match (values.text("shading"), values.text("lists")) {
-            (shading @ ("ssaa" | "msaa" | "texture-space"), _) => {
-                Some(format!("--shading {shading} draws and shades in one pass: `bench draw` times it"))
-            }
-            (_, "direct") => Some("--lists direct: the host finds what samples see".to_owned()),
+        left_out: |values| match (values.choice("shading"), values.choice("lists")) {
+            (ShadingKind::Ssaa | ShadingKind::Msaa | ShadingKind::TextureSpace, _) => shaded_at_once(values),
+            (_, Lists::Direct) => Some("--lists direct: the host finds what samples see".to_owned()),
             _ => None,
         },
     },
@@ -37,10 +46,10 @@ pub const STAGES: &[BenchStage] = &[
         work: Work::Counted(&[ENTRIES]),
         made_with: &[],
         fused_by: None,
-        left_out: |values| match (values.text("shading"), values.text("lists")) {
-            ("deep", "none") => Some("--lists none makes no lists".to_owned()),
-            ("deep", _) => None,
-            (shading, _) => Some(format!("--shading {shading} makes no lists")),
+        left_out: |values| match (values.choice("shading"), values.choice("lists")) {
+            (ShadingKind::Deep, Lists::None) => Some("--lists none makes no lists".to_owned()),
+            (ShadingKind::Deep, _) => None,
+            (shading, _) => Some(format!("--shading {} makes no lists", shading.name())),
         },
     },
     BenchStage {
@@ -50,10 +59,7 @@ pub const STAGES: &[BenchStage] = &[
         work: Work::Counted(&[INVOCATIONS]),
         made_with: &[],
         fused_by: None,
-        left_out: |values| {
-            let shading = values.text("shading");
-            Some(format!("--shading {shading} draws and shades in one pass: `bench draw` times it"))
-        },
+        left_out: shaded_at_once,
     },
     BenchStage {
         name: "resolve",
@@ -86,7 +92,7 @@ pub const STAGES: &[BenchStage] = &[
         work: Work::Counted(&[INVOCATIONS]),
         made_with: &[("shading", "ssaa")],
         fused_by: None,
-        left_out: |values| Some(format!("--shading {} shades in passes of their own", values.text("shading"))),
+        left_out: |values| Some(format!("--shading {} shades in passes of their own", shading(values))),
     },
     // Drawn as `forward` draws them; how many triangles that takes is not in the report.
     BenchStage { summary: "Shadow maps of all lights", work: Work::Counted(&[]), ..SHADOW_MAPS },

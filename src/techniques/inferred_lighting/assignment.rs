@@ -1,5 +1,6 @@
 //! The stipple, and how stippled surfaces get their layers.
 
+use crate::choice::choices;
 use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
 use crate::techniques::NamedPattern;
@@ -12,7 +13,13 @@ pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
     make: |values| Ok(stipple(values)),
 }];
 
-use crate::choice::choices;
+choices! {
+    /// Sides of the stipple, texels (`--stipple`).
+    pub enum StippleSize {
+        "2x2" => Two,
+        "4x4" => Four,
+    }
+}
 
 choices! {
     /// How layers are given out (`--assignment`).
@@ -28,7 +35,10 @@ choices! {
 
 /// The square of texels of `--stipple`, each a layer; layer 0 is the solid surfaces'.
 pub fn stipple(values: &Values) -> Pattern {
-    let side = if values.text("stipple") == "4x4" { 4 } else { 2 };
+    let side = match values.choice("stipple") {
+        StippleSize::Two => 2,
+        StippleSize::Four => 4,
+    };
     Pattern::grid([side; 2])
 }
 

@@ -1,6 +1,6 @@
 //! The settings of inferred lighting.
 
-use super::assignment::Assignment;
+use super::assignment::{Assignment, StippleSize};
 use super::choices::{Alpha, AlphaFilter, LightFetch, LightFilter};
 use super::encoding::{FIXED_LIMIT, PackingFormat};
 use super::layer_names;
@@ -163,7 +163,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "stipple",
-        kind: Kind::Choice(&["2x2", "4x4"]),
+        kind: Kind::Choice(StippleSize::WORDS),
         default: "2x2",
         unit: "px",
         paper: "Kircher 2009, 4",
