@@ -185,7 +185,8 @@ impl Job {
         if let Some(earlier) = &self.earlier {
             earlier.begin(&mut renderer, self.technique, &settings)?;
         }
-        let rendered = self.rendered(session, &renderer, settings, unfinished)?;
+        let asked_ev = values.unless_auto("exposure", Values::number);
+        let rendered = self.rendered(session, &renderer, settings, asked_ev, unfinished)?;
         let report = self.report(session, &renderer, &rendered, path)?;
         self.write(path, &rendered, &report)?;
         // A reference that is made needs the memory.
@@ -208,7 +209,8 @@ impl Job {
         Ok(outcome)
     }
 
-    /// Renders, and reads back what was asked for. `settings`: those that were used.
+    /// Renders, and reads back what was asked for. `settings`: those that were used; `asked_ev`: the exposure, stops; None:
+    /// `auto`.
     ///
     /// Errors: as `picture`.
     fn rendered(
@@ -216,6 +218,7 @@ impl Job {
         session: &Session,
         renderer: &Renderer,
         mut settings: WrittenSettings,
+        asked_ev: Option<f64>,
         unfinished: Unfinished,
     ) -> Result<Rendered> {
         let memory = session.gpu.memory.snapshot();
@@ -232,7 +235,6 @@ impl Job {
         let picture = renderer.picture()?;
         let sums = renderer.sums()?;
         let aovs = self.aovs.iter().map(|name| renderer.aov(name)).collect::<Result<Vec<_>>>()?;
-        let asked_ev = self.values.unless_auto("exposure", Values::number);
         let auto_exposure_ev = if asked_ev.is_none() { exposure_for(&picture) } else { None };
         let exposure_ev = asked_ev.or(auto_exposure_ev).unwrap_or_default();
         if asked_ev.is_none() {
