@@ -1,7 +1,7 @@
 //! Job: a checked request for one picture; `Job::run` is the whole path from arguments to report on one screen.
 
 use crate::caps::Caps;
-use crate::earlier::{self, Earlier};
+use crate::continuation::{self, Continuation};
 use crate::error::{Error, Result};
 use crate::gpu::commands::{Recording, Submits};
 use crate::gpu::recorded::FrameTime;
@@ -13,7 +13,7 @@ use crate::picture::image_file::{ExrPrecision, WriteOptions, write};
 use crate::picture::tonemap::exposure_for;
 use crate::picture::visible::visible;
 use crate::picture::{Aov, Picture};
-use crate::reference::Asked;
+use crate::reference::ReferenceRequest;
 use crate::report::notes;
 use crate::report::run::{AovRow, DeviceRow, ImageRow, Passes, Program, RunReport, SCHEMA, SceneRow, Times};
 use crate::resident::SceneStats;
@@ -38,9 +38,9 @@ pub struct Job {
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
     /// A picture to continue, instead of starting anew.
-    pub earlier: Option<Earlier>,
+    pub earlier: Option<Continuation>,
     /// What the picture is judged against.
-    pub reference: Option<Asked>,
+    pub reference: Option<ReferenceRequest>,
     /// An index or a part of a name, as `devices` lists them.
     pub device: Option<String>,
     /// One submit for each pass: pass times.
@@ -156,7 +156,7 @@ impl Job {
         let log = session.gpu.validation_log();
         // Closing says what was leaked: only then is the log whole.
         drop(session);
-        judge(log.as_deref())?;
+        fail_on_validation(log.as_deref())?;
         match outcome.ended_after {
             None => Ok(outcome),
             Some((runs, all)) => Err(Error::interrupted(format!(
@@ -238,7 +238,7 @@ impl Job {
         let auto_exposure_ev = if asked_ev.is_none() { exposure_for(&picture) } else { None };
         let exposure_ev = asked_ev.or(auto_exposure_ev).unwrap_or_default();
         if asked_ev.is_none() {
-            settings.insert("exposure", SettingValue::of_number(exposure_ev));
+            settings.insert("exposure".to_owned(), SettingValue::of_number(exposure_ev));
         }
         // Stages are not light: what was made for the picture's is none of theirs.
         let stages_ev = asked_ev.unwrap_or_default();
@@ -400,7 +400,7 @@ impl Job {
         };
         let mut layers = aovs.clone();
         if options.exr_precision == ExrPrecision::Float {
-            layers.extend(rendered.sums.iter().flat_map(|sums| earlier::layers(sums)));
+            layers.extend(rendered.sums.iter().flat_map(|sums| continuation::layers(sums)));
         }
         if is_exr {
             options.aovs = &layers;
@@ -441,7 +441,7 @@ pub(crate) fn settings(session: &Session, renderer: &Renderer, values: &Values) 
 }
 
 /// Errors: the validation layer has said something (exit code 1).
-pub fn judge(log: Option<&Log>) -> Result<()> {
+pub fn fail_on_validation(log: Option<&Log>) -> Result<()> {
     let messages = log.map(Log::take).unwrap_or_default();
     match messages.first() {
         None => Ok(()),

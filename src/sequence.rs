@@ -2,8 +2,8 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt;
-use crate::job::{Job, Outcome, Unfinished, judge, scene_of};
-use crate::reference::Asked;
+use crate::job::{Job, Outcome, Unfinished, fail_on_validation, scene_of};
+use crate::reference::ReferenceRequest;
 use crate::report::run::RunReport;
 use crate::session::Session;
 use crate::settings::Values;
@@ -90,7 +90,7 @@ impl Job {
     /// Errors: as `Job::run`. Ctrl-C is no error: finished frames stay.
     pub fn run_sequence(&self, frames: &Frames, finished: &mut dyn FnMut(u32, &Outcome)) -> Result<Sequence> {
         self.check()?;
-        self.reference.as_ref().map_or(Ok(()), Asked::check_sequence)?;
+        self.reference.as_ref().map_or(Ok(()), ReferenceRequest::check_sequence)?;
         frames.values(self, frames.last, None)?;
         let model = self.open_model()?;
         let mut session: Option<Session> = None;
@@ -137,7 +137,7 @@ impl Job {
         let log = session.as_ref().and_then(|session| session.gpu.validation_log());
         // Closing says what was leaked: only then is the log whole.
         drop(session);
-        judge(log.as_deref())?;
+        fail_on_validation(log.as_deref())?;
         Ok(sequence)
     }
 }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use quincunx::picture::image_file::WriteOptions;
 use quincunx::picture::{Picture, image_file};
 use quincunx::reference::cache::Cache;
-use quincunx::reference::made::{Made, Watch, reference_picture};
+use quincunx::reference::made::{MadeReference, Watch, reference_picture};
 use quincunx::reference::recipe::Recipe;
 use quincunx::techniques::settings_of;
 use quincunx::units::Extent;
@@ -45,7 +45,7 @@ fn recipe(watched: &Watched, changes: Changes<'_>) -> Recipe {
     Recipe::new(technique, values("deferred", changes), &watched.session).unwrap()
 }
 
-fn made(watched: &Watched, recipe: &Recipe, folder: &Path, heard: &Heard) -> Made {
+fn made(watched: &Watched, recipe: &Recipe, folder: &Path, heard: &Heard) -> MadeReference {
     reference_picture(recipe, &watched.session, &Cache::new(folder), heard).unwrap()
 }
 

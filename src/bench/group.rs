@@ -47,7 +47,7 @@ pub struct Group {
 }
 
 /// What rounds of a group need to know.
-pub struct Ground<'a> {
+pub struct Measurement<'a> {
     /// The request, or one of its candidates.
     pub job: &'a Job,
     pub session: &'a Session,
@@ -56,10 +56,10 @@ pub struct Ground<'a> {
     pub is_fair: bool,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> Measurement<'a> {
     /// The same for a candidate.
-    pub fn of(&self, candidate: &'a Candidate) -> Ground<'a> {
-        Ground { job: &candidate.job, ..*self }
+    pub fn of(&self, candidate: &'a Candidate) -> Measurement<'a> {
+        Measurement { job: &candidate.job, ..*self }
     }
 
     /// Makes a variant.
@@ -88,16 +88,16 @@ impl Group {
     }
 
     /// Adds the baseline as a member.
-    pub fn add_baseline(&mut self, ground: &Ground<'_>, candidate: usize, variant: &Rc<Variant>, values: &Values) {
+    pub fn add_baseline(&mut self, ground: &Measurement<'_>, candidate: usize, variant: &Rc<Variant>, values: &Values) {
         let [identity, copy] = self.companions(ground, variant, values);
         self.members.push(Member { candidate, variant: variant.clone(), probe: BASELINE, identity, copy });
     }
 
     /// Makes a variant and adds it.
     ///
-    /// Errors: as `Ground::variant` has them; and where others are in the group, memory for what stands beside it (exit
+    /// Errors: as `Measurement::variant` has them; and where others are in the group, memory for what stands beside it (exit
     /// code 4): with fewer of them there may be enough.
-    pub fn add(&mut self, ground: &Ground<'_>, candidate: usize, values: &Values) -> Result<()> {
+    pub fn add(&mut self, ground: &Measurement<'_>, candidate: usize, values: &Values) -> Result<()> {
         let variant = Rc::new(ground.variant(values)?);
         let [identity, copy] = self.companions(ground, &variant, values);
         if !self.members.is_empty() {
@@ -113,7 +113,7 @@ impl Group {
     }
 
     /// Identity and copy, of a copying stage.
-    fn companions(&mut self, ground: &Ground<'_>, variant: &Variant, values: &Values) -> [Option<Companion>; 2] {
+    fn companions(&mut self, ground: &Measurement<'_>, variant: &Variant, values: &Values) -> [Option<Companion>; 2] {
         let Some(copying) = variant.stage.and_then(BenchStage::copying) else { return [None, None] };
         [Some(self.identity(ground, copying, values)), Some(self.copy(ground, variant.result_bytes()))]
     }
@@ -124,7 +124,7 @@ impl Group {
     }
 
     /// Variants that differ only in what the identity settles share it.
-    fn identity(&mut self, ground: &Ground<'_>, copying: &Copying, values: &Values) -> Companion {
+    fn identity(&mut self, ground: &Measurement<'_>, copying: &Copying, values: &Values) -> Companion {
         let identity = identity_values(ground.job, copying, values)?;
         let key = format!("{identity:?}");
         if let Some(known) = self.identities.get(&key) {
@@ -139,7 +139,7 @@ impl Group {
         made
     }
 
-    fn copy(&mut self, ground: &Ground<'_>, bytes: u64) -> Companion {
+    fn copy(&mut self, ground: &Measurement<'_>, bytes: u64) -> Companion {
         if let Some(known) = self.copies.get(&bytes) {
             return known.clone();
         }

@@ -1,7 +1,7 @@
 //! Rows made of what was measured: what all of a run share, and what is found of each.
 
 use super::candidate::Candidate;
-use super::group::{BASELINE, Companion, Ground, Member};
+use super::group::{BASELINE, Companion, Measurement, Member};
 use super::machine::Load;
 use super::reference::{Found, Reference, pass_ms};
 use super::rounds::Samples;
@@ -12,15 +12,15 @@ use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::commands::Submits;
 use crate::job::{Job, settings};
-use crate::keyed::Keyed;
 use crate::metrics;
 use crate::picture::Picture;
-use crate::reference::Asked;
+use crate::reference::ReferenceRequest;
 use crate::report::spread::Spread;
 use crate::settings::Values;
 use crate::settings::written::{SettingValue, WrittenSettings};
 use crate::techniques::bench_stage::{Done, PlainForm};
 use crate::techniques::{Technique, counted};
+use indexmap::IndexMap;
 use std::collections::BTreeMap;
 
 /// Number of the set of keys.
@@ -28,7 +28,7 @@ const SCHEMA: u32 = 1;
 
 /// What every row of a run shares.
 pub struct Head<'a> {
-    pub ground: Ground<'a>,
+    pub ground: Measurement<'a>,
     pub repeat: usize,
     /// The baseline's label.
     pub baseline: String,
@@ -48,7 +48,7 @@ impl Head<'_> {
     /// The keys that say what a row is of. Settings are as they were typed: their resolved values are known when they
     /// are made.
     pub fn row(&self, candidate: &Candidate) -> BenchRow {
-        let Ground { job, session, what, is_fair } = &self.ground;
+        let Measurement { job, session, what, is_fair } = &self.ground;
         let text = |(key, text): (&String, &String)| (key.clone(), SettingValue::Text(text.clone()));
         BenchRow {
             schema: SCHEMA,
@@ -63,7 +63,7 @@ impl Head<'_> {
             repeat: self.repeat,
             baseline: self.baseline.clone(),
             fair: is_fair.then_some(true),
-            reference: job.reference.as_ref().map(Asked::identity),
+            reference: job.reference.as_ref().map(ReferenceRequest::identity),
             ..BenchRow::default()
         }
     }
@@ -84,7 +84,7 @@ impl Head<'_> {
         rounds: &Rounds,
         reference: &Found,
     ) -> Result<BenchRow> {
-        let Ground { job, session, what, .. } = &self.ground;
+        let Measurement { job, session, what, .. } = &self.ground;
         let renderer = &member.variant.renderer;
         let samples = &rounds.samples;
         let values = candidate.values.as_ref().map_err(Error::clone)?;
@@ -133,8 +133,13 @@ impl Head<'_> {
     }
 
     /// Median milliseconds of each timed pass. A frame is one submit: its passes are timed in frames of their own.
-    fn pass_ms(&self, candidate: &Candidate, member: &Member, samples: &[Samples]) -> Result<Option<Keyed<f64>>> {
-        let Ground { session, what, .. } = &self.ground;
+    fn pass_ms(
+        &self,
+        candidate: &Candidate,
+        member: &Member,
+        samples: &[Samples],
+    ) -> Result<Option<IndexMap<String, f64>>> {
+        let Measurement { session, what, .. } = &self.ground;
         if *what == What::Frame {
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             return Ok(pass_ms(&candidate.job, session, values)?.map(|passes| passes.into_iter().collect()));
@@ -200,7 +205,7 @@ fn repeating_command(job: &Job, what: What, technique: &'static dyn Technique, v
             command.extend([format!("--{key}"), values.text(key).to_owned()]);
         }
     }
-    command.extend(job.reference.iter().flat_map(Asked::arguments));
+    command.extend(job.reference.iter().flat_map(ReferenceRequest::arguments));
     if what != What::Frame {
         command.push("--profile".to_owned());
     }

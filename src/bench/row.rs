@@ -7,13 +7,13 @@ use super::machine::Load;
 use super::stats::Ratio;
 use super::units::UnitTimes;
 use crate::caps::Identity;
-use crate::keyed::Keyed;
 use crate::metrics::Metrics;
 use crate::report::errors::{Errors, ReferenceIdentity};
 use crate::report::memory::MemorySums;
 use crate::report::nullable::present;
 use crate::report::spread::Spread;
 use crate::settings::written::WrittenSettings;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -75,7 +75,7 @@ pub struct BenchRow {
     pub stage_ms: Option<Spread>,
     /// Median milliseconds of each timed pass, by its full name; null where no memory was left to time them.
     #[serde(deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub pass_ms: Option<Option<Keyed<f64>>>,
+    pub pass_ms: Option<Option<IndexMap<String, f64>>>,
     /// Time of the baseline in parts of the row's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_up: Option<SpeedUp>,

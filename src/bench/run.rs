@@ -1,7 +1,7 @@
 //! A sweep from grid to rows: which points are possible, in which groups they are measured, what is already known.
 
 use super::candidate::{Candidate, require_readers};
-use super::group::{Ground, Group, is_of_memory};
+use super::group::{Group, Measurement, is_of_memory};
 use super::head::{Head, Rounds};
 use super::machine::{Load, Ticks};
 use super::reference::References;
@@ -13,7 +13,7 @@ use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::DeviceRequest;
 use crate::interrupt;
-use crate::job::{Job, judge};
+use crate::job::{Job, fail_on_validation};
 use crate::session::Session;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -93,7 +93,7 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     // Closing says what was leaked: only then is the log whole.
     drop(sweep);
     drop(session);
-    judge(log.as_deref())?;
+    fail_on_validation(log.as_deref())?;
     Ok(Rows { rows, interrupted, gates })
 }
 
@@ -129,7 +129,7 @@ impl<'a> Sweep<'a> {
         observer: &'a mut dyn Observer,
     ) -> Result<Self> {
         let Request { job, what, repeat, is_fair, .. } = *request;
-        let ground = Ground { job, session, what, is_fair };
+        let ground = Measurement { job, session, what, is_fair };
         let mut refused = Vec::new();
         let tried = named.map_or(0..candidates.len(), |index| index..index + 1);
         let found = tried.into_iter().find_map(|index| match possible(&ground, &candidates[index]) {
@@ -225,7 +225,7 @@ impl<'a> Sweep<'a> {
         for (member, picture) in group.members.iter().zip(&pictures) {
             interrupt::check()?;
             let candidate = &self.candidates[member.candidate];
-            let Ground { job, session, what, .. } = self.head.ground.of(candidate);
+            let Measurement { job, session, what, .. } = self.head.ground.of(candidate);
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             let reference = self.references.of(job, session, what, values)?;
             let mut row = self.head.measured(candidate, member, picture, &rounds, &reference)?;
@@ -264,7 +264,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-fn possible(ground: &Ground<'_>, candidate: &Candidate) -> Result<Variant> {
+fn possible(ground: &Measurement<'_>, candidate: &Candidate) -> Result<Variant> {
     let values = candidate.values.as_ref().map_err(Error::clone)?;
     ground.of(candidate).variant(values)
 }

@@ -6,7 +6,7 @@
 use super::nodes::{half_area, is_leaf};
 use crate::gpu::shader::structs::BvhNodeBlock;
 
-enum Turn {
+enum FlatStep {
     Node(u32),
     /// All below the node at this place are there.
     Close(usize),
@@ -18,18 +18,18 @@ enum Turn {
 /// after all below it.
 pub fn flattened(nodes: &[BvhNodeBlock]) -> Vec<BvhNodeBlock> {
     let mut flat: Vec<BvhNodeBlock> = Vec::with_capacity(nodes.len());
-    let mut turns = vec![Turn::Node(0)];
+    let mut turns = vec![FlatStep::Node(0)];
     while let Some(turn) = turns.pop() {
         match turn {
-            Turn::Close(place) => flat[place].max_first[3] = f32::from_bits(flat.len() as u32),
-            Turn::Node(index) => {
+            FlatStep::Close(place) => flat[place].max_first[3] = f32::from_bits(flat.len() as u32),
+            FlatStep::Node(index) => {
                 let node = nodes[index as usize];
                 if !is_leaf(&node) {
                     let first = node.max_first[3].to_bits();
                     let area = |child: u32| half_area(&nodes[child as usize]);
                     let is_first_larger = area(first) >= area(first + 1);
                     let [sooner, later] = if is_first_larger { [first, first + 1] } else { [first + 1, first] };
-                    turns.extend([Turn::Close(flat.len()), Turn::Node(later), Turn::Node(sooner)]);
+                    turns.extend([FlatStep::Close(flat.len()), FlatStep::Node(later), FlatStep::Node(sooner)]);
                 }
                 flat.push(node);
             }

@@ -1,6 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
-use super::listed::Listed;
+use super::listed::TechniqueSelection;
 use super::output;
 use super::{job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// The verb with its arguments.
-pub fn command(listed: &Listed) -> Command {
+pub fn command(listed: &TechniqueSelection) -> Command {
     Command::new("bench")
         .about("Measure settings against each other: a frame, or one stage of it")
         .after_help(format!(
@@ -146,7 +146,9 @@ fn require_known(key: &str) -> Result<()> {
     }
     let error = Error::request(format!("--sweep {key}=: there is no setting --{key}"));
     // The parser itself says what a flag resembles.
-    let refused = command(&Listed::All).try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")]).err();
+    let refused = command(&TechniqueSelection::All)
+        .try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")])
+        .err();
     let similar = refused.as_ref().and_then(|refused| refused.get(ContextKind::SuggestedArg));
     Err(match similar {
         Some(ContextValue::String(similar)) => error.note(format!("a similar one exists: {similar}")),

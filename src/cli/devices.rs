@@ -4,7 +4,7 @@ use super::self_test;
 use crate::caps::Need;
 use crate::cli::output::{print, print_text, quiet_flag};
 use crate::error::Result;
-use crate::gpu::device::{self, Listed};
+use crate::gpu::device::{self, ListedDevice};
 use crate::techniques;
 use crate::techniques::fitness::{Fitness, fitness};
 use crate::units::Bytes;
@@ -41,7 +41,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
 }
 
 /// What `--json` says of a device; no technique where it cannot be used.
-fn document(listed: &Listed) -> Value {
+fn document(listed: &ListedDevice) -> Value {
     let needs = |needs: &[Need]| -> Vec<Value> {
         let need = |need: &Need| json!({ "of": need.of, "needs": need.ability.name(), "instead": need.instead });
         needs.iter().map(need).collect()
@@ -79,7 +79,7 @@ fn describe_fitness(text: &mut String, name: &str, fitness: &Fitness) -> std::fm
     writeln!(text, "      {}", bounds.join("; "))
 }
 
-fn describe(text: &mut String, index: usize, listed: &Listed) -> std::fmt::Result {
+fn describe(text: &mut String, index: usize, listed: &ListedDevice) -> std::fmt::Result {
     let caps = &listed.caps;
     let identity = &caps.identity;
     writeln!(

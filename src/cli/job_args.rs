@@ -1,6 +1,6 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
-use super::listed::{self, Listed};
+use super::listed::{self, TechniqueSelection};
 use crate::cli::listed::DEFAULT_TECHNIQUE;
 use crate::cli::output::quiet_flag;
 use crate::error::Result;
@@ -11,7 +11,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 /// Adds SCENE, --technique, --device, --validate and every setting; help lists those of the techniques in `listed`.
-pub fn with_job_args(listed: &Listed, command: Command) -> Command {
+pub fn with_job_args(listed: &TechniqueSelection, command: Command) -> Command {
     let names = techniques::ALL.iter().map(|technique| PossibleValue::new(technique.name()));
     let mut command = command
         .after_help(listed.after_help())
@@ -60,7 +60,7 @@ pub(super) struct Row {
 
 /// Every setting once: common ones, those that `listed` reads, all others. Where techniques differ in what it may be,
 /// with all the choices that one of them has: of those that are listed, if they read it.
-pub(super) fn rows(listed: &Listed) -> Vec<Row> {
+pub(super) fn rows(listed: &TechniqueSelection) -> Vec<Row> {
     let common = |setting| Row { setting, heading: "Common settings".to_owned(), is_listed: true };
     let mut all: Vec<Row> = COMMON.iter().map(common).collect();
     let (first, later): (Vec<_>, Vec<_>) =
@@ -159,7 +159,7 @@ fn job_of(
 ) -> Result<Job> {
     let scene = matches.get_one::<String>("scene").map_or(technique.scene(), String::as_str);
     let mut job = Job::new(scene, technique);
-    for Row { setting, .. } in rows(&Listed::All) {
+    for Row { setting, .. } in rows(&TechniqueSelection::All) {
         let key = setting.key;
         if let Some(value) = matches.get_one::<String>(key)
             && (reads(technique, key) || !others.iter().any(|other| reads(*other, key)))

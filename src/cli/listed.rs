@@ -7,13 +7,13 @@ use crate::techniques::{self, Technique};
 pub const ALL: &str = "all";
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Listed {
+pub enum TechniqueSelection {
     All,
     /// By name.
     Of(Vec<String>),
 }
 
-impl Listed {
+impl TechniqueSelection {
     /// As the command line asks for it. It is read before it is parsed, because a help flag ends the parsing where it
     /// stands.
     pub fn of(argv: &[String]) -> Self {
@@ -45,7 +45,7 @@ impl Listed {
                 let others: Vec<&str> =
                     all.into_iter().filter(|name| names.iter().all(|listed| listed != name)).collect();
                 format!(
-                    "Listed are the common settings and those of {}. --technique NAME --help lists those of another ({}), \
+                    "TechniqueSelection are the common settings and those of {}. --technique NAME --help lists those of another ({}), \
                      --technique {ALL} --help all of them. A number after a paper and its year is a section of it.",
                     names.join(", "),
                     others.join(", ")
@@ -64,8 +64,8 @@ mod tests {
 
     #[test]
     fn the_command_says_whose_settings_are_listed() {
-        let of = |line: &str| Listed::of(&line.split(' ').map(str::to_owned).collect::<Vec<_>>());
-        let names = |names: &[&str]| Listed::Of(names.iter().map(|name| (*name).to_owned()).collect());
+        let of = |line: &str| TechniqueSelection::of(&line.split(' ').map(str::to_owned).collect::<Vec<_>>());
+        let names = |names: &[&str]| TechniqueSelection::Of(names.iter().map(|name| (*name).to_owned()).collect());
         for (line, expected) in [
             ("quincunx render --help", names(&[DEFAULT_TECHNIQUE])),
             ("quincunx render --technique forward --help", names(&["forward"])),
@@ -73,7 +73,7 @@ mod tests {
             ("quincunx render --technique forwards -h", names(&[DEFAULT_TECHNIQUE])),
             ("quincunx render -h --technique", names(&[DEFAULT_TECHNIQUE])),
             ("quincunx memory --technique forward --technique deferred", names(&["forward", "deferred"])),
-            ("quincunx memory --technique forward --technique all", Listed::All),
+            ("quincunx memory --technique forward --technique all", TechniqueSelection::All),
         ] {
             assert_eq!(of(line), expected, "{line}");
         }

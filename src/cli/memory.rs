@@ -1,7 +1,7 @@
 //! `quincunx memory`: every byte of a technique, with its owner and its lifetime, as a table or as JSON.
 
 use super::job_args;
-use super::listed::Listed;
+use super::listed::TechniqueSelection;
 use crate::caps::{file, known};
 use crate::cli::output::{print, print_text};
 use crate::error::{Error, Result};
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 const UNROUNDED: &str = "how this driver rounds sizes has not been measured: it takes these bytes, or more\n";
 
 /// The verb with its arguments.
-pub fn command(listed: &Listed) -> Command {
+pub fn command(listed: &TechniqueSelection) -> Command {
     let command = Command::new("memory")
         .about("Print the memory that a technique needs: each resource with its bytes, memory type and lifetime, and the peak")
         .arg(

@@ -21,10 +21,10 @@ pub mod settings;
 
 use crate::error::Result;
 use clap::Command;
-use listed::Listed;
+use listed::TechniqueSelection;
 
 /// The program with its verbs. `listed`: whose settings help lists.
-fn command(listed: &Listed) -> Command {
+fn command(listed: &TechniqueSelection) -> Command {
     Command::new("quincunx")
         .version(concat!(env!("CARGO_PKG_VERSION"), " (", env!("QUINCUNX_COMMIT"), ")"))
         .about("A headless Vulkan renderer: interleaved, inferred and decoupled shading side by side")
@@ -51,7 +51,7 @@ fn command(listed: &Listed) -> Command {
 
 /// Runs the verb of `argv`.
 pub fn run(argv: &[String]) -> Result<()> {
-    let matches = match command(&Listed::of(argv)).try_get_matches_from(argv) {
+    let matches = match command(&TechniqueSelection::of(argv)).try_get_matches_from(argv) {
         Ok(matches) => matches,
         // clap prints help to standard output, and its own words for what it cannot parse; exit code 2 for the latter.
         Err(error) => error.exit(),
@@ -65,8 +65,8 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("sampling", matches)) => sampling::run(matches),
         Some(("devices", matches)) => devices::run(matches, argv),
         Some(("settings", matches)) => settings::run(matches),
-        Some(("completions", matches)) => completions::run(matches, command(&Listed::All)),
-        Some(("man", matches)) => man::run(matches, command(&Listed::All)),
+        Some(("completions", matches)) => completions::run(matches, command(&TechniqueSelection::All)),
+        Some(("man", matches)) => man::run(matches, command(&TechniqueSelection::All)),
         _ => unreachable!("clap requires one of the verbs"),
     }
 }

@@ -6,7 +6,7 @@ use crate::bench::sweep::{self, Point};
 use crate::cli::output::{print, print_text, quiet_flag};
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
-use crate::job::judge;
+use crate::job::fail_on_validation;
 use crate::progress::Stage;
 use crate::scene;
 use crate::settings::{TREE, Values};
@@ -103,8 +103,8 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     } else {
         print_text(matches, &report::text(&rows))?;
     }
-    report::judge(&measured, &request)?;
+    report::require_agreement(&measured, &request)?;
     let log = gpu.validation_log();
     drop(gpu);
-    judge(log.as_deref())
+    fail_on_validation(log.as_deref())
 }

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::progress::say;
 use crate::reference::made::Watch;
 use crate::reference::recipe::Recipe;
-use crate::reference::{Asked, DEFAULT_SPP};
+use crate::reference::{DEFAULT_SPP, ReferenceRequest};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::time::Duration;
 
@@ -32,12 +32,12 @@ pub fn with_reference_args(command: Command) -> Command {
 
 /// The reference that the flags ask for.
 ///
-/// Errors: as `Asked::new`; a bad gate or threshold (exit code 2).
-pub fn asked(matches: &ArgMatches) -> Result<Option<Asked>> {
+/// Errors: as `ReferenceRequest::new`; a bad gate or threshold (exit code 2).
+pub fn asked(matches: &ArgMatches) -> Result<Option<ReferenceRequest>> {
     let Some(text) = matches.get_one::<String>("reference") else { return Ok(None) };
     let spp = matches.get_one::<u64>("reference-spp").copied().unwrap_or(DEFAULT_SPP);
     let (gates, threshold) = (gate_args::gates(matches)?, gate_args::threshold(matches)?);
-    Asked::new(text, spp, threshold, gates, Box::new(Said)).map(Some)
+    ReferenceRequest::new(text, spp, threshold, gates, Box::new(Said)).map(Some)
 }
 
 /// Lines beside the progress of the rendering itself; none with --quiet, where there is no observer.

@@ -1,9 +1,9 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
-use super::listed::Listed;
+use super::listed::TechniqueSelection;
 use super::{job_args, progress, reference_args};
 use crate::cli::output::{print, print_text};
-use crate::earlier::Earlier;
+use crate::continuation::Continuation;
 use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::progress::say;
@@ -15,7 +15,7 @@ use std::path::PathBuf;
 const DEFAULT_FPS: &str = "24";
 
 /// The verb with its arguments.
-pub fn command(listed: &Listed) -> Command {
+pub fn command(listed: &TechniqueSelection) -> Command {
     let path = |name: &'static str, value: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf))
     };
@@ -75,7 +75,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.report = matches.get_one::<PathBuf>("report").cloned();
     job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
     let earlier = matches.get_one::<PathBuf>("continue");
-    job.earlier = earlier.map(|path| Earlier::read(path, job.values.extent("size"))).transpose()?;
+    job.earlier = earlier.map(|path| Continuation::read(path, job.values.extent("size"))).transpose()?;
     job.reference = reference_args::asked(matches)?;
     job.profile = matches.get_flag("profile");
     job.statistics = matches.get_flag("statistics");

@@ -1,7 +1,7 @@
 //! `quincunx settings`: every setting of every technique, as text or as the page docs/settings.md.
 
 use super::job_args::{self, Row};
-use super::listed::Listed;
+use super::listed::TechniqueSelection;
 use super::output;
 use crate::error::Result;
 use crate::settings::{COMMON, Setting};
@@ -46,22 +46,22 @@ pub fn command() -> Command {
 /// Prints them.
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let listed = match matches.get_one::<String>("technique") {
-        None => Listed::All,
-        Some(name) => Listed::Of(vec![name.clone()]),
+        None => TechniqueSelection::All,
+        Some(name) => TechniqueSelection::Of(vec![name.clone()]),
     };
     let text = if matches.get_flag("markdown") { markdown(&listed) } else { plain(&listed) };
     output::print(&text)
 }
 
 /// What `render --help` says of them, alone.
-fn plain(listed: &Listed) -> String {
+fn plain(listed: &TechniqueSelection) -> String {
     let rows = job_args::rows(listed).into_iter().filter(|row| row.is_listed);
     let flags = rows.map(|Row { setting, heading, .. }| job_args::flag(setting).help_heading(heading));
     let mut command = Command::new("settings").disable_help_flag(true).help_template("{all-args}").args(flags);
     format!("{}\n", command.render_help().to_string().trim_end())
 }
 
-fn markdown(listed: &Listed) -> String {
+fn markdown(listed: &TechniqueSelection) -> String {
     let mut text = HEAD.to_owned();
     section(&mut text, "Common settings", "", COMMON);
     for technique in techniques::ALL.iter().filter(|technique| listed.has(**technique)) {

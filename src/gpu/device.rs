@@ -86,7 +86,7 @@ impl Drop for Validation {
 }
 
 /// A device that `devices` lists.
-pub struct Listed {
+pub struct ListedDevice {
     pub caps: Caps,
     /// Why it cannot be used; empty where it can.
     pub missing: Vec<String>,
@@ -196,7 +196,7 @@ fn missing(instance: &ash::Instance, physical: vk::PhysicalDevice, caps: &Caps) 
 }
 
 /// Every device of every driver, with what it lacks.
-pub fn list() -> Result<Vec<Listed>> {
+pub fn list() -> Result<Vec<ListedDevice>> {
     let entry = load_entry()?;
     let (instance, _) = create_instance(&entry, None)?;
     let listed = physical_devices(&instance).map(|devices| {
@@ -205,7 +205,7 @@ pub fn list() -> Result<Vec<Listed>> {
             .map(|physical| {
                 let caps = probe::caps(&instance, physical);
                 let missing = missing(&instance, physical, &caps);
-                Listed { caps, missing }
+                ListedDevice { caps, missing }
             })
             .collect()
     });

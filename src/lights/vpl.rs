@@ -30,7 +30,7 @@ pub struct Walk {
 
 /// What the walk found.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct VplWalk {
     /// In the order of the walks: any stretch of them is as well spread as the whole.
     pub vpls: Vec<VplBlock>,
     /// How many of them walks have found; the rest are dark.
@@ -52,7 +52,7 @@ const RAY_OFFSET: f32 = 1e-4;
 
 /// Walks until `walk.count` lights are found. Where nothing shines, or no walk lands, there is no indirect light: the rest
 /// of the lights are dark ones, so that a picture is a picture all the same.
-pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> Found {
+pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> VplWalk {
     let bounds = scene.bounds();
     let radius = 0.5 * bounds.diagonal();
     let (sources, powers) = sources(scene, lights, walk.emissive, radius);
@@ -83,7 +83,7 @@ pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> Found {
     }
     let found_count = vpls.len() as u32;
     vpls.resize(walk.count as usize, vpl(bounds.center(), Vec3::Y, Vec3::ZERO));
-    Found { vpls, found_count, walk_count: walk_count as u32 }
+    VplWalk { vpls, found_count, walk_count: walk_count as u32 }
 }
 
 fn luminous(color: Vec3) -> f64 {
@@ -324,7 +324,7 @@ mod tests {
         }
     }
 
-    fn total(found: &Found) -> Vec3 {
+    fn total(found: &VplWalk) -> Vec3 {
         found.vpls.iter().map(|vpl| Vec4::from_array(vpl.intensity).truncate()).sum()
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// A named need.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct MemoryDemand {
     pub name: String,
     pub ask: Ask,
     /// Given back before the next one is made: a staging buffer.
@@ -25,8 +25,8 @@ pub struct Refusal {
 impl Refusal {
     /// Whether it would have been placed, had the resources of these names been `wanted` so. Where not all of them were
     /// held yet, the others must find room after it.
-    pub fn fits_with(&self, wanted: &[Wanted]) -> bool {
-        let mut to_come: BTreeMap<&str, &Wanted> = wanted.iter().map(|one| (one.name.as_str(), one)).collect();
+    pub fn fits_with(&self, wanted: &[MemoryDemand]) -> bool {
+        let mut to_come: BTreeMap<&str, &MemoryDemand> = wanted.iter().map(|one| (one.name.as_str(), one)).collect();
         let mut pool = Pool::new(self.rules.clone());
         let mut is_placed = |ask: &Ask, is_transient: bool| match pool.place(ask) {
             Ok(place) if is_transient => {
@@ -36,7 +36,7 @@ impl Refusal {
             Ok(_) => true,
             Err(_) => false,
         };
-        let is_held = |one: &Wanted| self.held.iter().any(|(name, _)| *name == one.name);
+        let is_held = |one: &MemoryDemand| self.held.iter().any(|(name, _)| *name == one.name);
         let none_to_come =
             !to_come.contains_key(self.name.as_str()) && wanted.iter().all(|one| one.is_transient || is_held(one));
         let mut known = self.held.iter().map(|(name, ask)| (name, ask)).chain([(&self.name, &self.ask)]);
@@ -66,8 +66,8 @@ mod tests {
         Ask { bytes, alignment: 256, type_index: 0, mapped: false, tiling: Tiling::Linear, alone: false }
     }
 
-    fn wanted(name: &str, bytes: u64, is_transient: bool) -> Wanted {
-        Wanted { name: name.to_owned(), ask: ask(bytes), is_transient }
+    fn wanted(name: &str, bytes: u64, is_transient: bool) -> MemoryDemand {
+        MemoryDemand { name: name.to_owned(), ask: ask(bytes), is_transient }
     }
 
     #[test]

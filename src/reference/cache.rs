@@ -20,7 +20,7 @@ pub struct Cache {
 }
 
 /// What is kept under a key.
-pub enum Kept {
+pub enum CacheOutcome {
     Nothing,
     Whole(Picture),
     /// A file that is not what it should be, and why. It has been moved out of the way where that was possible.
@@ -50,20 +50,20 @@ impl Cache {
     }
 
     /// What is kept of a recipe. A broken file is renamed to `KEY.broken.exr`.
-    pub fn find(&self, recipe: &Recipe) -> Kept {
+    pub fn find(&self, recipe: &Recipe) -> CacheOutcome {
         let path = self.path(recipe);
         if !path.exists() {
-            return Kept::Nothing;
+            return CacheOutcome::Nothing;
         }
         match read(&path, recipe) {
-            Ok(picture) => Kept::Whole(picture),
+            Ok(picture) => CacheOutcome::Whole(picture),
             Err(error) => {
                 let aside = path.with_extension("broken.exr");
                 let fate = match std::fs::rename(&path, &aside) {
                     Ok(()) => format!("it is {} now", aside.display()),
                     Err(error) => format!("it cannot be renamed: {error}"),
                 };
-                Kept::Broken(format!("{}; {fate}", error.message()))
+                CacheOutcome::Broken(format!("{}; {fate}", error.message()))
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Making a reference: found where it is kept, or rendered, after a trial that says how long it will take.
 
-use super::cache::{Cache, Kept};
+use super::cache::{Cache, CacheOutcome};
 use super::recipe::Recipe;
 use crate::error::Result;
 use crate::gpu::commands::Submits;
@@ -25,7 +25,7 @@ pub trait Watch {
 }
 
 /// A reference that is there.
-pub struct Made {
+pub struct MadeReference {
     pub picture: Picture,
     /// It was kept from an earlier run: nothing was rendered.
     pub was_kept: bool,
@@ -36,11 +36,16 @@ pub struct Made {
 ///
 /// Errors: impossible settings (exit code 2); the device, memory (4); the picture holds NaN or infinity (1); Ctrl-C (130):
 /// nothing is kept then.
-pub fn reference_picture(recipe: &Recipe, session: &Session, cache: &Cache, watch: &dyn Watch) -> Result<Made> {
+pub fn reference_picture(
+    recipe: &Recipe,
+    session: &Session,
+    cache: &Cache,
+    watch: &dyn Watch,
+) -> Result<MadeReference> {
     match cache.find(recipe) {
-        Kept::Whole(picture) => return Ok(Made { picture, was_kept: true }),
-        Kept::Broken(why) => watch.note(&format!("a kept reference is broken and is made again: {why}")),
-        Kept::Nothing => {}
+        CacheOutcome::Whole(picture) => return Ok(MadeReference { picture, was_kept: true }),
+        CacheOutcome::Broken(why) => watch.note(&format!("a kept reference is broken and is made again: {why}")),
+        CacheOutcome::Nothing => {}
     }
     let estimate = trial(recipe, session)?;
     watch.begins(recipe, estimate);
@@ -48,7 +53,7 @@ pub fn reference_picture(recipe: &Recipe, session: &Session, cache: &Cache, watc
     if let Err(error) = cache.keep(recipe, &picture) {
         watch.note(&format!("the reference is used but could not be kept: {}", error.message()));
     }
-    Ok(Made { picture, was_kept: false })
+    Ok(MadeReference { picture, was_kept: false })
 }
 
 /// How long rendering will take; None where that is not worth a trial.

@@ -36,7 +36,7 @@ enum Source {
 }
 
 /// A reference as it was asked for, and what is to be done with it.
-pub struct Asked {
+pub struct ReferenceRequest {
     source: Source,
     /// Threshold of `Metrics::over_threshold`.
     threshold: f64,
@@ -45,14 +45,14 @@ pub struct Asked {
 }
 
 /// What judging a picture leaves.
-pub struct Judged {
+pub struct ReferenceResult {
     /// The report's `errors`.
     pub errors: Errors,
     /// Whether the gates hold.
     pub gates: Result<()>,
 }
 
-impl Asked {
+impl ReferenceRequest {
     /// `text`: a picture's file, or `auto` with `spp` samples a pixel. `watch` is notified while a reference is made.
     ///
     /// Errors: the file cannot be read (exit code 2), or holds NaN or infinity (1).
@@ -133,7 +133,7 @@ impl Asked {
         technique: &dyn Technique,
         values: &Values,
         session: &Session,
-    ) -> Result<Judged> {
+    ) -> Result<ReferenceResult> {
         self.check(picture.extent)?;
         let (mut reference_key, mut reference_settings) = (None, None);
         let reference = match &self.source {
@@ -167,7 +167,7 @@ impl Asked {
             cut,
             gates: self.gates.iter().map(|gate| gate.verdict(&metrics)).collect(),
         };
-        Ok(Judged { errors, gates: gate::judge(&self.gates, &metrics, "against the reference") })
+        Ok(ReferenceResult { errors, gates: gate::judge(&self.gates, &metrics, "against the reference") })
     }
 
     fn is_cut(&self) -> bool {

@@ -2,12 +2,12 @@
 
 use crate::error::Result;
 use crate::frame::View;
-use crate::keyed::Keyed;
 use crate::lights::LightSet;
 use crate::session::Session;
 use crate::settings::{Changes, Setting, Values};
 use crate::techniques::{self, Technique, settings_of};
 use crate::units::Extent;
+use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
 /// Goes into every key; raised whenever the kept files, or what goes into a key, change.
@@ -125,7 +125,7 @@ impl Recipe {
     }
 
     /// Every setting as text.
-    pub fn settings(&self) -> Keyed<String> {
+    pub fn settings(&self) -> IndexMap<String, String> {
         self.values.iter().map(|(key, text)| (key.to_owned(), text.to_owned())).collect()
     }
 

@@ -1,8 +1,8 @@
 //! Errors of a picture against its reference, as reports and rows write them.
 
-use crate::keyed::Keyed;
 use crate::metrics::Metrics;
 use crate::metrics::gate::Verdict;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 /// A report's `errors`.
@@ -15,7 +15,7 @@ pub struct Errors {
     pub reference_key: Option<String>,
     /// Texts of the settings of the path tracing that made it; None of a file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reference_settings: Option<Keyed<String>>,
+    pub reference_settings: Option<IndexMap<String, String>>,
     #[serde(flatten)]
     pub metrics: Metrics,
     /// HDR-FLIP above which a pixel counts in `over_threshold`.

@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind};
 use crate::gpu::{Buffer, Gpu, upload};
 use crate::memory::Tiling;
 use crate::memory::kinds::Use;
-use crate::memory::refusal::Wanted;
+use crate::memory::refusal::MemoryDemand;
 use crate::plan::{Planned, Shape};
 use crate::scene::Scene;
 use crate::units::Bytes;
@@ -35,26 +35,26 @@ pub fn advise(error: Error, gpu: &Gpu, scene: &Scene) -> Error {
 }
 
 /// What each of the scene's resources needs, and the staging buffer that fills it; None where a memory type is missing.
-fn needs(gpu: &Gpu, stats: &SceneStats) -> Option<Vec<Wanted>> {
+fn needs(gpu: &Gpu, stats: &SceneStats) -> Option<Vec<MemoryDemand>> {
     let resident = |planned: &Planned| {
         let (requirements, usage, tiling) = match planned.shape {
             Shape::Buffer { bytes, flags, usage } => (Buffer::requirements(gpu, bytes, flags), usage, Tiling::Linear),
             Shape::Image(description) => (description.requirements(gpu), Use::Device, Tiling::Optimal),
         };
         let ask = gpu.memory.ask(&requirements, usage, tiling).ok()?;
-        Some(Wanted { name: planned.name.clone(), ask, is_transient: false })
+        Some(MemoryDemand { name: planned.name.clone(), ask, is_transient: false })
     };
     let staging = |planned: &Planned| {
         let requirements = Buffer::requirements(gpu, planned.bytes(), upload::STAGING);
         let ask = gpu.memory.ask(&requirements, Use::Upload, Tiling::Linear).ok()?;
-        Some(Wanted { name: upload::staging_name(&planned.name), ask, is_transient: true })
+        Some(MemoryDemand { name: upload::staging_name(&planned.name), ask, is_transient: true })
     };
     let plan = stats.plan();
     plan.resources.iter().map(resident).chain(plan.resources.iter().map(staging)).collect()
 }
 
 /// Sum of what the driver requires for the textures themselves.
-fn texture_bytes(needs: &[Wanted]) -> u64 {
-    let is_texture = |one: &&Wanted| !one.is_transient && one.ask.tiling == Tiling::Optimal;
+fn texture_bytes(needs: &[MemoryDemand]) -> u64 {
+    let is_texture = |one: &&MemoryDemand| !one.is_transient && one.ask.tiling == Tiling::Optimal;
     needs.iter().filter(is_texture).map(|one| one.ask.bytes).sum()
 }

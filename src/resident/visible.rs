@@ -53,7 +53,7 @@ impl DrawList {
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
-            let lens = Lens::new(scene, call, view, raster);
+            let lens = DrawView::new(scene, call, view, raster);
             for cluster in &clusters[call.clusters()] {
                 if choice == GeometryChoice::Culled && lens.sees_nothing_of(cluster, &indices[cluster.indices()]) {
                     clusters_culled += 1;
@@ -99,7 +99,7 @@ impl DrawList {
 }
 
 /// A view of one draw.
-struct Lens<'a> {
+struct DrawView<'a> {
     positions: &'a [Vec3],
     double_sided: bool,
     mirrored: bool,
@@ -139,7 +139,7 @@ impl Clipped {
     }
 }
 
-impl<'a> Lens<'a> {
+impl<'a> DrawView<'a> {
     fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Raster) -> Self {
         let draw = &scene.draws[call.draw as usize];
         let (clip_from_world, world_from_object) =

@@ -8,7 +8,7 @@ use std::path::Path;
 /// The scene of a name or a path, read once, from which the scene at any time is made.
 #[derive(Debug)]
 pub enum Model {
-    BuiltIn(Box<procedural::Made>),
+    BuiltIn(Box<procedural::ProceduralScene>),
     File(Box<gltf::Model>),
 }
 

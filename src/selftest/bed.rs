@@ -37,7 +37,7 @@ pub struct Refusal {
 
 /// A picture, or why there can be none.
 #[derive(Clone, Debug)]
-pub enum Made {
+pub enum RenderOutcome {
     Rendered(Rendered),
     Refused(Refusal),
 }
@@ -55,7 +55,7 @@ pub struct Bed {
     /// What it shows, by place and shutter.
     session: Option<((Place, String), Session)>,
     /// The last twin, which the methods of a group share.
-    twin: Option<(Key, Result<Made>)>,
+    twin: Option<(Key, Result<RenderOutcome>)>,
     /// What the validation layer said while devices were closed.
     last_words: Vec<Message>,
 }
@@ -99,11 +99,11 @@ impl Bed {
     /// limit of the device.
     ///
     /// Errors: NaN, memory, a device that fails (exit codes 1 and 4).
-    pub fn render(&mut self, request: RenderRequest<'_>) -> Result<Made> {
+    pub fn render(&mut self, request: RenderRequest<'_>) -> Result<RenderOutcome> {
         let made = self.try_render(request);
         match made {
             Err(error) if matches!(error.kind(), ErrorKind::NoDevice | ErrorKind::Request) => {
-                Ok(Made::Refused(Refusal {
+                Ok(RenderOutcome::Refused(Refusal {
                     of: request.1.to_owned(),
                     needs: error.message().to_owned(),
                     instead: String::new(),
@@ -120,7 +120,7 @@ impl Bed {
     /// The same, made once for consecutive calls that need it.
     ///
     /// Errors: as `render`.
-    pub fn twin(&mut self, request: RenderRequest<'_>) -> Result<Made> {
+    pub fn twin(&mut self, request: RenderRequest<'_>) -> Result<RenderOutcome> {
         let (place, technique, settings) = request;
         let key = (place, technique.to_owned(), settings.to_vec());
         if let Some((_, made)) = self.twin.as_ref().filter(|(of, _)| *of == key) {
@@ -131,18 +131,22 @@ impl Bed {
         made
     }
 
-    fn try_render(&mut self, (place, technique, settings): RenderRequest<'_>) -> Result<Made> {
+    fn try_render(&mut self, (place, technique, settings): RenderRequest<'_>) -> Result<RenderOutcome> {
         let job = case::job(place, technique, settings)?;
         let session = self.showing(place, &job.values, technique)?;
         if let Some(need) = unmet(job.technique, &job.values, session) {
             let Need { of, ability, instead } = need;
-            return Ok(Made::Refused(Refusal { of, needs: ability.name().to_owned(), instead: instead.to_owned() }));
+            return Ok(RenderOutcome::Refused(Refusal {
+                of,
+                needs: ability.name().to_owned(),
+                instead: instead.to_owned(),
+            }));
         }
         let renderer = session.renderer(job.technique, &job.values, &[], Submits::One)?;
         let time = renderer.frame()?;
         let device_ns = if renderer.clock() == Clock::Timestamps { time.device_ns } else { None };
         let (picture, counters) = (renderer.picture()?, renderer.measured_counters()?);
-        Ok(Made::Rendered(Rendered { picture, counters, wall_ns: time.wall_ns, device_ns }))
+        Ok(RenderOutcome::Rendered(Rendered { picture, counters, wall_ns: time.wall_ns, device_ns }))
     }
 
     /// A renderer with a submit a pass, in place of the method's.

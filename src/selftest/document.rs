@@ -4,7 +4,7 @@
 use super::bed::Refusal;
 use super::case::Twin;
 use super::clocks::Clocks;
-use super::{Outcome, Tried, Verdict};
+use super::{CaseResult, Outcome, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ struct Counts {
     refused: usize,
 }
 
-fn counts(tried: &[Tried]) -> Counts {
+fn counts(tried: &[CaseResult]) -> Counts {
     let count = |is: fn(&Verdict) -> bool| tried.iter().filter(|tried| is(&tried.verdict)).count();
     Counts {
         held: count(|verdict| matches!(verdict, Verdict::Held)),
@@ -46,7 +46,7 @@ pub fn json(outcome: &Outcome, command: &[String]) -> Value {
     })
 }
 
-fn case(tried: &Tried, is_software: bool) -> Value {
+fn case(tried: &CaseResult, is_software: bool) -> Value {
     let group = tried.case.group;
     let mut expected = Map::new();
     expected.insert("equal_bits".into(), json!(group.must.is_exact(is_software)));
@@ -97,7 +97,7 @@ fn settings(changes: &[(&'static str, &'static str)]) -> Value {
 }
 
 /// The line of a case, and one for each of its complaints.
-pub fn line(tried: &Tried) -> String {
+pub fn line(tried: &CaseResult) -> String {
     let name = tried.case.name();
     let (word, rest) = match &tried.verdict {
         Verdict::Held => ("held", figures(tried)),
@@ -110,7 +110,7 @@ pub fn line(tried: &Tried) -> String {
 }
 
 /// What is worth a look where a picture is not its twin to the bit.
-fn figures(tried: &Tried) -> String {
+fn figures(tried: &CaseResult) -> String {
     match tried.figures {
         Some(figures) if !figures.is_equal => {
             format!("  RMSE {:.6}, FLIP {:.6}, {:.2} % apart", figures.rmse, figures.flip, 100.0 * figures.apart)

@@ -18,7 +18,7 @@ use crate::gpu::DeviceRequest;
 use crate::gpu::validation::Message;
 use crate::interrupt;
 use crate::progress::Stage;
-use bed::{Bed, Made, Refusal, Rendered};
+use bed::{Bed, Refusal, RenderOutcome, Rendered};
 use case::{Case, Twin};
 use clocks::Clocks;
 use judge::{Figures, Must};
@@ -54,7 +54,7 @@ pub enum Verdict {
 
 /// A case that was tried.
 #[derive(Clone, Debug)]
-pub struct Tried {
+pub struct CaseResult {
     pub case: Case,
     pub verdict: Verdict,
     /// None: there are not two pictures.
@@ -72,7 +72,7 @@ pub struct Outcome {
     pub caps: Caps,
     pub is_robust: bool,
     pub is_validated: bool,
-    pub tried: Vec<Tried>,
+    pub tried: Vec<CaseResult>,
     /// None: they were not asked for.
     pub clocks: Option<Clocks>,
     /// What the validation layer said while the device was closed.
@@ -84,7 +84,7 @@ pub struct Outcome {
 ///
 /// Errors: no fitting device (exit code 3); no case has such a name (2); Ctrl-C (130). What fails on the device is no
 /// error, but a verdict.
-pub fn run(request: &Request, on_case: &mut dyn FnMut(&Tried)) -> Result<Outcome> {
+pub fn run(request: &Request, on_case: &mut dyn FnMut(&CaseResult)) -> Result<Outcome> {
     let started = Instant::now();
     let cases: Vec<Case> = cases::all().filter(|case| request.wants(&case.name())).collect();
     let wants_clocks = request.wants(clocks::NAME);
@@ -137,9 +137,9 @@ fn sentence(message: &Message) -> String {
 }
 
 /// Renders a case and its twin, and judges.
-fn attempt(bed: &mut Bed, case: Case) -> Tried {
+fn attempt(bed: &mut Bed, case: Case) -> CaseResult {
     let started = Instant::now();
-    let mut tried = Tried {
+    let mut tried = CaseResult {
         case,
         verdict: Verdict::Held,
         figures: None,
@@ -160,12 +160,12 @@ fn attempt(bed: &mut Bed, case: Case) -> Tried {
 }
 
 /// Errors: one of the pictures cannot be made.
-fn judged(bed: &mut Bed, tried: &mut Tried) -> Result<Verdict> {
+fn judged(bed: &mut Bed, tried: &mut CaseResult) -> Result<Verdict> {
     let case = tried.case;
     let (place, is_software) = (case.group.place, bed.caps().identity.is_software());
     let rendered = match bed.render((place, case.group.technique, &case.settings()))? {
-        Made::Rendered(rendered) => rendered,
-        Made::Refused(refusal) => return Ok(Verdict::Refused(refusal)),
+        RenderOutcome::Rendered(rendered) => rendered,
+        RenderOutcome::Refused(refusal) => return Ok(Verdict::Refused(refusal)),
     };
     (tried.wall_ns, tried.device_ns) = (Some(rendered.wall_ns), rendered.device_ns);
     tried.missing_samples = rendered.counters.get(MISSING).copied();
@@ -173,8 +173,8 @@ fn judged(bed: &mut Bed, tried: &mut Tried) -> Result<Verdict> {
     let reference = match (case.group.twin, case.twin_settings()) {
         (Twin::Formula, _) => case.formula(rendered.picture.extent),
         (_, Some((technique, settings))) => match bed.twin((place, technique, &settings)) {
-            Ok(Made::Rendered(twin)) => Some(twin.picture),
-            Ok(Made::Refused(refusal)) => return Ok(Verdict::Refused(refusal)),
+            Ok(RenderOutcome::Rendered(twin)) => Some(twin.picture),
+            Ok(RenderOutcome::Refused(refusal)) => return Ok(Verdict::Refused(refusal)),
             Err(error) => return Err(error.within("its twin")),
         },
         (_, None) => None,

@@ -1,7 +1,7 @@
 //! Settings as reports and rows write them.
 
 use super::Values;
-use crate::keyed::Keyed;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,7 +15,7 @@ pub enum SettingValue {
 }
 
 /// Values of settings by key, in the order of `Values`.
-pub type WrittenSettings = Keyed<SettingValue>;
+pub type WrittenSettings = IndexMap<String, SettingValue>;
 
 impl SettingValue {
     pub fn of(text: &str) -> Self {

@@ -29,7 +29,7 @@ enum Copies {
 }
 
 /// Errors: what is planned does not fit (exit code 4), with how much it takes and a budget that is enough.
-pub fn judge(
+pub fn require_fitting(
     plans: &Plans,
     job: &Job,
     mut scene: Scene,

@@ -8,7 +8,7 @@ use crate::bvh::LazyBvh;
 use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::commands::Submits;
-use crate::job::{Job, judge};
+use crate::job::{Job, fail_on_validation};
 use crate::memory::kinds::Kinds;
 use crate::plan::Requirements;
 use crate::report::memory::MemoryTable;
@@ -42,7 +42,7 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     let table = MemoryTable::new(kept, frame, sharing.clone(), driver.requirements, &Kinds::new(caps), None)?;
     let budget = match job.values.bytes("memory-budget") {
         None => Ok(()),
-        Some(budget_bytes) => budget::judge(&plans, job, scene, &bvh, driver, budget_bytes),
+        Some(budget_bytes) => budget::require_fitting(&plans, job, scene, &bvh, driver, budget_bytes),
     };
     let is_unrounded = caps.layout.is_none();
     Ok(Study { device: caps_name.to_owned(), scene: name, table, is_unrounded, budget })
@@ -73,6 +73,6 @@ pub fn made(job: &Job) -> Result<Study> {
     let study = Study { device, scene: session.scene.name.clone(), table, is_unrounded: false, budget: Ok(()) };
     let log = session.gpu.validation_log();
     drop((renderer, session));
-    judge(log.as_deref())?;
+    fail_on_validation(log.as_deref())?;
     Ok(study)
 }

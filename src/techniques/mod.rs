@@ -8,7 +8,6 @@
 mod all;
 pub mod bench_stage;
 pub mod bindable;
-mod closing;
 pub mod deep_shading;
 pub mod deferred;
 pub mod fitness;
@@ -19,6 +18,7 @@ pub mod notes;
 pub mod own_pass;
 pub mod path_traced;
 pub mod patterns;
+mod shutter_close;
 pub mod stages;
 
 pub use all::{ALL, find};

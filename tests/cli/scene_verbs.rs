@@ -4,7 +4,7 @@ use crate::support::gltf_file::{GltfFile, U8};
 use crate::support::program::Program;
 use crate::support::watched::Watched;
 use glam::Vec3;
-use quincunx::scene::procedural::{self, Made};
+use quincunx::scene::procedural::{self, ProceduralScene};
 use quincunx::scene::{self, Scene, glb, gltf};
 use quincunx::scene::{AnimationChoice, LightKind, Texture};
 use serde_json::{Value, json};
@@ -160,7 +160,7 @@ fn export_writes_a_whole_glb_or_nothing() {
 
 /// The bytes of a built-in scene of seed 1.
 fn encoded(spec: &str) -> Vec<u8> {
-    let Made { scene, motions } = procedural::open(spec, 1).unwrap().unwrap();
+    let ProceduralScene { scene, motions } = procedural::open(spec, 1).unwrap().unwrap();
     glb::encode(&scene, &motions).unwrap()
 }
 

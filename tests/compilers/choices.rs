@@ -34,13 +34,13 @@ fn are_read(settings: &[Setting], changes: &[Change]) -> bool {
 
 /// A choice, and the ways to ask for it in which something reads all of it: by itself and with one other change, or,
 /// where there are none, with two.
-struct Asked {
+struct ReferenceRequest {
     choice: Change,
     ways: Vec<Vec<Change>>,
 }
 
 /// Each choice that a technique has.
-fn choices(technique: &dyn Technique) -> Vec<Asked> {
+fn choices(technique: &dyn Technique) -> Vec<ReferenceRequest> {
     let settings = settings_of(technique);
     let of = |setting: &Setting| -> Vec<Change> {
         setting.choices().into_iter().flatten().map(|word| (setting.key, word)).collect()
@@ -59,7 +59,7 @@ fn choices(technique: &dyn Technique) -> Vec<Asked> {
             let two = others.iter().flat_map(|first| others.iter().map(move |second| vec![*first, *second, *choice]));
             ways.extend(two.into_iter().find(is_way));
         }
-        Asked { choice: *choice, ways }
+        ReferenceRequest { choice: *choice, ways }
     };
     own.iter().map(asked).collect()
 }
@@ -95,7 +95,7 @@ fn compile(family: &str) {
     let Some(null) = Null::open(FAMILIES.iter().find(|known| known.name == family).unwrap()) else { return };
     let (mut made, mut lacks, mut wrong) = (0, Vec::new(), Vec::new());
     for technique in techniques::ALL {
-        for Asked { choice, ways } in choices(*technique) {
+        for ReferenceRequest { choice, ways } in choices(*technique) {
             let tried = ways.iter().map(|changes| try_way(&null, technique.name(), changes));
             let outcome = tried.into_iter().find(|outcome| !matches!(outcome, Outcome::Contradicts));
             match outcome {

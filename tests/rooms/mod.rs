@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["choice", "error", "keyed", "progress", "sampling", "units"],
+    &["choice", "error", "progress", "sampling", "units"],
     &["caps", "interrupt", "whole_file"],
     &["memory", "picture"],
     &["gpu", "metrics", "scene", "settings"],
@@ -20,7 +20,7 @@ const FLOORS: &[&[&str]] = &[
     &["report"],
     &["session"],
     &["reference"],
-    &["earlier"],
+    &["continuation"],
     &["job"],
     &["bench", "selftest", "sequence", "study"],
     &["cli"],

@@ -181,7 +181,7 @@ pub fn text(rows: &[RaysRow]) -> String {
 }
 
 /// Errors: a walk finds other hits than the host's (exit code 1).
-pub fn judge(measured: &[Measured], request: &Request) -> Result<()> {
+pub fn require_agreement(measured: &[Measured], request: &Request) -> Result<()> {
     let most = MOST_DIFFERING * f64::from(request.ray_count);
     match measured.iter().find(|one| one.differing as f64 > most.max(4.0)) {
         None => Ok(()),

@@ -4,7 +4,7 @@ use super::seed::{seed, seed_argument};
 use crate::cli::output;
 use crate::error::{Error, Result};
 use crate::scene::glb;
-use crate::scene::procedural::{self, Made};
+use crate::scene::procedural::{self, ProceduralScene};
 use crate::units::Bytes;
 use crate::whole_file::write_whole;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -43,7 +43,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb")) {
         return Err(Error::request(format!("-o {}: scenes are written as .glb", path.display())));
     }
-    let Made { scene, motions } = procedural::open(spec, seed(matches)).unwrap_or_else(|| {
+    let ProceduralScene { scene, motions } = procedural::open(spec, seed(matches)).unwrap_or_else(|| {
         let names: Vec<&str> = procedural::ALL.iter().map(|built_in| built_in.name).collect();
         Err(Error::request(format!("scene {spec}: there is no built-in scene of that name"))
             .note(format!("built-in scenes: {}", names.join(", "))))

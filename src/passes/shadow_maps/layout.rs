@@ -67,7 +67,7 @@ impl MapLayout {
         let size_px = values.integer("shadow-map-size") as u32;
         let cutoff_lux = values.number("light-cutoff") as f32;
         let layer_count: u32 = lights.lights.iter().map(|light| layers_of(light.kind)).sum();
-        let asked = Asked { size_px, layer_count, light_count: lights.lights.len() };
+        let asked = MapDemand { size_px, layer_count, light_count: lights.lights.len() };
         asked.require_fitting(values, stats, caps, requirements)?;
         let mut layout = Self {
             blocks: Vec::with_capacity(lights.lights.len()),
@@ -181,13 +181,13 @@ fn layers_of(kind: LightKind) -> u32 {
 }
 
 /// How many maps of which size.
-struct Asked {
+struct MapDemand {
     size_px: u32,
     layer_count: u32,
     light_count: usize,
 }
 
-impl Asked {
+impl MapDemand {
     /// Errors: as `MapLayout::new`.
     fn require_fitting(
         &self,

@@ -11,7 +11,7 @@ use super::buffers::Buffers;
 use super::deform::{self, Deform};
 use super::limits::Allowance;
 use super::nodes::{Hierarchy, PlacedNode};
-use super::primitives::{Piece, Shown};
+use super::primitives::{MeshUse, Piece};
 use super::skins::Skin;
 use super::{label, morph};
 use crate::error::{Error, Result};
@@ -83,8 +83,8 @@ pub struct Shapes {
 /// How the nodes that are shown need each glTF mesh.
 ///
 /// Errors: see `morph::target_count`.
-pub fn shown(document: &Document, hierarchy: &Hierarchy) -> Result<BTreeMap<usize, Shown>> {
-    let mut all: BTreeMap<usize, Shown> = BTreeMap::new();
+pub fn shown(document: &Document, hierarchy: &Hierarchy) -> Result<BTreeMap<usize, MeshUse>> {
+    let mut all: BTreeMap<usize, MeshUse> = BTreeMap::new();
     for node in document.nodes().filter(|node| hierarchy.shows(node.index())) {
         let Some(mesh) = node.mesh() else { continue };
         let shown = all.entry(mesh.index()).or_default();

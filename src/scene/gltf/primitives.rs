@@ -47,7 +47,7 @@ enum Outcome {
 
 /// How nodes show a glTF mesh.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Shown {
+pub struct MeshUse {
     /// Some node bends it: its morph targets are read.
     pub is_bent: bool,
     /// Some node gives it a skin: its joints and weights are read.
@@ -58,7 +58,7 @@ pub struct Shown {
 /// Returns the pieces of each.
 pub fn read(
     document: &Document,
-    drawn: &BTreeMap<usize, Shown>,
+    drawn: &BTreeMap<usize, MeshUse>,
     buffers: &Buffers<'_>,
     materials: &mut Vec<Material>,
     warnings: &mut Vec<String>,
@@ -160,7 +160,7 @@ fn read_primitive(
     mesh_index: usize,
     primitive: &gltf::Primitive<'_>,
     material: &Material,
-    shown: Shown,
+    shown: MeshUse,
 ) -> Result<Outcome> {
     let normal_mapped = material.normal_texture.is_some();
     let Some(positions) = primitive.get(&Semantic::Positions) else {

@@ -67,12 +67,12 @@ impl Motion {
 
 /// A scene at rest, and what moves in it.
 #[derive(Clone, Debug)]
-pub struct Made {
+pub struct ProceduralScene {
     pub scene: Scene,
     pub motions: Vec<Motion>,
 }
 
-impl Made {
+impl ProceduralScene {
     /// The same with only those moving that `choice` names.
     ///
     /// Errors: there is none of that name (exit code 2).
@@ -138,14 +138,14 @@ mod tests {
     use crate::scene::{Camera, Draw, Material, Mesh, Projection};
     use glam::DVec3;
 
-    fn made() -> Made {
+    fn made() -> ProceduralScene {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let meshes = vec![Mesh { positions, indices: vec![0, 1, 2], ..Mesh::default() }];
         let draws = vec![Draw { mesh: 0, world_from_object: Mat4::IDENTITY }; 2];
         let materials = vec![Material::default()];
         let scene = Scene { hash: "a hash".to_owned(), meshes, draws, materials, ..Scene::default() };
         let wheel = Motion::turning("wheel", Thing::Draw(1), Vec3::new(5.0, 0.0, 0.0), Vec3::Y, 2);
-        Made { scene, motions: vec![wheel] }
+        ProceduralScene { scene, motions: vec![wheel] }
     }
 
     fn tip(time_s: f64) -> Vec3 {

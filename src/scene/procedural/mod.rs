@@ -27,7 +27,7 @@ use crate::scene::{AnimationChoice, Scene, normal_groups};
 use assembly::Assembly;
 use rayon::prelude::*;
 
-pub use made::{Made, Motion, Thing};
+pub use made::{Motion, ProceduralScene, Thing};
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
@@ -225,7 +225,7 @@ impl BuiltIn {
 ///
 /// None where no built-in scene has that name: it may be a file. The error lists the parameters with what they may be
 /// where one is unknown or not that. The same spec and seed give the same bytes everywhere.
-pub fn open(spec: &str, seed: u64) -> Option<Result<Made>> {
+pub fn open(spec: &str, seed: u64) -> Option<Result<ProceduralScene>> {
     let (name, arguments) = match spec.split_once(':') {
         Some((name, arguments)) => (name, Some(arguments)),
         None => (spec, None),
@@ -238,7 +238,7 @@ pub fn open(spec: &str, seed: u64) -> Option<Result<Made>> {
         scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };
         let identity = format!("{} seed={seed} version={GENERATOR_VERSION}", scene.name);
         scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
-        Made { scene, motions }.playing(&AnimationChoice::All)
+        ProceduralScene { scene, motions }.playing(&AnimationChoice::All)
     });
     Some(made)
 }
@@ -361,7 +361,8 @@ mod tests {
 
     #[test]
     fn what_moves_in_the_arena_stays_in_it() {
-        let Made { scene, motions } = open("arena:triangles=60000", 1).expect("a name").expect("good parameters");
+        let ProceduralScene { scene, motions } =
+            open("arena:triangles=60000", 1).expect("a name").expect("good parameters");
         checks::assert_scene_is_sound(&scene);
         let named = |start: &str| motions.iter().filter(|motion| motion.name.starts_with(start)).count();
         assert_eq!([named("crown"), named("lantern"), motions.len()], [16, 12, 3 + 16 + 12 + 4 + 1]);
@@ -380,7 +381,8 @@ mod tests {
 
     #[test]
     fn the_men_that_move_stand_on_squares_and_the_camera_circles() {
-        let Made { scene, motions } = open("chess:triangles=12000", 1).expect("a name").expect("good parameters");
+        let ProceduralScene { scene, motions } =
+            open("chess:triangles=12000", 1).expect("a name").expect("good parameters");
         let names: Vec<&str> = motions.iter().map(|motion| motion.name.as_str()).collect();
         assert_eq!(names, ["queen", "bishop", "knight", "pawn", "circling"]);
         checks::assert_scene_is_sound(&scene);
@@ -407,7 +409,8 @@ mod tests {
 
     #[test]
     fn the_fence_has_its_lamps_its_wire_its_glass_and_a_rotor_that_casts_shadows() {
-        let Made { scene, motions } = open("fence", 1).expect("the name is known").expect("it needs no parameters");
+        let ProceduralScene { scene, motions } =
+            open("fence", 1).expect("the name is known").expect("it needs no parameters");
         assert_eq!((scene.lights.len(), scene.name.as_str()), (122, "fence:lights=122,alpha=blend"));
         let count = |scene: &Scene, is: fn(&AlphaMode) -> bool| {
             scene.materials.iter().filter(|material| is(&material.alpha)).count()

@@ -9,7 +9,7 @@ use crate::gpu::shader::structs::FrameBlock;
 use crate::lights::LightSet;
 use crate::scene::{Light, Scene};
 use crate::techniques::Inputs;
-use crate::techniques::closing::Closing;
+use crate::techniques::shutter_close::ShutterClose;
 use glam::{Vec3, Vec4};
 
 /// Half of the way through the exposure.
@@ -17,7 +17,7 @@ pub struct MidExposure {
     /// Meshes, draws and lights; no pictures of its own.
     pub scene: Scene,
     pub lights: LightSet,
-    pub closing: Closing,
+    pub closing: ShutterClose,
 }
 
 impl MidExposure {
@@ -25,9 +25,9 @@ impl MidExposure {
     ///
     /// Errors: as of the scene's own camera and lights.
     pub fn new(inputs: &Inputs<'_>) -> Result<Option<Self>> {
-        let Some(closing) = Closing::new(inputs)? else { return Ok(None) };
+        let Some(closing) = ShutterClose::new(inputs)? else { return Ok(None) };
         let (mut scene, mut lights) = (inputs.scene.clone(), inputs.lights.clone());
-        let close = scene.closing.take().expect("`Closing` is of it");
+        let close = scene.closing.take().expect("`ShutterClose` is of it");
         for (mesh, end) in scene.meshes.iter_mut().zip(&close.meshes) {
             mesh.positions.iter_mut().zip(&end.positions).for_each(|(open, close)| *open = open.midpoint(*close));
         }

@@ -7,7 +7,7 @@ use super::light;
 use super::light::store::Store;
 use super::material::FilterGuides;
 use super::motion;
-use super::survivors::{Lit, Survivors};
+use super::survivors::{StippleCounts, Survivors};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::passes::cull::CullLights;
@@ -83,7 +83,7 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
 /// What the frame left of the BLEND draws on the screen.
 ///
 /// Errors: memory for the copy (exit code 4).
-pub fn lit(frame: &InferredFrame, gpu: &Arc<Gpu>, survivors: &Survivors) -> Result<Lit> {
+pub fn lit(frame: &InferredFrame, gpu: &Arc<Gpu>, survivors: &Survivors) -> Result<StippleCounts> {
     let bytes = readback::image(gpu, &frame.geometry.dsf, Access::FragmentSample)?;
     Ok(survivors.count(words(&bytes), frame.geometry.extent()))
 }
@@ -180,7 +180,7 @@ impl Frame for InferredFrame {
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
         let mut counters = self.material.counters(gpu)?;
         if let Some(survivors) = &self.survivors {
-            let Lit { layers, draws, unlit_draws } = lit(self, gpu, survivors)?;
+            let StippleCounts { layers, draws, unlit_draws } = lit(self, gpu, survivors)?;
             counters.insert("stipple_layers_lit", layers as f64);
             counters.insert("stipple_draws_lit", draws as f64);
             counters.insert("stipple_draws_unlit", unlit_draws as f64);

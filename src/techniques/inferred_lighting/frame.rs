@@ -10,7 +10,7 @@ use super::light::tiled::Tiled;
 use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, Volumes};
 use super::material::{FilterSettings, Material, MaterialDraws};
-use super::motion::Earlier;
+use super::motion::PreviousMoment;
 use super::stipple::{self, Shares};
 use super::survivors::Survivors;
 use crate::error::Result;
@@ -134,7 +134,7 @@ impl InferredFrame {
             let stipple = choices.stipple.clone();
             Survivors::new(inputs.scene, inputs.view, &stippled, stipple, choices.packing, depth_range_m)
         });
-        let earlier = choices.has_motion.then(|| Earlier::new(gpu, inputs, resources)).transpose()?;
+        let earlier = choices.has_motion.then(|| PreviousMoment::new(gpu, inputs, resources)).transpose()?;
         let filter = FilterSettings {
             kind: choices.filter,
             depth_range_m,

@@ -13,8 +13,8 @@
 
 use super::choices::Choices;
 use super::encoding::Packing;
-use super::motion::{self, Earlier};
-use super::stipple::Stippled;
+use super::motion::{self, PreviousMoment};
+use super::stipple::StippledDraw;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
@@ -185,10 +185,10 @@ pub struct Geometry {
     mask: GraphicsPipeline,
     blend: GraphicsPipeline,
     list: DrawList,
-    stippled: Vec<Stippled>,
+    stippled: Vec<StippledDraw>,
     stipple_side: u32,
     packing: Packing,
-    earlier: Option<Earlier>,
+    earlier: Option<PreviousMoment>,
     /// Linear depth of the first step, and of all of them, metres.
     pub depth_range_m: [f32; 2],
 }
@@ -199,10 +199,10 @@ impl Geometry {
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
         list: DrawList,
-        stippled: Vec<Stippled>,
+        stippled: Vec<StippledDraw>,
         depth_range_m: [f32; 2],
         choices: &Choices,
-        earlier: Option<Earlier>,
+        earlier: Option<PreviousMoment>,
     ) -> Result<Self> {
         let mut formats = vec![target_format(choices.packing); color_images(choices.has_extras).len()];
         formats.extend(earlier.as_ref().map(|_| WORD));
@@ -290,7 +290,7 @@ impl Geometry {
             cmd.begin_rendering(geometry.extent(), &colors, Some((&geometry.depth, Some(0.0), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
-            bound.extend(self.earlier.iter().flat_map(Earlier::bound));
+            bound.extend(self.earlier.iter().flat_map(PreviousMoment::bound));
             for (pipeline, calls) in [(&self.opaque, &self.list.opaque), (&self.mask, &self.list.mask)] {
                 let Some(first) = calls.first() else { continue };
                 let first = self.params(scene, first.material);
@@ -299,7 +299,7 @@ impl Geometry {
                 mesh::draw_with(cmd, pipeline, scene, calls, push);
             }
             if let Some(first) = self.stippled.first() {
-                let params = |stippled: &Stippled| GeometryParams {
+                let params = |stippled: &StippledDraw| GeometryParams {
                     stipple_side: self.stipple_side,
                     stipple_layer: stippled.layer,
                     ..self.params(scene, stippled.call.material)

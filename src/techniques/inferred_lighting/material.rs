@@ -8,7 +8,7 @@
 use super::choices::{Choices, LightFilter};
 use super::geometry::LowGeometry;
 use super::light;
-use super::stipple::Stippled;
+use super::stipple::StippledDraw;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::InferredMaterialParams;
@@ -106,7 +106,7 @@ pub struct FilterGuides<'a> {
 pub struct MaterialDraws {
     pub solid: DrawList,
     /// All others, farthest first.
-    pub stippled: Vec<Stippled>,
+    pub stippled: Vec<StippledDraw>,
 }
 
 pub struct Material {
@@ -115,7 +115,7 @@ pub struct Material {
     mask: GraphicsPipeline,
     blend: GraphicsPipeline,
     solid: DrawList,
-    stippled: Vec<Stippled>,
+    stippled: Vec<StippledDraw>,
     filter: FilterSettings,
     background: Vec3,
     pub color: Image,
@@ -249,7 +249,7 @@ impl Material {
                 mesh::draw_with(cmd, pipeline, scene, calls.iter().rev(), push);
             }
             if let Some(first) = self.stippled.first() {
-                let params = |stippled: &Stippled| InferredMaterialParams {
+                let params = |stippled: &StippledDraw| InferredMaterialParams {
                     stipple_side: self.filter.stipple_side,
                     stipple_layer: stippled.layer,
                     ..self.params(scene, stippled.call.material)

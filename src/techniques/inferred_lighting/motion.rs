@@ -44,13 +44,13 @@ pub fn vector_px(word: u32) -> Vec2 {
 }
 
 /// The scene a moment before, in device memory.
-pub struct Earlier {
+pub struct PreviousMoment {
     camera: Buffer,
     draws: Buffer,
     positions: Buffer,
 }
 
-impl Earlier {
+impl PreviousMoment {
     /// Takes the buffers out that `plan` put in; a scene without an earlier moment is its own.
     ///
     /// Errors: memory for the upload (exit code 4).

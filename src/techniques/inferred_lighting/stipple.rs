@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 
 /// A BLEND draw and its layer.
 #[derive(Clone, Copy, Debug)]
-pub struct Stippled {
+pub struct StippledDraw {
     pub call: DrawCall,
     /// 1 to side * side - 1: which texel of each cell of the stipple is its, row-major.
     pub layer: u32,
@@ -83,7 +83,7 @@ fn corners(bounds: &Bounds, clip_from_object: Mat4) -> impl Iterator<Item = Vec4
 }
 
 /// Layers for `calls`, which are sorted farthest first, as they are drawn.
-pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choices) -> (Vec<Stippled>, Shares) {
+pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choices) -> (Vec<StippledDraw>, Shares) {
     let of_call = |call: &DrawCall| {
         let draw = &scene.draws[call.draw as usize];
         let mut bounds = Bounds::EMPTY;
@@ -103,7 +103,7 @@ pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choice
     let layers = layers(&footprints, &places, layer_count(&choices.stipple), choices.assignment);
     let shares = shares(&footprints, &layers);
     let all = calls.into_iter().zip(layers).zip(on_screen);
-    let stippled = |((call, layer), is_on_screen): ((DrawCall, u32), bool)| Stippled { call, layer, is_on_screen };
+    let stippled = |((call, layer), is_on_screen): ((DrawCall, u32), bool)| StippledDraw { call, layer, is_on_screen };
     (all.map(stippled).collect(), shares)
 }
 

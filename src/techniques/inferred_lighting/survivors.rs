@@ -6,7 +6,7 @@
 //! so the box is widened by that.
 
 use super::encoding::Packing;
-use super::stipple::Stippled;
+use super::stipple::StippledDraw;
 use crate::frame::View;
 use crate::sampling::pattern::Pattern;
 use crate::scene::{Bounds, Scene, object_ids};
@@ -36,7 +36,7 @@ pub struct Survivors {
 
 /// What a frame left of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lit {
+pub struct StippleCounts {
     /// Layers of which some draw has a texel.
     pub layers: usize,
     /// Draws that have a texel.
@@ -50,15 +50,15 @@ impl Survivors {
     pub fn new(
         scene: &Scene,
         view: &View,
-        stippled: &[Stippled],
+        stippled: &[StippledDraw],
         stipple: Pattern,
         packing: Packing,
         depth_range_m: [f32; 2],
     ) -> Self {
-        let on_screen: Vec<&Stippled> = stippled.iter().filter(|stippled| stippled.is_on_screen).collect();
+        let on_screen: Vec<&StippledDraw> = stippled.iter().filter(|stippled| stippled.is_on_screen).collect();
         // A scene without them need not be searched.
         let ids = if on_screen.is_empty() { Vec::new() } else { object_ids::of(scene) };
-        let candidate = |stippled: &Stippled| {
+        let candidate = |stippled: &StippledDraw| {
             let draw = &scene.draws[stippled.call.draw as usize];
             let bounds = draw.bounds(&scene.meshes[draw.mesh]);
             Candidate { layer: stippled.layer, object_id: ids[stippled.call.draw as usize], bounds }
@@ -75,7 +75,7 @@ impl Survivors {
     }
 
     /// Counts by the DSF `words` of a light buffer of `extent`, row-major.
-    pub fn count(&self, words: impl Iterator<Item = u32>, extent: Extent) -> Lit {
+    pub fn count(&self, words: impl Iterator<Item = u32>, extent: Extent) -> StippleCounts {
         let mut of_layer: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (index, candidate) in self.candidates.iter().enumerate() {
             of_layer.entry(candidate.layer).or_default().push(index);
@@ -95,7 +95,7 @@ impl Survivors {
             }
         }
         let layers: BTreeSet<u32> = lit.iter().map(|index: &usize| self.candidates[*index].layer).collect();
-        Lit { layers: layers.len(), draws: lit.len(), unlit_draws: self.candidates.len() - lit.len() }
+        StippleCounts { layers: layers.len(), draws: lit.len(), unlit_draws: self.candidates.len() - lit.len() }
     }
 
     /// Whether the word has an id of the draw.

@@ -44,8 +44,8 @@ pub mod sample;
 pub mod settings;
 
 use super::bench_stage::BenchStage;
-use super::closing::Closing;
 use super::notes::Figures;
+use super::shutter_close::ShutterClose;
 use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
@@ -158,7 +158,7 @@ fn is_tested(inputs: &Inputs<'_>) -> bool {
 struct Sources {
     lights: LightSet,
     /// None: nothing moves.
-    closing: Option<Closing>,
+    closing: Option<ShutterClose>,
     /// None: emissive triangles light nothing.
     emitters: Option<Emitters>,
     punctual: Vec<SourceBlock>,
@@ -169,7 +169,7 @@ struct Sources {
 impl Sources {
     fn new(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Self> {
         let values = inputs.values;
-        let (mut lights, mut closing) = (inputs.lights.clone(), Closing::new(inputs)?);
+        let (mut lights, mut closing) = (inputs.lights.clone(), ShutterClose::new(inputs)?);
         if !values.is_on("punctual") {
             for lights in [&mut lights].into_iter().chain(closing.as_mut().map(|closing| &mut closing.lights)) {
                 lights.lights.clear();

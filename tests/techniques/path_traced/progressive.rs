@@ -2,7 +2,7 @@
 
 use crate::support::program::Program;
 use crate::support::watched::{Watched, both};
-use quincunx::earlier::layers;
+use quincunx::continuation::layers;
 use quincunx::metrics;
 use quincunx::picture::image_file::{Texts, WriteOptions};
 use quincunx::picture::{Picture, image_file};

@@ -52,14 +52,14 @@ enum Mask {
 }
 
 /// The pipelines of volumes in the stencil.
-struct Counted {
+struct StencilPipelines {
     count: GraphicsPipeline,
     light: GraphicsPipeline,
 }
 
 pub struct LightVolumes {
     plain: GraphicsPipeline,
-    counted: Option<Counted>,
+    counted: Option<StencilPipelines>,
     shadows: Option<ShadowVolumes>,
     /// The lights that reach something on the screen, in their order.
     draws: Vec<LightDraw>,
@@ -112,7 +112,7 @@ impl LightVolumes {
                 depth_clamp: true,
                 ..light(Some(StencilUse::CountBehind))
             };
-            Some(Counted {
+            Some(StencilPipelines {
                 count: GraphicsPipeline::new(gpu, &count)?,
                 light: GraphicsPipeline::new(gpu, &light(Some(StencilUse::TakeUnequal)))?,
             })
@@ -205,7 +205,7 @@ impl LightVolumes {
     ) -> Result<()> {
         let plain_set = cmd.set_for(&self.plain, bound)?;
         let counted_sets = match &self.counted {
-            Some(Counted { count, light }) => {
+            Some(StencilPipelines { count, light }) => {
                 let places = [("Frame", Bound::Buffer(frame)), ("Lights", Bound::Buffer(&lights.lights))];
                 Some((count, cmd.set_for(count, &places)?, light, cmd.set_for(light, bound)?))
             }

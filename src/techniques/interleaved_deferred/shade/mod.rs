@@ -79,12 +79,12 @@ impl ShadeGpu {
 }
 
 /// A compute pipeline over a list of texels, some a thread (listed.glsl).
-struct Listed {
+struct TexelListPipeline {
     pipeline: ComputePipeline,
     workgroup_count: u32,
 }
 
-impl Listed {
+impl TexelListPipeline {
     /// Over the texels of a sub-buffer.
     fn new(gpu: &Arc<Gpu>, choices: &Choices, shader: &Shader) -> Result<Self> {
         let (settings, count) = (&choices.shading, choices.mapping.sub_texel_count());

@@ -6,7 +6,7 @@
 //! shading of all lights (`--split none`).
 
 use super::super::choices::Choices;
-use super::{Listed, ShadeGpu};
+use super::{ShadeGpu, TexelListPipeline};
 use crate::error::Result;
 use crate::gpu::shader::structs::ShadeParams;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::strided::COMP_VARIANTS;
@@ -25,14 +25,14 @@ pub enum Dispatches {
 }
 
 pub struct ShadeStrided {
-    listed: Listed,
+    listed: TexelListPipeline,
     dispatches: Dispatches,
 }
 
 impl ShadeStrided {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, dispatches: Dispatches) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
-        Ok(Self { listed: Listed::new(gpu, choices, shader)?, dispatches })
+        Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)?, dispatches })
     }
 
     pub fn record(

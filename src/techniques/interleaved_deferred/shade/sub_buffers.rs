@@ -3,7 +3,7 @@
 
 use super::super::choices::Choices;
 use super::super::sub_buffers::{Stage, Storage, Surface, Texels};
-use super::{Listed, ShadeGpu};
+use super::{ShadeGpu, TexelListPipeline};
 use crate::error::Result;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers::COMP_VARIANTS;
 use crate::gpu::shader::variant;
@@ -13,7 +13,7 @@ use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct ShadeSubBuffers {
-    listed: Listed,
+    listed: TexelListPipeline,
     storage: Storage,
     texel_bytes: u64,
 }
@@ -22,7 +22,7 @@ impl ShadeSubBuffers {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, storage: Storage) -> Result<Self> {
         let position = choices.shading.position;
         let shader = variant(COMP_VARIANTS, &[position.name(), storage.name()]);
-        let listed = Listed::new(gpu, choices, shader)?;
+        let listed = TexelListPipeline::new(gpu, choices, shader)?;
         Ok(Self { listed, storage, texel_bytes: 8 + position.bytes() })
     }
 

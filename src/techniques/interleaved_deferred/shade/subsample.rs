@@ -2,7 +2,7 @@
 //! reads  the G-buffer, the lights      writes  shade.irradiance  buffer, a texel a pattern, 8 B each
 
 use super::super::choices::Choices;
-use super::{Listed, ShadeGpu};
+use super::{ShadeGpu, TexelListPipeline};
 use crate::error::Result;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::subsample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
@@ -13,13 +13,13 @@ use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
 pub struct ShadeSubsample {
-    listed: Listed,
+    listed: TexelListPipeline,
 }
 
 impl ShadeSubsample {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
-        Ok(Self { listed: Listed::new(gpu, choices, shader)? })
+        Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)? })
     }
 
     pub fn record(

@@ -7,12 +7,12 @@ use crate::gpu::shader::structs::FrameBlock;
 use crate::lights::LightSet;
 
 /// The other end of what moves.
-pub struct Closing {
+pub struct ShutterClose {
     pub view: View,
     pub lights: LightSet,
 }
 
-impl Closing {
+impl ShutterClose {
     /// None: nothing moves.
     ///
     /// Errors: as of the scene's own camera and lights.

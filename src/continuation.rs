@@ -37,7 +37,7 @@ const QUOTED: usize = 64;
 
 /// An earlier picture as a file has it.
 #[derive(Clone, Debug)]
-pub struct Earlier {
+pub struct Continuation {
     path: PathBuf,
     texts: Texts,
     /// Row-major: red, green, blue, and the squared lengths.
@@ -56,7 +56,7 @@ pub fn layers(sums: &[[f32; 4]]) -> [Aov; 2] {
     ]
 }
 
-impl Earlier {
+impl Continuation {
     /// Reads a picture of `extent`.
     ///
     /// Errors, all of them with exit code 2: no EXR or a broken one, another size, no sums or no count in it, a count out of
@@ -115,7 +115,7 @@ impl Earlier {
 
     fn require_settings(&self, technique: &dyn Technique, ours: &WrittenSettings) -> Result<()> {
         let (theirs, known) = (self.settings()?, settings_of(technique));
-        let keys = theirs.keys().map(String::as_str).chain(ours.iter().map(|(key, _)| key));
+        let keys = theirs.keys().map(String::as_str).chain(ours.keys().map(String::as_str));
         let row = |key: &str| known.iter().find(|setting| setting.key == key);
         let mut shown = keys.filter(|key| row(key).is_none_or(goes_along));
         shown.try_for_each(|key| self.require_setting(&theirs, ours, key))
