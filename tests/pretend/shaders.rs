@@ -158,10 +158,12 @@ fn fused_sums_and_last_bits_come_out_where_sources_leave_them_free() {
     let file = folder.path().join("numbers");
     for seed in 1..=3 {
         let under = |modes: &str| -> Vec<f32> {
-            let this = "pretend_shaders::fused_sums_and_last_bits_come_out_where_sources_leave_them_free";
+            // Its module below the crate, which the runner leaves out.
+            let (_, module) = module_path!().split_once("::").unwrap();
+            let this = format!("{module}::fused_sums_and_last_bits_come_out_where_sources_leave_them_free");
             // Not `current_exe`, which under a runner may be the C library's loader.
             let mut command = start(std::env::args_os().next().unwrap());
-            command.args(["--exact", this]).env(CHILD, &file).envs(layer.variables(modes));
+            command.args(["--exact", &this]).env(CHILD, &file).envs(layer.variables(modes));
             let output = command.output().unwrap();
             assert!(output.status.success(), "{modes}: {}", String::from_utf8_lossy(&output.stdout));
             bytemuck::pod_collect_to_vec(&std::fs::read(&file).unwrap())
