@@ -36,7 +36,7 @@ bool is_touched(Box box, LightBlock light) {
     float range = light.intensity.w;
     // A hair more than the range: rounding must never drop a light that the window still lets through.
     bool touches = dot(away, away) <= range * range * 1.0001;
-    bool endless = light.kind == LIGHT_DIRECTIONAL || range == 0.0;
+    bool endless = is_directional(light) || range == 0.0;
     return box.least.x <= box.greatest.x && (endless || touches);
 }
 

@@ -49,9 +49,14 @@ bool is_kind(LightBlock light, uint kind) {
     return (LIGHT_KINDS & (1u << kind)) != 0u && light.kind == kind;
 }
 
+// Whether it shines along one direction, from nowhere.
+bool is_directional(LightBlock light) {
+    return is_kind(light, LIGHT_DIRECTIONAL);
+}
+
 Incident incident_from(LightBlock light, vec3 position_ws) {
     Incident incident;
-    if (is_kind(light, LIGHT_DIRECTIONAL)) {
+    if (is_directional(light)) {
         incident.direction_ws = -light.direction_ws.xyz;
         incident.distance = 1e30;
         incident.irradiance = light.intensity.rgb;

@@ -28,7 +28,7 @@ vec3 shade_light(LightBlock light, Surface surface, vec3 position_ws, vec3 norma
     }
     incident.irradiance *= passed;
 #endif
-    if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL)) {
+    if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && is_directional(light))) {
         if (occluded(position_ws, normal_ws, incident.direction_ws, incident.distance)) {
             return vec3(0.0);
         }

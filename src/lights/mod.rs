@@ -66,7 +66,7 @@ impl LightSet {
 
     fn collect(scene: &Scene, view: &View, values: &Values, opening: Option<&Self>) -> Result<Self> {
         let sun = values.is_on("sun");
-        let kept = |light: &&Light| sun || light.kind != LightKind::Directional;
+        let kept = |light: &&Light| sun || !light.kind.is_directional();
         let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
         lights.extend(scattered(scene, values)?);
         let has_punctual = !lights.is_empty();
@@ -96,7 +96,7 @@ impl LightSet {
 
     /// Directional lights.
     pub fn sun_count(&self) -> usize {
-        self.lights.iter().filter(|light| light.kind == LightKind::Directional).count()
+        self.lights.iter().filter(|light| light.kind.is_directional()).count()
     }
 }
 

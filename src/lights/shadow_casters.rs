@@ -9,11 +9,11 @@ use std::ops::Range;
 
 use glam::Vec4;
 
-use super::shadow_volume::{ShadowVolume, Source};
+use super::shadow_volume::ShadowVolume;
 use crate::error::{Error, Result};
 use crate::progress::Stage;
 use crate::scene::shell::Shell;
-use crate::scene::{AlphaMode, Light, LightKind, Mesh, Scene};
+use crate::scene::{AlphaMode, Light, Mesh, Scene};
 use crate::shading::light;
 
 /// Triangles of all surfaces that cast, once a light: a closed surface has at most three corners for two of them, which keeps
@@ -28,7 +28,7 @@ pub fn strongest(lights: &[Light], count: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..lights.len()).collect();
     order.sort_by(|a, b| {
         let [a, b] = [a, b].map(|index| &lights[*index]);
-        let is_directional = |light: &Light| light.kind == LightKind::Directional;
+        let is_directional = |light: &Light| light.kind.is_directional();
         (Reverse(is_directional(a)).cmp(&Reverse(is_directional(b)))).then(flux(b).total_cmp(&flux(a)))
     });
     order.truncate(count);
@@ -96,7 +96,7 @@ impl ShadowCasters {
             }));
         }
         for index in casting {
-            let source = Source::of(&lights[*index]);
+            let source = lights[*index].source();
             let [first_position, first_triangle] = [casters.positions.len(), casters.triangles.len()];
             for (draw, shell) in closed_draws() {
                 let Some(volume) = ShadowVolume::of(shell, &draw.world_from_object, source) else { continue };
@@ -120,7 +120,7 @@ mod tests {
     use glam::{Mat4, Vec3};
 
     use super::*;
-    use crate::scene::{Draw, Material, procedural};
+    use crate::scene::{Draw, LightKind, Material, procedural};
 
     fn light(kind: LightKind, intensity: f32) -> Light {
         let (position, direction) = (Vec3::new(3.0, 9.0, 2.0), Vec3::NEG_Y);

@@ -14,26 +14,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use crate::scene::shell::Shell;
-use crate::scene::{Bounds, Light, LightKind};
-
-/// Where light comes from, world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source {
-    /// A point, metres.
-    At(Vec3),
-    /// Parallel light that travels so; not zero.
-    Along(Vec3),
-}
-
-impl Source {
-    /// The source of a punctual light; that of a spot is its tip.
-    pub fn of(light: &Light) -> Self {
-        match light.kind {
-            LightKind::Directional => Self::Along(light.direction),
-            LightKind::Point | LightKind::Spot { .. } => Self::At(light.position),
-        }
-    }
-}
+use crate::scene::{Bounds, LightSource};
 
 /// A closed surface in homogeneous coordinates; triangles run counter-clockwise from outside.
 #[derive(Debug)]
@@ -51,7 +32,7 @@ pub struct ShadowVolume {
 
 impl ShadowVolume {
     /// The volume of a surface where it is drawn, mirrored or not. None where it is not closed.
-    pub fn of(shell: &Shell, world_from_object: &Mat4, source: Source) -> Option<Self> {
+    pub fn of(shell: &Shell, world_from_object: &Mat4, source: LightSource) -> Option<Self> {
         if !shell.is_closed() {
             return None;
         }
@@ -61,8 +42,8 @@ impl ShadowVolume {
         // Counter-clockwise from outside in the world.
         let outward = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let is_inside = match source {
-            Source::At(light) => is_inside(light, &near, shell.triangles.iter().map(|corners| outward(*corners))),
-            Source::Along(_) => false,
+            LightSource::At(light) => is_inside(light, &near, shell.triangles.iter().map(|corners| outward(*corners))),
+            LightSource::Along(_) => false,
         };
         let is_cap: Vec<bool> = shell
             .triangles
@@ -75,8 +56,8 @@ impl ShadowVolume {
 
         let place_count = near.len() as u32;
         let far = |place: u32| match source {
-            Source::At(_) => place_count + place,
-            Source::Along(_) => place_count,
+            LightSource::At(_) => place_count + place,
+            LightSource::Along(_) => place_count,
         };
         let mut triangles: Vec<[u32; 3]> = (shell.triangles.iter().zip(&is_cap))
             .filter(|(_, is_cap)| **is_cap)
@@ -92,12 +73,12 @@ impl ShadowVolume {
             let [from, to] = edge.places;
             let [from, to] = if here == is_turned { [to, from] } else { [from, to] };
             triangles.push([to, from, far(from)]);
-            if let Source::At(_) = source {
+            if let LightSource::At(_) = source {
                 triangles.push([to, far(from), far(to)]);
             }
         }
         let side_count = triangles.len() - front_cap_count;
-        if let Source::At(_) = source {
+        if let LightSource::At(_) = source {
             for triangle in 0..front_cap_count {
                 let [a, b, c] = triangles[triangle];
                 triangles.push([far(a), far(c), far(b)]);
@@ -106,18 +87,18 @@ impl ShadowVolume {
         let back_cap_count = triangles.len() - front_cap_count - side_count;
         let mut positions: Vec<Vec4> = near.iter().map(|position| position.extend(1.0)).collect();
         match source {
-            Source::At(light) => positions.extend(near.iter().map(|position| (*position - light).extend(0.0))),
-            Source::Along(direction) => positions.push(direction.extend(0.0)),
+            LightSource::At(light) => positions.extend(near.iter().map(|position| (*position - light).extend(0.0))),
+            LightSource::Along(direction) => positions.push(direction.extend(0.0)),
         }
         Some(Self { positions, triangles, front_cap_count, side_count, back_cap_count })
     }
 }
 
 /// Whether the light sees a triangle's corners run counter-clockwise.
-fn faces([a, b, c]: [DVec3; 3], source: Source) -> bool {
+fn faces([a, b, c]: [DVec3; 3], source: LightSource) -> bool {
     let toward_light = match source {
-        Source::At(light) => light.as_dvec3() - a,
-        Source::Along(direction) => -direction.as_dvec3(),
+        LightSource::At(light) => light.as_dvec3() - a,
+        LightSource::Along(direction) => -direction.as_dvec3(),
     };
     (b - a).cross(c - a).dot(toward_light) > 0.0
 }
@@ -193,13 +174,13 @@ mod tests {
         assert_eq!(parts, volume.triangles.len());
     }
 
-    fn volume(scene: &Scene, source: Source) -> ShadowVolume {
+    fn volume(scene: &Scene, source: LightSource) -> ShadowVolume {
         let shell = Shell::of(&scene.meshes[0]);
         ShadowVolume::of(&shell, &scene.draws[0].world_from_object, source).expect("it is closed")
     }
 
     /// Points around the object: in the volume where the way to the light is barred, and nowhere else.
-    fn require_shadow(name: &str, scene: &Scene, source: Source) {
+    fn require_shadow(name: &str, scene: &Scene, source: LightSource) {
         let volume = volume(scene, source);
         require_closed(&volume);
         let bvh = Bvh::build(scene).unwrap();
@@ -210,8 +191,8 @@ mod tests {
             let mut number = || random.between(-1.5, 1.5);
             let point = bounds.center() + (bounds.max - bounds.min) * Vec3::new(number(), number(), number());
             let (way, limit) = match source {
-                Source::At(light) => (light - point, 1.0),
-                Source::Along(direction) => (-direction, f32::INFINITY),
+                LightSource::At(light) => (light - point, 1.0),
+                LightSource::Along(direction) => (-direction, f32::INFINITY),
             };
             let is_dark = bvh.occluded(point, way, limit);
             assert_eq!(winding(&volume, point) > 0, is_dark, "{name}, {source:?}: {point}");
@@ -233,10 +214,10 @@ mod tests {
                 let (name, scene) = (format!("{shape}, {place}"), alone(shape, world_from_object));
                 let bounds = scene.bounds();
                 let size = bounds.max - bounds.min;
-                require_shadow(&name, &scene, Source::At(bounds.center() + size * Vec3::new(0.9, 1.1, 0.3)));
+                require_shadow(&name, &scene, LightSource::At(bounds.center() + size * Vec3::new(0.9, 1.1, 0.3)));
                 // Between a block's corner and its box, or a ring's: still outside.
-                require_shadow(&name, &scene, Source::At(bounds.min + size * 0.01));
-                require_shadow(&name, &scene, Source::Along(Vec3::new(0.3, -1.0, 0.45)));
+                require_shadow(&name, &scene, LightSource::At(bounds.min + size * 0.01));
+                require_shadow(&name, &scene, LightSource::Along(Vec3::new(0.3, -1.0, 0.45)));
                 // A point of the surface, moved a little inward.
                 let mesh = &scene.meshes[0];
                 let at = mesh.positions[mesh.indices[0] as usize] - 0.05 * mesh.normals[mesh.indices[0] as usize];
@@ -245,7 +226,7 @@ mod tests {
                 } else {
                     mesh.positions.iter().sum::<Vec3>() / mesh.positions.len() as f32
                 };
-                require_shadow(&name, &scene, Source::At(world_from_object.transform_point3(at)));
+                require_shadow(&name, &scene, LightSource::At(world_from_object.transform_point3(at)));
             }
         }
     }
@@ -253,28 +234,21 @@ mod tests {
     #[test]
     fn a_block_in_front_of_a_lamp_has_the_triangles_that_one_counts() {
         let scene = alone("block", Mat4::IDENTITY);
-        let counts = |source: Source| {
+        let counts = |source: LightSource| {
             let volume = volume(&scene, source);
             [volume.front_cap_count, volume.side_count, volume.back_cap_count, volume.positions.len()]
         };
         // One face of two triangles, four edges of two; three faces, six edges; parallel light has a triangle an edge.
-        assert_eq!(counts(Source::At(Vec3::new(0.0, 9.0, 0.0))), [2, 8, 2, 16]);
-        assert_eq!(counts(Source::At(Vec3::new(5.0, 9.0, 6.0))), [6, 12, 6, 16]);
-        assert_eq!(counts(Source::Along(Vec3::NEG_Y)), [2, 4, 0, 9]);
+        assert_eq!(counts(LightSource::At(Vec3::new(0.0, 9.0, 0.0))), [2, 8, 2, 16]);
+        assert_eq!(counts(LightSource::At(Vec3::new(5.0, 9.0, 6.0))), [6, 12, 6, 16]);
+        assert_eq!(counts(LightSource::Along(Vec3::NEG_Y)), [2, 4, 0, 9]);
         // All around the lamp: no silhouette.
-        assert_eq!(counts(Source::At(Vec3::new(0.0, 0.3, 0.0))), [12, 0, 12, 16]);
+        assert_eq!(counts(LightSource::At(Vec3::new(0.0, 0.3, 0.0))), [12, 0, 12, 16]);
     }
 
     #[test]
-    fn a_light_says_where_it_shines_from_and_open_surfaces_have_no_volume() {
-        let (position, direction) = (Vec3::X, Vec3::NEG_Y);
-        let light = |kind: LightKind| {
-            Source::of(&Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None })
-        };
-        assert_eq!(light(LightKind::Point), Source::At(position));
-        assert_eq!(light(LightKind::Spot { inner_angle: 0.1, outer_angle: 0.2 }), Source::At(position));
-        assert_eq!(light(LightKind::Directional), Source::Along(direction));
+    fn open_surfaces_have_no_volume() {
         let sheet = alone("ground", Mat4::IDENTITY);
-        assert!(ShadowVolume::of(&Shell::of(&sheet.meshes[0]), &Mat4::IDENTITY, Source::At(Vec3::Y)).is_none());
+        assert!(ShadowVolume::of(&Shell::of(&sheet.meshes[0]), &Mat4::IDENTITY, LightSource::At(Vec3::Y)).is_none());
     }
 }

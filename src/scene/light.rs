@@ -13,6 +13,55 @@ pub enum LightKind {
     Spot { inner_angle: f32, outer_angle: f32 },
 }
 
+impl LightKind {
+    /// The names of all kinds, as KHR_lights_punctual has them.
+    pub const NAMES: [&'static str; 3] = ["directional", "point", "spot"];
+
+    /// One of `NAMES`.
+    pub const fn name(self) -> &'static str {
+        let [directional, point, spot] = Self::NAMES;
+        match self {
+            Self::Directional => directional,
+            Self::Point => point,
+            Self::Spot { .. } => spot,
+        }
+    }
+
+    /// Whether it shines along one direction, from nowhere.
+    pub const fn is_directional(self) -> bool {
+        match self {
+            Self::Directional => true,
+            Self::Point | Self::Spot { .. } => false,
+        }
+    }
+
+    /// Whether turning it changes what it lights.
+    pub const fn has_direction(self) -> bool {
+        match self {
+            Self::Directional | Self::Spot { .. } => true,
+            Self::Point => false,
+        }
+    }
+
+    /// Half angle of the cone around `Light::direction` beyond which a light with a place is dark, radians. None: it shines
+    /// all round.
+    pub const fn half_angle(self) -> Option<f32> {
+        match self {
+            Self::Spot { outer_angle, .. } => Some(outer_angle),
+            Self::Directional | Self::Point => None,
+        }
+    }
+}
+
+/// Where light comes from, world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightSource {
+    /// A point, metres.
+    At(Vec3),
+    /// Parallel light that travels so; not zero.
+    Along(Vec3),
+}
+
 /// One punctual light in world space.
 #[derive(Clone, Debug)]
 pub struct Light {
@@ -26,4 +75,27 @@ pub struct Light {
     pub direction: Vec3,
     /// Distance in metres at which the light ends (glTF's window); None: no end of its own.
     pub range: Option<f32>,
+}
+
+impl Light {
+    /// Where its light comes from; that of a spot from its tip.
+    pub const fn source(&self) -> LightSource {
+        if self.kind.is_directional() { LightSource::Along(self.direction) } else { LightSource::At(self.position) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_light_says_where_it_shines_from() {
+        let (position, direction) = (Vec3::X, Vec3::NEG_Y);
+        let source = |kind: LightKind| {
+            Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None }.source()
+        };
+        assert_eq!(source(LightKind::Point), LightSource::At(position));
+        assert_eq!(source(LightKind::Spot { inner_angle: 0.1, outer_angle: 0.2 }), LightSource::At(position));
+        assert_eq!(source(LightKind::Directional), LightSource::Along(direction));
+    }
 }

@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
-pub use light::{Light, LightKind};
+pub use light::{Light, LightKind, LightSource};
 pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Bounds, Draw, Facing, Mesh, Node};
 pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};

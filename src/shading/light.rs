@@ -8,34 +8,37 @@ use glam::{Vec3, Vec4};
 
 /// A bit for each kind of light that is among `lights`: glsl/shading/light.glsl's LIGHT_KINDS.
 pub fn kinds(lights: &[Light]) -> u32 {
-    let kind = |light: &Light| match light.kind {
+    lights.iter().fold(0, |bits, light| bits | 1 << number(light.kind))
+}
+
+/// A kind of light as shaders know it.
+fn number(kind: LightKind) -> u32 {
+    match kind {
         LightKind::Directional => LIGHT_DIRECTIONAL,
         LightKind::Point => LIGHT_POINT,
         LightKind::Spot { .. } => LIGHT_SPOT,
-    };
-    lights.iter().fold(0, |bits, light| bits | 1 << kind(light))
+    }
 }
 
 /// A light as shaders read it. `cutoff_lux`: a light without range ends where it gives this irradiance; 0: never.
 pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
-    let range = match (light.kind, light.range) {
-        (LightKind::Directional, _) => 0.0,
-        (_, Some(range)) => range,
-        (_, None) if cutoff_lux > 0.0 => (light.intensity.max_element() / cutoff_lux).sqrt(),
-        (_, None) => 0.0,
+    let range = match light.range {
+        _ if light.kind.is_directional() => 0.0,
+        Some(range) => range,
+        None if cutoff_lux > 0.0 => (light.intensity.max_element() / cutoff_lux).sqrt(),
+        None => 0.0,
     };
     let mut block = LightBlock {
         position_ws: light.position.extend(if range > 0.0 { 1.0 / (range * range) } else { 0.0 }).to_array(),
         intensity: light.intensity.extend(range).to_array(),
         direction_ws: light.direction.extend(0.0).to_array(),
+        kind: number(light.kind),
         ..LightBlock::zeroed()
     };
     match light.kind {
-        LightKind::Directional => block.kind = LIGHT_DIRECTIONAL,
-        LightKind::Point => block.kind = LIGHT_POINT,
+        LightKind::Directional | LightKind::Point => {}
         LightKind::Spot { inner_angle, outer_angle } => {
             // KHR_lights_punctual's own suggestion for the cone's edge.
-            block.kind = LIGHT_SPOT;
             block.spot_scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
             block.spot_offset = -outer_angle.cos() * block.spot_scale;
         }

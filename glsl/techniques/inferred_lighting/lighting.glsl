@@ -19,7 +19,7 @@ vec4 lighting_by(LightBlock light, LitSurface surface) {
     if (!(cosine > 0.0) || incident.irradiance == vec3(0.0)) {
         return vec4(0.0);
     }
-    if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL)) {
+    if (DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && is_directional(light))) {
         if (occluded(surface.position_ws, surface.normal_ws, incident.direction_ws, incident.distance)) {
             return vec4(0.0);
         }

@@ -56,7 +56,7 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
     if (is_punctual) {
         light = light_at(source.index);
         source_ws = light.position_ws.xyz;
-        is_somewhere = light.kind != LIGHT_DIRECTIONAL;
+        is_somewhere = !is_directional(light);
     } else {
         source_ws = place_of(source.index, barycentric);
     }

@@ -9,7 +9,7 @@ use crate::scene::{self, AlphaMode, Camera, Image, LightKind, Material, Projecti
 use crate::units::{Bytes, Extent};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// The sub-verb with its arguments.
@@ -47,7 +47,6 @@ fn document(scene: &Scene, facts: Option<&Facts>) -> Value {
     let cameras: Vec<Value> =
         scene.cameras.iter().map(|camera| json!({ "name": camera.name, "kind": kind(camera) })).collect();
     let [opaque, mask, blend] = alpha_counts(scene);
-    let [directional, point, spot] = light_counts(scene);
     json!({
         "schema": 1,
         "name": scene.name,
@@ -62,7 +61,7 @@ fn document(scene: &Scene, facts: Option<&Facts>) -> Value {
         "materials": { "opaque": opaque, "mask": mask, "blend": blend },
         "textures": scene.textures.len(),
         "images": scene.images.iter().map(|image| image_document(image)).collect::<Vec<_>>(),
-        "lights": { "directional": directional, "point": point, "spot": spot },
+        "lights": Map::from_iter(light_counts(scene).map(|(name, count)| (name.to_owned(), json!(count)))),
         "emissive_materials": scene.materials.iter().filter(|material| material.is_emissive()).count(),
         "cameras": cameras,
         "bounds": corners,
@@ -127,8 +126,8 @@ fn describe(text: &mut String, scene: &Scene, facts: Option<&Facts>) -> std::fmt
     let pixels: u64 = scene.images.iter().map(|image| Extent::new(image.width, image.height).pixel_count()).sum();
     let (textures, images) = (scene.textures.len(), scene.images.len());
     writeln!(text, "   textures: {textures} of {images} images, {} at their finest", Bytes(4 * pixels))?;
-    let [directional, point, spot] = light_counts(scene);
-    writeln!(text, "   lights: {directional} directional, {point} point, {spot} spot")?;
+    let lights = Vec::from_iter(light_counts(scene).map(|(name, count)| format!("{count} {name}")));
+    writeln!(text, "   lights: {}", lights.join(", "))?;
     for (index, camera) in scene.cameras.iter().enumerate() {
         writeln!(text, "   camera {index}: {}, {}", camera.name, kind(camera))?;
     }
@@ -194,14 +193,10 @@ fn alpha_counts(scene: &Scene) -> [usize; 3] {
     ]
 }
 
-/// Directional, point, spot.
-fn light_counts(scene: &Scene) -> [usize; 3] {
-    let count = |is: fn(LightKind) -> bool| scene.lights.iter().filter(|light| is(light.kind)).count();
-    [
-        count(|kind| kind == LightKind::Directional),
-        count(|kind| kind == LightKind::Point),
-        count(|kind| matches!(kind, LightKind::Spot { .. })),
-    ]
+/// Names of all kinds of light, and how many there are of each.
+fn light_counts(scene: &Scene) -> impl Iterator<Item = (&'static str, usize)> {
+    let count = |name| scene.lights.iter().filter(|light| light.kind.name() == name).count();
+    LightKind::NAMES.into_iter().map(move |name| (name, count(name)))
 }
 
 fn kind(camera: &Camera) -> &'static str {

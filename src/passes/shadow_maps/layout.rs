@@ -10,7 +10,7 @@ use crate::lights::LightSet;
 use crate::passes::shadow_maps::format::{FORMAT, blocks_name, depth_name, filter, pass};
 use crate::plan::{Plan, Requirements, Shape};
 use crate::resident::SceneStats;
-use crate::scene::{Bounds, Camera, Light, LightKind, Projection, Scene};
+use crate::scene::{Bounds, Camera, Light, LightSource, Projection, Scene};
 use crate::settings::{DirectShadow, GeometryChoice, MapDrawing, MapFilter, Values};
 use crate::shading::light;
 use crate::units::{Bytes, Extent};
@@ -23,7 +23,7 @@ const GROUP: &str = "shadow_maps";
 /// A near plane is no nearer than this part of the far one: the depths of 32-bit floats stay finer than a part in 2^12 of
 /// the distance, where triangles that cross the near plane are interpolated.
 const NEAREST_PART: f32 = 1e-3;
-/// Greatest half angle of a spot with one map, radians: 89 degrees. A wider one has the six of a point light.
+/// Greatest half angle of a cone with one map, radians: 89 degrees. A wider one has the six of a point light.
 const MOST_CONE: f32 = 89.0 * std::f32::consts::PI / 180.0;
 /// Texels that a map has beyond what it must hold, on each side: what four comparisons reach.
 const BORDER_PX: f32 = 1.0;
@@ -66,7 +66,7 @@ impl MapLayout {
         }
         let size_px = values.integer("shadow-map-size") as u32;
         let cutoff_lux = values.number("light-cutoff") as f32;
-        let layer_count: u32 = lights.lights.iter().map(|light| layers_of(light.kind)).sum();
+        let layer_count: u32 = lights.lights.iter().map(|light| LightMaps::of(light).layer_count()).sum();
         let asked = MapDemand { size_px, layer_count, light_count: lights.lights.len() };
         asked.require_fitting(values, stats, caps, requirements)?;
         let mut layout = Self {
@@ -92,25 +92,26 @@ impl MapLayout {
     /// `range`: metres, 0 where the light does not end.
     fn add(&mut self, light: &Light, range: f32, bounds: &Bounds) {
         let first_layer = self.views.len() as u32;
-        let block = ShadowMapBlock { first_layer, layer_count: layers_of(light.kind), ..ShadowMapBlock::zeroed() };
+        let maps = LightMaps::of(light);
+        let block = ShadowMapBlock { first_layer, layer_count: maps.layer_count(), ..ShadowMapBlock::zeroed() };
         let border = self.size_px as f32 / (self.size_px as f32 - 2.0 * BORDER_PX);
-        let block = match light.kind {
-            LightKind::Directional => {
-                self.views.push(self.view(around(bounds, light.direction, border)));
+        let block = match maps {
+            LightMaps::Parallel { direction } => {
+                self.views.push(self.view(around(bounds, direction, border)));
                 ShadowMapBlock { clip_from_world: self.last_clip(), ..block }
             }
-            LightKind::Spot { outer_angle, .. } if block.layer_count == 1 => {
-                let tangent = border * outer_angle.tan();
-                let depths = depths(light.position, range, tangent, bounds);
-                let (right, up) = across(light.direction);
-                let axes = [right, up, -light.direction];
-                self.views.push(self.view(perspective(light.position, axes, tangent, depths)));
+            LightMaps::Cone { position, direction, half_angle } => {
+                let tangent = border * half_angle.tan();
+                let depths = depths(position, range, tangent, bounds);
+                let (right, up) = across(direction);
+                let axes = [right, up, -direction];
+                self.views.push(self.view(perspective(position, axes, tangent, depths)));
                 ShadowMapBlock { clip_from_world: self.last_clip(), ..block }
             }
-            LightKind::Spot { .. } | LightKind::Point => {
-                let [near, far] = depths(light.position, range, border, bounds);
+            LightMaps::Cube { position } => {
+                let [near, far] = depths(position, range, border, bounds);
                 for face in 0..6 {
-                    let camera = perspective(light.position, face_axes(face), border, [near, far]);
+                    let camera = perspective(position, face_axes(face), border, [near, far]);
                     self.views.push(self.view(camera));
                 }
                 // As View::clip_from_world has it.
@@ -172,11 +173,32 @@ fn description(size_px: u32, layer_count: u32) -> ImageDescription {
     ImageDescription { layer_count: Some(layer_count), ..plain }
 }
 
-fn layers_of(kind: LightKind) -> u32 {
-    match kind {
-        LightKind::Directional => 1,
-        LightKind::Spot { outer_angle, .. } if outer_angle <= MOST_CONE => 1,
-        LightKind::Spot { .. } | LightKind::Point => 6,
+/// Which maps show all that a light may reach.
+enum LightMaps {
+    /// One in parallel projection, along `direction`.
+    Parallel { direction: Vec3 },
+    /// One in perspective, around the cone.
+    Cone { position: Vec3, direction: Vec3, half_angle: f32 },
+    /// Six in perspective, a cube's faces around the light.
+    Cube { position: Vec3 },
+}
+
+impl LightMaps {
+    fn of(light: &Light) -> Self {
+        match (light.source(), light.kind.half_angle()) {
+            (LightSource::Along(direction), _) => Self::Parallel { direction },
+            (LightSource::At(position), Some(half_angle)) if half_angle <= MOST_CONE => {
+                Self::Cone { position, direction: light.direction, half_angle }
+            }
+            (LightSource::At(position), _) => Self::Cube { position },
+        }
+    }
+
+    fn layer_count(&self) -> u32 {
+        match self {
+            Self::Parallel { .. } | Self::Cone { .. } => 1,
+            Self::Cube { .. } => 6,
+        }
     }
 }
 
@@ -295,6 +317,7 @@ fn face_axes(face: usize) -> [Vec3; 3] {
 mod tests {
     use super::*;
     use crate::caps::known;
+    use crate::scene::LightKind;
     use crate::settings::{COMMON, MAPPED_DIRECT_SHADOW, SHADOW_MAPS};
     use proptest::prelude::*;
 
@@ -414,7 +437,8 @@ mod tests {
     #[test]
     fn a_wide_spot_has_six_maps_and_others_one() {
         let spot = |degrees: f32| LightKind::Spot { inner_angle: 0.0, outer_angle: degrees.to_radians() };
-        let counts = [spot(5.0), spot(88.9), spot(90.0), LightKind::Point, LightKind::Directional].map(layers_of);
+        let kinds = [spot(5.0), spot(88.9), spot(90.0), LightKind::Point, LightKind::Directional];
+        let counts = kinds.map(|kind| LightMaps::of(&light(kind, Vec3::ZERO, -Vec3::Y)).layer_count());
         assert_eq!(counts, [1, 1, 6, 6, 1]);
         let lights = [spot(20.0), LightKind::Point, LightKind::Directional];
         let lights = lights.map(|kind| light(kind, Vec3::ZERO, -Vec3::Y)).to_vec();

@@ -184,7 +184,7 @@ fn sampler_json(curve: &Curve, kind: &str, binary: &mut Binary) -> Value {
 
 /// A light shines along its node's -z.
 fn world_from_light(light: &Light) -> Mat4 {
-    if light.kind == LightKind::Point {
+    if !light.kind.has_direction() {
         return Mat4::from_translation(light.position);
     }
     let back = -light.direction;
@@ -195,14 +195,13 @@ fn world_from_light(light: &Light) -> Mat4 {
 fn light_json(light: &Light) -> Value {
     let (color, intensity) = scaled(light.intensity);
     let mut json = json!({ "name": light.name, "color": color.to_array(), "intensity": intensity });
-    json["type"] = match light.kind {
-        LightKind::Directional => json!("directional"),
-        LightKind::Point => json!("point"),
+    match light.kind {
+        LightKind::Directional | LightKind::Point => {}
         LightKind::Spot { inner_angle, outer_angle } => {
             json["spot"] = json!({ "innerConeAngle": inner_angle, "outerConeAngle": outer_angle });
-            json!("spot")
         }
-    };
+    }
+    json["type"] = json!(light.kind.name());
     if let Some(range) = light.range {
         json["range"] = json!(range);
     }

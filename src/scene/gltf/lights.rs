@@ -66,19 +66,14 @@ fn read_light(
     };
     // The extension: a light shines along its node's -z.
     let back = placed.world_from_node.z_axis.truncate();
-    let direction = match kind {
-        LightKind::Point => Vec3::NEG_Z,
-        LightKind::Directional | LightKind::Spot { .. } => match (-back).try_normalize() {
-            Some(direction) => direction,
-            None => return Ok(None),
-        },
-    };
+    let direction = if kind.has_direction() { (-back).try_normalize() } else { Some(Vec3::NEG_Z) };
+    let Some(direction) = direction else { return Ok(None) };
     Ok(Some(Light {
         name: light.name().or(node_name).map_or_else(|| format!("light {}", light.index()), str::to_owned),
         kind,
         intensity,
         position: placed.world_from_node.w_axis.truncate(),
         direction,
-        range: light.range().filter(|_| kind != LightKind::Directional),
+        range: light.range().filter(|_| !kind.is_directional()),
     }))
 }

@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::SampleParams;
-use crate::scene::{Light, LightKind};
+use crate::scene::{Light, LightSource};
 use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
 use crate::techniques::path_traced::settings::Transport;
@@ -48,8 +48,10 @@ pub fn write<'a>(
 ) {
     let mut bounds = inputs.scene.lasting_bounds();
     bounds.include(inputs.view.eye());
-    for light in lights.filter(|light| light.kind != LightKind::Directional) {
-        bounds.include(light.position);
+    for light in lights {
+        if let LightSource::At(position) = light.source() {
+            bounds.include(position);
+        }
     }
     params.medium_min_ws = bounds.min.extend(0.0).to_array();
     params.medium_max_ws = bounds.max.extend(0.0).to_array();

@@ -22,7 +22,7 @@ vec4 ended(vec4 at) {
         return at;
     }
     LightBlock light = lights[params.light];
-    if (light.kind == LIGHT_DIRECTIONAL) {
+    if (is_directional(light)) {
         vec3 middle = frame.box_min_ws.xyz + 0.5 * frame.box_size_ws.xyz;
         return vec4(middle + at.xyz * (ENDLESS * length(frame.box_size_ws.xyz)), 1.0);
     }

@@ -63,7 +63,7 @@ bool has_any_surface() {
 }
 
 bool is_shadowed(LightBlock light, Incident incident, uint i) {
-    bool casts = DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && light.kind == LIGHT_DIRECTIONAL);
+    bool casts = DIRECT_SHADOW == SHADOW_RAY || (DIRECT_SHADOW == SHADOW_SUN && is_directional(light));
     return casts && occluded(point_position_ws[i], point_normal_ws[i], incident.direction_ws, incident.distance);
 }
 
