@@ -11,7 +11,8 @@
 
 use crate::bvh::{Bvh, Hit};
 use crate::gpu::shader::structs::VplBlock;
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, Scene};
+use crate::shading::light::LightStart;
 use crate::shading::material::MeshPoint;
 use crate::shading::{light, material};
 use glam::Vec3;
@@ -158,8 +159,11 @@ struct Landing {
 
 impl Tracer<'_> {
     fn one(&self, source: &Source<'_>, chance: f32, bounces: u32, numbers: &mut Numbers, vpls: &mut Vec<VplBlock>) {
-        let (mut origin, mut direction, mut flux) = match source {
-            Source::Punctual(punctual) => start_on(punctual, self.center, self.radius, numbers),
+        let LightStart { mut origin, mut direction, mut flux } = match source {
+            Source::Punctual(punctual) => {
+                let numbers = [numbers.next(), numbers.next()];
+                LightStart::of(punctual, numbers, self.center, self.radius)
+            }
             Source::Emissive { corners, mesh, triangle } => {
                 let mesh = &self.scene.meshes[*mesh];
                 let material = &self.scene.materials[mesh.material];
@@ -178,8 +182,11 @@ impl Tracer<'_> {
                 }
                 let radiance = material::emissive_at(self.scene, material, &point);
                 vpls.push(vpl(position, normal, radiance * area / chance));
-                let out = cosine_direction(normal, numbers);
-                (position + normal * self.offset, out, radiance * area * std::f32::consts::PI)
+                LightStart {
+                    origin: position + normal * self.offset,
+                    direction: cosine_direction(normal, numbers),
+                    flux: radiance * area * std::f32::consts::PI,
+                }
             }
         };
         flux /= chance;
@@ -236,37 +243,6 @@ impl Tracer<'_> {
     }
 }
 
-/// Origin, direction and flux of a walk from a punctual light.
-fn start_on(punctual: &Light, center: Vec3, radius: f32, numbers: &mut Numbers) -> (Vec3, Vec3, Vec3) {
-    use std::f32::consts::{PI, TAU};
-    let (u, v) = (numbers.next(), numbers.next());
-    match punctual.kind {
-        LightKind::Directional => {
-            let (x, y) = punctual.direction.any_orthonormal_pair();
-            let (r, angle) = (radius * u.sqrt(), TAU * v);
-            let on_disc = x * (r * angle.cos()) + y * (r * angle.sin());
-            let origin = center + on_disc - punctual.direction * (1.01 * radius);
-            (origin, punctual.direction, light::flux(punctual, radius))
-        }
-        LightKind::Point => {
-            let z = 1.0 - 2.0 * u;
-            let r = (1.0 - z * z).max(0.0).sqrt();
-            let direction = Vec3::new(r * (TAU * v).cos(), r * (TAU * v).sin(), z);
-            (punctual.position, direction, punctual.intensity * (4.0 * PI))
-        }
-        LightKind::Spot { inner_angle, outer_angle } => {
-            // Uniform in the outer cone; the cone's edge dims the flux.
-            let z = 1.0 - u * (1.0 - outer_angle.cos());
-            let r = (1.0 - z * z).max(0.0).sqrt();
-            let (x, y) = punctual.direction.any_orthonormal_pair();
-            let direction = x * (r * (TAU * v).cos()) + y * (r * (TAU * v).sin()) + punctual.direction * z;
-            let edge = (inner_angle.cos() - outer_angle.cos()).max(1e-3);
-            let cone = ((z - outer_angle.cos()) / edge).clamp(0.0, 1.0);
-            (punctual.position, direction, punctual.intensity * (TAU * (1.0 - outer_angle.cos()) * cone * cone))
-        }
-    }
-}
-
 fn cosine_direction(normal: Vec3, numbers: &mut Numbers) -> Vec3 {
     let (u, v) = (numbers.next(), numbers.next());
     let (r, angle) = (u.sqrt(), std::f32::consts::TAU * v);
@@ -288,7 +264,7 @@ fn vpl(position: Vec3, normal: Vec3, intensity: Vec3) -> VplBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Draw, Material, Mesh};
+    use crate::scene::{Draw, LightKind, Material, Mesh};
     use glam::{Mat4, Vec4};
 
     /// A large horizontal square at y = `y`, facing up, and its material.

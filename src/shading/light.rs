@@ -1,4 +1,4 @@
-//! Punctual and virtual point lights on the host: the twin of glsl/shading/light.glsl.
+//! Punctual and virtual point lights on the host: the twin of glsl/shading/light.glsl and light_start.glsl.
 
 use crate::gpu::shader::shading::light::{LEAST_DISTANCE_SQUARED, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT};
 use crate::gpu::shader::structs::{LightBlock, VplBlock};
@@ -86,6 +86,50 @@ pub fn flux(light: &Light, radius: f32) -> Vec3 {
     }
 }
 
+/// Where a walk of light starts, world space.
+#[derive(Clone, Copy, Debug)]
+pub struct LightStart {
+    pub origin: Vec3,
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Lumens (per channel) that the whole walk carries.
+    pub flux: Vec3,
+}
+
+impl LightStart {
+    /// A start on a punctual light. `numbers`: 0 to 1. A directional light starts on a disc before the sphere of `radius`
+    /// metres around `center`, so that whatever stands in its way stops it.
+    pub fn of(light: &Light, [u, v]: [f32; 2], center: Vec3, radius: f32) -> Self {
+        use std::f32::consts::{PI, TAU};
+        match light.kind {
+            LightKind::Directional => {
+                let (x, y) = light.direction.any_orthonormal_pair();
+                let (r, angle) = (radius * u.sqrt(), TAU * v);
+                let on_disc = x * (r * angle.cos()) + y * (r * angle.sin());
+                let origin = center + on_disc - light.direction * (1.01 * radius);
+                Self { origin, direction: light.direction, flux: flux(light, radius) }
+            }
+            LightKind::Point => {
+                let z = 1.0 - 2.0 * u;
+                let r = (1.0 - z * z).max(0.0).sqrt();
+                let direction = Vec3::new(r * (TAU * v).cos(), r * (TAU * v).sin(), z);
+                Self { origin: light.position, direction, flux: light.intensity * (4.0 * PI) }
+            }
+            LightKind::Spot { inner_angle, outer_angle } => {
+                // Uniform in the outer cone; the cone's edge dims the flux.
+                let z = 1.0 - u * (1.0 - outer_angle.cos());
+                let r = (1.0 - z * z).max(0.0).sqrt();
+                let (x, y) = light.direction.any_orthonormal_pair();
+                let direction = x * (r * (TAU * v).cos()) + y * (r * (TAU * v).sin()) + light.direction * z;
+                let edge = (inner_angle.cos() - outer_angle.cos()).max(1e-3);
+                let cone = ((z - outer_angle.cos()) / edge).clamp(0.0, 1.0);
+                let flux = light.intensity * (TAU * (1.0 - outer_angle.cos()) * cone * cone);
+                Self { origin: light.position, direction, flux }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,6 +174,36 @@ mod tests {
         assert!(at(0.61).abs() < 1e-6);
         let half = ((0.45f32.cos() - 0.6f32.cos()) / (0.3f32.cos() - 0.6f32.cos())).powi(2);
         assert!((at(0.45) - 8.0 * half).abs() < 1e-3);
+    }
+
+    /// What starts carry is what light gives: a metre from a light with a place its flux over the solid angle, in lux; from
+    /// a directional one its flux over the disc.
+    #[test]
+    fn a_start_carries_what_the_light_gives_where_it_goes() {
+        use std::f32::consts::PI;
+        let (inner_angle, outer_angle) = (0.3, 0.6);
+        let (center, radius) = (Vec3::new(1.0, -2.0, 0.5), 3.0);
+        let kinds = [
+            (LightKind::Directional, PI * radius * radius),
+            (LightKind::Point, 4.0 * PI),
+            (LightKind::Spot { inner_angle, outer_angle }, 2.0 * PI * (1.0 - outer_angle.cos())),
+        ];
+        for (kind, spread) in kinds {
+            let light = Light { direction: Vec3::new(2.0, -3.0, 6.0) / 7.0, ..light(kind) };
+            let block = block(&light, 0.0);
+            for step in 0..64 {
+                let numbers = [step % 8, step / 8].map(|step| (step as f32 + 0.5) / 8.0);
+                let LightStart { origin, direction, flux } = LightStart::of(&light, numbers, center, radius);
+                assert!((direction.length() - 1.0).abs() < 1e-5, "{kind:?}: {direction}");
+                let (towards, _, irradiance) = incident_from(&block, origin + direction);
+                assert!((towards + direction).length() < 1e-5, "{kind:?}: {towards} and {direction}");
+                assert!((flux / spread - irradiance).abs().max_element() < 1e-3, "{kind:?}: {flux} and {irradiance}");
+                if kind.is_directional() {
+                    let beside = origin - center - direction * (origin - center).dot(direction);
+                    assert!((origin - center).dot(direction) < -radius && beside.length() <= radius, "{origin}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -4,18 +4,11 @@
 #ifndef PATH_TRACED_LIGHT_WALK_GLSL
 #define PATH_TRACED_LIGHT_WALK_GLSL
 
+#include "shading/light_start.glsl"
 #include "techniques/path_traced/next_event.glsl"
 
-struct WalkStart {
-    vec3 origin;
-    vec3 direction;
-    // Carried by the whole walk, divided by how likely this start is.
-    vec3 flux;
-    // The start itself, where it is a light: on an emitter.
-    VplBlock vpl;
-};
-
-WalkStart start_on_emitter(float number, float chance) {
+// Starts are divided by how likely each is. `vpl`: the start itself, which is a light.
+LightStart start_on_emitter(float number, float chance, out VplBlock vpl) {
     SourceBlock source = source_of(0u, params.emitter_count, number);
     vec2 barycentric = barycentric_of(next_pair());
     BvhTriangleBlock triangle = triangle_at(source.index);
@@ -32,40 +25,15 @@ WalkStart start_on_emitter(float number, float chance) {
     }
     vec3 at = place_of(source.index, barycentric);
     vec3 radiance = emitted_at(source.index, barycentric);
-    WalkStart start;
-    start.origin = at + normal * RAY_OFFSET;
-    start.direction = cosine_direction(normal, next_pair());
-    start.flux = radiance * area * PI;
-    start.vpl = VplBlock(vec4(at, 0.0), vec4(normal, 0.0), vec4(radiance * area, 0.0));
-    return start;
+    vpl = VplBlock(vec4(at, 0.0), vec4(normal, 0.0), vec4(radiance * area, 0.0));
+    return LightStart(at + normal * RAY_OFFSET, cosine_direction(normal, next_pair()), radiance * area * PI);
 }
 
-WalkStart start_on_punctual(float number, float chance) {
+LightStart start_on_punctual(float number, float chance) {
     SourceBlock source = source_of(params.emitter_count, params.punctual_count, number);
     LightBlock light = light_at(source.index);
-    vec2 numbers = next_pair();
-    float angle = 2.0 * PI * numbers.y;
-    WalkStart start;
-    start.vpl = VplBlock(light.position_ws, vec4(0.0), vec4(0.0));
-    start.origin = light.position_ws.xyz;
-    vec3 intensity = light.intensity.rgb / (source.chance * chance);
-    if (light.kind == LIGHT_DIRECTIONAL) {
-        float radius = params.sphere_ws.w;
-        vec3 on_disc = around(light.direction_ws.xyz, vec3(cos(angle), sin(angle), 0.0) * (radius * sqrt(numbers.x)));
-        start.origin = params.sphere_ws.xyz + on_disc - light.direction_ws.xyz * (1.01 * radius);
-        start.direction = light.direction_ws.xyz;
-        start.flux = intensity * (PI * radius * radius);
-        return start;
-    }
-    // Uniform in the outer cone, which is the whole sphere of a point.
-    float outer = light.kind == LIGHT_SPOT ? -light.spot_offset / light.spot_scale : -1.0;
-    float z = 1.0 - numbers.x * (1.0 - outer);
-    float radius = sqrt(max(1.0 - z * z, 0.0));
-    vec3 axis = light.kind == LIGHT_SPOT ? light.direction_ws.xyz : vec3(0.0, 0.0, 1.0);
-    start.direction = around(axis, vec3(radius * cos(angle), radius * sin(angle), z));
-    float cone = light.kind == LIGHT_SPOT ? clamp(z * light.spot_scale + light.spot_offset, 0.0, 1.0) : 1.0;
-    start.flux = intensity * (2.0 * PI * (1.0 - outer) * cone * cone);
-    return start;
+    light.intensity.rgb /= source.chance * chance;
+    return start_of(light, next_pair(), params.sphere_ws);
 }
 
 // Irradiance of the point.
@@ -76,13 +44,14 @@ vec3 walked_irradiance(SurfacePoint point) {
     }
     float number = next_pair().x;
     bool is_punctual = number < params.punctual_part;
-    WalkStart start;
+    LightStart start;
     if (is_punctual) {
         start = start_on_punctual(min(number / params.punctual_part, 0.99999994), params.punctual_part);
     } else {
         float part = 1.0 - params.punctual_part;
-        start = start_on_emitter(min((number - params.punctual_part) / part, 0.99999994), part);
-        received += vpl_irradiance(start.vpl, point.position_ws, point.normal_ws, params.least_squared);
+        VplBlock vpl;
+        start = start_on_emitter(min((number - params.punctual_part) / part, 0.99999994), part, vpl);
+        received += vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
     }
     vec3 origin = start.origin;
     vec3 direction = start.direction;
