@@ -9,6 +9,7 @@
 mod settings;
 mod shade;
 
+use super::bench_stage::{BenchStage, GBUFFER};
 use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
@@ -78,6 +79,10 @@ impl Technique for NewTechnique {
             ("emissive", "off".to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ])
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        &[GBUFFER]
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
