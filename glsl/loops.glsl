@@ -1,4 +1,4 @@
-// A driver may end a loop after too many iterations, without an error (src/caps/mod.rs, `Identity::max_loop_iterations`).
+// A driver may end a loop after too many iterations, without an error (src/caps/quirks.rs, `Identity::loop_end`).
 // What was summed by then must not pass for a result: it becomes NaN, which fails the picture.
 #ifndef LOOPS_GLSL
 #define LOOPS_GLSL

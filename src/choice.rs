@@ -3,7 +3,10 @@
 //! A room of its own on the ground floor, because rooms on every floor have such enums.
 
 /// A value that one word of a closed list stands for.
-pub trait Choice: Copy + Into<&'static str> {
+pub trait Choice: Copy + Into<&'static str> + 'static {
+    /// All values, in the order in which help shows their words.
+    const ALL: &'static [Self];
+
     /// The value of a word; None: the list does not have it.
     fn from_word(word: &str) -> Option<Self>;
 }
@@ -36,6 +39,8 @@ macro_rules! choices {
         }
 
         impl $crate::choice::Choice for $name {
+            const ALL: &'static [Self] = &[$(Self::$value),+];
+
             fn from_word(word: &str) -> Option<Self> {
                 match word {
                     $($word => Some(Self::$value),)+
@@ -75,6 +80,7 @@ mod tests {
         for word in Way::WORDS {
             assert_eq!(Way::from_word(word).map(Way::name), Some(*word));
         }
+        assert_eq!(Way::ALL, [Way::Long, Way::Short]);
         assert_eq!(Way::from_word("long-way"), Some(Way::default()));
         for other in ["", "Short", "short ", "shor", "auto"] {
             assert_eq!(Way::from_word(other), None);

@@ -2,6 +2,7 @@
 
 use crate::bvh::LazyBvh;
 use crate::caps::Caps;
+use crate::caps::quirks::LoopEnd;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
 use crate::gpu::commands::{RecordedPass, Recording, Submits};
@@ -421,16 +422,16 @@ impl Renderer {
         let is_nan = picture.pixels.iter().flatten().any(|channel| channel.is_nan());
         let own = self.frame.explained_nan().filter(|_| is_nan);
         let error = own.into_iter().flatten().fold(error, Error::note);
-        match self.gpu.caps.identity.max_loop_iterations() {
-            Some(iterations) if is_nan => error
+        match self.gpu.caps.identity.loop_end() {
+            Some(LoopEnd { iterations, gone_in }) if is_nan => error
                 .note(format!(
                     "this driver ends a thread's loops after {iterations} iterations, which may be lights times steps of \
                      shadow rays, or all steps of a path's rays"
                 ))
-                .note(
+                .note(format!(
                     "fewer lights or --bounces, --direct-shadow none or sun, --cull tiled, or a newer driver \
-                     (lavapipe of Mesa 25) would help",
-                ),
+                     ({gone_in}) would help"
+                )),
             _ => error,
         }
     }

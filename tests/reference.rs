@@ -258,7 +258,7 @@ fn a_report_has_the_errors_and_gates_judge_them() {
     assert_eq!((&errors["reference"], &errors["cut"]), (&"none.exr".into(), &Value::Array(Vec::new())));
     program.run(&small(&["-o", "a.exr"])).fine();
     let compared = program.run(&["compare", "a.exr", "none.exr", "--json"]).fine().json();
-    for metric in ["rmse", "relmse", "psnr", "ssim", "flip", "hdr_flip", "over_threshold"] {
+    for metric in metrics::Metrics::NAMES {
         assert!(errors[metric].is_number(), "{metric}: {errors:#}");
         assert_eq!(errors[metric], compared["metrics"][metric], "{metric}: a PNG's picture is judged before it is cut");
     }

@@ -7,7 +7,8 @@ use super::row::BenchRow;
 /// missing, or there is no interval: then it is unknown whether another is faster.
 fn place(row: &BenchRow) -> Option<[f64; 2]> {
     row.interval()?;
-    Some([row.ratio.as_ref()?.mean, row.best_known_errors()?.rmse])
+    let rmse = Some(row.best_known_errors()?.rmse).filter(|rmse| !rmse.is_nan())?;
+    Some([row.ratio.as_ref()?.mean, rmse])
 }
 
 /// Marks the rows of the set: no other with at most their error is proven to be faster. Those that are in it because

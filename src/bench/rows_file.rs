@@ -109,6 +109,8 @@ impl RowsFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metrics::Metrics;
+    use serde_json::json;
 
     fn row(variant: &str) -> BenchRow {
         let text =
@@ -133,6 +135,32 @@ mod tests {
         rows.append(&row("b")).unwrap();
         let text = std::fs::read(&path).unwrap();
         assert_eq!(text, [&whole[..], format!("{}\n", row("b").line()).as_bytes()].concat());
+    }
+
+    /// A measure of errors is younger than the rows of a sweep that `--resume` goes on with.
+    #[test]
+    fn a_row_of_before_a_measure_is_still_a_row() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        let mut whole = serde_json::to_value(row("a")).unwrap();
+        whole["error_against_none"] = serde_json::to_value(Metrics { psnr: 40.0, ..Metrics::EQUAL }).unwrap();
+        whole["errors"] = whole["error_against_none"].clone();
+        for (key, value) in
+            [("reference", json!("auto")), ("threshold", json!(0.1)), ("cut", json!([])), ("gates", json!([]))]
+        {
+            whole["errors"][key] = value;
+        }
+        for measure in Metrics::NAMES {
+            let mut of_before = whole.clone();
+            for errors in ["errors", "error_against_none"] {
+                of_before[errors].as_object_mut().unwrap().remove(*measure).unwrap();
+            }
+            std::fs::write(&path, format!("{of_before}\n")).unwrap();
+            let rows = RowsFile::open(folder.path(), Existing::Resume).unwrap();
+            let kept = rows.kept(&row("a")).unwrap();
+            assert_eq!(serde_json::to_value(kept).unwrap(), of_before);
+            assert!(kept.errors.is_some() && kept.other.is_empty(), "{kept:?}");
+        }
     }
 
     #[test]

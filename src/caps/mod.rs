@@ -3,6 +3,7 @@
 pub mod file;
 pub mod known;
 pub mod needs;
+pub mod quirks;
 
 pub use needs::{Ability, Need};
 
@@ -157,21 +158,6 @@ impl Identity {
             Ok(wanted) => wanted == index,
             Err(_) => format!("{} {}", self.name, self.driver_info).to_lowercase().contains(&text.to_lowercase()),
         }
-    }
-
-    /// Iterations of all loops of one invocation together after which the driver ends them without a word; None where there is
-    /// no such end. Seen on lavapipe of Mesa 22.3.6, gone in 25.0.7; what lies between is taken to have it.
-    pub fn max_loop_iterations(&self) -> Option<u32> {
-        let (_, version) = self.driver_info.split_once("Mesa ")?;
-        let major: u32 = version.split('.').next()?.parse().ok()?;
-        (self.driver == "llvmpipe" && major < 25).then_some(65_535)
-    }
-
-    /// Whether a memory barrier inside a divergent loop ends the threads of a workgroup that reach it more often than others:
-    /// lavapipe of Mesa 22.3.6 suspends them there as at a barrier of the workgroup, 25.0.7 does not; what lies between is
-    /// taken to. Who needs such a barrier there must do without it, and with tests that would see what it costs.
-    pub fn barriers_end_threads(&self) -> bool {
-        self.max_loop_iterations().is_some()
     }
 
     /// The driver, with its version if it reports one.

@@ -10,21 +10,23 @@ use serde_json::json;
 use super::gate_args;
 use crate::error::{Error, Result};
 use crate::metrics::gate::{self, Gate};
-use crate::metrics::{self, Comparison, Metrics, Part};
+use crate::metrics::{self, Comparison, Measure, Metrics, Part};
 use crate::picture::image_file;
 use crate::units::Extent;
 
 /// The verb with its arguments.
 pub fn command() -> Command {
+    let titles: Vec<&str> = Metrics::MEASURES.iter().map(|measure| measure.title).collect();
     let command = Command::new("compare")
-        .about("Compare a picture with its reference: RMSE, relMSE, PSNR, SSIM, FLIP, HDR-FLIP, pixels over a threshold")
-        .long_about(
+        .about(format!("Compare a picture with its reference: {}", titles.join(", ")))
+        .long_about(format!(
             "Compare a picture with its reference (PNG or EXR, of one size).\n\n\
-             rmse, relmse, hdr_flip and over_threshold (percent of pixels) measure scene-linear light; psnr (dB), ssim and \
-             flip measure 8-bit sRGB at exposure 0. A PNG holds no light above 1: where one is compared, the measures of \
-             light are marked as cut. Equal pictures have psnr inf (null in JSON). Exit code 1: a gate failed, or a picture holds \
-             NaN or infinity.",
-        )
+             {} measure scene-linear light; {} measure 8-bit sRGB at exposure 0. A PNG holds no light above 1: where one is \
+             compared, the measures of light are marked as cut. Equal pictures have psnr inf (null in JSON). Exit code 1: a \
+             gate failed, or a picture holds NaN or infinity.",
+            with_units(true),
+            with_units(false),
+        ))
         .arg(path_arg("a", "A").required(true).help("Picture to measure"))
         .arg(path_arg("b", "B").required(true).help("Reference picture"))
         .arg(path_arg("diff", "FILE.png").long("diff").help("File to write FLIP's error map to, in the magma colours"))
@@ -36,6 +38,20 @@ pub fn command() -> Command {
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
         .arg(quiet_flag());
     gate_args::with_gate_args(command)
+}
+
+/// The names of the measures that are of light, or of the others, each with its unit, as a sentence lists them.
+fn with_units(is_of_light: bool) -> String {
+    let measures = Metrics::MEASURES.iter().filter(|measure| measure.is_of_light == is_of_light);
+    let names = measures.map(|measure| match (measure.unit)(&"--threshold") {
+        unit if unit.is_empty() => measure.name.to_owned(),
+        unit => format!("{} ({unit})", measure.name),
+    });
+    let names: Vec<String> = names.collect();
+    match names.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => names.concat(),
+    }
 }
 
 fn path_arg(name: &'static str, value_name: &'static str) -> Arg {
@@ -143,16 +159,16 @@ impl Seen<'_> {
     fn table(&self) -> String {
         let Self { a, b, comparison, .. } = self;
         let mut text = format!("{} against {}, {}\n", a.display(), b.display(), comparison.extent);
-        for (name, value) in Metrics::NAMES.into_iter().zip(comparison.metrics.values()) {
-            let line = metrics::line(name, value, self.threshold, self.is_cut());
+        for (measure, value) in comparison.metrics.each() {
+            let line = measure.line(value, self.threshold, self.is_cut());
             writeln!(text, "{line}").expect("a string takes any text");
         }
         for (name, part) in self.parts {
             let percent = 100.0 * part.pixels as f64 / comparison.extent.pixel_count() as f64;
             writeln!(text, "{name}: {} pixels, {percent:.2} %", part.pixels).expect("a string takes any text");
-            for (name, value) in Part::NAMES.into_iter().zip(part.values()) {
-                let Some(value) = value else { continue };
-                let line = metrics::line(name, value, self.threshold, self.is_cut());
+            for (name, mean) in part.means() {
+                let (Some(measure), Some(value)) = (Measure::named(name), mean) else { continue };
+                let line = measure.line(value, self.threshold, self.is_cut());
                 writeln!(text, "{line}").expect("a string takes any text");
             }
         }
@@ -173,7 +189,7 @@ impl Seen<'_> {
             "height": comparison.extent.height,
             "metrics": comparison.metrics,
             "threshold": self.threshold,
-            "cut": if self.is_cut() { &Metrics::OF_LIGHT[..] } else { &[] },
+            "cut": if self.is_cut() { Metrics::of_light() } else { Vec::new() },
             "gates": self.gates.iter().map(|gate| gate.verdict(&comparison.metrics)).collect::<Vec<_>>(),
         });
         for (name, part) in self.parts {
@@ -339,7 +355,7 @@ mod tests {
             serde_json::from_str(&text).unwrap()
         };
         assert_eq!(document("a.exr", &[])["cut"], json!([]));
-        assert_eq!(document("a.png", &[])["cut"], json!(Metrics::OF_LIGHT));
+        assert_eq!(document("a.png", &[])["cut"], json!(Metrics::of_light()));
         let text = compare(folder.path(), "a.png", "b.exr", &[]).unwrap().text;
         assert_eq!(text.lines().filter(|line| line.ends_with("(light above 1 is cut by a PNG)")).count(), 4, "{text}");
         // The pictures are flat: every pixel is above a threshold or none.

@@ -1,7 +1,7 @@
 //! `quincunx devices`: every device of every driver, what it can do, and what it lacks.
 
 use super::self_test;
-use crate::caps::Need;
+use crate::caps::{Ability, Caps, Need};
 use crate::cli::output::{print, print_text, quiet_flag};
 use crate::error::Result;
 use crate::gpu::device::{self, ListedDevice};
@@ -110,21 +110,41 @@ fn describe(text: &mut String, index: usize, listed: &ListedDevice) -> std::fmt:
         limits.max_workgroup_invocations,
         limits.subgroup_size
     )?;
-    let features = &caps.features;
-    let all = [
-        (features.geometry_shader, "geometry shaders"),
-        (features.layer_from_vertex_shader, "layers from vertex shaders"),
-        (features.draw_indirect_count, "draws counted by buffers"),
-        (features.shader_float16, "16-bit floats"),
-        (features.shader_int64_atomics, "64-bit atomics"),
-        (caps.conservative.is_some(), "conservative rasterisation"),
-        (features.ray_query, "ray queries"),
-        (features.pipeline_statistics, "pipeline statistics"),
-        (features.memory_budget, "memory budget"),
-        (limits.timestamp_period_ns > 0.0, "timestamps"),
-    ];
-    let names =
-        |present: bool| -> Vec<&str> { all.iter().filter(|(has, _)| *has == present).map(|(_, name)| *name).collect() };
-    writeln!(text, "   has {}", names(true).join(", "))?;
-    writeln!(text, "   has no {}", names(false).join(", "))
+    describe_abilities(text, caps)
+}
+
+fn describe_abilities(text: &mut String, caps: &Caps) -> std::fmt::Result {
+    for (has, is_there) in [("has", true), ("has no", false)] {
+        let abilities = Ability::ALL.iter().filter(|ability| ability.is_there(caps) == is_there);
+        let names: Vec<&str> = abilities.map(|ability| ability.short()).collect();
+        if !names.is_empty() {
+            writeln!(text, "   {has} {}", names.join(", "))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::caps::known;
+
+    #[test]
+    fn every_ability_is_listed_among_those_that_are_there_or_those_that_are_not() {
+        let listed = |name| {
+            let mut text = String::new();
+            describe_abilities(&mut text, &known::caps(name).unwrap()).unwrap();
+            text
+        };
+        let text = listed("lavapipe-22.3.6");
+        let (has, has_no) = text.split_once("   has no ").unwrap();
+        assert!(has.starts_with("   has float depth, ") && has.ends_with(", timestamps\n"), "{text}");
+        let rest = "conservative rasterisation of every triangle, ray queries, memory budget\n";
+        assert_eq!(has_no, format!("filtered depth, 8 samples a pixel, {rest}"));
+        for name in known::names() {
+            let text = listed(name);
+            assert_eq!(text.matches(", ").count() + text.lines().count(), Ability::ALL.len(), "{name}: {text}");
+            assert!(text.lines().all(|line| line.starts_with("   has ")), "{name}: {text}");
+        }
+    }
 }

@@ -1,25 +1,24 @@
 //! The flags that judge an error: what `compare` and everything with a `--reference` share.
 
 use crate::error::{Error, Result};
-use crate::metrics::DEFAULT_THRESHOLD;
+
 use crate::metrics::gate::{Bound, Gate};
+use crate::metrics::{DEFAULT_THRESHOLD, Metrics};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 /// Adds --max, --min and --threshold.
 pub fn with_gate_args(command: Command) -> Command {
-    let gate = |bound: Bound, help: &'static str| {
+    let gate = |bound: Bound, help: String| {
         let name = bound.name();
         Arg::new(name).long(name).value_name("METRIC=VALUE").action(ArgAction::Append).help(help)
     };
     let threshold = Arg::new("threshold").long("threshold").value_name("T").allow_negative_numbers(true).help(format!(
         "HDR-FLIP error, 0 to 1, above which a pixel counts in over_threshold [default: {DEFAULT_THRESHOLD}]"
     ));
+    let names = Metrics::NAMES.join(", ");
     command
-        .arg(gate(
-            Bound::Max,
-            "Fail when METRIC (rmse, relmse, psnr, ssim, flip, hdr_flip, over_threshold) is above VALUE; may be repeated",
-        ))
-        .arg(gate(Bound::Min, "Fail when METRIC is below VALUE; may be repeated"))
+        .arg(gate(Bound::Max, format!("Fail when METRIC ({names}) is above VALUE; may be repeated")))
+        .arg(gate(Bound::Min, "Fail when METRIC is below VALUE; may be repeated".to_owned()))
         .arg(threshold)
 }
 

@@ -4,7 +4,7 @@
 //! drivers such as lavapipe grant more than their heaps hold.
 
 use super::ledger::BlockState;
-use super::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
+use super::suballocate::Suballocate;
 use super::{Strategy, Tiling};
 use crate::caps::Caps;
 
@@ -143,7 +143,7 @@ impl Pool {
         if ask.bytes > self.rules.max_allocation_bytes {
             return Err(Misfit::TooLarge { most_bytes: self.rules.max_allocation_bytes });
         }
-        let is_shared = !ask.alone && self.rules.strategy != Strategy::Dedicated && ask.bytes < OWN_BLOCK_BYTES;
+        let is_shared = !ask.alone && self.rules.strategy.shares_blocks() && ask.bytes < OWN_BLOCK_BYTES;
         if is_shared && let Some(place) = self.join(ask) {
             return Ok(place);
         }
@@ -162,11 +162,8 @@ impl Pool {
         if self.blocks.iter().flatten().count() >= most as usize {
             return Err(Misfit::TooMany { most });
         }
-        let mut ranges: Box<dyn Suballocate> = match self.rules.strategy {
-            Strategy::Linear if is_shared => Box::new(Linear::new(bytes)),
-            Strategy::Tlsf if is_shared => Box::new(Tlsf::new(bytes)),
-            _ => Box::new(Dedicated::new(bytes)),
-        };
+        let strategy = if is_shared { self.rules.strategy } else { Strategy::Dedicated };
+        let mut ranges = strategy.ranges(bytes);
         let offset = ranges.take(ask.bytes, ask.alignment).expect("an empty block takes what is not larger");
         let Ask { type_index, mapped, tiling, .. } = *ask;
         let block = Ranges { type_index, mapped, tiling, bytes, is_shared, ranges };
@@ -246,6 +243,7 @@ impl Pool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choice::Choice;
     use crate::memory::Strategy;
     use proptest::prelude::{any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
     use proptest::strategy::Strategy as Made;
@@ -288,7 +286,7 @@ mod tests {
             asks in asks(),
             budget in prop::option::of(1..80 * MIB),
         ) {
-            for strategy in [Strategy::Dedicated, Strategy::Linear, Strategy::Tlsf] {
+            for &strategy in Strategy::ALL {
                 let mut pool = Pool::new(rules(strategy, budget));
                 let mut live: Vec<(Ask, Place)> = Vec::new();
                 let mut blocks: BTreeMap<u32, u64> = BTreeMap::new();
@@ -344,7 +342,7 @@ mod tests {
 
     #[test]
     fn where_little_is_left_shared_blocks_are_small_and_large_resources_take_what_they_need() {
-        for strategy in [Strategy::Linear, Strategy::Tlsf] {
+        for strategy in Strategy::ALL.iter().copied().filter(|strategy| strategy.shares_blocks()) {
             let mut pool = Pool::new(rules(strategy, Some(20 * MIB)));
             let mut place = |bytes| pool.place(&ask(bytes)).map(|place| place.new_block_bytes);
             // Four times as much is wanted; an eighth of 20 MiB, rounded down to a power of two, is given.
@@ -371,7 +369,7 @@ mod tests {
     /// Textures of any one size, many of them, leave little of what is allocated unused.
     #[test]
     fn many_resources_of_one_size_fill_their_memory_blocks() {
-        for strategy in [Strategy::Linear, Strategy::Tlsf] {
+        for strategy in Strategy::ALL.iter().copied().filter(|strategy| strategy.shares_blocks()) {
             // Pictures of 2048, 1024, 512 and 64 texels a side with their levels, and sizes that divide a block badly.
             for bytes in [22_369_664, 5_592_448, 1_398_144, 22_016, 9 * MIB, 4 * MIB, 4 * MIB - 256, 13 * MIB / 4] {
                 let mut pool = Pool::new(Rules::of_one_heap(strategy, 1 << 40));

@@ -2,6 +2,7 @@
 
 use crate::choice::choices;
 use crate::memory::kinds::Use;
+use crate::memory::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
 use ash::vk;
 
 choices! {
@@ -15,6 +16,22 @@ choices! {
         "dedicated" => Dedicated,
         /// Ranges in shared memory blocks wherever there is room; what returns is taken again.
         "tlsf" => Tlsf,
+    }
+}
+
+impl Strategy {
+    /// Whether resources share memory blocks.
+    pub fn shares_blocks(self) -> bool {
+        self != Self::Dedicated
+    }
+
+    /// What cuts a new memory block of so many bytes.
+    pub fn ranges(self, bytes: u64) -> Box<dyn Suballocate> {
+        match self {
+            Self::Linear => Box::new(Linear::new(bytes)),
+            Self::Dedicated => Box::new(Dedicated::new(bytes)),
+            Self::Tlsf => Box::new(Tlsf::new(bytes)),
+        }
     }
 }
 

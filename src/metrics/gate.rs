@@ -1,6 +1,6 @@
 //! Gates: bounds on an error, for scripts. One that fails is the exit code 1 of the command.
 
-use super::Metrics;
+use super::measure::{Measure, Metrics, or_infinity};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -23,10 +23,9 @@ impl Bound {
 }
 
 /// A bound on one metric.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Gate {
-    /// Index into `Metrics::NAMES`.
-    metric_index: usize,
+    measure: &'static Measure,
     bound: Bound,
     value: f64,
 }
@@ -42,22 +41,15 @@ impl Gate {
                 .note(format!("for example --{flag} rmse=0.01; the metrics are {names}"))
         };
         let (name, value) = argument.split_once('=').ok_or_else(|| refused("it has no ="))?;
-        let metric_index = Metrics::NAMES
-            .iter()
-            .position(|known| *known == name)
-            .ok_or_else(|| refused(&format!("there is no metric {name}")))?;
+        let measure = Measure::named(name).ok_or_else(|| refused(&format!("there is no metric {name}")))?;
         match value.parse::<f64>() {
-            Ok(value) if !value.is_nan() => Ok(Self { metric_index, bound, value }),
+            Ok(value) if !value.is_nan() => Ok(Self { measure, bound, value }),
             _ => Err(refused(&format!("{value} is not a number"))),
         }
     }
 
-    fn name(&self) -> &'static str {
-        Metrics::NAMES[self.metric_index]
-    }
-
     fn measured(&self, metrics: &Metrics) -> f64 {
-        metrics.values()[self.metric_index]
+        (self.measure.value)(metrics)
     }
 
     fn passes(&self, metrics: &Metrics) -> bool {
@@ -70,13 +62,13 @@ impl Gate {
     /// What a person reads: the gate and its verdict.
     pub fn text(&self, metrics: &Metrics) -> String {
         let verdict = if self.passes(metrics) { "passed" } else { "failed" };
-        format!("--{} {}={}: {verdict}", self.bound.name(), self.name(), self.value)
+        format!("--{} {}={}: {verdict}", self.bound.name(), self.measure.name, self.value)
     }
 
     /// What a program reads.
     pub fn verdict(&self, metrics: &Metrics) -> Verdict {
         Verdict {
-            metric: self.name().to_owned(),
+            metric: self.measure.name.to_owned(),
             bound: self.bound.name().to_owned(),
             value: self.value,
             measured: self.measured(metrics),
@@ -93,10 +85,10 @@ pub struct Verdict {
     /// `max` or `min`.
     pub bound: String,
     /// What is allowed, in the metric's unit; infinity is null under serde.
-    #[serde(deserialize_with = "super::or_infinity")]
+    #[serde(deserialize_with = "or_infinity")]
     pub value: f64,
     /// What it is, in the metric's unit; infinity is null under serde.
-    #[serde(deserialize_with = "super::or_infinity")]
+    #[serde(deserialize_with = "or_infinity")]
     pub measured: f64,
     pub passed: bool,
 }
@@ -105,6 +97,6 @@ pub struct Verdict {
 pub fn judge(gates: &[Gate], metrics: &Metrics, context: impl Display) -> Result<()> {
     let Some(gate) = gates.iter().find(|gate| !gate.passes(metrics)) else { return Ok(()) };
     let side = if gate.bound == Bound::Max { "above" } else { "below" };
-    let (name, measured) = (gate.name(), gate.measured(metrics));
+    let (name, measured) = (gate.measure.name, gate.measured(metrics));
     Err(Error::gate(format!("{context}: {name} is {measured}, {side} --{} {}", gate.bound.name(), gate.value)))
 }

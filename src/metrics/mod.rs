@@ -7,77 +7,23 @@
 mod flip;
 pub mod gate;
 mod linear;
+mod measure;
 pub mod noise;
 mod part;
 mod psnr;
 mod ssim;
 
+pub use measure::{Measure, Metrics};
 pub use part::Part;
-
-use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
 use crate::picture::Picture;
 use crate::picture::tonemap::{Srgb8, ToneMap};
 use crate::units::Extent;
 
-/// One number of each kind. Under serde an infinite PSNR is null.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Metrics {
-    /// Root of the mean squared difference over all pixels and channels, in units of radiance; 0 for equal pictures.
-    pub rmse: f64,
-    /// Mean over all pixels and channels of (a - b)^2 / (b^2 + 0.01), b the reference; 0 for equal pictures.
-    pub relmse: f64,
-    /// Peak signal-to-noise ratio in decibels; infinite where the 8-bit pictures are equal.
-    #[serde(deserialize_with = "or_infinity")]
-    pub psnr: f64,
-    /// Structural similarity of the luma, -1 to 1; 1 for equal pictures.
-    pub ssim: f64,
-    /// Mean of FLIP's map at 67 pixels a degree, 0 to 1; 0 for equal pictures.
-    pub flip: f64,
-    /// Mean of HDR-FLIP's map, 0 to 1: the worst of the exposures that the reference asks for, pixel by pixel.
-    pub hdr_flip: f64,
-    /// Percent of the pixels whose HDR-FLIP is above a threshold, 0 to 100. Dubla et al. 2009 count pixels that differ
-    /// visibly in this way (table 3), with HDR-VDP and its probabilities of detection, which this is not.
-    pub over_threshold: f64,
-}
-
-/// A number, or infinity where JSON, which has none, says null.
-fn or_infinity<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64, D::Error> {
-    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
-}
-
 /// HDR-FLIP above which a pixel counts, where nothing else is asked for: ours, no published number. Two flat
 /// greys, 8-bit codes 118 and 124, are as far apart.
 pub const DEFAULT_THRESHOLD: f64 = 0.1;
-
-impl Metrics {
-    /// The names, as the command line and the reports write them, in the order of `values`.
-    pub const NAMES: [&'static str; 7] = ["rmse", "relmse", "psnr", "ssim", "flip", "hdr_flip", "over_threshold"];
-
-    /// Those of equal pictures.
-    pub const EQUAL: Self =
-        Self { rmse: 0.0, relmse: 0.0, psnr: f64::INFINITY, ssim: 1.0, flip: 0.0, hdr_flip: 0.0, over_threshold: 0.0 };
-
-    /// Those of light: a picture whose file holds none above 1 is cut in them.
-    pub const OF_LIGHT: [&'static str; 4] = ["rmse", "relmse", "hdr_flip", "over_threshold"];
-
-    /// The numbers in the order of `NAMES`.
-    pub fn values(&self) -> [f64; 7] {
-        [self.rmse, self.relmse, self.psnr, self.ssim, self.flip, self.hdr_flip, self.over_threshold]
-    }
-}
-
-/// One measure as a person reads it, with its unit. `is_cut`: a PNG is among the pictures.
-pub fn line(name: &str, value: f64, threshold: f64, is_cut: bool) -> String {
-    let unit = match name {
-        "psnr" => " dB",
-        "over_threshold" => &format!(" % of pixels above {threshold}"),
-        _ => "",
-    };
-    let cut = if is_cut && Metrics::OF_LIGHT.contains(&name) { "  (light above 1 is cut by a PNG)" } else { "" };
-    format!("  {name:<14}  {value:>12.6}{unit}{cut}")
-}
 
 /// What a comparison leaves: the numbers, and where the difference is.
 #[derive(Clone, Debug)]
@@ -212,14 +158,31 @@ mod tests {
     }
 
     #[test]
-    fn names_and_values_are_in_the_order_of_the_json() {
+    fn measures_are_the_keys_of_the_json_in_their_order() {
         let metrics =
             Metrics { rmse: 1.0, relmse: 2.0, psnr: 3.0, ssim: 4.0, flip: 5.0, hdr_flip: 6.0, over_threshold: 7.0 };
         let json = serde_json::to_value(metrics).unwrap();
         let keys: Vec<&String> = json.as_object().unwrap().keys().collect();
         assert_eq!(keys, Metrics::NAMES);
-        for (name, value) in Metrics::NAMES.into_iter().zip(metrics.values()) {
-            assert_eq!(json[name], value);
+        for (measure, value) in metrics.each() {
+            assert_eq!(json[measure.name], value);
+            assert_eq!(Measure::named(measure.name).unwrap().title, measure.title);
+        }
+        assert!(Measure::named("mse").is_none());
+    }
+
+    #[test]
+    fn a_document_of_before_a_measure_is_read_and_written_without_it() {
+        let [a, b] = formula_pictures(24, 16).map(|codes| codes.to_picture());
+        let whole = serde_json::to_value(compare(&a, &b, 0.1).unwrap().metrics).unwrap();
+        for later in Metrics::MEASURES {
+            let mut of_before = whole.clone();
+            of_before.as_object_mut().unwrap().remove(later.name).unwrap();
+            let read: Metrics = serde_json::from_value(of_before.clone()).unwrap();
+            assert!((later.value)(&read).is_nan());
+            assert_eq!(read, read.clone());
+            assert_eq!(serde_json::to_value(read).unwrap(), of_before);
+            assert_ne!(read, serde_json::from_value(whole.clone()).unwrap());
         }
     }
 

@@ -21,12 +21,15 @@ pub struct Part {
 }
 
 impl Part {
-    /// The names in the order of `values`.
-    pub const NAMES: [&'static str; 5] = ["rmse", "relmse", "flip", "hdr_flip", "over_threshold"];
-
-    /// The measures in the order of `NAMES`.
-    pub fn values(&self) -> [Option<f64>; 5] {
-        [self.rmse, self.relmse, self.flip, self.hdr_flip, self.over_threshold]
+    /// The measures by their names, in the order of the fields.
+    pub fn means(&self) -> [(&'static str, Option<f64>); 5] {
+        [
+            ("rmse", self.rmse),
+            ("relmse", self.relmse),
+            ("flip", self.flip),
+            ("hdr_flip", self.hdr_flip),
+            ("over_threshold", self.over_threshold),
+        ]
     }
 }
 
@@ -58,7 +61,7 @@ impl Comparison {
 
 #[cfg(test)]
 mod tests {
-    use crate::metrics::{Metrics, compare, formula_lights};
+    use crate::metrics::{Measure, Metrics, compare, formula_lights};
 
     /// All pixels are the whole, and two halves have its mean between them.
     #[test]
@@ -68,10 +71,11 @@ mod tests {
         let count = actual.pixels.len();
         let whole = comparison.part(&actual, &reference, 0.1, &vec![true; count]);
         assert_eq!(whole.pixels, count);
-        let Metrics { rmse, relmse, flip, hdr_flip, over_threshold, .. } = comparison.metrics;
-        for (found, expected) in whole.values().into_iter().zip([rmse, relmse, flip, hdr_flip, over_threshold]) {
-            assert!((found.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} for {expected}");
+        for (name, found) in whole.means() {
+            let expected = (Measure::named(name).unwrap().value)(&comparison.metrics);
+            assert!((found.unwrap() - expected).abs() < 1e-6 * expected, "{name}: {found:?} for {expected}");
         }
+        let Metrics { rmse, flip, .. } = comparison.metrics;
         let chosen: Vec<bool> = (0..count).map(|index| index % 3 == 0).collect();
         let others: Vec<bool> = chosen.iter().map(|is_chosen| !is_chosen).collect();
         let [some, rest] = [chosen, others].map(|chosen| comparison.part(&actual, &reference, 0.1, &chosen));
@@ -80,6 +84,6 @@ mod tests {
         assert!((squares.sqrt() - rmse).abs() < 1e-9);
         assert!(((some.flip.unwrap() + 2.0 * rest.flip.unwrap()) / 3.0 - flip).abs() < 1e-6);
         let none = comparison.part(&actual, &reference, 0.1, &vec![false; count]);
-        assert_eq!((none.pixels, none.values()), (0, [None; 5]));
+        assert_eq!((none.pixels, none.means().map(|(_, mean)| mean)), (0, [None; 5]));
     }
 }

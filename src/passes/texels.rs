@@ -2,7 +2,7 @@
 //! then serves all of them. The same bits for every count.
 //!
 //! Why there is a bound: lavapipe before Mesa 25 ends all loops of an invocation together after 65,535 iterations,
-//! without an error (`Identity::max_loop_iterations`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as
+//! without an error (`Identity::loop_end`), so that 1,663 lights on 16 pixels a thread lost light. A thread gets as
 //! many pixels as its iterations suffice for. Where one pixel is too many, the shader reports it itself
 //! (glsl/loops.glsl).
 
@@ -18,7 +18,7 @@ pub struct Texels {
 
 /// On the reference driver. Lavapipe reads a buffer lane by lane: 497 lights on every pixel of 1024x768 take
 /// 1625 ms with 1 texel a thread, 475 with 4, 299 with 8, 204 with 16, 156 with 32 (Mesa 22.3.6, 2 cores).
-const MESA_22_TEXELS: u32 = 32;
+const MANY_REGISTERS_TEXELS: u32 = 32;
 /// Newer lavapipes keep 32 points no longer in registers: 480 lights on 512x384 take 36 ms with 16 and 181 with 32 (Mesa
 /// 25.0.7).
 const SOFTWARE_TEXELS: u32 = 16;
@@ -55,7 +55,7 @@ impl Texels {
     pub fn new(values: &Values, caps: &Caps) -> Self {
         let asked = values.unless_auto("texels", Values::integer);
         let most = asked.map_or_else(|| auto(&caps.identity), |count| count as u32);
-        Self { most, max_loop_iterations: caps.identity.max_loop_iterations() }
+        Self { most, max_loop_iterations: caps.identity.loop_end().map(|end| end.iterations) }
     }
 
     /// Pixels that have one list of lights.
@@ -88,7 +88,7 @@ impl Texels {
 
 fn auto(identity: &Identity) -> u32 {
     match identity.is_software() {
-        true if identity.driver_info.contains("Mesa 22.") => MESA_22_TEXELS,
+        true if identity.has_many_registers() => MANY_REGISTERS_TEXELS,
         true => SOFTWARE_TEXELS,
         false => GPU_TEXELS,
     }

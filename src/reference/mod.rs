@@ -157,14 +157,14 @@ impl ReferenceRequest {
             }
         };
         let metrics = metrics::compare(picture, &reference, self.threshold)?.metrics;
-        let cut = if self.is_cut() { Metrics::OF_LIGHT.map(str::to_owned).to_vec() } else { Vec::new() };
+        let cut = if self.is_cut() { Metrics::of_light() } else { Vec::new() };
         let errors = Errors {
             reference: self.identity().name,
             reference_key,
             reference_settings,
             metrics,
             threshold: self.threshold,
-            cut,
+            cut: cut.into_iter().map(str::to_owned).collect(),
             gates: self.gates.iter().map(|gate| gate.verdict(&metrics)).collect(),
         };
         Ok(ReferenceResult { errors, gates: gate::judge(&self.gates, &metrics, "against the reference") })

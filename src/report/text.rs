@@ -1,7 +1,6 @@
 //! A report as text for a reader.
 
 use super::run::{PassRow, RunReport};
-use crate::metrics::{self, Metrics};
 use crate::techniques;
 use crate::techniques::notes::Figures;
 use crate::units::Bytes;
@@ -55,8 +54,8 @@ impl RunReport {
         }
         if let Some(errors) = &self.errors {
             writeln!(text, "errors against {}", errors.reference)?;
-            for (name, value) in Metrics::NAMES.into_iter().zip(errors.metrics.values()) {
-                writeln!(text, "{}", metrics::line(name, value, errors.threshold, !errors.cut.is_empty()))?;
+            for (measure, value) in errors.metrics.each() {
+                writeln!(text, "{}", measure.line(value, errors.threshold, !errors.cut.is_empty()))?;
             }
         }
         for note in &self.notes {

@@ -1,9 +1,10 @@
-//! A driver that ends long loops without a word must not be believed: `Identity::max_loop_iterations`, glsl/loops.glsl.
+//! A driver that ends long loops without a word must not be believed: `Identity::loop_end`, glsl/loops.glsl.
 
 use crate::support;
 use crate::support::difference::require_same;
 use crate::support::shared_scenes;
 use crate::support::watched::Watched;
+use quincunx::caps::quirks::LoopEnd;
 
 /// One light more than the iterations of the defect; a driver without it adds them all.
 #[test]
@@ -11,12 +12,13 @@ fn a_sum_that_the_driver_ends_early_is_no_picture() {
     let watched = Watched::open("cornell");
     let changes = [("size", "16x16"), ("lights", "65536"), ("direct-shadow", "none"), ("cull", "none")];
     let picture = watched.render("deferred", &changes).picture();
-    match watched.session.gpu.caps.identity.max_loop_iterations() {
+    match watched.session.gpu.caps.identity.loop_end() {
         None => drop(picture.unwrap()),
-        Some(iterations) => {
+        Some(LoopEnd { iterations, gone_in }) => {
             let error = picture.unwrap_err();
             assert_eq!(error.exit_code(), 1, "{error}");
             assert!(error.to_string().contains(&format!("after {iterations} iterations")), "{error}");
+            assert!(error.to_string().contains(&format!("a newer driver ({gone_in})")), "{error}");
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Budgets: never passed, not even for a moment; refused in words that help; and what they promise is true.
 
-use crate::support::counted::{STRATEGIES, begin, counted_device, counter, live_bytes};
+use crate::support::counted::{begin, counted_device, counter, live_bytes};
 use crate::support::watched::{Changes, Watched, require_silence, values};
+use quincunx::choice::Choice;
 use quincunx::error::{Error, Result};
 use quincunx::gpu::DeviceRequest;
 use quincunx::gpu::commands::Submits;
@@ -39,7 +40,7 @@ fn render(
 fn under_any_budget_there_is_a_right_picture_or_an_error_and_nothing_stays() {
     let scene = scene::load("cornell", 1).unwrap();
     let (technique, changes) = ("interleaved_deferred", [("size", "161x91"), ("vpls", "64")]);
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         let _one = begin();
         let (picture, free) = render(&counted_device(strategy), &scene, technique, &changes).unwrap();
         let needed = counter().most_bytes;
@@ -74,7 +75,7 @@ fn shared_memory_blocks_do_not_spend_a_small_budget() {
     let (technique, changes) = ("interleaved_deferred", [("size", "161x91"), ("vpls", "64")]);
     let _one = begin();
     let (_, dedicated) = render(&counted_device(Strategy::Dedicated), &scene, technique, &changes).unwrap();
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         let budget = dedicated.peak_bytes * 3 / 2;
         render(&within(strategy, budget), &scene, technique, &changes)
             .unwrap_or_else(|error| panic!("{strategy:?}: {error}"));
@@ -155,7 +156,7 @@ fn a_texture_limit_frees_what_the_error_promises() {
         session.gpu.memory.snapshot().groups()["scene.textures"]
     };
     let unlimited = textures(&counted_device(Strategy::Linear), &scene);
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         for budget in [4, 12, 30, 60] {
             scene.texture_limit_px = 0;
             let request = within(strategy, budget * MIB);

@@ -3,9 +3,10 @@
 mod budget;
 
 use crate::support::choices::{words, words_but};
-use crate::support::counted::{STRATEGIES, begin, counted, counted_device, counter, live_bytes};
+use crate::support::counted::{begin, counted, counted_device, counter, live_bytes};
 use crate::support::watched::{Changes, Watched, both};
 use ash::vk;
+use quincunx::choice::Choice;
 use quincunx::error::Result;
 use quincunx::gpu::commands::Submits;
 use quincunx::memory::kinds::Use;
@@ -33,7 +34,7 @@ fn require_ledger_as_counted(snapshot: &Snapshot, what: &str) {
 
 #[test]
 fn the_ledger_counts_what_the_driver_was_asked_for() {
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         counted(strategy, "cornell", |watched| {
             let memory = &watched.session.gpu.memory;
             require_ledger_as_counted(&memory.snapshot(), "the scene");
@@ -69,7 +70,7 @@ fn a_memory_block_for_each_resource_holds_what_the_driver_requires() {
 
 #[test]
 fn resources_in_shared_memory_blocks_do_not_overlap() {
-    for strategy in [Strategy::Linear, Strategy::Tlsf] {
+    for strategy in Strategy::ALL.iter().copied().filter(|strategy| strategy.shares_blocks()) {
         counted(strategy, "hall:triangles=8000", |watched| {
             let alone = ("alias", "off");
             let first = watched.render("interleaved_deferred", &[("size", "321x181"), ("vpls", "64"), alone]);
@@ -245,8 +246,7 @@ fn a_refused_request_leaves_nothing_behind() {
 #[test]
 fn memory_that_is_refused_leaves_nothing_behind() {
     let changes = [("size", "33x17"), ("vpls", "16"), ("filter", "gauss-fast"), ("direct-shadow", "ray")];
-    for (strategy, alias) in
-        STRATEGIES.into_iter().flat_map(|strategy| ["off", "greedy"].map(|alias| (strategy, alias)))
+    for (strategy, alias) in Strategy::ALL.iter().flat_map(|&strategy| ["off", "greedy"].map(|alias| (strategy, alias)))
     {
         let changes = both(&changes, &[("alias", alias)]);
         counted(strategy, "cornell", |watched| {
@@ -309,7 +309,7 @@ fn memory_that_is_refused_on_any_method_leaves_nothing_behind() {
 #[test]
 fn a_scene_that_does_not_fit_is_refused() {
     let scene = scene::load("hall:triangles=8000", 1).unwrap();
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         for refused_at in [0, 1, 2, 5, 9] {
             let _one = begin();
             counter().until_refusal = Some(refused_at);
@@ -337,7 +337,7 @@ fn arena_of_two(memory: &Arc<Memory>) -> Result<[Allocation; 2]> {
 
 #[test]
 fn an_arena_counts_once_and_returns_with_its_last_part() {
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         counted(strategy, "cornell", |watched| {
             let memory = &watched.session.gpu.memory;
             let before = memory.snapshot();
@@ -404,8 +404,9 @@ fn every_strategy_gives_the_same_picture() {
     for (technique, changes) in
         [("interleaved_deferred", &[("size", "97x53"), ("vpls", "64")][..]), ("deferred", &[("size", "97x53")])]
     {
-        let hashes =
-            STRATEGIES.map(|strategy| Watched::with_strategy(strategy, "hall:triangles=8000").hash(technique, changes));
+        let hash =
+            |strategy: &Strategy| Watched::with_strategy(*strategy, "hall:triangles=8000").hash(technique, changes);
+        let hashes: Vec<_> = Strategy::ALL.iter().map(hash).collect();
         assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{technique}: {hashes:?}");
     }
 }

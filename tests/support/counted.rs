@@ -11,9 +11,6 @@ use std::ffi::{CStr, c_void};
 use std::mem::transmute;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Every strategy.
-pub const STRATEGIES: [Strategy; 3] = [Strategy::Dedicated, Strategy::Linear, Strategy::Tlsf];
-
 /// What went past the hook. A hook is a plain function, so there is one counter in the process, and one test at a time.
 pub struct Counter {
     allocate: Option<vk::PFN_vkAllocateMemory>,

@@ -45,17 +45,15 @@ pub trait Suballocate: Send {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choice::Choice;
+    use crate::memory::Strategy as Allocation;
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
     const SIZE: u64 = 100_000;
 
-    fn all(size_bytes: u64) -> [(&'static str, Box<dyn Suballocate>); 3] {
-        [
-            ("dedicated", Box::new(Dedicated::new(size_bytes))),
-            ("linear", Box::new(Linear::new(size_bytes))),
-            ("tlsf", Box::new(Tlsf::new(size_bytes))),
-        ]
+    fn all(size_bytes: u64) -> impl Iterator<Item = (&'static str, Box<dyn Suballocate>)> {
+        Allocation::ALL.iter().map(move |strategy| (strategy.name(), strategy.ranges(size_bytes)))
     }
 
     /// What a test does with a block.

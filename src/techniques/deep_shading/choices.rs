@@ -3,6 +3,7 @@
 use super::mid_exposure::MidExposure;
 use super::space::ShadingSpace;
 use super::tuples::TupleTable;
+use crate::caps::Ability;
 use crate::error::Result;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
@@ -144,7 +145,7 @@ impl Choices {
             has_lists,
             lists: ListChoices {
                 is_direct,
-                has_stray_count: has_lists && !is_direct && inputs.caps.features.draw_indirect_count,
+                has_stray_count: has_lists && !is_direct && Ability::CountedDraws.is_there(inputs.caps),
                 tolerates_duplicates: values.is("duplicates", Duplicates::Tolerated),
                 is_compacted,
                 has_zmax: has_lists && values.is_on("zmax"),

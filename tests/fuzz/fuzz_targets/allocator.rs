@@ -4,7 +4,9 @@
 
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
-use quincunx::memory::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
+use quincunx::choice::Choice;
+use quincunx::memory::Strategy;
+use quincunx::memory::suballocate::Suballocate;
 use std::collections::BTreeMap;
 
 #[derive(Arbitrary, Debug)]
@@ -71,11 +73,8 @@ impl Block {
 fuzz_target!(|work: Work| {
     // 2^40 bytes are more than any heap has.
     let size = (work.size & (u64::MAX >> (24 + work.size_bits % 40))).max(1);
-    let block: Box<dyn Suballocate> = match work.strategy % 4 {
-        0 => Box::new(Dedicated::new(size)),
-        1 => Box::new(Linear::new(size)),
-        _ => Box::new(Tlsf::new(size)),
-    };
+    let strategy = Strategy::ALL[usize::from(work.strategy) % Strategy::ALL.len()];
+    let block = strategy.ranges(size);
     let mut block = Block { block, size, live: BTreeMap::new() };
     for step in work.steps {
         match step {

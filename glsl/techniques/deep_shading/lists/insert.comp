@@ -15,7 +15,7 @@ layout(constant_id = 93) const uint IS_COMPACTED = 0;
 layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 // 0: the driver takes a memory barrier for one of the whole workgroup, whose threads come here as often as they please; its
-// stores come in order without (src/caps/mod.rs, `Identity::barriers_end_threads`).
+// stores come in order without (src/caps/quirks.rs, `Identity::barriers_end_threads`).
 layout(constant_id = 95) const uint HAS_FENCES = 1;
 
 layout(local_size_x = 64) in;
