@@ -57,7 +57,8 @@ pub fn punctual(lights: &[Light], radius: f32) -> (Vec<SourceBlock>, f64) {
     (sources(&indices, &powers), powers.iter().sum())
 }
 
-fn luminous(color: Vec3) -> f64 {
+/// Sum of the channels.
+pub fn luminous(color: Vec3) -> f64 {
     f64::from(color.x + color.y + color.z)
 }
 

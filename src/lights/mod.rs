@@ -1,5 +1,6 @@
 //! Which lights there are, and which reach what: the scene's own, scattered ones, the default rig, virtual ones.
 
+pub mod area;
 pub mod emission;
 pub mod emitters;
 pub mod object_lists;

@@ -2,8 +2,8 @@
 //! host whose landings become lights.
 //!
 //! Walks start on punctual lights and, with `--emissive on`, on emissive triangles, chosen by power. A start on an
-//! emissive triangle is a virtual light itself, because no other light represents the panel; a start on a punctual
-//! light is not, because `--direct` has it. A sun starts on a disc over the scene, so that roofs stop it.
+//! emissive triangle is a virtual light itself where no other light represents the panel (`Walk::starts`); a start on a
+//! punctual light is not, because `--direct` has it. A sun starts on a disc over the scene, so that roofs stop it.
 //!
 //! Walks continue until N lights are found, and all are divided by the number of walks: walks that leave the scene, or
 //! end on the back of a single-sided surface, count and leave nothing. Stopping at the N-th light instead of at a fixed
@@ -26,6 +26,8 @@ pub struct Walk {
     pub bounces: u32,
     /// Whether emissive triangles send walks.
     pub emissive: bool,
+    /// Whether a start on one of them is a light itself; without, what the panel gives straight is another's.
+    pub starts: bool,
     pub seed: u32,
 }
 
@@ -76,7 +78,7 @@ pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> VplWalk 
         let pick = f64::from(numbers.next());
         let index = cumulative.partition_point(|sum| *sum <= pick).min(sources.len() - 1);
         let chance = powers[index] / total;
-        tracer.one(&sources[index], chance as f32, walk.bounces, &mut numbers, &mut vpls);
+        tracer.one(&sources[index], chance as f32, walk, &mut numbers, &mut vpls);
     }
     vpls.truncate(walk.count as usize);
     for vpl in &mut vpls {
@@ -158,7 +160,7 @@ struct Landing {
 }
 
 impl Tracer<'_> {
-    fn one(&self, source: &Source<'_>, chance: f32, bounces: u32, numbers: &mut Numbers, vpls: &mut Vec<VplBlock>) {
+    fn one(&self, source: &Source<'_>, chance: f32, walk: &Walk, numbers: &mut Numbers, vpls: &mut Vec<VplBlock>) {
         let LightStart { mut origin, mut direction, mut flux } = match source {
             Source::Punctual(punctual) => {
                 let numbers = [numbers.next(), numbers.next()];
@@ -181,7 +183,9 @@ impl Tracer<'_> {
                     normal = if numbers.next() < 0.5 { normal } else { -normal };
                 }
                 let radiance = material::emissive_at(self.scene, material, &point);
-                vpls.push(vpl(position, normal, radiance * area / chance));
+                if walk.starts {
+                    vpls.push(vpl(position, normal, radiance * area / chance));
+                }
                 LightStart {
                     origin: position + normal * self.offset,
                     direction: cosine_direction(normal, numbers),
@@ -190,7 +194,7 @@ impl Tracer<'_> {
             }
         };
         flux /= chance;
-        for _ in 0..bounces {
+        for _ in 0..walk.bounces {
             let Some(landing) = self.land(origin, direction) else { return };
             flux *= landing.albedo;
             // A black or metallic surface sends nothing on: no light is spent on it.
@@ -308,7 +312,12 @@ mod tests {
     fn the_flux_that_lands_is_the_flux_that_leaves() {
         let scene = floor(0.5);
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[point(1.0)], &Walk { count: 4096, bounces: 1, emissive: false, seed: 3 });
+        let found = walk(
+            &scene,
+            &bvh,
+            &[point(1.0)],
+            &Walk { count: 4096, bounces: 1, emissive: false, starts: true, seed: 3 },
+        );
         assert_eq!(found.vpls.len(), 4096);
         // Half of 4 pi I goes down and nearly all of that lands on a floor of 50 m; half of it is kept; a Lambert patch
         // that sends the flux F has the intensity F / pi along its normal.
@@ -325,7 +334,7 @@ mod tests {
         scene.meshes.push(square(2.0, 1.0, 1));
         scene.draws.push(Draw { mesh: 1, world_from_object: Mat4::IDENTITY });
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[], &Walk { count: 512, bounces: 1, emissive: true, seed: 1 });
+        let found = walk(&scene, &bvh, &[], &Walk { count: 512, bounces: 1, emissive: true, starts: true, seed: 1 });
         // Radiance 3 times an area of 4; the panel faces up and the floor is black, so nothing else is lit.
         assert!((total(&found) - 12.0).abs().max_element() < 1e-3, "{}", total(&found));
     }
@@ -339,7 +348,7 @@ mod tests {
         scene.draws.push(Draw { mesh: 1, world_from_object: down });
         let sun = Light { kind: LightKind::Directional, ..point(0.0) };
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[sun], &Walk { count: 4, bounces: 1, emissive: false, seed: 1 });
+        let found = walk(&scene, &bvh, &[sun], &Walk { count: 4, bounces: 1, emissive: false, starts: true, seed: 1 });
         assert_eq!((found.vpls.len(), found.found_count, total(&found)), (4, 0, Vec3::ZERO));
     }
 
@@ -347,7 +356,7 @@ mod tests {
     fn where_nothing_shines_all_lights_are_dark() {
         let scene = floor(0.5);
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[], &Walk { count: 4, bounces: 1, emissive: true, seed: 1 });
+        let found = walk(&scene, &bvh, &[], &Walk { count: 4, bounces: 1, emissive: true, starts: true, seed: 1 });
         assert_eq!((found.vpls.len(), found.found_count, found.walk_count), (4, 0, 0));
     }
 }
