@@ -18,7 +18,7 @@ pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAPS};
 pub use tables::{
     BRDF, Brdf, COMMON, CULL, CULL_BY, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow, EMISSIVE,
     GEOMETRY, GeometryChoice, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD, POSITION,
-    PositionStorage, Rig, SHADING, TEXELS, VPL_CLAMP, WORKGROUP,
+    POSITION_THRESHOLD, PositionStorage, Rig, SHADING, TEXELS, VPL_CLAMP, WORKGROUP,
 };
 pub use tree::{NodeOrder, StackPlace, TREE};
 
@@ -61,6 +61,8 @@ pub enum Kind {
     Color,
     /// One number for each part, with commas between, or `none`.
     PartsOrNone(&'static [Part]),
+    /// One or more of these words, with commas between, none of them twice.
+    Words(&'static [&'static str]),
     /// Free text, checked where it is used; the word shown in help.
     Text(&'static str),
 }
@@ -167,6 +169,7 @@ impl Setting {
                 let ranges = parts.iter().map(|part| format!(", {} {} to {}", part.word, part.min, part.max));
                 format!("{}{}, or none", words.join(","), ranges.collect::<String>())
             }
+            Kind::Words(words) => format!("one or more of {}, with commas between, each once", words.join(", ")),
             Kind::Text(word) => word.to_owned(),
         }
     }
@@ -194,6 +197,11 @@ impl Setting {
                     numbers.len() == parts.len() && pairs.all(|(number, part)| (part.min..=part.max).contains(number))
                 })
             }),
+            Kind::Words(words) => {
+                let listed: Vec<&str> = text.split(',').collect();
+                let is_once = |word: &&str| listed.iter().filter(|other| other == &word).count() == 1;
+                listed.iter().all(|word| words.contains(word) && is_once(word))
+            }
             Kind::Text(_) => true,
         };
         if possible {
@@ -329,6 +337,11 @@ impl Values {
     pub fn numbers_or_none<const COUNT: usize>(&self, key: &str) -> Option<[f64; COUNT]> {
         let numbers = self.parsed(key, parse_numbers_or_none)?;
         Some(numbers.try_into().unwrap_or_else(|_| panic!("--{key} was checked and does not have {COUNT} parts")))
+    }
+
+    /// The values of a `Kind::Words` setting with the words of `T`, in the order in which they are listed.
+    pub fn listed<T: Choice>(&self, key: &str) -> Vec<T> {
+        self.parsed(key, |text| text.split(',').map(T::from_word).collect())
     }
 
     pub fn color(&self, key: &str) -> Vec3 {

@@ -35,6 +35,13 @@ impl Unread {
         words(others).contains(&text).then(|| Self { with: format!("--{key} {text}"), why, readers })
     }
 
+    /// Some where the list `key` lacks `word`.
+    pub fn unlisted(values: &Values, key: &str, word: &str, why: &'static str) -> Option<Self> {
+        let text = values.text(key);
+        let readers = format!("--{key} {word}");
+        (!text.split(',').any(|listed| listed == word)).then(|| Self { with: format!("--{key} {text}"), why, readers })
+    }
+
     /// Some where `key`, a number of at least 0, is 0.
     pub fn without(values: &Values, key: &str, why: &'static str) -> Option<Self> {
         let readers = format!("--{key} above 0");
