@@ -312,6 +312,17 @@ pub const NORMAL_THRESHOLD: Setting = Setting {
     ..Setting::changing(Changes::Picture)
 };
 
+/// How far a neighbour of one surface may lie off a pixel's plane.
+pub const POSITION_THRESHOLD: Setting = Setting {
+    key: "position-threshold",
+    kind: Kind::Length,
+    default: "0.5%",
+    unit: "m",
+    paper: "Segovia 2006, 4.5",
+    help: "Distance from a pixel's tangent plane above which a neighbour lies across a discontinuity",
+    ..Setting::changing(Changes::Picture)
+};
+
 /// How many pixels a thread works on.
 pub const TEXELS: Setting = Setting {
     key: "texels",

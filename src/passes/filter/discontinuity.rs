@@ -14,7 +14,6 @@ use crate::gpu::shader::passes::filter::discontinuity::COMP_VARIANTS;
 use crate::gpu::shader::structs::DiscontinuityParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
-use crate::passes::direct::ShadingSettings;
 use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::Plan;
 use crate::settings::PositionStorage;
@@ -47,17 +46,19 @@ pub struct Discontinuity {
 }
 
 impl Discontinuity {
-    /// The pass of `technique`.
+    /// The pass of `technique`, whose G-buffer has positions as `position` says. `workgroup`: WORKGROUP_X and WORKGROUP_Y;
+    /// `rows`: of pixels that a thread flags, at least 1.
     pub fn new(
         gpu: &Arc<Gpu>,
         technique: &str,
-        settings: &ShadingSettings,
+        position: PositionStorage,
+        workgroup: &[(&'static str, u32)],
+        rows: u32,
         params: DiscontinuityParams,
     ) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[settings.position.name()]);
-        let rows = settings.texels.of_filter();
+        let shader = variant(COMP_VARIANTS, &[position.name()]);
         let columns = rows.min(MOST_COLUMNS);
-        let constants = [&settings.workgroup_constants()[..], &[("COLUMNS", columns), ("ROWS", rows)]].concat();
+        let constants = [workgroup, &[("COLUMNS", columns), ("ROWS", rows)]].concat();
         let pipeline = ComputePipeline::new(gpu, shader, &constants)?;
         Ok(Self { label: format!("{technique}.discontinuity"), pipeline, params, columns, rows })
     }

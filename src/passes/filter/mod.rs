@@ -5,6 +5,7 @@
 //! label that it is given.
 
 mod all;
+pub mod box_filter;
 pub mod discontinuity;
 pub mod gauss;
 pub mod gauss_fast;

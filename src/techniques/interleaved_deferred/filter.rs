@@ -111,7 +111,9 @@ impl FilterStage {
             position_threshold: inputs.values.length("position-threshold", inputs.scene.lasting_bounds().diagonal()),
             row_pitch: choices.mapping.row_pitch(),
         };
-        let discontinuity = Discontinuity::new(gpu, NAME, &choices.shading, params)?;
+        let (shading, rows) = (&choices.shading, choices.shading.texels.of_filter());
+        let workgroup = shading.workgroup_constants();
+        let discontinuity = Discontinuity::new(gpu, NAME, shading.position, &workgroup, rows, params)?;
         Ok(Some(Self { discontinuity, flags: resources.buffer(&discontinuity::flags(NAME)), place }))
     }
 

@@ -4,8 +4,8 @@ use super::choices::{BlendLights, Direct, StopAt};
 use super::split_method::{Form, Split, StorageKind};
 use crate::passes::filter::Filter;
 use crate::settings::{
-    BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, Setting, TEXELS,
-    Unread, VPL_CLAMP, Values, WORKGROUP,
+    BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION,
+    POSITION_THRESHOLD, Setting, TEXELS, Unread, VPL_CLAMP, Values, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -185,16 +185,7 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Picture)
     },
     Setting { unread: is_unfiltered, ..NORMAL_THRESHOLD },
-    Setting {
-        key: "position-threshold",
-        kind: Kind::Length,
-        default: "0.5%",
-        unit: "m",
-        paper: "Segovia 2006, 4.5",
-        help: "Distance from a pixel's tangent plane above which a neighbour lies across a discontinuity",
-        unread: is_unfiltered,
-        ..Setting::changing(Changes::Picture)
-    },
+    Setting { unread: is_unfiltered, ..POSITION_THRESHOLD },
 ];
 
 /// `settings::SHADING`, of which direct light alone reads `--brdf` and `--cull`.

@@ -1,0 +1,72 @@
+//! The box of N x M pixels that Dubla 2009, section 3, takes from Wald 2002: the plain mean of what a pixel's
+//! neighbourhood of the pattern's own size holds and no discontinuity parts from it. Shader: box_filter.comp.
+//! reads  an irradiance buffer and flags, frame order      writes  a stretch of a buffer, frame order
+//!
+//! A box of the pattern's size holds each place of the pattern once, so that where nothing parts them the mean is over
+//! all of the pattern's samples. Its middle is the pixel; of an even side it lies a pixel further right, or below.
+
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::passes::filter::box_filter::{COMP, MOST_REACH};
+use crate::gpu::shader::structs::BoxParams;
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::units::Extent;
+use std::sync::Arc;
+
+/// The pass over all layers of a buffer of irradiance.
+pub struct BoxFilter {
+    label: String,
+    pipeline: ComputePipeline,
+    params: BoxParams,
+    layer_count: u32,
+}
+
+impl BoxFilter {
+    /// `size_px`: of the box, at most twice `MOST_REACH` each.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        label: String,
+        workgroup: &[(&'static str, u32)],
+        extent: Extent,
+        size_px: [u32; 2],
+        layer_count: u32,
+    ) -> Result<Self> {
+        let [width, height] = size_px;
+        let (right, below) = (width / 2, height / 2);
+        assert!(right.max(below) <= MOST_REACH, "a box of {width}x{height}");
+        let params = BoxParams {
+            width_px: extent.width,
+            height_px: extent.height,
+            left: (width - 1) / 2,
+            right,
+            above: (height - 1) / 2,
+            below,
+            _unused: [0; 2],
+        };
+        Ok(Self { label, pipeline: ComputePipeline::new(gpu, &COMP, workgroup)?, params, layer_count })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        source: Edge<'_, Buffer>,
+        flags: Edge<'_, Buffer>,
+        target: &Buffer,
+    ) -> Result<()> {
+        let BoxParams { width_px, height_px, left, right, above, below, .. } = self.params;
+        let texels = u64::from(width_px) * u64::from(height_px) * u64::from(self.layer_count);
+        let taps = u64::from(left + right + 1) * u64::from(above + below + 1);
+        let traffic = Traffic { read_bytes: texels * taps * 12, written_bytes: texels * 8, invocations: Some(texels) };
+        cmd.pass(&self.label, traffic, |cmd| {
+            cmd.barriers([source.to(Access::ComputeRead), flags.to(Access::ComputeRead)]);
+            cmd.barriers([target.discard(Access::ComputeWrite)]);
+            let bound = [
+                ("Source", Bound::Buffer(source.resource)),
+                ("Flags", Bound::Buffer(flags.resource)),
+                ("Target", Bound::Buffer(target)),
+            ];
+            let groups = self.pipeline.groups([width_px, height_px, self.layer_count]);
+            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
+        })
+    }
+}
