@@ -51,7 +51,9 @@ vec3 walked_irradiance(SurfacePoint point) {
         float part = 1.0 - params.punctual_part;
         VplBlock vpl;
         start = start_on_emitter(min((number - params.punctual_part) / part, 0.99999994), part, vpl);
-        received += vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
+        if (DIRECT_LIGHT != 0u) {
+            received += vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
+        }
     }
     vec3 origin = start.origin;
     vec3 direction = start.direction;

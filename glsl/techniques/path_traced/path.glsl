@@ -28,6 +28,8 @@ layout(constant_id = 10) const uint MEDIUM = 0;
 layout(constant_id = 11) const uint HAS_LENS = 0;
 // 0: ambient light is added to the surface that is seen, and nothing else comes from around the scene.
 layout(constant_id = 12) const uint AMBIENT_VISIBILITY = 1;
+// 0: what comes straight to the surface that is seen is not counted.
+layout(constant_id = 13) const uint DIRECT_LIGHT = 1;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.

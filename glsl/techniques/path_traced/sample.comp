@@ -91,10 +91,18 @@ Path camera_path(vec2 at_px) {
     return path;
 }
 
+// Whether what a surface or a light sends straight to the place of this bounce is counted: the camera's own view is.
+bool counts_straight(uint bounce) {
+    return DIRECT_LIGHT != 0u || bounce != 1u;
+}
+
 // Radiance from around the scene on a ray that leaves it.
 vec3 around_scene(uint bounce) {
     if (bounce == 0u) {
         return frame.background.rgb;
+    }
+    if (!counts_straight(bounce)) {
+        return vec3(0.0);
     }
     return AMBIENT_VISIBILITY != 0u ? frame.background.rgb + frame.ambient.rgb : vec3(0.0);
 }
@@ -153,7 +161,7 @@ vec3 emitted_along(Path path, SurfacePoint point, float distance) {
     if (path.bounce == 0u) {
         return path.throughput * point.emitted;
     }
-    if (point.emitter_density > 0.0 && LIGHT_VISIBILITY != 0u && IS_WALKED == 0u) {
+    if (counts_straight(path.bounce) && point.emitter_density > 0.0 && LIGHT_VISIBILITY != 0u && IS_WALKED == 0u) {
         float cosine = max(abs(dot(point.plane_ws, path.direction)), 1e-12);
         float other = point.emitter_density * distance * distance / cosine;
         return path.throughput * point.emitted * weight_of(path.density, other);
@@ -248,6 +256,10 @@ vec3 radiance_along(vec2 at_px) {
                 vec3 to_eye = -path.direction;
                 light = punctual_light(point, to_eye);
                 panel = IS_WALKED != 0u ? NOTHING : emitter(point, to_eye);
+                if (!counts_straight(path.bounce + 1u)) {
+                    light = NOTHING;
+                    panel = NOTHING;
+                }
                 light.radiance *= path.throughput;
                 panel.radiance *= path.throughput;
                 light = dimmed(light, point.position_ws);

@@ -46,7 +46,7 @@ pub mod settings;
 use super::bench_stage::BenchStage;
 use super::notes::Figures;
 use super::shutter_close::ShutterClose;
-use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique};
+use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique, emissive_lights};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
 use crate::caps::{Ability, Caps, Need};
@@ -176,8 +176,7 @@ impl Sources {
                 lights.has_punctual = false;
             }
         }
-        let is_emissive = values.unless_auto("emissive", Values::is_on).unwrap_or(!lights.has_punctual);
-        let emitters = is_emissive.then(|| Emitters::of(inputs.scene, bvh));
+        let emitters = emissive_lights(values, &lights).then(|| Emitters::of(inputs.scene, bvh));
         let (punctual, power) = emitters::punctual(&lights.lights, 0.5 * inputs.scene.bounds().diagonal());
         let emitted = emitters.as_ref().map_or(0.0, Emitters::power);
         let punctual_part = if power + emitted > 0.0 { power / (power + emitted) } else { 0.0 };
@@ -234,6 +233,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     Ok(Choices {
         bounces: if is_walked { 1 } else { bounces },
         roulette: transport == Transport::Full && !is_walked,
+        direct_light: values.is_on("direct-light"),
         light_visibility: values.is_on("light-visibility"),
         ambient_visibility: values.is_on("ambient-visibility"),
         walk_landings: is_walked.then_some(bounces - 1),

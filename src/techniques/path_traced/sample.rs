@@ -27,6 +27,7 @@ pub struct Choices {
     /// Surfaces that scatter a path at most.
     pub bounces: u32,
     pub roulette: bool,
+    pub direct_light: bool,
     pub light_visibility: bool,
     /// What surrounds the scene lights it as rays find it.
     pub ambient_visibility: bool,
@@ -93,6 +94,7 @@ impl Sample {
             ("RAY_OFFSET", choices.ray_offset.to_bits()),
             ("BOUNCES", choices.bounces),
             ("ROULETTE", u32::from(choices.roulette)),
+            ("DIRECT_LIGHT", u32::from(choices.direct_light)),
             ("LIGHT_VISIBILITY", u32::from(choices.light_visibility)),
             ("AMBIENT_VISIBILITY", u32::from(choices.ambient_visibility)),
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),

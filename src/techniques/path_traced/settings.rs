@@ -83,6 +83,15 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Picture)
     },
     Setting {
+        key: "direct-light",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        help: "Whether light is counted that comes straight from lights, emissive surfaces or the surroundings to the \
+               surface that is seen; off: only what other surfaces, or --medium, have scattered before",
+        unread: |values| Unread::with(values, "transport", &[Transport::Direct], "there is no other light"),
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
         key: "light-visibility",
         kind: Kind::Choice(&["on", "off"]),
         default: "on",

@@ -1,5 +1,6 @@
 //! Path tracing against closed forms, and the other techniques against path tracing of the same transport.
 
+mod direct_light;
 mod medium;
 mod progressive;
 mod ray_query;
