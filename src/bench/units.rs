@@ -26,6 +26,9 @@ pub struct UnitTimes {
     pub ns_per_invocation: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ns_per_triangle: Option<f64>,
+    /// A shadow ray.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ns_per_ray: Option<f64>,
 }
 
 impl UnitTimes {
@@ -47,6 +50,7 @@ impl UnitTimes {
             Unit::Entry => &mut self.ns_per_entry,
             Unit::Invocation => &mut self.ns_per_invocation,
             Unit::Triangle => &mut self.ns_per_triangle,
+            Unit::Ray => &mut self.ns_per_ray,
         }
     }
 }
@@ -61,5 +65,6 @@ pub fn column(unit: Unit) -> (&'static str, usize) {
         Unit::Entry => ("ns/entry", 2),
         Unit::Invocation => ("ns/invocation", 2),
         Unit::Triangle => ("ns/triangle", 2),
+        Unit::Ray => ("ns/ray", 2),
     }
 }

@@ -372,6 +372,24 @@ impl Commands {
         Ok(())
     }
 
+    /// Binds and dispatches as many workgroups as the device has written at the beginning of `groups`, whose last access
+    /// was `IndirectRead`. It is one submit whatever `Recording::limit` says: only the device knows what it could be cut
+    /// into.
+    pub fn dispatch_indirect(
+        &mut self,
+        pipeline: &ComputePipeline,
+        params: &[u8],
+        bound: &[(&str, Bound<'_>)],
+        groups: &Buffer,
+    ) -> Result<()> {
+        let set = self.descriptors.set(&pipeline.interface, bound)?;
+        self.bind_compute(pipeline, params, set);
+        // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers, and the buffer's shader keeps
+        // the numbers within the limits that every device has.
+        unsafe { self.gpu.device.cmd_dispatch_indirect(self.buffer(), groups.handle, 0) };
+        Ok(())
+    }
+
     /// Binds what a dispatch needs: again in every command buffer.
     fn bind_compute(&mut self, pipeline: &ComputePipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
         let point = vk::PipelineBindPoint::COMPUTE;

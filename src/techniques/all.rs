@@ -1,6 +1,9 @@
 //! The table of all techniques: a new one is a line here.
 
-use super::{Technique, deep_shading, deferred, forward, inferred_lighting, interleaved_deferred, path_traced};
+use super::{
+    Technique, adaptive_interleaved, deep_shading, deferred, forward, inferred_lighting, interleaved_deferred,
+    path_traced,
+};
 use crate::error::{Error, Result};
 
 /// Every technique.
@@ -8,6 +11,7 @@ pub const ALL: &[&dyn Technique] = &[
     &interleaved_deferred::InterleavedDeferred,
     &inferred_lighting::InferredLighting,
     &deep_shading::DeepShading,
+    &adaptive_interleaved::AdaptiveInterleaved,
     &deferred::Deferred,
     &forward::Forward,
     &path_traced::PathTraced,

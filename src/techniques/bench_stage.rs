@@ -71,6 +71,8 @@ pub enum Unit {
     /// A surface that is shaded at one place.
     Invocation,
     Triangle,
+    /// A shadow ray.
+    Ray,
 }
 
 /// What a run has done.

@@ -5,6 +5,7 @@
 //! `HostPart::build` makes pipelines and takes the planned resources, and `Frame::record` writes the commands of one
 //! frame, in the order of the paper's overview figure.
 
+pub mod adaptive_interleaved;
 mod all;
 pub mod bench_stage;
 pub mod bindable;
@@ -34,7 +35,7 @@ use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
 use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
-use crate::settings::{COMMON, DirectShadow, INSTRUMENT, Setting, Values};
+use crate::settings::{COMMON, DirectShadow, EMISSIVE, INSTRUMENT, Setting, Values};
 use bench_stage::{BenchStage, PlainForm};
 use glam::Vec2;
 use notes::Figures;
@@ -55,6 +56,11 @@ pub struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
+    /// Whether emissive triangles light other surfaces (`--emissive`).
+    fn emissive_lights(&self) -> bool {
+        emissive_lights(self.values, self.lights)
+    }
+
     /// The triangles of solid surfaces that are drawn.
     fn draw_list(&self, scene: &SceneGpu, coverage: Coverage) -> DrawList {
         self.draw_list_into(scene, Raster { extent: self.view.extent, coverage })
@@ -64,6 +70,11 @@ impl Inputs<'_> {
     fn draw_list_into(&self, scene: &SceneGpu, raster: Raster) -> DrawList {
         DrawList::new(self.scene, scene, self.view, raster, self.values.choice("geometry"))
     }
+}
+
+/// Whether emissive triangles light other surfaces under `lights` (`--emissive`).
+fn emissive_lights(values: &Values, lights: &LightSet) -> bool {
+    values.unless_auto(EMISSIVE.key, Values::is_on).unwrap_or(!lights.has_punctual)
 }
 
 /// The memory of a published rival of a technique, which stands beside its own.

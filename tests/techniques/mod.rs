@@ -1,5 +1,6 @@
 //! Techniques, each in its folder; collapse.rs is of several.
 
+mod adaptive_interleaved;
 mod collapse;
 mod deep_shading;
 mod forward;

@@ -6,6 +6,7 @@
 //! tile that is missing, and a hundredth of the light, stay outside of them. Bounds of two ways to nearly the same
 //! picture are some three times the most that lavapipe of Mesa 22.3.6 and 25.0.7 and SwiftShader are off by.
 
+mod adaptive;
 mod baselines;
 pub(super) mod bounds;
 mod deep;
@@ -20,8 +21,15 @@ use super::case::{Case, Group};
 
 /// All cases in the order in which they run: those of one scene together, where that is possible.
 pub fn all() -> impl Iterator<Item = Case> {
-    let tables: [&'static [Group]; 6] =
-        [formulas::GROUPS, baselines::GROUPS, interleaved::GROUPS, inferred::GROUPS, deep::GROUPS, paths::GROUPS];
+    let tables: [&'static [Group]; 7] = [
+        formulas::GROUPS,
+        baselines::GROUPS,
+        interleaved::GROUPS,
+        inferred::GROUPS,
+        deep::GROUPS,
+        adaptive::GROUPS,
+        paths::GROUPS,
+    ];
     let groups = tables.into_iter().flatten();
     groups.flat_map(|group| group.methods.iter().map(move |method| Case { group, method }))
 }
@@ -63,7 +71,9 @@ mod tests {
     #[test]
     fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_METHODS: [&str; 23] = [
+        const NO_METHODS: [&str; 25] = [
+            "mode",
+            "direct-light",
             "rig",
             "sun",
             "brdf",

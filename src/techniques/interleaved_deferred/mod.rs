@@ -164,8 +164,7 @@ impl Technique for InterleavedDeferred {
         let mut direct_lights = direct::light_blocks(inputs.lights, inputs.values);
         direct_lights.truncate(choices.direct_count as usize);
         let blended = blend::lists(inputs.scene, &direct_lights, inputs.values, inputs.caps)?;
-        let asked = inputs.values.unless_auto("emissive", Values::is_on);
-        let emissive = asked.unwrap_or(!inputs.lights.has_punctual);
+        let emissive = inputs.emissive_lights();
         // What lights reach in one frame of an animation, they reach in all of them.
         let vpl_clamp_m = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
         Ok(Box::new(PreparedInterleaved { choices, direct_lights, blended, emissive, vpl_clamp_m }))
@@ -206,6 +205,7 @@ impl Prepared for PreparedInterleaved {
             count: choices.vpl_count,
             bounces: inputs.values.integer("vpl-bounces") as u32,
             emissive,
+            starts: true,
             seed: inputs.values.integer("seed") as u32,
         };
         let bvh = inputs.bvh.over(inputs.scene)?;

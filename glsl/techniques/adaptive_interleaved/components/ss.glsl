@@ -1,0 +1,76 @@
+// Soft shadows (SS): light straight from area lights, one point of each an iteration, and from punctual lights, each
+// point with a shadow ray. Dubla 2009, section 3.3 and Listing 3. Host part:
+// src/techniques/adaptive_interleaved/components/ss.rs.
+#ifndef ADAPTIVE_INTERLEAVED_SS_GLSL
+#define ADAPTIVE_INTERLEAVED_SS_GLSL
+
+// A point of an area light.
+struct AreaSampleBlock {
+    vec4 position_ws;
+    // xyz: unit normal; w: 1 where both sides shine, else 0.
+    vec4 normal_ws;
+    // rgb: radiance times the area that the point stands for, candela.
+    vec4 intensity;
+};
+
+// Each light has a stretch of most * N * M points: those of an iteration lie together, one for each pixel of a tile.
+layout(std430, set = 0, binding = 6) readonly buffer Sources { AreaSampleBlock area_samples[]; };
+layout(std430, set = 0, binding = 7) readonly buffer Lights { LightBlock lights[]; };
+
+vec3 area_irradiance(AreaSampleBlock light, vec3 position_ws, vec3 normal_ws, vec3 to_light) {
+    precise float distance_squared = dot(to_light, to_light);
+    float leaving = -dot(light.normal_ws.xyz, to_light);
+    leaving = light.normal_ws.w != 0.0 ? abs(leaving) : max(leaving, 0.0);
+    precise float facing = max(dot(normal_ws, to_light), 0.0) * leaving;
+    // Both cosines carry one factor 1/d.
+    precise float squared = max(distance_squared, LEAST_DISTANCE_SQUARED);
+    return light.intensity.rgb * (facing / (squared * squared));
+}
+
+// `received`: what arrives where nothing hides it. What a surface turns away from is hidden by the surface itself.
+void add_light(
+    Point point,
+    vec3 received,
+    vec3 direction_ws,
+    float distance,
+    inout Estimate estimate,
+    inout uint missed
+) {
+    if (received == vec3(0.0)) {
+        missed++;
+        return;
+    }
+    estimate.ray_count++;
+    if (occluded(point.position_ws, point.normal_ws, direction_ws, distance)) {
+        missed++;
+    } else {
+        precise vec3 sum = estimate.sum + received;
+        estimate.sum = sum;
+    }
+}
+
+// The part of the lights whose point is hidden is what guides.
+void contribute(Point point, uint slot, uint iteration, inout Estimate estimate) {
+    uint size = tile_size(params);
+    uint missed = 0u;
+    uint area = 0u;
+    for (; area < params.source_count; area++) {
+        AreaSampleBlock light = area_samples[(area * params.most + iteration) * size + slot];
+        vec3 to_light = light.position_ws.xyz - point.position_ws;
+        vec3 received = area_irradiance(light, point.position_ws, point.normal_ws, to_light);
+        float distance = length(to_light);
+        add_light(point, received, to_light / max(distance, 1e-12), distance, estimate, missed);
+    }
+    expect_done(area == params.source_count);
+    uint punctual = 0u;
+    for (; punctual < params.light_count; punctual++) {
+        Incident incident = incident_from(lights[punctual], point.position_ws);
+        precise float cosine = max(dot(point.normal_ws, incident.direction_ws), 0.0);
+        add_light(point, incident.irradiance * cosine, incident.direction_ws, incident.distance, estimate, missed);
+    }
+    expect_done(punctual == params.light_count);
+    uint light_count = params.source_count + params.light_count;
+    estimate.information += light_count > 0u ? float(missed) / float(light_count) : 0.0;
+}
+
+#endif

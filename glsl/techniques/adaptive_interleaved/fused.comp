@@ -1,0 +1,56 @@
+// All three steps of one component in one dispatch: each tile iterates as often as it must, its pixels a thread each,
+// as many whole tiles as a workgroup holds. Dubla 2009, Listing 1. Pass: src/techniques/adaptive_interleaved/fused.rs.
+// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss
+#version 460
+#include "techniques/adaptive_interleaved/bins.glsl"
+#include "techniques/adaptive_interleaved/estimate.glsl"
+#include "techniques/adaptive_interleaved/guidance.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = 8) writeonly buffer Guidance { uint guidance[]; };
+
+// -1: beyond the frame, or no surface.
+shared float found[REFINE_LANES];
+
+void main() {
+    uint size = tile_size(params);
+    uint tiles_per_group = REFINE_LANES / size;
+    uint group = gl_WorkGroupID.y * REFINE_ROW + gl_WorkGroupID.x;
+    uint lane = gl_LocalInvocationIndex;
+    uint tile = group * tiles_per_group + lane / size;
+    uint slot = lane % size;
+    bool has_tile = lane < tiles_per_group * size && tile < params.tile_count;
+    uvec2 pixel = pixel_of(params, tile, slot);
+    bool has_pixel = has_tile && is_in_frame(pixel);
+    Point point = Point(vec3(0.0), vec3(0.0), false);
+    if (has_pixel) {
+        point = point_at(pixel);
+    }
+    Estimate estimate = initial_estimate(point, slot);
+    found[lane] = estimate.information;
+    barrier();
+    precise float information = 0.0;
+    uint surface_count = 0u;
+    uint first = lane - slot;
+    for (uint other = first; other < min(first + size, REFINE_LANES); other++) {
+        if (found[other] >= 0.0) {
+            information += found[other];
+            surface_count++;
+        }
+    }
+    if (!has_pixel) {
+        return;
+    }
+    uint further = further_iterations(params, information, surface_count);
+    uint end = params.base + further;
+    if (point.has_surface) {
+        iterate(point, slot, params.base, end, estimate);
+    } else {
+        end = params.base;
+    }
+    write_mean(pixel, estimate, end);
+    if (slot == 0u) {
+        guidance[tile] = further;
+    }
+}

@@ -1,0 +1,40 @@
+// Adaptive guidance of one component, a tile a thread. Dubla 2009, Listing 1, lines 8 to 13.
+// Pass: src/techniques/adaptive_interleaved/refine.rs.
+// variants: COMPONENT=id|ss
+#version 460
+#include "frame.glsl"
+#include "techniques/adaptive_interleaved/bins.glsl"
+#include "techniques/adaptive_interleaved/guidance.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(push_constant) uniform Push { AdaptiveParams params; };
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 3) readonly buffer Estimates { vec4 estimates[]; };
+// Further iterations of each tile.
+layout(std430, set = 0, binding = 8) writeonly buffer Guidance { uint guidance[]; };
+layout(std430, set = 0, binding = 9) buffer Bins { BinsBlock bins; };
+
+void main() {
+    uint tile = gl_GlobalInvocationID.x;
+    if (tile >= params.tile_count) {
+        return;
+    }
+    precise float information = 0.0;
+    uint surface_count = 0u;
+    for (uint slot = 0u; slot < tile_size(params); slot++) {
+        uvec2 pixel = pixel_of(params, tile, slot);
+        if (pixel.x < frame.width_px && pixel.y < frame.height_px) {
+            float found = estimates[pixel.y * frame.width_px + pixel.x].w;
+            if (found >= 0.0) {
+                information += found;
+                surface_count++;
+            }
+        }
+    }
+    uint further = further_iterations(params, information, surface_count);
+    guidance[tile] = further;
+    if (further > 0u) {
+        atomicAdd(bins.counts[further], 1u);
+    }
+}

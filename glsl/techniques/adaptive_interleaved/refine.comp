@@ -1,0 +1,37 @@
+// The refinement of one component: a pixel of a listed tile a thread. Dubla 2009, Listing 1, lines 14 to 19.
+// Pass: src/techniques/adaptive_interleaved/refine.rs.
+// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss
+#version 460
+#include "techniques/adaptive_interleaved/bins.glsl"
+#include "techniques/adaptive_interleaved/estimate.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = 3) readonly buffer Estimates { vec4 estimates[]; };
+layout(std430, set = 0, binding = 8) readonly buffer Guidance { uint guidance[]; };
+layout(std430, set = 0, binding = 9) readonly buffer Bins { BinsBlock bins; };
+layout(std430, set = 0, binding = 10) readonly buffer Tiles { uint tiles[]; };
+
+void main() {
+    uint group = gl_WorkGroupID.y * REFINE_ROW + gl_WorkGroupID.x;
+    uint lane = group * REFINE_LANES + gl_LocalInvocationIndex;
+    uint listed = lane / tile_size(params);
+    if (listed >= bins.refined_count) {
+        return;
+    }
+    uint tile = tiles[listed];
+    uint slot = lane % tile_size(params);
+    uvec2 pixel = pixel_of(params, tile, slot);
+    if (!is_in_frame(pixel)) {
+        return;
+    }
+    Point point = point_at(pixel);
+    if (!point.has_surface) {
+        return;
+    }
+    vec4 initial = estimates[texel_of(pixel)];
+    Estimate estimate = Estimate(initial.rgb, initial.w, rays[texel_of(pixel)]);
+    uint end = params.base + guidance[tile];
+    iterate(point, slot, params.base, end, estimate);
+    write_mean(pixel, estimate, end);
+}

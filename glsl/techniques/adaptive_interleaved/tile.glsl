@@ -1,0 +1,47 @@
+// Tiles of pixels, and what every pass of adaptive interleaved sampling knows of one component. Dubla 2009, section 3.
+// Twin of the arithmetic: src/techniques/adaptive_interleaved/sampler.rs.
+#ifndef ADAPTIVE_INTERLEAVED_TILE_GLSL
+#define ADAPTIVE_INTERLEAVED_TILE_GLSL
+
+struct AdaptiveParams {
+    // Size of a tile in pixels, N x M.
+    uint tile_x;
+    uint tile_y;
+    // Tiles in a row of the frame, and in all of it; those at its right and lower edge may be cut.
+    uint tile_columns;
+    uint tile_count;
+    // Iterations of the initial pass, and at most with those of the refinement.
+    uint base;
+    uint most;
+    // 1: every tile refines to the most (--mode max).
+    uint refines_all;
+    // Where the component's irradiance begins in its buffer, in texels.
+    uint irradiance_first;
+    // Virtual point lights, or area lights.
+    uint source_count;
+    // Punctual lights.
+    uint light_count;
+    // Square of --vpl-clamp, in square metres.
+    float least_squared;
+};
+
+uint tile_size(AdaptiveParams params) {
+    return params.tile_x * params.tile_y;
+}
+
+// The place of a pixel in its tile, row-major: which of the sampler's samples are its own.
+uint slot_of(AdaptiveParams params, uvec2 pixel) {
+    return pixel.y % params.tile_y * params.tile_x + pixel.x % params.tile_x;
+}
+
+uint tile_of(AdaptiveParams params, uvec2 pixel) {
+    return pixel.y / params.tile_y * params.tile_columns + pixel.x / params.tile_x;
+}
+
+// It may lie beyond the frame.
+uvec2 pixel_of(AdaptiveParams params, uint tile, uint slot) {
+    uvec2 corner = uvec2(tile % params.tile_columns, tile / params.tile_columns) * uvec2(params.tile_x, params.tile_y);
+    return corner + uvec2(slot % params.tile_x, slot / params.tile_x);
+}
+
+#endif

@@ -1,0 +1,50 @@
+//! Adaptive interleaved sampling: both ways to refine, and positions as the G-buffer stores them.
+
+use super::super::case::{Group, Place, Twin};
+use crate::selftest::cases::bounds::{AGAIN, CUT, ROUNDING, SAME, WHOLE};
+use crate::selftest::judge::Must;
+
+const NAME: &str = "adaptive_interleaved";
+const CORNELL: Place = Place::Scene("cornell");
+const EMISSIVE: (&str, &str) = ("emissive", "on");
+/// Every tile refines: what rounding turns is a ray, and no number of iterations.
+const ALL: (&str, &str) = ("mode", "max");
+
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "repeat",
+        technique: NAME,
+        place: CORNELL,
+        common: &[EMISSIVE],
+        twin: Twin::Method(&[]),
+        methods: AGAIN,
+        must: SAME,
+    },
+    Group {
+        name: "refine",
+        technique: NAME,
+        place: CORNELL,
+        common: &[EMISSIVE],
+        twin: Twin::Method(&[("refine", "fused")]),
+        methods: &[&[("refine", "indirect")], &[("refine", "indirect"), ("workgroup", "8x8")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "position",
+        technique: NAME,
+        place: CORNELL,
+        common: &[EMISSIVE, ALL],
+        twin: Twin::Method(&[("position", "float")]),
+        methods: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
+        must: Must::Near(super::baselines::POSITIONS),
+    },
+    Group {
+        name: "submits",
+        technique: NAME,
+        place: CORNELL,
+        common: &[EMISSIVE],
+        twin: Twin::Method(WHOLE),
+        methods: CUT,
+        must: SAME,
+    },
+];

@@ -1,0 +1,22 @@
+//! Components of the light: what each has of its own (Dubla 2009, Listing 1: getSample, contrib,
+//! getRefinementInformation, getAdaptiveGuidance, refinementConditions, getIterations). A component is a file here,
+//! which makes its samples, and one in glsl/techniques/adaptive_interleaved/components, which uses them.
+
+mod id;
+mod method;
+mod ss;
+
+pub use method::{SampleCount, Samples};
+
+use super::settings::Component;
+use method::ComponentMethod;
+
+impl Component {
+    /// What estimates it.
+    pub fn method(self) -> &'static dyn ComponentMethod {
+        match self {
+            Self::Id => &id::IndirectDiffuse,
+            Self::Ss => &ss::SoftShadows,
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Composite: irradiance of all components times albedo, emission, ambient light. Shader: composite.comp.
+//! reads  the G-buffer, the irradiance      writes  adaptive_interleaved.composite.color  image, RGBA32F, frame extent
+
+use super::choices::Choices;
+use super::resources::NAME;
+use crate::error::Result;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::structs::ComposeParams;
+use crate::gpu::shader::techniques::adaptive_interleaved::composite::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::passes::gbuffer::{GBuffer, emissive_name};
+use std::sync::Arc;
+
+pub struct Composite {
+    pipeline: ComputePipeline,
+    params: ComposeParams,
+}
+
+impl Composite {
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, has_emissive: bool, has_extras: bool) -> Result<Self> {
+        let extras = ("SURFACE_EXTRAS", u32::from(has_extras));
+        let constants = [&choices.workgroup_constants()[..], &[extras]].concat();
+        let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[emissive_name(has_emissive)]), &constants)?;
+        let params = ComposeParams {
+            texel_count: choices.extent.pixel_count() as u32,
+            component_count: choices.components.len() as u32,
+        };
+        Ok(Self { pipeline, params })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'_, GBuffer>,
+        irradiance: Edge<'_, Buffer>,
+        color: &Image,
+    ) -> Result<()> {
+        let extent = color.description.extent;
+        let pixels = extent.pixel_count();
+        let layers = u64::from(self.params.component_count);
+        let traffic = Traffic {
+            read_bytes: pixels * (gbuffer.resource.shading_bytes() + 8 * layers),
+            written_bytes: pixels * 16,
+            invocations: Some(pixels),
+        };
+        cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {
+            cmd.barriers(gbuffer.shading_to_sampled());
+            cmd.barriers([irradiance.to(Access::ComputeRead), color.discard(Access::ComputeWrite)]);
+            let mut bound = gbuffer.resource.bound_shading();
+            bound.extend([
+                ("Frame", Bound::Buffer(frame)),
+                ("Irradiance", Bound::Buffer(irradiance.resource)),
+                ("color", Bound::Storage(color)),
+            ]);
+            let groups = self.pipeline.groups([extent.width, extent.height, 1]);
+            // It reads no position.
+            let bound = self.pipeline.interface.own(&bound);
+            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
+        })
+    }
+}

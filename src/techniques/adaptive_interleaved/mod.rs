@@ -1,0 +1,225 @@
+//! Dubla, Debattista and Chalmers 2009: Adaptive Interleaved Sampling for Interactive High-Fidelity Rendering.
+//!
+//! Light is estimated component by component: indirect diffuse light from virtual point lights (`id`), soft shadows of
+//! area lights (`ss`). A tile of N x M pixels shares a component's samples, each pixel with its own; after an initial
+//! pass the tile decides, by what its own rays met, how many further iterations all of its pixels need, each with
+//! samples that the pixel has not used. A box of the tile's size that stops at discontinuities smooths each component,
+//! and albedo comes last.
+//!
+//! Passes, in order: samples of each component (on the host); gbuffer; of each component sample, guide, compact and
+//! refine (with `--refine fused` sample does all of it, with `--mode igi` there is no other); discontinuity and filter
+//! (not with `--tile 1x1`); composite.
+//!
+//! Differs from the paper
+//! - a device draws what pixels see and casts the shadow rays, where the paper had eight processor cores
+//! - a tile's further iterations are rounded down, and with the initial pass no more than the most (Listing 1 leaves
+//!   both
+//!   open)
+//! - of virtual lights those count as hidden, of all that could light the point, that something hides (Listing 2); a
+//!   surface that turns away from an area light hides it itself (Listing 3)
+//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do
+//! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
+//! - indirect light is estimated at every pixel; the paper's `AIS` and `A-MAX` do so at a quarter of them (section 4.1)
+//! - participating media (`pm`, section 3.4) are not there
+//! - BLEND surfaces are not drawn
+//!
+//! Equal to others: `--mode adaptive` where every tile refines to the most is `--mode max`; `--refine fused` and
+//! `indirect` are the same bits; with `--id-max` of all the tile's pixels `--mode max` lights every pixel by every
+//! virtual light, and needs no filter.
+
+mod aov;
+mod bench_stages;
+mod buffers;
+mod choices;
+mod compact;
+mod components;
+mod composite;
+mod counters;
+mod frame;
+mod fused;
+mod guide;
+mod plan;
+mod refine;
+mod resources;
+mod sample;
+mod sampler;
+pub mod settings;
+mod steps;
+
+use super::bench_stage::BenchStage;
+use super::notes::Figures;
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique};
+use crate::caps::{Caps, Need};
+use crate::error::Result;
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::lights::LightSet;
+use crate::passes::gbuffer;
+use crate::picture::Aov;
+use crate::plan::Plan;
+use crate::resident::SceneGpu;
+use crate::sampling::pattern::Pattern;
+use crate::settings::{Setting, Values};
+use buffers::Shared;
+use choices::Choices;
+use frame::AdaptiveFrame;
+use resources::{NAME, of_component};
+use settings::Component;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+pub struct AdaptiveInterleaved;
+
+/// The pattern of its pixels.
+const PATTERNS: &[NamedPattern] = &[NamedPattern {
+    name: "tile",
+    summary: "The tile: each of its pixels has samples of its own in every iteration",
+    keys: &["tile"],
+    make: |values| Ok(Pattern::grid(values.pair("tile"))),
+}];
+
+impl Technique for AdaptiveInterleaved {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "Dubla 2009: interleaved sampling of soft shadows and indirect light, refined where tiles need it"
+    }
+
+    fn scene(&self) -> &'static str {
+        "cornell"
+    }
+
+    fn settings(&self) -> &'static [&'static [Setting]] {
+        &[settings::SETTINGS]
+    }
+
+    fn aovs(&self) -> &'static [&'static str] {
+        aov::AOVS
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("components", "ss"), ("refine", "fused")]
+    }
+
+    fn needs(&self, _: &Values, _: &Caps, _: bool) -> Vec<Need> {
+        vec![gbuffer::need()]
+    }
+
+    fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
+    /// Diffuse light of the components that are there: straight, by as many surfaces as light walks land on, or both.
+    fn reference_settings(&self, values: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        let listed: Vec<Component> = values.listed("components");
+        let (has_id, has_ss) = (listed.contains(&Component::Id), listed.contains(&Component::Ss));
+        let on_or_off = |is_on: bool| if is_on { "on" } else { "off" }.to_owned();
+        let mut settings = vec![
+            ("brdf", "lambert".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
+            ("direct-light", on_or_off(has_ss)),
+        ];
+        match values.integer("vpl-bounces") {
+            _ if !has_id => settings.push(("transport", "direct".to_owned())),
+            1 => settings.push(("transport", "one-bounce".to_owned())),
+            // The surface that is seen scatters too.
+            more => settings.extend([("transport", "full".to_owned()), ("bounces", (more + 1).to_string())]),
+        }
+        Ok(settings)
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        let Some(rays) = figures.counter("rays") else { return Vec::new() };
+        let refined = Component::WORDS.iter().filter_map(|key| {
+            let [iterations, tiles] =
+                ["iterations", "tiles_refined"].map(|what| figures.counter(&format!("{what}_{key}")));
+            Some(format!("{key}: {:.2} iterations a pixel, {:.1} % of the tiles refined", iterations?, 100.0 * tiles?))
+        });
+        [format!("{rays:.2} shadow rays a pixel")].into_iter().chain(refined).collect()
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        PATTERNS
+    }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        Ok(Box::new(PreparedAdaptive { choices: Choices::new(inputs)? }))
+    }
+}
+
+struct PreparedAdaptive {
+    choices: Choices,
+}
+
+impl Prepared for PreparedAdaptive {
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&self.choices, inputs)
+    }
+
+    fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        aov::left_out(&self.choices)
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let emissive = if self.choices.is_emissive { "on" } else { "off" };
+        BTreeMap::from([("emissive", emissive.to_owned()), ("vpl-clamp", format!("{}", self.choices.vpl_clamp_m))])
+    }
+
+    fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart> {
+        let choices = self.choices;
+        let (mut passes, mut samples) = (Vec::new(), Vec::new());
+        for component in choices.components.iter().map(|choice| choice.component) {
+            let started = Instant::now();
+            samples.push(component.method().samples(inputs, choices.tile_px)?);
+            passes.push((of_component("samples", component.name()), started.elapsed().as_nanos() as u64));
+        }
+        let counters = samples.iter().flat_map(|samples| samples.counters.iter().copied()).collect();
+        Ok(HostPart {
+            passes,
+            counters,
+            light_counts: [0, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| {
+                Ok(Box::new(AdaptiveFrame::new(gpu, inputs, scene, resources, &choices, &samples)?))
+            }),
+        })
+    }
+}
+
+impl Frame for AdaptiveFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        self.gbuffer_pass.record(cmd, NAME, frame, scene, &self.gbuffer)?;
+        let mut gbuffer = self.gbuffer.from(Access::ColorWrite);
+        let shared = Shared { frame, tree: &self.tree, irradiance: &self.irradiance };
+        for (index, component) in self.components.iter().enumerate() {
+            gbuffer = component.record(cmd, &shared, gbuffer, index == 0)?;
+        }
+        let irradiance = self.irradiance.from(Access::ComputeWrite);
+        let (gbuffer, irradiance) = match &self.filter {
+            Some(filter) => filter.record(cmd, frame, gbuffer, irradiance)?,
+            None => (gbuffer, irradiance),
+        };
+        self.composite.record(cmd, frame, gbuffer, irradiance, &self.color)
+    }
+
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        self.gbuffer_pass.counters().into()
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.color, Access::ComputeWrite)
+    }
+
+    fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        counters::read(self, gpu)
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        aov::read(self, gpu, name)
+    }
+}

@@ -1,0 +1,17 @@
+//! The technique's name, which begins those of its passes and of what it holds.
+
+pub const NAME: &str = "adaptive_interleaved";
+
+/// The finished picture.
+pub const COLOR: &str = "adaptive_interleaved.composite.color";
+
+/// Irradiance of all components as they are estimated, one behind the other, each in frame order, 8 B a pixel.
+pub const IRRADIANCE: &str = "adaptive_interleaved.irradiance";
+
+/// The same filtered. None with tiles of one pixel.
+pub const FILTERED: &str = "adaptive_interleaved.filter.irradiance";
+
+/// Full name of a resource or a pass of a component, whose key ends it.
+pub fn of_component(what: &str, key: &str) -> String {
+    format!("{NAME}.{what}.{key}")
+}

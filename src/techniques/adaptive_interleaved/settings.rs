@@ -1,0 +1,150 @@
+//! The settings of adaptive interleaved sampling.
+
+use crate::choice::choices;
+use crate::settings::{
+    Changes, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, POSITION_THRESHOLD, Setting, TEXELS, Unread,
+    VPL_CLAMP, Values, WORKGROUP,
+};
+
+choices! {
+    /// A component of the light (`--components`).
+    pub enum Component {
+        /// Indirect diffuse light.
+        "id" => Id,
+        /// Soft shadows: light straight from area lights and punctual ones.
+        "ss" => Ss,
+    }
+}
+
+choices! {
+    /// Which tiles refine, and how far (`--mode`).
+    pub enum Mode {
+        /// Those that the guidance names (AIS).
+        "adaptive" => Adaptive,
+        /// All, to the most (A-MAX).
+        "max" => Max,
+        /// None: interleaved sampling alone (IGI).
+        "igi" => Igi,
+    }
+}
+
+choices! {
+    /// How the refinement finds its tiles (`--refine`).
+    pub enum Refine {
+        /// A list of them is made on the device, and a dispatch goes over it.
+        "indirect" => Indirect,
+        /// One pass, in which each tile goes on as long as it must.
+        "fused" => Fused,
+    }
+}
+
+/// Largest side of a tile, px: 64 of its pixels are a workgroup.
+pub const MOST_TILE_PX: u32 = 8;
+
+/// Its rows of the table.
+pub const SETTINGS: &[Setting] = &[
+    Setting {
+        key: "components",
+        kind: Kind::Words(Component::WORDS),
+        default: "id,ss",
+        paper: "Dubla 2009, 3",
+        help: "Light that is estimated, each with its own samples, guidance and filter: indirect diffuse light from \
+               virtual point lights (id), soft shadows of area lights and hard ones of punctual lights (ss)",
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "mode",
+        kind: Kind::Choice(Mode::WORDS),
+        default: "adaptive",
+        paper: "Dubla 2009, 4.2",
+        help: "Tiles to refine: those in which the initial pass found a need (adaptive), all of them to the most \
+               iterations (max), or none (igi, interleaved sampling as Wald 2002 has it)",
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "tile",
+        symbol: "N x M",
+        kind: Kind::Pair { min: 1, max: MOST_TILE_PX },
+        default: "3x3",
+        unit: "px",
+        paper: "Dubla 2009, 4.2",
+        help: "Size of a tile: its pixels have samples of their own, decide together whether they need more, and are \
+               the box of the filter",
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "base",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: "1",
+        paper: "Dubla 2009, 4.2",
+        help: "Iterations of the initial pass, of each component",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "id-max",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: "9",
+        paper: "Dubla 2009, 4.2 (IDmaxSamples)",
+        help: "Most iterations of indirect light, the initial pass's included: subsets of the virtual point lights \
+               that a pixel is lit by; at most the pixels of --tile, with as many every light is counted",
+        unread: |values| without(values, Component::Id),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "ss-max",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: "9",
+        paper: "Dubla 2009, 4.2 (SSmaxSamples)",
+        help: "Most iterations of soft shadows, the initial pass's included: points of each area light that a pixel \
+               sends shadow rays to",
+        unread: |values| without(values, Component::Ss),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "ss-lights",
+        kind: Kind::Integer { min: 1, max: 1024 },
+        default: "16",
+        help: "Most area lights that each have points of their own: connected emissive surfaces, the most powerful \
+               first; all that are left are one more light",
+        unread: |values| without(values, Component::Ss),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "vpls",
+        kind: Kind::Integer { min: 1, max: 65_536 },
+        default: "256",
+        paper: "Dubla 2009, 4.2",
+        help: "Number of virtual point lights, made by Instant Radiosity; each pixel of a tile begins with its share",
+        unread: |values| without(values, Component::Id),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "vpl-bounces",
+        kind: Kind::Integer { min: 1, max: 16 },
+        default: "1",
+        help: "Most surfaces that one light walk lands on",
+        unread: |values| without(values, Component::Id),
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting { unread: |values| without(values, Component::Id), ..VPL_CLAMP },
+    EMISSIVE,
+    Setting {
+        key: "refine",
+        kind: Kind::Choice(Refine::WORDS),
+        default: "indirect",
+        help: "How tiles that refine come to their threads: listed on the device, those with most iterations first, \
+               and dispatched from there (indirect); or in the initial pass itself, each tile going on as long as it \
+               must (fused); the same picture",
+        ..Setting::changing(Changes::Nothing)
+    },
+    NORMAL_THRESHOLD,
+    POSITION_THRESHOLD,
+    POSITION,
+    GEOMETRY,
+    TEXELS,
+    WORKGROUP,
+];
+
+fn without(values: &Values, component: Component) -> Option<Unread> {
+    Unread::unlisted(values, "components", component.name(), "it is not estimated")
+}

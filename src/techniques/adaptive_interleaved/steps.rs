@@ -1,0 +1,135 @@
+//! The three steps of one component, in their order: initial pass, tile-local guidance, refinement (Dubla 2009, section
+//! 3 and figure 2).
+
+use super::buffers::{ComponentBuffers, Shared};
+use super::choices::{Choices, ComponentChoice};
+use super::compact::CompactPass;
+use super::components::Samples;
+use super::fused::FusedPass;
+use super::guide::GuidePass;
+use super::refine::{Listed, RefinePass};
+use super::resources::of_component;
+use super::sample::SamplePass;
+use crate::error::Result;
+use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
+use crate::passes::gbuffer::GBuffer;
+use crate::plan::Resources;
+use std::sync::Arc;
+
+/// One component on the device.
+pub struct ComponentSteps {
+    pub buffers: ComponentBuffers,
+    steps: Steps,
+}
+
+/// How a component's pixels come to their iterations.
+#[expect(clippy::large_enum_variant, reason = "one a component, never moved")]
+enum Steps {
+    /// The initial pass alone.
+    Initial {
+        sample: SamplePass,
+        estimates: Buffer,
+    },
+    /// All in one dispatch.
+    Fused {
+        fused: FusedPass,
+        guidance: Buffer,
+    },
+    Apart {
+        sample: SamplePass,
+        estimates: Buffer,
+        refinement: Refinement,
+    },
+}
+
+/// Guidance, compaction, and the dispatch over what is listed.
+struct Refinement {
+    guide: GuidePass,
+    compact: CompactPass,
+    refine: RefinePass,
+    guidance: Buffer,
+    bins: Buffer,
+    tiles: Buffer,
+}
+
+impl ComponentSteps {
+    /// Takes what `plan` put in, fills it, and makes the pipelines.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        choices: &Choices,
+        choice: &ComponentChoice,
+        samples: &Samples,
+    ) -> Result<Self> {
+        let mut buffer = |what: &str| resources.buffer(&of_component(what, choice.component.name()));
+        let steps = if choices.is_fused() {
+            Steps::Fused { fused: FusedPass::new(gpu, choices, choice)?, guidance: buffer("guidance") }
+        } else {
+            let (sample, estimates) = (SamplePass::new(gpu, choices, choice)?, buffer("estimates"));
+            if choices.has_refinement() {
+                let refinement = Refinement {
+                    guide: GuidePass::new(gpu, choice)?,
+                    compact: CompactPass::new(gpu)?,
+                    refine: RefinePass::new(gpu, choices, choice)?,
+                    guidance: buffer("guidance"),
+                    bins: buffer("bins"),
+                    tiles: buffer("tiles"),
+                };
+                Steps::Apart { sample, estimates, refinement }
+            } else {
+                Steps::Initial { sample, estimates }
+            }
+        };
+        Ok(Self { buffers: ComponentBuffers::new(gpu, resources, choice, samples)?, steps })
+    }
+
+    /// Further iterations of each tile, a word each; None where no tile has any.
+    pub fn guidance(&self) -> Option<&Buffer> {
+        match &self.steps {
+            Steps::Initial { .. } => None,
+            Steps::Fused { guidance, .. } => Some(guidance),
+            Steps::Apart { refinement, .. } => Some(&refinement.guidance),
+        }
+    }
+
+    /// Records its passes. `is_first`: no component before it has written its own stretch of the irradiance. Hands the
+    /// G-buffer on as it leaves it.
+    pub fn record<'a>(
+        &self,
+        cmd: &mut Commands,
+        shared: &Shared<'_>,
+        gbuffer: Edge<'a, GBuffer>,
+        is_first: bool,
+    ) -> Result<Edge<'a, GBuffer>> {
+        let buffers = &self.buffers;
+        let irradiance = match is_first {
+            true => shared.irradiance.discard(Access::ComputeWrite),
+            false => shared.irradiance.from(Access::ComputeWrite).to(Access::ComputeWrite),
+        };
+        let sampled = gbuffer.after(Access::ComputeSample);
+        match &self.steps {
+            Steps::Initial { sample, estimates } => {
+                sample.record(cmd, buffers, shared, gbuffer, irradiance, estimates)?;
+            }
+            Steps::Fused { fused, guidance } => fused.record(cmd, buffers, shared, gbuffer, irradiance, guidance)?,
+            Steps::Apart { sample, estimates, refinement } => {
+                let Refinement { guide, compact, refine, guidance, bins, tiles } = refinement;
+                sample.record(cmd, buffers, shared, gbuffer, irradiance, estimates)?;
+                let written = |buffer| Buffer::from(buffer, Access::ComputeWrite);
+                guide.record(cmd, buffers, shared, written(estimates), guidance, bins)?;
+                compact.record(cmd, buffers, written(guidance), written(bins), tiles)?;
+                let listed = Listed {
+                    // The guidance has read them, and the list was made from it.
+                    estimates: written(estimates).after(Access::ComputeRead),
+                    guidance: written(guidance).after(Access::ComputeRead),
+                    rays: written(&buffers.rays),
+                    irradiance: written(shared.irradiance),
+                    bins: written(bins),
+                    tiles: written(tiles),
+                };
+                refine.record(cmd, buffers, shared, sampled, &listed)?;
+            }
+        }
+        Ok(sampled)
+    }
+}

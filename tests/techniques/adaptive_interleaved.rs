@@ -1,0 +1,354 @@
+//! Adaptive interleaved sampling: each component against a plain estimator on the host, the modes and the ways to
+//! refine against each other, the filter against a few lines, and the whole against paths (Dubla 2009).
+
+use crate::support::difference::{require_same, rmse};
+use crate::support::seen::{self, Seen, point_at};
+use crate::support::watched::{Watched, both};
+use glam::Vec3;
+use quincunx::bvh::Bvh;
+use quincunx::frame::View;
+use quincunx::gpu::shader::structs::{AreaSampleBlock, VplBlock};
+use quincunx::lights::area::area_lights;
+use quincunx::lights::vpl;
+use quincunx::units::Extent;
+
+const NAME: &str = "adaptive_interleaved";
+const EXTENT: Extent = Extent { width: 97, height: 53 };
+/// Emissive surfaces shine beside the lamp, positions are exact.
+const CORNELL: [(&str, &str); 3] = [("size", "97x53"), ("emissive", "on"), ("position", "float")];
+
+/// What a pixel shows, by a ray on the host.
+struct Shown {
+    pixel: [u32; 2],
+    position: Vec3,
+    normal: Vec3,
+}
+
+/// Pixels of which rays and rasteriser surely see one surface.
+fn shown(watched: &Watched, bvh: &Bvh) -> Vec<Shown> {
+    let scene = &watched.session.scene;
+    let view = View::new(scene, "0", EXTENT).unwrap();
+    let eye = view.eye();
+    let sources = seen::sources(watched, &view);
+    let surfaces = (0u32..).zip(sources).filter(|(_, seen)| matches!(seen, Seen::Surface(_)));
+    surfaces
+        .map(|(index, _)| {
+            let pixel = [index % EXTENT.width, index / EXTENT.width];
+            let direction =
+                (point_at(&view, pixel.map(|side| f64::from(side) + 0.5)) - eye.as_dvec3()).normalize().as_vec3();
+            let accept = |hit: &quincunx::bvh::Hit| !bvh.is_culled_back(hit, direction);
+            let hit = bvh.closest_hit(eye, direction, f32::INFINITY, accept).unwrap();
+            let triangle = &bvh.triangles[hit.triangle];
+            let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+            let normal = three(triangle.edge1).cross(three(triangle.edge2)).normalize();
+            let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
+            Shown { pixel, position: eye + direction * hit.distance, normal }
+        })
+        .collect()
+}
+
+/// Whether nothing hides `to` from the surface: the plain way, a hundredth of a per cent of the diagonal off it.
+fn sees(bvh: &Bvh, offset: f32, shown: &Shown, to: Vec3) -> bool {
+    let origin = shown.position + shown.normal * offset;
+    let away = to - origin;
+    !bvh.occluded(origin, away.normalize(), away.length() - 2.0 * offset)
+}
+
+fn xyz([x, y, z, _]: [f32; 4]) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+fn vpl_irradiance(shown: &Shown, vpl: &VplBlock, clamp_m: f32) -> Vec3 {
+    let to = xyz(vpl.position_ws) - shown.position;
+    let squared = to.length_squared();
+    let cosines = shown.normal.dot(to.normalize()).max(0.0) * (-xyz(vpl.normal_ws).dot(to.normalize())).max(0.0);
+    xyz(vpl.intensity) * (cosines / squared.max(clamp_m * clamp_m))
+}
+
+fn area_irradiance(shown: &Shown, point: &AreaSampleBlock) -> Vec3 {
+    let to = xyz(point.position_ws) - shown.position;
+    let leaving = -xyz(point.normal_ws).dot(to.normalize());
+    let leaving = if point.normal_ws[3] != 0.0 { leaving.abs() } else { leaving.max(0.0) };
+    xyz(point.intensity) * (shown.normal.dot(to.normalize()).max(0.0) * leaving / to.length_squared())
+}
+
+/// The part of the pixels whose irradiance is the host's within 1 % of it and a thousandth of the brightest.
+fn agreeing_part(irradiance: &[[f32; 3]], shown: &[Shown], host: impl Fn(&Shown) -> Vec3) -> f64 {
+    let brightest = irradiance.as_flattened().iter().fold(0f32, |most, channel| most.max(*channel));
+    let agrees = |shown: &&Shown| {
+        let [x, y] = shown.pixel;
+        let found = Vec3::from_array(irradiance[(y * EXTENT.width + x) as usize]);
+        let expected = host(shown);
+        (found - expected).abs().max_element() <= 0.01 * expected.max_element() + 1e-3 * brightest
+    };
+    shown.iter().filter(agrees).count() as f64 / shown.len() as f64
+}
+
+/// With every subset each pixel has every virtual light: a loop over all of them, each with its ray.
+#[test]
+fn indirect_light_of_all_subsets_is_every_virtual_light_with_its_shadow() {
+    let watched = Watched::open("cornell");
+    let scene = &watched.session.scene;
+    let bvh = Bvh::build(scene).unwrap();
+    let diagonal = scene.lasting_bounds().diagonal();
+    let shown = shown(&watched, &bvh);
+    assert!(shown.len() > 1000);
+    let lights = &scene.lights;
+    let walk = vpl::Walk { count: 64, bounces: 1, emissive: true, starts: false, seed: 1 };
+    let vpls = vpl::walk(scene, &bvh, lights, &walk).vpls;
+    for tile in ["2x2", "3x3", "4x2"] {
+        let own = [("components", "id"), ("mode", "max"), ("vpls", "64"), ("tile", tile)];
+        let most = (
+            "id-max",
+            if tile == "3x3" {
+                "9"
+            } else if tile == "2x2" {
+                "4"
+            } else {
+                "8"
+            },
+        );
+        let changes = both(&both(&CORNELL, &own), &[most]);
+        let renderer = watched.render_stages(NAME, &changes, &["irradiance.id"]);
+        let irradiance = watched.rgb(&renderer, "irradiance.id");
+        let part = agreeing_part(&irradiance, &shown, |shown| {
+            let lit = |vpl: &&VplBlock| sees(&bvh, 1e-4 * diagonal, shown, xyz(vpl.position_ws));
+            vpls.iter().filter(lit).map(|vpl| vpl_irradiance(shown, vpl, 0.02 * diagonal)).sum()
+        });
+        assert!(part > 0.985, "{tile}: {part}");
+    }
+}
+
+/// The mean over the points of the sampler that belong to the pixel's place in the tile.
+#[test]
+fn soft_shadows_are_the_mean_over_the_pixel_s_own_points() {
+    let watched = Watched::open("cornell");
+    let scene = &watched.session.scene;
+    let bvh = Bvh::build(scene).unwrap();
+    let offset = 1e-4 * scene.lasting_bounds().diagonal();
+    let shown = shown(&watched, &bvh);
+    let [x, y, most] = [3u32, 2, 5];
+    let own =
+        [("components", "ss"), ("mode", "max"), ("tile", "3x2"), ("ss-max", "5"), ("rig", "none"), ("lights", "0")];
+    let points = area_lights(scene, 16)[0].points(scene, most * x * y, 1 ^ 0x9e37_79b9);
+    let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["irradiance.ss"]);
+    let irradiance = watched.rgb(&renderer, "irradiance.ss");
+    let lamps = &scene.lights;
+    let part = agreeing_part(&irradiance, &shown, |shown| {
+        let slot = shown.pixel[1] % y * x + shown.pixel[0] % x;
+        let of_iteration = |iteration: u32| {
+            let point = &points[(iteration * x * y + slot) as usize];
+            if sees(&bvh, offset, shown, xyz(point.position_ws)) { area_irradiance(shown, point) } else { Vec3::ZERO }
+        };
+        let areas: Vec3 = (0..most).map(of_iteration).sum::<Vec3>() / most as f32;
+        let punctual = lamps.iter().map(|lamp| {
+            let to = lamp.position - shown.position;
+            let cosine = shown.normal.dot(to.normalize()).max(0.0);
+            let is_lit = cosine > 0.0 && sees(&bvh, offset, shown, lamp.position);
+            if is_lit { lamp.intensity * (cosine / to.length_squared()) } else { Vec3::ZERO }
+        });
+        areas + punctual.sum::<Vec3>()
+    });
+    assert!(part > 0.985, "{part}");
+}
+
+/// A pixel of a tile that was refined to the most has the light of `max`, one of a tile that was not has that of `igi`,
+/// each bit for bit; and both kinds are there.
+#[test]
+fn each_tile_is_between_no_refinement_and_all_of_it() {
+    let watched = Watched::open("cornell");
+    for component in ["id", "ss"] {
+        let stages = [format!("irradiance.{component}"), format!("guidance.{component}.iterations")];
+        let stages: Vec<&str> = stages.iter().map(String::as_str).collect();
+        let irradiance = |mode: &str, stages: &[&str]| {
+            let changes = both(&CORNELL, &[("components", component), ("mode", mode), ("base", "2")]);
+            let renderer = watched.render_stages(NAME, &changes, stages);
+            let iterations = stages.get(1).map_or(Vec::new(), |iterations| watched.integers(&renderer, iterations));
+            (watched.rgb(&renderer, stages[0]), iterations)
+        };
+        let (adaptive, iterations) = irradiance("adaptive", &stages);
+        let (max, all) = irradiance("max", &stages);
+        let (igi, _) = irradiance("igi", &stages[..1]);
+        assert!(all.iter().all(|count| *count == 9 || *count == 2), "a tile without a surface is not refined");
+        let (mut least, mut most, mut between) = (0, 0, 0);
+        for pixel in 0..adaptive.len() {
+            match iterations[pixel] {
+                2 => {
+                    assert_eq!(adaptive[pixel], igi[pixel], "{component}: pixel {pixel}");
+                    least += 1;
+                }
+                9 => {
+                    assert_eq!(adaptive[pixel], max[pixel], "{component}: pixel {pixel}");
+                    most += 1;
+                }
+                count => {
+                    assert!((3..9).contains(&count));
+                    between += 1;
+                }
+            }
+        }
+        // No tile has all of its virtual lights hidden.
+        let least_most = if component == "ss" { 20 } else { 0 };
+        assert!(least > 500 && most >= least_most && between > 50, "{component}: {least}, {between}, {most}");
+    }
+}
+
+/// Listed and dispatched from the device, or each tile in a loop of its own.
+#[test]
+fn both_ways_to_refine_give_the_same_picture() {
+    let watched = Watched::open("cornell");
+    for (own, mode) in [
+        (&[("tile", "3x3")][..], "adaptive"),
+        (&[("tile", "8x8"), ("base", "3")][..], "adaptive"),
+        (&[("tile", "1x1"), ("id-max", "1")][..], "adaptive"),
+        (&[("tile", "5x3"), ("position", "unorm16"), ("workgroup", "8x8")][..], "adaptive"),
+        (&[("tile", "2x4"), ("id-max", "8"), ("position", "depth")][..], "max"),
+    ] {
+        let picture = |refine| {
+            let changes = both(&both(&CORNELL, own), &[("mode", mode), ("refine", refine)]);
+            watched.picture(NAME, &changes)
+        };
+        require_same(&watched.session.gpu, &picture("fused"), &picture("indirect"), &own);
+    }
+}
+
+/// Each pixel of the box counts that a walk reaches which goes right or left only, and down or up only, over no flag.
+#[test]
+fn the_filter_is_the_mean_of_what_no_discontinuity_parts() {
+    let watched = Watched::open("cornell");
+    for (tile, [width, height]) in [("3x3", [3i32, 3]), ("4x2", [4, 2]), ("8x7", [8, 7])] {
+        let changes = both(&CORNELL, &[("components", "ss"), ("tile", tile)]);
+        let stages = ["irradiance.ss", "filter.irradiance.ss", "discontinuity.flags"];
+        let renderer = watched.render_stages(NAME, &changes, &stages);
+        let [source, filtered] = ["irradiance.ss", "filter.irradiance.ss"].map(|stage| watched.rgb(&renderer, stage));
+        let flags = watched.integers(&renderer, "discontinuity.flags");
+        let index = |x: i32, y: i32| (y * EXTENT.width as i32 + x) as usize;
+        let is_in = |x: i32, y: i32| (0..EXTENT.width as i32).contains(&x) && (0..EXTENT.height as i32).contains(&y);
+        // Every such walk, one step at a time.
+        fn reaches(from: [i32; 2], to: [i32; 2], open: &dyn Fn([i32; 2], [i32; 2]) -> bool) -> bool {
+            if from == to {
+                return true;
+            }
+            let steps = [[(to[0] - from[0]).signum(), 0], [0, (to[1] - from[1]).signum()]];
+            steps.into_iter().filter(|step| *step != [0, 0]).any(|step| {
+                let next = [from[0] + step[0], from[1] + step[1]];
+                open(from, next) && reaches(next, to, open)
+            })
+        }
+        let open = |from: [i32; 2], to: [i32; 2]| {
+            let lesser = [from[0].min(to[0]), from[1].min(to[1])];
+            flags[index(lesser[0], lesser[1])] & if from[0] == to[0] { 2 } else { 1 } == 0
+        };
+        let mut parted = 0;
+        for y in (0..EXTENT.height as i32).step_by(3) {
+            for x in (0..EXTENT.width as i32).step_by(2) {
+                let (mut sum, mut count) = (Vec3::ZERO, 0);
+                for (dx, dy) in
+                    (0..height).flat_map(|dy| (0..width).map(move |dx| (dx - (width - 1) / 2, dy - (height - 1) / 2)))
+                {
+                    if is_in(x + dx, y + dy) && reaches([x, y], [x + dx, y + dy], &open) {
+                        sum += Vec3::from_array(source[index(x + dx, y + dy)]);
+                        count += 1;
+                    }
+                }
+                parted += u32::from(count < width * height);
+                let (found, expected) = (Vec3::from_array(filtered[index(x, y)]), sum / count as f32);
+                let off = (found - expected).abs().max_element();
+                assert!(off <= 2e-3 * expected.max_element().max(1e-3), "{tile} at {x},{y}: {found} and {expected}");
+            }
+        }
+        assert!(parted > 100, "{tile}: {parted}");
+    }
+}
+
+/// Where every tile has a pixel to itself the picture is that of its own samples; with more of them it comes to the
+/// integral, at least as fast as independent ones would.
+#[test]
+fn soft_shadows_converge_to_paths() {
+    let watched = Watched::open("cornell");
+    let shared = [("size", "64x48"), ("emissive", "on"), ("background", "0")];
+    let reference =
+        both(&shared, &[("transport", "direct"), ("brdf", "lambert"), ("ambient-visibility", "off"), ("spp", "1024")]);
+    let reference = watched.picture("path_traced", &reference);
+    // Paths spread over their pixels: where those show an edge no count of samples helps.
+    let error = |most: &str| {
+        let own = [("components", "ss"), ("mode", "max"), ("tile", "1x1"), ("ss-max", most), ("position", "float")];
+        let picture = watched.picture(NAME, &both(&shared, &own));
+        let differences = picture.pixels.iter().zip(&reference.pixels);
+        let mut squares: Vec<f32> =
+            differences.map(|(one, other)| (0..3).map(|i| (one[i] - other[i]).powi(2)).sum()).collect();
+        squares.sort_by(f32::total_cmp);
+        let kept = &squares[..squares.len() * 17 / 20];
+        (kept.iter().sum::<f32>() / kept.len() as f32).sqrt()
+    };
+    let errors = ["1", "4", "16", "64"].map(error);
+    let exponent = (errors[2] / errors[0]).log2() / 4.0;
+    assert!(exponent < -0.5, "{errors:?}: exponent {exponent}");
+    assert!(errors[3] < 0.15 * errors[0], "{errors:?}");
+}
+
+/// Fewer rays than with all of them, and no farther from the integral by more than a tenth.
+#[test]
+fn adaptive_rays_are_fewer_and_its_picture_as_near_to_paths() {
+    let watched = Watched::open("cornell");
+    let shared = [("size", "96x72"), ("emissive", "on"), ("background", "0")];
+    let reference = [("transport", "one-bounce"), ("brdf", "lambert"), ("ambient-visibility", "off"), ("spp", "256")];
+    let reference = watched.picture("path_traced", &both(&shared, &reference));
+    let run = |mode| {
+        let renderer = watched.render(NAME, &both(&shared, &[("mode", mode)]));
+        let rays = renderer.measured_counters().unwrap()["rays"];
+        (rays, rmse(&renderer.picture().unwrap(), &reference))
+    };
+    let [(adaptive_rays, adaptive), (max_rays, max), (igi_rays, _)] = ["adaptive", "max", "igi"].map(run);
+    assert!(adaptive_rays < 0.5 * max_rays && adaptive_rays > 1.2 * igi_rays, "{adaptive_rays} {max_rays} {igi_rays}");
+    assert!(adaptive < 1.1 * max, "{adaptive} and {max}");
+}
+
+/// Rays and tiles are counted as the stages show them.
+#[test]
+fn counters_are_sums_over_the_stages() {
+    let watched = Watched::open("cornell");
+    let stages = ["rays.id", "rays.ss", "guidance.id.iterations", "guidance.ss.iterations"];
+    let renderer = watched.render_stages(NAME, &both(&CORNELL, &[("tile", "3x3")]), &stages);
+    let counters = renderer.measured_counters().unwrap();
+    let pixels = EXTENT.pixel_count() as f64;
+    let mut all = 0.0;
+    for component in ["id", "ss"] {
+        let mean = |stage: &str| {
+            let stage = watched.integers(&renderer, stage);
+            stage.iter().map(|count| f64::from(*count)).sum::<f64>() / pixels
+        };
+        let rays = mean(&format!("rays.{component}"));
+        assert!((counters[&*format!("rays_{component}")] - rays).abs() < 1e-9);
+        let iterations = mean(&format!("guidance.{component}.iterations"));
+        assert!((counters[&*format!("iterations_{component}")] - iterations).abs() < 1e-9);
+        let idle = counters[&*format!("lanes_idle_{component}")];
+        assert!((0.0..0.2).contains(&idle), "{idle}");
+        all += rays;
+    }
+    assert!((counters["rays"] - all).abs() < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_what_can() {
+    let watched = Watched::open("cornell");
+    for (changes, words, help) in [
+        (&[("size", "4x4"), ("tile", "5x1")][..], "--tile 5x1 is larger than the picture's 4x4", "smaller --tile"),
+        (&[("id-max", "10")][..], "--id-max 10 with --tile 3x3: a pixel has 9 subsets", "--id-max 9"),
+        (&[("vpls", "8")][..], "--vpls 8 for the 9 subsets of --tile 3x3", "--vpls 9 or more"),
+        (&[("base", "4"), ("ss-max", "3")][..], "--base 4 with --ss-max 3", "--base 3 or fewer"),
+        (&[("components", "id"), ("ss-max", "3")][..], "--ss-max 3 with --components id", ""),
+        (&[("components", "ss,ss")][..], "one or more of id, ss", ""),
+        (&[("components", "pm")][..], "one or more of id, ss", ""),
+    ] {
+        let mut job = quincunx::job::Job::new("cornell", quincunx::techniques::find(NAME).unwrap());
+        let set = changes.iter().try_for_each(|(key, value)| job.set(key, value));
+        let caps = &watched.session.gpu.caps;
+        let error =
+            set.and_then(|()| job.run_on(&crate::support::watched::watched_device()).map(|_| caps)).err().unwrap();
+        assert_eq!(error.exit_code(), 2, "{error}");
+        let text = format!("{error}");
+        assert!(error.message().contains(words), "{changes:?}: {}", error.message());
+        assert!(text.contains(help) || format!("{error:?}").contains(help), "{changes:?}: {text}");
+    }
+}
