@@ -62,6 +62,11 @@ impl Extent {
         Self { width, height }
     }
 
+    /// Each `scale`-th pixel of both directions, from the first on.
+    pub fn reduced(self, scale: u32) -> Self {
+        Self { width: self.width.div_ceil(scale), height: self.height.div_ceil(scale) }
+    }
+
     /// How many pixels it holds.
     pub fn pixel_count(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)

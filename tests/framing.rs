@@ -110,6 +110,9 @@ fn real_models_that_glow_are_lit() {
 fn where_nothing_is_seen_a_note_says_why_and_what_would_help() {
     let seen_by = |rotation: [f32; 4], z: f32| {
         let mut file = triangle([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        // glTF's own material is a metal, which is black where surfaces are diffuse alone.
+        file.json["materials"] = json!([{"pbrMetallicRoughness": {"metallicFactor": 0.0}}]);
+        file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
         file.push(
             "cameras",
             json!({"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}, "name": "door"}),

@@ -122,6 +122,7 @@ fn value_name(setting: &Setting) -> &'static str {
         Kind::Bytes => "BYTES",
         Kind::Color => "COLOR",
         Kind::PartsOrNone(_) => "N,N|none",
+        Kind::Words(_) if setting.auto => "auto|NAME,...",
         Kind::Words(_) => "NAME,...",
         Kind::Text(word) => word,
     }

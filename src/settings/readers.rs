@@ -35,7 +35,7 @@ impl Unread {
         words(others).contains(&text).then(|| Self { with: format!("--{key} {text}"), why, readers })
     }
 
-    /// Some where the list `key` lacks `word`.
+    /// Some where the list `key`, which is no `auto`, lacks `word`.
     pub fn unlisted(values: &Values, key: &str, word: &str, why: &'static str) -> Option<Self> {
         let text = values.text(key);
         let readers = format!("--{key} {word}");

@@ -1,6 +1,6 @@
 // A box of N x M pixels that stops at discontinuities (Wald 2002, section 4.2, as Dubla 2009, section 3, has it): the
 // mean of those that a walk reaches that never turns back, first along either axis, and crosses no discontinuity.
-// Several layers of irradiance, each in frame order, lie one behind the other. Pass: src/passes/filter/box_filter.rs.
+// Pass: src/passes/filter/box_filter.rs.
 #version 460
 #include "passes/gbuffer.glsl"
 
@@ -12,7 +12,9 @@ struct BoxParams {
     uint right;
     uint above;
     uint below;
-    uint _unused[2];
+    // Texel of the target at which it begins to write.
+    uint target_first;
+    uint _unused;
 };
 
 // Half of the widest box.
@@ -41,9 +43,7 @@ bool is_open(ivec2 pixel, ivec2 step, int sign) {
 }
 
 // Adds one quadrant of the box: its columns beside the middle, and its rows, the middle's row included where `has_row`.
-// `first`: texel at which the layer begins.
 void add_quadrant(
-    uint first,
     ivec2 middle,
     ivec2 signs,
     uvec2 reach,
@@ -62,7 +62,7 @@ void add_quadrant(
             reached[column] = (row == 0u && column == 0u) || along || down;
             bool is_own = (row > 0u || has_row) && (column > 0u || has_column);
             if (reached[column] && is_own) {
-                precise vec3 more = sum + unpack_halves(source[first + texel_of(pixel)]);
+                precise vec3 more = sum + unpack_halves(source[texel_of(pixel)]);
                 sum = more;
                 count += 1.0;
             }
@@ -75,13 +75,12 @@ void main() {
     if (pixel.x >= int(params.width_px) || pixel.y >= int(params.height_px)) {
         return;
     }
-    uint first = gl_GlobalInvocationID.z * params.width_px * params.height_px;
     vec3 sum = vec3(0.0);
     float count = 0.0;
     // Each pixel of the box is in one quadrant: the axes are the first's, but for their other halves.
-    add_quadrant(first, pixel, ivec2(1, 1), uvec2(params.right, params.below), true, true, sum, count);
-    add_quadrant(first, pixel, ivec2(-1, 1), uvec2(params.left, params.below), true, false, sum, count);
-    add_quadrant(first, pixel, ivec2(1, -1), uvec2(params.right, params.above), false, true, sum, count);
-    add_quadrant(first, pixel, ivec2(-1, -1), uvec2(params.left, params.above), false, false, sum, count);
-    target[first + texel_of(pixel)] = pack_halves(sum / count, 0u);
+    add_quadrant(pixel, ivec2(1, 1), uvec2(params.right, params.below), true, true, sum, count);
+    add_quadrant(pixel, ivec2(-1, 1), uvec2(params.left, params.below), true, false, sum, count);
+    add_quadrant(pixel, ivec2(1, -1), uvec2(params.right, params.above), false, true, sum, count);
+    add_quadrant(pixel, ivec2(-1, -1), uvec2(params.left, params.above), false, false, sum, count);
+    target[params.target_first + texel_of(pixel)] = pack_halves(sum / count, 0u);
 }

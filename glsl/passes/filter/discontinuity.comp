@@ -11,6 +11,8 @@ struct DiscontinuityParams {
     // Flagged where a neighbour lies farther off the pixel's tangent plane, in metres.
     float position_threshold;
     uint row_pitch;
+    // Pixels from one that is flagged to the next, in both directions.
+    uint stride;
 };
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
@@ -29,7 +31,9 @@ struct Point {
     bool surface;
 };
 
-Point point_at(uvec2 pixel) {
+// `texel`: one of those that are flagged.
+Point point_at(uvec2 texel) {
+    uvec2 pixel = texel * params.stride;
     uvec2 bits = normal_words(pixel);
     return Point(unpack_position(frame, position_words(pixel), pixel), unpack_normal(bits), has_surface(bits));
 }
@@ -43,10 +47,10 @@ bool differ(Point point, Point other) {
 
 void main() {
     uvec2 first = gl_GlobalInvocationID.xy * uvec2(COLUMNS, ROWS);
-    if (first.x >= frame.width_px || first.y >= frame.height_px) {
+    uvec2 last = (uvec2(frame.width_px, frame.height_px) - 1u) / params.stride;
+    if (first.x > last.x || first.y > last.y) {
         return;
     }
-    uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
     Point above[COLUMNS + 1u];
     for (uint x = 0u; x <= COLUMNS; x++) {
         above[x] = point_at(uvec2(min(first.x + x, last.x), first.y));

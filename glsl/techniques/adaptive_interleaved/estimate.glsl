@@ -1,4 +1,4 @@
-// A pixel's estimate of one component, iteration by iteration: the part of Listing 1 (Dubla 2009, section 3.1) that all
+// A texel's estimate of one component, iteration by iteration: the part of Listing 1 (Dubla 2009, section 3.1) that all
 // components share. What differs is the component's own file: `contribute`, and in guidance.glsl `refines`.
 //
 // The including shader has the axes POSITION and COMPONENT.
@@ -15,14 +15,14 @@ layout(push_constant) uniform Push { AdaptiveParams params; };
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 1) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 2) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
-// Shadow rays of a pixel.
+// Shadow rays of a texel.
 layout(std430, set = 0, binding = 4) buffer Rays { uint rays[]; };
-// The mean of the iterations, as halves: one component behind the other, each in frame order.
+// The mean of the iterations, as halves.
 layout(std430, set = 0, binding = 5) writeonly buffer Irradiance { uvec2 irradiance[]; };
 
 #include "bvh_walk.glsl"
 
-// What a pixel shows.
+// What the pixel of a texel shows.
 struct Point {
     vec3 position_ws;
     vec3 normal_ws;
@@ -37,13 +37,10 @@ struct Estimate {
 
 const Estimate NO_ESTIMATE = Estimate(vec3(0.0), 0.0, 0u);
 
-Point point_at(uvec2 pixel) {
+Point point_at(uvec2 texel) {
+    uvec2 pixel = texel * params.scale;
     uvec2 bits = normal_words(pixel);
     return Point(unpack_position(frame, position_words(pixel), pixel), unpack_normal(bits), has_surface(bits));
-}
-
-bool is_in_frame(uvec2 pixel) {
-    return pixel.x < frame.width_px && pixel.y < frame.height_px;
 }
 
 #if defined(COMPONENT_ID)
@@ -61,7 +58,7 @@ void iterate(Point point, uint slot, uint from, uint end, inout Estimate estimat
     expect_done(iteration == max(from, end));
 }
 
-// The initial pass of a pixel.
+// The initial pass of a texel.
 Estimate initial_estimate(Point point, uint slot) {
     Estimate estimate = NO_ESTIMATE;
     if (point.has_surface) {
@@ -73,14 +70,10 @@ Estimate initial_estimate(Point point, uint slot) {
     return estimate;
 }
 
-uint texel_of(uvec2 pixel) {
-    return pixel.y * frame.width_px + pixel.x;
-}
-
-void write_mean(uvec2 pixel, Estimate estimate, uint iteration_count) {
+void write_mean(uint index, Estimate estimate, uint iteration_count) {
     precise vec3 mean = nan_if_cut(estimate.sum / float(iteration_count));
-    irradiance[params.irradiance_first + texel_of(pixel)] = pack_halves(mean, 0u);
-    rays[texel_of(pixel)] = estimate.ray_count;
+    irradiance[index] = pack_halves(mean, 0u);
+    rays[index] = estimate.ray_count;
 }
 
 #endif

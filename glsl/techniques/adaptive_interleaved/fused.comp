@@ -1,4 +1,4 @@
-// All three steps of one component in one dispatch: each tile iterates as often as it must, its pixels a thread each,
+// All three steps of one component in one dispatch: each tile iterates as often as it must, its texels a thread each,
 // as many whole tiles as a workgroup holds. Dubla 2009, Listing 1. Pass: src/techniques/adaptive_interleaved/fused.rs.
 // variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss
 #version 460
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 8) writeonly buffer Guidance { uint guidance[]; };
 
-// -1: beyond the frame, or no surface.
+// -1: beyond the component, or no surface.
 shared float found[REFINE_LANES];
 
 void main() {
@@ -21,11 +21,11 @@ void main() {
     uint tile = group * tiles_per_group + lane / size;
     uint slot = lane % size;
     bool has_tile = lane < tiles_per_group * size && tile < params.tile_count;
-    uvec2 pixel = pixel_of(params, tile, slot);
-    bool has_pixel = has_tile && is_in_frame(pixel);
+    uvec2 texel = texel_of(params, tile, slot);
+    bool is_own = has_tile && has_texel(params, texel);
     Point point = Point(vec3(0.0), vec3(0.0), false);
-    if (has_pixel) {
-        point = point_at(pixel);
+    if (is_own) {
+        point = point_at(texel);
     }
     Estimate estimate = initial_estimate(point, slot);
     found[lane] = estimate.information;
@@ -39,7 +39,7 @@ void main() {
             surface_count++;
         }
     }
-    if (!has_pixel) {
+    if (!is_own) {
         return;
     }
     uint further = further_iterations(params, information, surface_count);
@@ -49,7 +49,7 @@ void main() {
     } else {
         end = params.base;
     }
-    write_mean(pixel, estimate, end);
+    write_mean(index_of(params, texel), estimate, end);
     if (slot == 0u) {
         guidance[tile] = further;
     }

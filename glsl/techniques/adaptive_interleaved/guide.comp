@@ -2,14 +2,12 @@
 // Pass: src/techniques/adaptive_interleaved/refine.rs.
 // variants: COMPONENT=id|ss
 #version 460
-#include "frame.glsl"
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/guidance.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push { AdaptiveParams params; };
-layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 3) readonly buffer Estimates { vec4 estimates[]; };
 // Further iterations of each tile.
 layout(std430, set = 0, binding = 8) writeonly buffer Guidance { uint guidance[]; };
@@ -23,9 +21,9 @@ void main() {
     precise float information = 0.0;
     uint surface_count = 0u;
     for (uint slot = 0u; slot < tile_size(params); slot++) {
-        uvec2 pixel = pixel_of(params, tile, slot);
-        if (pixel.x < frame.width_px && pixel.y < frame.height_px) {
-            float found = estimates[pixel.y * frame.width_px + pixel.x].w;
+        uvec2 texel = texel_of(params, tile, slot);
+        if (has_texel(params, texel)) {
+            float found = estimates[index_of(params, texel)].w;
             if (found >= 0.0) {
                 information += found;
                 surface_count++;

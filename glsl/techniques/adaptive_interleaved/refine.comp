@@ -1,4 +1,4 @@
-// The refinement of one component: a pixel of a listed tile a thread. Dubla 2009, Listing 1, lines 14 to 19.
+// The refinement of one component: a texel of a listed tile a thread. Dubla 2009, Listing 1, lines 14 to 19.
 // Pass: src/techniques/adaptive_interleaved/refine.rs.
 // variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss
 #version 460
@@ -21,17 +21,18 @@ void main() {
     }
     uint tile = tiles[listed];
     uint slot = lane % tile_size(params);
-    uvec2 pixel = pixel_of(params, tile, slot);
-    if (!is_in_frame(pixel)) {
+    uvec2 texel = texel_of(params, tile, slot);
+    if (!has_texel(params, texel)) {
         return;
     }
-    Point point = point_at(pixel);
+    Point point = point_at(texel);
     if (!point.has_surface) {
         return;
     }
-    vec4 initial = estimates[texel_of(pixel)];
-    Estimate estimate = Estimate(initial.rgb, initial.w, rays[texel_of(pixel)]);
+    uint index = index_of(params, texel);
+    vec4 initial = estimates[index];
+    Estimate estimate = Estimate(initial.rgb, initial.w, rays[index]);
     uint end = params.base + guidance[tile];
     iterate(point, slot, params.base, end, estimate);
-    write_mean(pixel, estimate, end);
+    write_mean(index, estimate, end);
 }

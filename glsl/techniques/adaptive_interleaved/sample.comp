@@ -1,4 +1,4 @@
-// The initial pass of one component, a pixel a thread. Dubla 2009, Listing 1, lines 1 to 7.
+// The initial pass of one component, a texel a thread. Dubla 2009, Listing 1, lines 1 to 7.
 // Pass: src/techniques/adaptive_interleaved/sample.rs.
 // variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss
 #version 460
@@ -10,11 +10,12 @@ layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id
 layout(std430, set = 0, binding = 3) writeonly buffer Estimates { vec4 estimates[]; };
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (!is_in_frame(pixel)) {
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (!has_texel(params, texel)) {
         return;
     }
-    Estimate estimate = initial_estimate(point_at(pixel), slot_of(params, pixel));
-    estimates[texel_of(pixel)] = vec4(estimate.sum, estimate.information);
-    write_mean(pixel, estimate, params.base);
+    Estimate estimate = initial_estimate(point_at(texel), slot_of(params, texel));
+    uint index = index_of(params, texel);
+    estimates[index] = vec4(estimate.sum, estimate.information);
+    write_mean(index, estimate, params.base);
 }

@@ -1,13 +1,17 @@
-// Tiles of pixels, and what every pass of adaptive interleaved sampling knows of one component. Dubla 2009, section 3.
+// Tiles of texels, and what every pass of adaptive interleaved sampling knows of one component. Dubla 2009, section 3.
 // Twin of the arithmetic: src/techniques/adaptive_interleaved/sampler.rs.
 #ifndef ADAPTIVE_INTERLEAVED_TILE_GLSL
 #define ADAPTIVE_INTERLEAVED_TILE_GLSL
 
 struct AdaptiveParams {
-    // Size of a tile in pixels, N x M.
+    // Texels of the component: the frame's pixels, or each scale-th of them in both directions.
+    uint width;
+    uint height;
+    uint scale;
+    // Size of a tile in texels, N x M.
     uint tile_x;
     uint tile_y;
-    // Tiles in a row of the frame, and in all of it; those at its right and lower edge may be cut.
+    // Tiles in a row of the component, and in all of it; those at its right and lower edge may be cut.
     uint tile_columns;
     uint tile_count;
     // Iterations of the initial pass, and at most with those of the refinement.
@@ -15,8 +19,6 @@ struct AdaptiveParams {
     uint most;
     // 1: every tile refines to the most (--mode max).
     uint refines_all;
-    // Where the component's irradiance begins in its buffer, in texels.
-    uint irradiance_first;
     // Virtual point lights, or area lights.
     uint source_count;
     // Punctual lights.
@@ -29,17 +31,22 @@ uint tile_size(AdaptiveParams params) {
     return params.tile_x * params.tile_y;
 }
 
-// The place of a pixel in its tile, row-major: which of the sampler's samples are its own.
-uint slot_of(AdaptiveParams params, uvec2 pixel) {
-    return pixel.y % params.tile_y * params.tile_x + pixel.x % params.tile_x;
+// The place of a texel in its tile, row-major: which of the sampler's samples are its own.
+uint slot_of(AdaptiveParams params, uvec2 texel) {
+    return texel.y % params.tile_y * params.tile_x + texel.x % params.tile_x;
 }
 
-uint tile_of(AdaptiveParams params, uvec2 pixel) {
-    return pixel.y / params.tile_y * params.tile_columns + pixel.x / params.tile_x;
+bool has_texel(AdaptiveParams params, uvec2 texel) {
+    return texel.x < params.width && texel.y < params.height;
 }
 
-// It may lie beyond the frame.
-uvec2 pixel_of(AdaptiveParams params, uint tile, uint slot) {
+// Its place in the component's buffers.
+uint index_of(AdaptiveParams params, uvec2 texel) {
+    return texel.y * params.width + texel.x;
+}
+
+// It may lie beyond the component.
+uvec2 texel_of(AdaptiveParams params, uint tile, uint slot) {
     uvec2 corner = uvec2(tile % params.tile_columns, tile / params.tile_columns) * uvec2(params.tile_x, params.tile_y);
     return corner + uvec2(slot % params.tile_x, slot / params.tile_x);
 }

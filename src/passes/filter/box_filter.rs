@@ -9,27 +9,27 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::passes::filter::box_filter::{COMP, MOST_REACH};
 use crate::gpu::shader::structs::BoxParams;
-use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::units::Extent;
 use std::sync::Arc;
 
-/// The pass over all layers of a buffer of irradiance.
+/// The pass over a buffer of irradiance.
 pub struct BoxFilter {
     label: String,
     pipeline: ComputePipeline,
     params: BoxParams,
-    layer_count: u32,
 }
 
 impl BoxFilter {
-    /// `size_px`: of the box, at most twice `MOST_REACH` each.
+    /// `size_px`: of the box, at most twice `MOST_REACH` each. `target_first`: texel of the target at which it begins
+    /// to write.
     pub fn new(
         gpu: &Arc<Gpu>,
         label: String,
         workgroup: &[(&'static str, u32)],
         extent: Extent,
         size_px: [u32; 2],
-        layer_count: u32,
+        target_first: u32,
     ) -> Result<Self> {
         let [width, height] = size_px;
         let (right, below) = (width / 2, height / 2);
@@ -41,31 +41,33 @@ impl BoxFilter {
             right,
             above: (height - 1) / 2,
             below,
-            _unused: [0; 2],
+            target_first,
+            _unused: 0,
         };
-        Ok(Self { label, pipeline: ComputePipeline::new(gpu, &COMP, workgroup)?, params, layer_count })
+        Ok(Self { label, pipeline: ComputePipeline::new(gpu, &COMP, workgroup)?, params })
     }
 
+    /// `becomes_writable`: the target's barrier.
     pub fn record(
         &self,
         cmd: &mut Commands,
         source: Edge<'_, Buffer>,
         flags: Edge<'_, Buffer>,
         target: &Buffer,
+        becomes_writable: Barrier,
     ) -> Result<()> {
         let BoxParams { width_px, height_px, left, right, above, below, .. } = self.params;
-        let texels = u64::from(width_px) * u64::from(height_px) * u64::from(self.layer_count);
+        let texels = u64::from(width_px) * u64::from(height_px);
         let taps = u64::from(left + right + 1) * u64::from(above + below + 1);
         let traffic = Traffic { read_bytes: texels * taps * 12, written_bytes: texels * 8, invocations: Some(texels) };
         cmd.pass(&self.label, traffic, |cmd| {
-            cmd.barriers([source.to(Access::ComputeRead), flags.to(Access::ComputeRead)]);
-            cmd.barriers([target.discard(Access::ComputeWrite)]);
+            cmd.barriers([source.to(Access::ComputeRead), flags.to(Access::ComputeRead), becomes_writable]);
             let bound = [
                 ("Source", Bound::Buffer(source.resource)),
                 ("Flags", Bound::Buffer(flags.resource)),
                 ("Target", Bound::Buffer(target)),
             ];
-            let groups = self.pipeline.groups([width_px, height_px, self.layer_count]);
+            let groups = self.pipeline.groups([width_px, height_px, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })
     }

@@ -19,17 +19,17 @@ use crate::plan::Plan;
 use crate::settings::PositionStorage;
 use std::sync::Arc;
 
-/// Full name of the flags of `technique`.
-pub fn flags(technique: &str) -> String {
-    format!("{technique}.discontinuity.flags")
+/// Full name of the flags that the pass of this full name writes.
+pub fn flags(label: &str) -> String {
+    format!("{label}.flags")
 }
 
-/// Plans the flags of `technique` and their pass. `texel_count`: pixels of the frame, and what pads its rows.
-pub fn plan(plan: &mut Plan, technique: &str, texel_count: u64, position: PositionStorage) {
-    let flags = flags(technique);
+/// Plans the pass `label` of `technique` and its flags. `texel_count`: pixels that are flagged, and what pads their rows.
+pub fn plan(plan: &mut Plan, technique: &str, label: &str, texel_count: u64, position: PositionStorage) {
+    let flags = flags(label);
     plan.buffer("discontinuity", &flags, texel_count * 4);
     let surface = gbuffer::surface(technique, position);
-    plan.pass(format!("{technique}.discontinuity"), surface.into_iter().chain([(flags, Access::ComputeWrite)]));
+    plan.pass(label.to_owned(), surface.into_iter().chain([(flags, Access::ComputeWrite)]));
 }
 
 /// Columns that a thread flags at most: 1024x768 take 7.9 ms with 1, 6.5 with 2, 6.3 with 4, 9.7 with 8 (rows of 8;
@@ -46,11 +46,11 @@ pub struct Discontinuity {
 }
 
 impl Discontinuity {
-    /// The pass of `technique`, whose G-buffer has positions as `position` says. `workgroup`: WORKGROUP_X and WORKGROUP_Y;
-    /// `rows`: of pixels that a thread flags, at least 1.
+    /// The pass of this full name, over a G-buffer that has positions as `position` says. `workgroup`: WORKGROUP_X and
+    /// WORKGROUP_Y; `rows`: of pixels that a thread flags, at least 1.
     pub fn new(
         gpu: &Arc<Gpu>,
-        technique: &str,
+        label: String,
         position: PositionStorage,
         workgroup: &[(&'static str, u32)],
         rows: u32,
@@ -60,7 +60,7 @@ impl Discontinuity {
         let columns = rows.min(MOST_COLUMNS);
         let constants = [workgroup, &[("COLUMNS", columns), ("ROWS", rows)]].concat();
         let pipeline = ComputePipeline::new(gpu, shader, &constants)?;
-        Ok(Self { label: format!("{technique}.discontinuity"), pipeline, params, columns, rows })
+        Ok(Self { label, pipeline, params, columns, rows })
     }
 
     /// Hands the G-buffer on as it leaves it.
@@ -71,7 +71,7 @@ impl Discontinuity {
         gbuffer: Edge<'a, GBuffer>,
         flags: &Buffer,
     ) -> Result<Edge<'a, GBuffer>> {
-        let extent = gbuffer.resource.extent();
+        let extent = gbuffer.resource.extent().reduced(self.params.stride);
         let pixels = extent.pixel_count();
         let [across, down] = [extent.width.div_ceil(self.columns), extent.height.div_ceil(self.rows)];
         let threads = u64::from(across) * u64::from(down);

@@ -10,6 +10,7 @@ pub mod discontinuity;
 pub mod gauss;
 pub mod gauss_fast;
 pub mod gauss_pack;
+pub mod upsample;
 
 pub use all::Filter;
 

@@ -1,4 +1,5 @@
-//! Adaptive interleaved sampling: both ways to refine, and positions as the G-buffer stores them.
+//! Adaptive interleaved sampling: both ways to refine, positions as the G-buffer stores them, lists of lights for
+//! glass.
 
 use super::super::case::{Group, Place, Twin};
 use crate::selftest::cases::bounds::{AGAIN, CUT, ROUNDING, SAME, WHOLE};
@@ -37,6 +38,15 @@ pub const GROUPS: &[Group] = &[
         twin: Twin::Method(&[("position", "float")]),
         methods: &[&[("position", "half")], &[("position", "unorm16")], &[("position", "depth")]],
         must: Must::Near(super::baselines::POSITIONS),
+    },
+    Group {
+        name: "glass",
+        technique: NAME,
+        place: Place::Scene("fence:lights=6"),
+        common: &[],
+        twin: Twin::Method(&[("light-lists", "none")]),
+        methods: &[&[]],
+        must: Must::Equal(ROUNDING),
     },
     Group {
         name: "submits",

@@ -1,7 +1,7 @@
 //! Guidance as heat maps (Dubla 2009, figures 3 to 5), iterations, rays, and each component's irradiance before and
 //! after its filter, read back after a frame.
 
-use super::choices::Choices;
+use super::choices::{Choices, ComponentChoice};
 use super::counters::{self, words};
 use super::frame::AdaptiveFrame;
 use super::settings::{Component, Mode};
@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
 use crate::picture::{Aov, AovChannels};
-use crate::techniques::adaptive_interleaved::plan::IRRADIANCE_BYTES;
+use crate::techniques::adaptive_interleaved::resources::IRRADIANCE_BYTES;
 use std::sync::Arc;
 
 const FLAGS: &str = "discontinuity.flags";
@@ -39,9 +39,9 @@ pub const AOVS: &[&str] = &[
 enum Stage {
     /// Part of the most further iterations that a tile asks for, as a colour.
     Guidance,
-    /// Iterations of a tile's pixels.
+    /// Iterations of a tile's texels.
     Iterations,
-    /// Shadow rays of a pixel.
+    /// Shadow rays of a texel.
     Rays,
     /// Irradiance before the filter.
     Irradiance,
@@ -65,9 +65,8 @@ fn stage_of(name: &str) -> Option<(Stage, Component)> {
 /// Those that the settings leave out, with the reason.
 pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
     let mut left_out = Vec::new();
-    let is_unfiltered = "with --tile 1x1 nothing is filtered; a larger --tile is".to_owned();
-    if !choices.is_filtered() {
-        left_out.push((FLAGS, is_unfiltered.clone()));
+    if choices.components.iter().all(ComponentChoice::is_reduced) {
+        left_out.push((FLAGS, "no component is estimated at every pixel; --id-scale 1 does so".to_owned()));
     }
     for name in AOVS {
         let Some((stage, component)) = stage_of(name) else { continue };
@@ -75,8 +74,6 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
             left_out.push((*name, format!("--components does not list {}", component.name())));
         } else if matches!(stage, Stage::Guidance | Stage::Iterations) && choices.mode == Mode::Igi {
             left_out.push((*name, "--mode igi refines no tile; adaptive and max do".to_owned()));
-        } else if stage == Stage::Filtered && !choices.is_filtered() {
-            left_out.push((*name, is_unfiltered.clone()));
         }
     }
     left_out
@@ -88,7 +85,7 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
 pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
     let is_made = "a stage that the settings leave out is refused";
     if name == FLAGS {
-        let flags = &frame.filter.as_ref().expect(is_made).flags;
+        let flags = frame.smoothing.flags().expect(is_made);
         let channels = AovChannels::YU32(words(gpu, flags, Access::ComputeRead)?);
         return Ok(Aov { name: name.to_owned(), channels });
     }
@@ -108,9 +105,17 @@ pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
             let further = counters::further_iterations(steps, gpu)?;
             AovChannels::YU32(of_tiles(frame, steps, &further, |further| params.base + further))
         }
-        Stage::Rays => AovChannels::YU32(words(gpu, &steps.buffers.rays, Access::ComputeWrite)?),
-        Stage::Irradiance => AovChannels::Rgb(layer(frame, gpu, &frame.irradiance, index)?),
-        Stage::Filtered => AovChannels::Rgb(layer(frame, gpu, &frame.filter.as_ref().expect(is_made).filtered, index)?),
+        Stage::Rays => {
+            let rays = words(gpu, &steps.buffers.rays, Access::ComputeWrite)?;
+            AovChannels::YU32(of_texels(frame, steps, |[x, y]| rays[(y * params.width + x) as usize]))
+        }
+        Stage::Irradiance => {
+            let buffer = &steps.buffers.irradiance;
+            let bytes = readback::buffer(gpu, buffer, buffer.bytes, Access::ComputeRead)?;
+            let texels: Vec<[f32; 3]> = decode::words(&bytes).map(decode::halves).collect();
+            AovChannels::Rgb(of_texels(frame, steps, |[x, y]| texels[(y * params.width + x) as usize]))
+        }
+        Stage::Filtered => AovChannels::Rgb(layer(frame, gpu, &frame.smoothing.filtered, index)?),
     };
     Ok(Aov { name: name.to_owned(), channels })
 }
@@ -122,9 +127,14 @@ fn heat(part: f32) -> [f32; 3] {
 
 /// Each pixel with what its tile has.
 fn of_tiles<T>(frame: &AdaptiveFrame, steps: &ComponentSteps, tiles: &[u32], shown: impl Fn(u32) -> T) -> Vec<T> {
-    let extent = frame.gbuffer.extent();
+    of_texels(frame, steps, |texel| shown(tiles[steps.buffers.params.tile_of(texel) as usize]))
+}
+
+/// Each pixel with what its component's texel has, which is that of several pixels where there are fewer.
+fn of_texels<T>(frame: &AdaptiveFrame, steps: &ComponentSteps, shown: impl Fn([u32; 2]) -> T) -> Vec<T> {
+    let (extent, scale) = (frame.gbuffer.extent(), steps.buffers.params.scale);
     let pixels = (0..extent.height).flat_map(|y| (0..extent.width).map(move |x| [x, y]));
-    pixels.map(|pixel| shown(tiles[steps.buffers.params.tile_of(pixel) as usize])).collect()
+    pixels.map(|pixel| shown(pixel.map(|side| side / scale))).collect()
 }
 
 /// One component's irradiance.

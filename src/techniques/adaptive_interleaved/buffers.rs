@@ -2,72 +2,47 @@
 
 use super::choices::ComponentChoice;
 use super::components::Samples;
-use super::resources::{NAME, of_component};
+use super::resources::of_component;
 use super::settings::Component;
-use crate::bvh::Bvh;
-use crate::bvh::flat::flattened;
 use crate::error::Result;
 use crate::gpu::shader::structs::AdaptiveParams;
 use crate::gpu::shader::techniques::adaptive_interleaved::bins::REFINE_ROW;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
+use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::GBuffer;
 use crate::plan::Resources;
 use std::sync::Arc;
 
-/// The tree that shadow rays walk.
-pub struct TreeGpu {
-    nodes: Buffer,
-    triangles: Buffer,
-}
-
-impl TreeGpu {
-    /// Takes the planned buffers and fills them.
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, tree: &Bvh) -> Result<Self> {
-        let mut filled = |what: &str, bytes: &[u8]| {
-            let buffer = resources.buffer(&format!("{NAME}.{what}"));
-            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;
-            Result::Ok(buffer)
-        };
-        Ok(Self {
-            nodes: filled("bvh.nodes", bytemuck::cast_slice(&flattened(&tree.nodes)))?,
-            triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
-        })
-    }
-}
-
 /// What the passes of every component share.
 pub struct Shared<'a> {
     pub frame: &'a Buffer,
-    pub tree: &'a TreeGpu,
-    pub irradiance: &'a Buffer,
+    /// The scene's own lights, and the tree that shadow rays walk.
+    pub direct: &'a DirectGpu,
 }
 
 /// The buffers of one component.
 pub struct ComponentBuffers {
     pub component: Component,
     pub params: AdaptiveParams,
-    sources: Buffer,
-    lights: Buffer,
+    /// Its samples: read by blended surfaces too, where they are virtual lights.
+    pub sources: Buffer,
     pub rays: Buffer,
+    /// As it is estimated.
+    pub irradiance: Buffer,
 }
 
 impl ComponentBuffers {
     /// Takes what `plan` put in, and fills what the host makes.
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choice: &ComponentChoice, samples: &Samples) -> Result<Self> {
         let key = choice.component.name();
-        let mut filled = |what: &str, bytes: &[u8]| {
-            let buffer = resources.buffer(&of_component(what, key));
-            upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;
-            Result::Ok(buffer)
-        };
-        let sources = filled("sources", &samples.sources)?;
-        let lights = filled("lights", bytemuck::cast_slice(&samples.lights))?;
+        let sources = resources.buffer(&of_component("sources", key));
+        upload::buffer(gpu, &sources, &samples.sources, Access::ComputeRead | Access::GraphicsRead)?;
         Ok(Self {
             component: choice.component,
             params: choice.params,
             sources,
-            lights,
             rays: resources.buffer(&of_component("rays", key)),
+            irradiance: resources.buffer(&of_component("irradiance", key)),
         })
     }
 
@@ -75,12 +50,12 @@ impl ComponentBuffers {
     pub fn bound<'a>(&'a self, shared: &Shared<'a>, gbuffer: &'a GBuffer) -> Vec<(&'static str, Bound<'a>)> {
         let mut bound = vec![
             ("Frame", Bound::Buffer(shared.frame)),
-            ("BvhNodes", Bound::Buffer(&shared.tree.nodes)),
-            ("BvhTriangles", Bound::Buffer(&shared.tree.triangles)),
+            ("BvhNodes", Bound::Buffer(&shared.direct.bvh_nodes)),
+            ("BvhTriangles", Bound::Buffer(&shared.direct.bvh_triangles)),
             ("Rays", Bound::Buffer(&self.rays)),
-            ("Irradiance", Bound::Buffer(shared.irradiance)),
+            ("Irradiance", Bound::Buffer(&self.irradiance)),
             ("Sources", Bound::Buffer(&self.sources)),
-            ("Lights", Bound::Buffer(&self.lights)),
+            ("Lights", Bound::Buffer(&shared.direct.lights)),
         ];
         bound.extend(gbuffer.bound_surface());
         bound

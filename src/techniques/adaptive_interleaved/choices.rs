@@ -2,10 +2,14 @@
 
 use super::components::SampleCount;
 use super::resources::NAME;
-use super::settings::{Component, Mode, Refine};
+use super::settings::{self, Component, Mode, Refine};
 use crate::error::{Error, Result};
-use crate::gpu::shader::structs::AdaptiveParams;
-use crate::settings::PositionStorage;
+use crate::gpu::shader::structs::{AdaptiveParams, LightBlock};
+use crate::lights::object_lists::ObjectLists;
+use crate::passes::{blend, direct};
+use crate::scene::Material;
+use crate::settings::{Brdf, DirectShadow, PositionStorage};
+use crate::shading::light;
 use crate::techniques::Inputs;
 use crate::units::Extent;
 
@@ -25,6 +29,12 @@ pub struct Choices {
     pub is_emissive: bool,
     /// In the order in which they are listed.
     pub components: Vec<ComponentChoice>,
+    /// The scene's own lights.
+    pub lights: Vec<LightBlock>,
+    /// Lists of those for what blends.
+    pub blended: ObjectLists,
+    /// Whether a drawn material has `Material::has_extras`.
+    extras: bool,
 }
 
 /// One component.
@@ -32,6 +42,18 @@ pub struct ComponentChoice {
     pub component: Component,
     pub count: SampleCount,
     pub params: AdaptiveParams,
+}
+
+impl ComponentChoice {
+    /// Texels at which it is estimated.
+    pub fn extent(&self) -> Extent {
+        Extent { width: self.params.width, height: self.params.height }
+    }
+
+    /// Whether it is estimated at fewer pixels than the frame has.
+    pub fn is_reduced(&self) -> bool {
+        self.params.scale > 1
+    }
 }
 
 impl Choices {
@@ -49,9 +71,7 @@ impl Choices {
         let diagonal = inputs.scene.lasting_bounds().diagonal();
         let vpl_clamp_m = values.length("vpl-clamp", diagonal);
         let base = values.integer("base") as u32;
-        let texel_count = extent.pixel_count() as u32;
-        let listed = (0u32..).zip(values.listed::<Component>("components"));
-        let components = listed.map(|(index, component)| {
+        let components = components(inputs).into_iter().map(|component| {
             let (method, key) = (component.method(), component.name());
             let most = method.most_iterations(values);
             if base > most {
@@ -60,23 +80,42 @@ impl Choices {
                 ))
                 .note(format!("--base {most} or fewer, or --{key}-max {base}")));
             }
+            let scale = method.scale(values);
+            let own = extent.reduced(scale);
+            if tile_x > own.width || tile_y > own.height {
+                let of = if scale > 1 {
+                    format!("{own} of {extent} pixels that {key} is estimated at")
+                } else {
+                    format!("picture's {extent}")
+                };
+                return Err(Error::request(format!("{NAME}: --tile {tile_x}x{tile_y} is larger than the {of}"))
+                    .note("a smaller --tile, or a larger --size"));
+            }
             let count = method.count(inputs, [tile_x, tile_y])?;
+            let columns = own.width.div_ceil(tile_x);
             let params = AdaptiveParams {
+                width: own.width,
+                height: own.height,
+                scale,
                 tile_x,
                 tile_y,
-                tile_columns: extent.width.div_ceil(tile_x),
-                tile_count: extent.width.div_ceil(tile_x) * extent.height.div_ceil(tile_y),
+                tile_columns: columns,
+                tile_count: columns * own.height.div_ceil(tile_y),
                 base,
                 most: if mode == Mode::Igi { base } else { most },
                 refines_all: u32::from(mode == Mode::Max),
-                irradiance_first: index * texel_count,
                 source_count: count.sources,
-                light_count: count.lights,
+                light_count: if count.has_lights { inputs.lights.lights.len() as u32 } else { 0 },
                 least_squared: vpl_clamp_m * vpl_clamp_m,
             };
             Ok(ComponentChoice { component, count, params })
         });
+        let components = components.collect::<Result<_>>()?;
+        let lights = direct::light_blocks(inputs.lights, values);
         Ok(Self {
+            blended: blend::lists(inputs.scene, &lights, values, inputs.caps)?,
+            lights,
+            extras: inputs.scene.drawn_materials().any(Material::has_extras),
             extent,
             position: values.choice("position"),
             workgroup: values.pair("workgroup"),
@@ -86,7 +125,7 @@ impl Choices {
             ray_offset: RAY_OFFSET * diagonal.max(1e-6),
             vpl_clamp_m,
             is_emissive: inputs.emissive_lights(),
-            components: components.collect::<Result<_>>()?,
+            components,
         })
     }
 
@@ -100,6 +139,18 @@ impl Choices {
         [("RAY_OFFSET", self.ray_offset.to_bits())]
     }
 
+    /// What blended surfaces are shaded with: diffuse, and in the shadows of punctual lights.
+    pub fn blend_constants(&self, inputs: &Inputs<'_>) -> [(&'static str, u32); 5] {
+        let [offset] = self.ray_constants();
+        [
+            ("BRDF_KIND", Brdf::Lambert as u32),
+            ("SURFACE_EXTRAS", u32::from(self.extras)),
+            ("LIGHT_KINDS", light::kinds(&inputs.lights.lights)),
+            ("DIRECT_SHADOW", DirectShadow::Ray as u32),
+            offset,
+        ]
+    }
+
     /// Whether tiles are refined by a dispatch of their own.
     pub fn has_refinement(&self) -> bool {
         self.mode != Mode::Igi && self.refine == Refine::Indirect
@@ -109,9 +160,12 @@ impl Choices {
     pub fn is_fused(&self) -> bool {
         self.mode != Mode::Igi && self.refine == Refine::Fused
     }
+}
 
-    /// A pattern of one pixel leaves nothing to smooth.
-    pub fn is_filtered(&self) -> bool {
-        self.tile_px != [1, 1]
-    }
+/// Those that are listed, or that light the scene.
+fn components(inputs: &Inputs<'_>) -> Vec<Component> {
+    settings::listed(inputs.values).unwrap_or_else(|| {
+        let shines = |component: &Component| component.method().shines(inputs);
+        [Component::Id, Component::Ss].into_iter().filter(shines).collect()
+    })
 }

@@ -29,14 +29,15 @@ impl Composite {
         Ok(Self { pipeline, params })
     }
 
-    pub fn record(
+    /// Hands the G-buffer on as it leaves it.
+    pub fn record<'a>(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
-        gbuffer: Edge<'_, GBuffer>,
+        gbuffer: Edge<'a, GBuffer>,
         irradiance: Edge<'_, Buffer>,
         color: &Image,
-    ) -> Result<()> {
+    ) -> Result<Edge<'a, GBuffer>> {
         let extent = color.description.extent;
         let pixels = extent.pixel_count();
         let layers = u64::from(self.params.component_count);
@@ -58,6 +59,7 @@ impl Composite {
             // It reads no position.
             let bound = self.pipeline.interface.own(&bound);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
-        })
+        })?;
+        Ok(gbuffer.after(Access::ComputeSample))
     }
 }

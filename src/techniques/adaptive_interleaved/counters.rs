@@ -9,7 +9,7 @@ use crate::gpu::{Access, Buffer, Gpu, readback};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Keys of a component's counters: rays a pixel, iterations a pixel, the part of the tiles that refine, and the part of
+/// Keys of a component's counters: rays a pixel, iterations a texel, the part of the tiles that refine, and the part of
 /// the refinement's lanes that wait for others.
 struct Keys {
     rays: &'static str,
@@ -49,7 +49,7 @@ pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static s
         let further = further_iterations(steps, gpu)?;
         let refined_count = further.iter().filter(|further| **further > 0).count();
         counters.insert(keys.rays, rays / pixels);
-        counters.insert(keys.iterations, mean_iterations(frame, steps, &further) / pixels);
+        counters.insert(keys.iterations, mean_iterations(steps, &further));
         counters.insert(keys.refined, refined_count as f64 / further.len() as f64);
         counters.insert(keys.idle, idle_part(further, steps.buffers.params.tile_size()));
     }
@@ -75,12 +75,13 @@ pub fn words(gpu: &Arc<Gpu>, buffer: &Buffer, last: Access) -> Result<Vec<u32>> 
     Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
-/// Summed over the pixels of the frame.
-fn mean_iterations(frame: &AdaptiveFrame, steps: &ComponentSteps, further: &[u32]) -> f64 {
-    let extent = frame.gbuffer.extent();
-    let tiles = (0u32..).zip(further);
-    let pixels_of = |tile| steps.buffers.params.pixels_of(tile, extent).count() as f64;
-    tiles.map(|(tile, further)| pixels_of(tile) * f64::from(steps.buffers.params.base + further)).sum()
+/// Mean over the component's texels.
+fn mean_iterations(steps: &ComponentSteps, further: &[u32]) -> f64 {
+    let params = &steps.buffers.params;
+    let iterations = (0u32..)
+        .zip(further)
+        .map(|(tile, further)| params.texels_of(tile).count() as f64 * f64::from(params.base + further));
+    iterations.sum::<f64>() / (f64::from(params.width) * f64::from(params.height))
 }
 
 /// Part of the lanes' time in the refinement in which they wait for the slowest of their workgroup: tiles are listed by

@@ -1,18 +1,17 @@
 //! Adaptive interleaved sampling on the device: its passes and its resources. `mod.rs` has their order.
 
-use super::buffers::TreeGpu;
 use super::choices::Choices;
 use super::components::Samples;
 use super::composite::Composite;
-use super::resources::{COLOR, FILTERED, IRRADIANCE, NAME};
+use super::resources::{COLOR, NAME, NO_VPLS};
+use super::settings::Component;
+use super::smooth::Smoothing;
 use super::steps::ComponentSteps;
 use crate::error::Result;
-use crate::gpu::shader::structs::DiscontinuityParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
-use crate::passes::filter::box_filter::BoxFilter;
-use crate::passes::filter::discontinuity::{self, Discontinuity};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
+use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, GBufferPass};
-use crate::passes::texels::Texels;
 use crate::plan::Resources;
 use crate::resident::{Coverage, SceneGpu};
 use crate::techniques::Inputs;
@@ -21,21 +20,39 @@ use std::sync::Arc;
 pub struct AdaptiveFrame {
     pub gbuffer_pass: GBufferPass,
     pub gbuffer: GBuffer,
-    pub tree: TreeGpu,
+    pub direct: DirectGpu,
     pub components: Vec<ComponentSteps>,
-    pub irradiance: Buffer,
-    /// None with tiles of one pixel.
-    pub filter: Option<Filter>,
+    pub smoothing: Smoothing,
     pub composite: Composite,
     pub color: Image,
+    /// What blends, and what it binds; None where nothing does.
+    pub blended: Option<Blended>,
 }
 
-/// Discontinuities, the box, and what it writes.
-pub struct Filter {
-    discontinuity: Discontinuity,
-    pub flags: Buffer,
-    filter: BoxFilter,
-    pub filtered: Buffer,
+/// BLEND surfaces over the finished picture.
+pub struct Blended {
+    blend: Blend,
+    lists: Buffer,
+    no_vpls: Buffer,
+}
+
+impl Blended {
+    fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        choices: &Choices,
+    ) -> Result<Option<Self>> {
+        let params = blend::all_lights(choices.vpl_clamp_m * choices.vpl_clamp_m);
+        let (constants, target) = (choices.blend_constants(inputs), BlendTarget::plain(&choices.blended));
+        let Some(blend) = Blend::new(gpu, scene, inputs.view, params, &constants, &target)? else { return Ok(None) };
+        Ok(Some(Self {
+            blend,
+            lists: blend::upload_lists(gpu, resources, NAME, &choices.blended)?,
+            no_vpls: resources.buffer(NO_VPLS),
+        }))
+    }
 }
 
 impl AdaptiveFrame {
@@ -54,52 +71,38 @@ impl AdaptiveFrame {
         Ok(Self {
             gbuffer_pass: GBufferPass::new(gpu, scene, list, position, has_emissive)?,
             gbuffer: GBuffer::new(gpu, resources, NAME, position, has_emissive)?,
-            tree: TreeGpu::new(gpu, resources, inputs.bvh.over(inputs.scene)?)?,
+            direct: DirectGpu::new(gpu, resources, NAME, &choices.lights, false, inputs.bvh.over(inputs.scene)?)?,
             components: components
                 .map(|(choice, samples)| ComponentSteps::new(gpu, resources, choices, choice, samples))
                 .collect::<Result<_>>()?,
-            irradiance: resources.buffer(IRRADIANCE),
-            filter: choices.is_filtered().then(|| Filter::new(gpu, inputs, resources, choices)).transpose()?,
+            smoothing: Smoothing::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, choices, has_emissive, scene.has_extras)?,
             color: resources.image(COLOR),
-        })
-    }
-}
-
-impl Filter {
-    fn new(gpu: &Arc<Gpu>, inputs: &Inputs<'_>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
-        let (values, diagonal) = (inputs.values, inputs.scene.lasting_bounds().diagonal());
-        let params = DiscontinuityParams {
-            normal_threshold: values.number("normal-threshold") as f32,
-            position_threshold: values.length("position-threshold", diagonal),
-            row_pitch: choices.extent.width,
-        };
-        let (workgroup, rows) = (choices.workgroup_constants(), Texels::new(values, inputs.caps).of_filter());
-        Ok(Self {
-            discontinuity: Discontinuity::new(gpu, NAME, choices.position, &workgroup, rows, params)?,
-            flags: resources.buffer(&discontinuity::flags(NAME)),
-            filter: BoxFilter::new(
-                gpu,
-                format!("{NAME}.filter"),
-                &workgroup,
-                choices.extent,
-                choices.tile_px,
-                choices.components.len() as u32,
-            )?,
-            filtered: resources.buffer(FILTERED),
+            blended: Blended::new(gpu, inputs, scene, resources, choices)?,
         })
     }
 
-    /// Hands the G-buffer on as it leaves it, and what it has filtered.
-    pub fn record<'a>(
-        &'a self,
+    /// BLEND surfaces, under the scene's own lights and the virtual ones. `gbuffer`: as the passes before left it.
+    pub fn record_blend(
+        &self,
         cmd: &mut Commands,
+        scene: &SceneGpu,
         frame: &Buffer,
-        gbuffer: Edge<'a, GBuffer>,
-        irradiance: Edge<'_, Buffer>,
-    ) -> Result<(Edge<'a, GBuffer>, Edge<'a, Buffer>)> {
-        let gbuffer = self.discontinuity.record(cmd, frame, gbuffer, &self.flags)?;
-        self.filter.record(cmd, irradiance, self.flags.from(Access::ComputeWrite), &self.filtered)?;
-        Ok((gbuffer, self.filtered.from(Access::ComputeWrite)))
+        gbuffer: Edge<'_, GBuffer>,
+    ) -> Result<()> {
+        let Some(Blended { blend, lists, no_vpls }) = &self.blended else { return Ok(()) };
+        let id = self.components.iter().find(|steps| steps.buffers.component == Component::Id);
+        let lights = BlendLights {
+            lights: &self.direct.lights,
+            vpls: id.map_or(no_vpls, |id| &id.buffers.sources),
+            subsets: no_vpls,
+            bvh_nodes: &self.direct.bvh_nodes,
+            bvh_triangles: &self.direct.bvh_triangles,
+            lists,
+            shadow_maps: None,
+        };
+        let depth = gbuffer.resource.depth_edge(Access::ComputeSample);
+        let solid = SolidPicture { depth, color: self.color.from(Access::ComputeWrite) };
+        blend.record(cmd, NAME, frame, scene, &lights, solid)
     }
 }

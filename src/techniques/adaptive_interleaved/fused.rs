@@ -1,8 +1,8 @@
 //! All three steps of a component in one dispatch: each tile iterates as often as it must (`--refine fused`). Dubla
 //! 2009, Listing 1. Shader: fused.comp.
 //! reads   the G-buffer, the tree, the component's samples
-//! writes  rays  buffer, 4 B a pixel    guidance  buffer, 4 B a tile
-//!         a stretch of adaptive_interleaved.irradiance  buffer, 8 B a pixel
+//! writes  rays  buffer, 4 B a texel    guidance  buffer, 4 B a tile
+//!         irradiance  buffer, 8 B a texel
 
 use super::buffers::{ComponentBuffers, Shared, rows_of_groups};
 use super::choices::{Choices, ComponentChoice};
@@ -12,7 +12,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::adaptive_interleaved::bins::REFINE_LANES;
 use crate::gpu::shader::techniques::adaptive_interleaved::fused::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
 
@@ -26,20 +26,19 @@ impl FusedPass {
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.ray_constants())? })
     }
 
-    /// `irradiance`: how its buffer becomes writable.
     pub fn record(
         &self,
         cmd: &mut Commands,
         buffers: &ComponentBuffers,
         shared: &Shared<'_>,
         gbuffer: Edge<'_, GBuffer>,
-        irradiance: Barrier,
         guidance: &Buffer,
     ) -> Result<()> {
-        cmd.pass(&buffers.label("sample"), sample::traffic(gbuffer.resource), |cmd| {
+        cmd.pass(&buffers.label("sample"), sample::traffic(buffers, gbuffer.resource), |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
-            cmd.barriers([&buffers.rays, guidance].map(|buffer| buffer.discard(Access::ComputeWrite)));
-            cmd.barriers([irradiance]);
+            cmd.barriers(
+                [&buffers.rays, &buffers.irradiance, guidance].map(|buffer| buffer.discard(Access::ComputeWrite)),
+            );
             let mut bound = buffers.bound(shared, gbuffer.resource);
             bound.push(("Guidance", Bound::Buffer(guidance)));
             let bound = self.pipeline.interface.own(&bound);

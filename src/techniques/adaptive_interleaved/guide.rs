@@ -2,7 +2,7 @@
 //! guide.comp.
 //! reads  estimates      writes  guidance  buffer, 4 B a tile, and bins  buffer, how many tiles have as many
 
-use super::buffers::{ComponentBuffers, Shared};
+use super::buffers::ComponentBuffers;
 use super::choices::ComponentChoice;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
@@ -26,7 +26,6 @@ impl GuidePass {
         &self,
         cmd: &mut Commands,
         buffers: &ComponentBuffers,
-        shared: &Shared<'_>,
         estimates: Edge<'_, Buffer>,
         guidance: &Buffer,
         bins: &Buffer,
@@ -43,7 +42,6 @@ impl GuidePass {
                 bins.from(Access::TransferWrite).to(Access::ComputeWrite),
             ]);
             let bound = [
-                ("Frame", Bound::Buffer(shared.frame)),
                 ("Estimates", Bound::Buffer(estimates.resource)),
                 ("Guidance", Bound::Buffer(guidance)),
                 ("Bins", Bound::Buffer(bins)),

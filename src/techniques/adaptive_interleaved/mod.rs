@@ -19,9 +19,13 @@
 //!   surface that turns away from an area light hides it itself (Listing 3)
 //! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do
 //! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
-//! - indirect light is estimated at every pixel; the paper's `AIS` and `A-MAX` do so at a quarter of them (section 4.1)
+//! - upsampling is guided by normals and by distances from the pixel's plane, where the paper has depths (section 4.1):
+//!   a
+//!   floor that is seen at a slant stays one surface
 //! - participating media (`pm`, section 3.4) are not there
-//! - BLEND surfaces are not drawn
+//! - BLEND surfaces are drawn over the picture: punctual lights cast shadows on them, virtual ones none, and area
+//!   lights do
+//!   not light them
 //!
 //! Equal to others: `--mode adaptive` where every tile refines to the most is `--mode max`; `--refine fused` and
 //! `indirect` are the same bits; with `--id-max` of all the tile's pixels `--mode max` lights every pixel by every
@@ -44,6 +48,7 @@ mod resources;
 mod sample;
 mod sampler;
 pub mod settings;
+mod smooth;
 mod steps;
 
 use super::bench_stage::BenchStage;
@@ -53,12 +58,12 @@ use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
-use crate::passes::gbuffer;
+use crate::passes::{blend, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
 use crate::sampling::pattern::Pattern;
-use crate::settings::{Setting, Values};
+use crate::settings::{LIGHT_LISTS, Setting, Values};
 use buffers::Shared;
 use choices::Choices;
 use frame::AdaptiveFrame;
@@ -92,7 +97,7 @@ impl Technique for AdaptiveInterleaved {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS]
+        &[settings::SETTINGS, LIGHT_LISTS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -103,8 +108,8 @@ impl Technique for AdaptiveInterleaved {
         &[("components", "ss"), ("refine", "fused")]
     }
 
-    fn needs(&self, _: &Values, _: &Caps, _: bool) -> Vec<Need> {
-        vec![gbuffer::need()]
+    fn needs(&self, _: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -113,8 +118,9 @@ impl Technique for AdaptiveInterleaved {
 
     /// Diffuse light of the components that are there: straight, by as many surfaces as light walks land on, or both.
     fn reference_settings(&self, values: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        let listed: Vec<Component> = values.listed("components");
-        let (has_id, has_ss) = (listed.contains(&Component::Id), listed.contains(&Component::Ss));
+        let listed = settings::listed(values);
+        let has = |component| listed.as_ref().is_none_or(|listed| listed.contains(&component));
+        let (has_id, has_ss) = (has(Component::Id), has(Component::Ss));
         let on_or_off = |is_on: bool| if is_on { "on" } else { "off" }.to_owned();
         let mut settings = vec![
             ("brdf", "lambert".to_owned()),
@@ -168,7 +174,13 @@ impl Prepared for PreparedAdaptive {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let emissive = if self.choices.is_emissive { "on" } else { "off" };
-        BTreeMap::from([("emissive", emissive.to_owned()), ("vpl-clamp", format!("{}", self.choices.vpl_clamp_m))])
+        let mut resolved =
+            BTreeMap::from([("emissive", emissive.to_owned()), ("vpl-clamp", format!("{}", self.choices.vpl_clamp_m))]);
+        let listed: Vec<&str> = self.choices.components.iter().map(|choice| choice.component.name()).collect();
+        resolved.insert("components", listed.join(","));
+        let id = self.choices.components.iter().find(|choice| choice.component == Component::Id);
+        resolved.extend(id.map(|id| ("id-scale", id.params.scale.to_string())));
+        resolved
     }
 
     fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart> {
@@ -179,11 +191,14 @@ impl Prepared for PreparedAdaptive {
             samples.push(component.method().samples(inputs, choices.tile_px)?);
             passes.push((of_component("samples", component.name()), started.elapsed().as_nanos() as u64));
         }
-        let counters = samples.iter().flat_map(|samples| samples.counters.iter().copied()).collect();
+        let own = samples.iter().flat_map(|samples| samples.counters.iter().copied());
+        let counters = own.chain(blend::counters(&choices.blended)).collect();
+        let of_id = choices.components.iter().find(|choice| choice.component == Component::Id);
+        let light_counts = [choices.lights.len() as u32, of_id.map_or(0, |id| id.params.source_count)];
         Ok(HostPart {
             passes,
             counters,
-            light_counts: [0, 0],
+            light_counts,
             build: Box::new(move |gpu, inputs, scene, resources| {
                 Ok(Box::new(AdaptiveFrame::new(gpu, inputs, scene, resources, &choices, &samples)?))
             }),
@@ -195,16 +210,14 @@ impl Frame for AdaptiveFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, &self.gbuffer)?;
         let mut gbuffer = self.gbuffer.from(Access::ColorWrite);
-        let shared = Shared { frame, tree: &self.tree, irradiance: &self.irradiance };
-        for (index, component) in self.components.iter().enumerate() {
-            gbuffer = component.record(cmd, &shared, gbuffer, index == 0)?;
+        let shared = Shared { frame, direct: &self.direct };
+        for component in &self.components {
+            gbuffer = component.record(cmd, &shared, gbuffer)?;
         }
-        let irradiance = self.irradiance.from(Access::ComputeWrite);
-        let (gbuffer, irradiance) = match &self.filter {
-            Some(filter) => filter.record(cmd, frame, gbuffer, irradiance)?,
-            None => (gbuffer, irradiance),
-        };
-        self.composite.record(cmd, frame, gbuffer, irradiance, &self.color)
+        let irradiance = self.components.iter().map(|steps| steps.buffers.irradiance.from(Access::ComputeWrite));
+        let (gbuffer, irradiance) = self.smoothing.record(cmd, frame, gbuffer, irradiance)?;
+        let gbuffer = self.composite.record(cmd, frame, gbuffer, irradiance, &self.color)?;
+        self.record_blend(cmd, scene, frame, gbuffer)
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
@@ -212,7 +225,7 @@ impl Frame for AdaptiveFrame {
     }
 
     fn picture(&self) -> (&Image, Access) {
-        (&self.color, Access::ComputeWrite)
+        (&self.color, if self.blended.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
     }
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {

@@ -1,7 +1,7 @@
 //! Refinement of a component: the further iterations of the listed tiles, dispatched from the device (Dubla 2009,
 //! Listing 1, lines 14 to 19). Shader: refine.comp.
 //! reads   the G-buffer, the tree, the component's samples, tiles, guidance, bins, estimates
-//! writes  rays and the stretch of adaptive_interleaved.irradiance, of the pixels of those tiles
+//! writes  rays and irradiance of the texels of those tiles
 
 use super::buffers::{ComponentBuffers, Shared};
 use super::choices::{Choices, ComponentChoice};

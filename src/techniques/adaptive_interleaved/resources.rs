@@ -5,11 +5,14 @@ pub const NAME: &str = "adaptive_interleaved";
 /// The finished picture.
 pub const COLOR: &str = "adaptive_interleaved.composite.color";
 
-/// Irradiance of all components as they are estimated, one behind the other, each in frame order, 8 B a pixel.
-pub const IRRADIANCE: &str = "adaptive_interleaved.irradiance";
-
-/// The same filtered. None with tiles of one pixel.
+/// Irradiance of all components as it lights the frame, one behind the other, each in frame order, 8 B a pixel.
 pub const FILTERED: &str = "adaptive_interleaved.filter.irradiance";
+
+/// An empty list of virtual point lights.
+pub const NO_VPLS: &str = "adaptive_interleaved.vpls";
+
+/// Bytes of a texel's irradiance.
+pub const IRRADIANCE_BYTES: u64 = 8;
 
 /// Full name of a resource or a pass of a component, whose key ends it.
 pub fn of_component(what: &str, key: &str) -> String {

@@ -6,30 +6,30 @@
 
 use crate::gpu::shader::structs::AdaptiveParams;
 use crate::gpu::shader::techniques::adaptive_interleaved::guidance::ROUNDING_GRACE;
-use crate::units::Extent;
 
 impl AdaptiveParams {
-    /// Pixels of a tile.
+    /// Texels of a tile.
     pub fn tile_size(&self) -> u32 {
         self.tile_x * self.tile_y
     }
 
-    /// The place of a pixel in its tile, row-major.
+    /// The place of a texel in its tile, row-major.
     pub fn slot_of(&self, [x, y]: [u32; 2]) -> u32 {
         y % self.tile_y * self.tile_x + x % self.tile_x
     }
 
-    /// The tile of a pixel, row-major.
+    /// The tile of a texel, row-major.
     pub fn tile_of(&self, [x, y]: [u32; 2]) -> u32 {
         y / self.tile_y * self.tile_columns + x / self.tile_x
     }
 
-    /// Pixels of a tile that lie in the frame, row-major.
-    pub fn pixels_of(&self, tile: u32, extent: Extent) -> impl Iterator<Item = [u32; 2]> + use<> {
+    /// Texels of a tile that the component has, row-major.
+    pub fn texels_of(&self, tile: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
         let corner = [tile % self.tile_columns * self.tile_x, tile / self.tile_columns * self.tile_y];
         let [tile_x, tile_y] = [self.tile_x, self.tile_y];
-        let pixels = (0..tile_y).flat_map(move |y| (0..tile_x).map(move |x| [corner[0] + x, corner[1] + y]));
-        pixels.filter(move |[x, y]| *x < extent.width && *y < extent.height)
+        let (width, height) = (self.width, self.height);
+        let texels = (0..tile_y).flat_map(move |y| (0..tile_x).map(move |x| [corner[0] + x, corner[1] + y]));
+        texels.filter(move |[x, y]| *x < width && *y < height)
     }
 
     /// Stretch of the virtual point lights that a pixel is lit by in an iteration: [first, end].
@@ -112,13 +112,12 @@ mod tests {
 
         #[test]
         fn every_pixel_of_the_frame_is_in_one_tile(x in 1u32..=8, y in 1u32..=8, width in 1u32..40, height in 1u32..40) {
-            let extent = Extent { width, height };
             let columns = width.div_ceil(x);
-            let params = AdaptiveParams { tile_columns: columns, ..params([x, y], 1, 1) };
+            let params = AdaptiveParams { width, height, tile_columns: columns, ..params([x, y], 1, 1) };
             let mut pixels: Vec<[u32; 2]> =
-                (0..columns * height.div_ceil(y)).flat_map(|tile| params.pixels_of(tile, extent)).collect();
+                (0..columns * height.div_ceil(y)).flat_map(|tile| params.texels_of(tile)).collect();
             prop_assert!(pixels.iter().all(|pixel| params.slot_of(*pixel) < params.tile_size()));
-            let is_of = |tile: u32| params.pixels_of(tile, extent).all(|pixel| params.tile_of(pixel) == tile);
+            let is_of = |tile: u32| params.texels_of(tile).all(|pixel| params.tile_of(pixel) == tile);
             prop_assert!((0..columns * height.div_ceil(y)).all(is_of));
             pixels.sort_unstable_by_key(|[x, y]| [*y, *x]);
             let every: Vec<[u32; 2]> = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();

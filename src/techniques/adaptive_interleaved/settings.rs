@@ -46,10 +46,12 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "components",
         kind: Kind::Words(Component::WORDS),
-        default: "id,ss",
+        auto: true,
+        default: "auto",
         paper: "Dubla 2009, 3",
         help: "Light that is estimated, each with its own samples, guidance and filter: indirect diffuse light from \
-               virtual point lights (id), soft shadows of area lights and hard ones of punctual lights (ss)",
+               virtual point lights (id), soft shadows of area lights and hard ones of punctual lights (ss); auto: both, \
+               and ss only where anything shines",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -89,6 +91,18 @@ pub const SETTINGS: &[Setting] = &[
                that a pixel is lit by; at most the pixels of --tile, with as many every light is counted",
         unread: |values| without(values, Component::Id),
         ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "id-scale",
+        kind: Kind::Integer { min: 1, max: 4 },
+        auto: true,
+        default: "auto",
+        paper: "Dubla 2009, 4.1",
+        help: "Indirect light is estimated at each pixel (1), or at each second, third or fourth in both directions and \
+               upsampled, guided by normals and positions; auto: 2, a quarter of the pixels, and 1 with --mode igi, as \
+               the paper compares them",
+        unread: |values| without(values, Component::Id),
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "ss-max",
@@ -145,6 +159,12 @@ pub const SETTINGS: &[Setting] = &[
     WORKGROUP,
 ];
 
+/// Those of `--components`; None: `auto`.
+pub fn listed(values: &Values) -> Option<Vec<Component>> {
+    values.unless_auto("components", Values::listed)
+}
+
 fn without(values: &Values, component: Component) -> Option<Unread> {
+    listed(values)?;
     Unread::unlisted(values, "components", component.name(), "it is not estimated")
 }

@@ -92,38 +92,32 @@ impl ComponentSteps {
         }
     }
 
-    /// Records its passes. `is_first`: no component before it has written its own stretch of the irradiance. Hands the
-    /// G-buffer on as it leaves it.
+    /// Records its passes. Hands the G-buffer on as it leaves it.
     pub fn record<'a>(
         &self,
         cmd: &mut Commands,
         shared: &Shared<'_>,
         gbuffer: Edge<'a, GBuffer>,
-        is_first: bool,
     ) -> Result<Edge<'a, GBuffer>> {
         let buffers = &self.buffers;
-        let irradiance = match is_first {
-            true => shared.irradiance.discard(Access::ComputeWrite),
-            false => shared.irradiance.from(Access::ComputeWrite).to(Access::ComputeWrite),
-        };
         let sampled = gbuffer.after(Access::ComputeSample);
         match &self.steps {
             Steps::Initial { sample, estimates } => {
-                sample.record(cmd, buffers, shared, gbuffer, irradiance, estimates)?;
+                sample.record(cmd, buffers, shared, gbuffer, estimates)?;
             }
-            Steps::Fused { fused, guidance } => fused.record(cmd, buffers, shared, gbuffer, irradiance, guidance)?,
+            Steps::Fused { fused, guidance } => fused.record(cmd, buffers, shared, gbuffer, guidance)?,
             Steps::Apart { sample, estimates, refinement } => {
                 let Refinement { guide, compact, refine, guidance, bins, tiles } = refinement;
-                sample.record(cmd, buffers, shared, gbuffer, irradiance, estimates)?;
+                sample.record(cmd, buffers, shared, gbuffer, estimates)?;
                 let written = |buffer| Buffer::from(buffer, Access::ComputeWrite);
-                guide.record(cmd, buffers, shared, written(estimates), guidance, bins)?;
+                guide.record(cmd, buffers, written(estimates), guidance, bins)?;
                 compact.record(cmd, buffers, written(guidance), written(bins), tiles)?;
                 let listed = Listed {
                     // The guidance has read them, and the list was made from it.
                     estimates: written(estimates).after(Access::ComputeRead),
                     guidance: written(guidance).after(Access::ComputeRead),
                     rays: written(&buffers.rays),
-                    irradiance: written(shared.irradiance),
+                    irradiance: written(&buffers.irradiance),
                     bins: written(bins),
                     tiles: written(tiles),
                 };

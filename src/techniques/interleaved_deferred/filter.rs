@@ -15,6 +15,9 @@ use crate::techniques::Inputs;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
+/// The pass that flags.
+const DISCONTINUITY: &str = "interleaved_deferred.discontinuity";
+
 /// Discontinuities, the filter, and what they write.
 pub struct FilterStage {
     discontinuity: Discontinuity,
@@ -55,7 +58,7 @@ fn with_setup<T>(choices: &Choices, made: impl FnOnce(&FilterSetup<'_>) -> T) ->
 }
 
 fn plan_discontinuities(plan: &mut Plan, choices: &Choices) {
-    discontinuity::plan(plan, NAME, choices.mapping.frame_texel_count(), choices.shading.position);
+    discontinuity::plan(plan, NAME, DISCONTINUITY, choices.mapping.frame_texel_count(), choices.shading.position);
 }
 
 /// Plans the discontinuities where they come before the gather, because it filters.
@@ -67,7 +70,7 @@ pub fn plan_before_gather(plan: &mut Plan, choices: &Choices) {
 
 /// Plans resources and passes behind irradiance in frame order, `source`; returns what the composite reads.
 pub fn plan(plan: &mut Plan, choices: &Choices, source: String) -> Vec<String> {
-    let flags = discontinuity::flags(NAME);
+    let flags = discontinuity::flags(DISCONTINUITY);
     if choices.filter == Filter::None {
         return vec![source];
     }
@@ -110,11 +113,13 @@ impl FilterStage {
             normal_threshold: inputs.values.number("normal-threshold") as f32,
             position_threshold: inputs.values.length("position-threshold", inputs.scene.lasting_bounds().diagonal()),
             row_pitch: choices.mapping.row_pitch(),
+            stride: 1,
         };
         let (shading, rows) = (&choices.shading, choices.shading.texels.of_filter());
         let workgroup = shading.workgroup_constants();
-        let discontinuity = Discontinuity::new(gpu, NAME, shading.position, &workgroup, rows, params)?;
-        Ok(Some(Self { discontinuity, flags: resources.buffer(&discontinuity::flags(NAME)), place }))
+        let discontinuity =
+            Discontinuity::new(gpu, DISCONTINUITY.to_owned(), shading.position, &workgroup, rows, params)?;
+        Ok(Some(Self { discontinuity, flags: resources.buffer(&discontinuity::flags(DISCONTINUITY)), place }))
     }
 
     /// The discontinuities, where a gather that filters needs them. Hands the G-buffer on as it leaves it.

@@ -10,12 +10,18 @@ use crate::lights::vpl;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::adaptive_interleaved::resources::NAME;
+use crate::techniques::adaptive_interleaved::settings::Mode;
 
 pub struct IndirectDiffuse;
 
 impl ComponentMethod for IndirectDiffuse {
     fn most_iterations(&self, values: &Values) -> u32 {
         values.integer("id-max") as u32
+    }
+
+    fn scale(&self, values: &Values) -> u32 {
+        let auto = if values.is("mode", Mode::Igi) { 1 } else { 2 };
+        values.unless_auto("id-scale", Values::integer).map_or(auto, |scale| scale as u32)
     }
 
     fn count(&self, inputs: &Inputs<'_>, [x, y]: [u32; 2]) -> Result<SampleCount> {
@@ -35,7 +41,7 @@ impl ComponentMethod for IndirectDiffuse {
             .note(format!("--vpls {subset_count} or more, or a smaller --tile")));
         }
         let source_bytes = u64::from(count) * size_of::<VplBlock>() as u64;
-        Ok(SampleCount { sources: count, source_bytes, lights: 0 })
+        Ok(SampleCount { sources: count, source_bytes, has_lights: false })
     }
 
     fn samples(&self, inputs: &Inputs<'_>, _: [u32; 2]) -> Result<Samples> {
@@ -51,7 +57,6 @@ impl ComponentMethod for IndirectDiffuse {
         let found = vpl::walk(inputs.scene, inputs.bvh.over(inputs.scene)?, &inputs.lights.lights, &walk);
         Ok(Samples {
             sources: bytemuck::cast_slice(&found.vpls).to_vec(),
-            lights: Vec::new(),
             counters: vec![
                 ("vpls", f64::from(count)),
                 ("vpls_found", f64::from(found.found_count)),

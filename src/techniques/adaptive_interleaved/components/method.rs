@@ -1,7 +1,6 @@
 //! What a component is asked for: Dubla 2009, Listing 1.
 
 use crate::error::Result;
-use crate::gpu::shader::structs::LightBlock;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 
@@ -9,6 +8,16 @@ use crate::techniques::Inputs;
 pub trait ComponentMethod: Sync {
     /// Most iterations of a pixel, the initial pass's included.
     fn most_iterations(&self, values: &Values) -> u32;
+
+    /// Each how manieth pixel of both directions it is estimated at.
+    fn scale(&self, _: &Values) -> u32 {
+        1
+    }
+
+    /// Whether `--components auto` has it in this scene.
+    fn shines(&self, _: &Inputs<'_>) -> bool {
+        true
+    }
 
     /// How many sources and lights its samples have, for tiles of `tile_px`.
     ///
@@ -28,16 +37,14 @@ pub struct SampleCount {
     pub sources: u32,
     /// Bytes of all their samples.
     pub source_bytes: u64,
-    /// The scene's own lights that it samples too.
-    pub lights: u32,
+    /// Whether it samples the scene's own lights too.
+    pub has_lights: bool,
 }
 
 /// What a component's shader reads.
 pub struct Samples {
     /// The bytes of its sources, as its shader's buffer has them.
     pub sources: Vec<u8>,
-    /// The scene's own lights that it samples too.
-    pub lights: Vec<LightBlock>,
     /// Numbers for the report's `counters`.
     pub counters: Vec<(&'static str, f64)>,
 }

@@ -5,7 +5,6 @@ use super::method::{ComponentMethod, SampleCount, Samples};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::AreaSampleBlock;
 use crate::lights::area::{AreaLight, area_lights};
-use crate::passes::direct;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::adaptive_interleaved::resources::NAME;
@@ -17,6 +16,10 @@ impl ComponentMethod for SoftShadows {
         values.integer("ss-max") as u32
     }
 
+    fn shines(&self, inputs: &Inputs<'_>) -> bool {
+        !areas(inputs).is_empty() || !inputs.lights.lights.is_empty()
+    }
+
     fn count(&self, inputs: &Inputs<'_>, tile_px: [u32; 2]) -> Result<SampleCount> {
         let (areas, lights) = (areas(inputs).len() as u32, inputs.lights.lights.len() as u32);
         if areas + lights == 0 {
@@ -26,7 +29,7 @@ impl ComponentMethod for SoftShadows {
         }
         let points = self.point_count(inputs, tile_px);
         let source_bytes = u64::from(areas) * u64::from(points) * size_of::<AreaSampleBlock>() as u64;
-        Ok(SampleCount { sources: areas, source_bytes, lights })
+        Ok(SampleCount { sources: areas, source_bytes, has_lights: true })
     }
 
     fn samples(&self, inputs: &Inputs<'_>, tile_px: [u32; 2]) -> Result<Samples> {
@@ -38,11 +41,9 @@ impl ComponentMethod for SoftShadows {
             light.points(inputs.scene, count, seed ^ index.wrapping_mul(0x9e37_79b9))
         };
         let samples: Vec<AreaSampleBlock> = (1u32..).zip(&areas).flat_map(points).collect();
-        let lights = direct::light_blocks(inputs.lights, inputs.values);
         Ok(Samples {
             sources: bytemuck::cast_slice(&samples).to_vec(),
-            counters: vec![("area_lights", areas.len() as f64), ("lights", lights.len() as f64)],
-            lights,
+            counters: vec![("area_lights", areas.len() as f64), ("lights", inputs.lights.lights.len() as f64)],
         })
     }
 }
