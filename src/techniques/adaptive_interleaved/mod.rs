@@ -17,7 +17,8 @@
 //!   open)
 //! - of virtual lights those count as hidden, of all that could light the point, that something hides (Listing 2); a
 //!   surface that turns away from an area light hides it itself (Listing 3)
-//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do
+//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do where
+//!   their range reaches
 //! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
 //! - upsampling is guided by normals and by distances from the pixel's plane, where the paper has depths (section 4.1):
 //!   a

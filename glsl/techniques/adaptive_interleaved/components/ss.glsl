@@ -49,10 +49,11 @@ void add_light(
     }
 }
 
-// The part of the lights whose point is hidden is what guides.
+// The part of the lights whose point is hidden is what guides. Lights that do not reach so far are none of them.
 void contribute(Point point, uint slot, uint iteration, inout Estimate estimate) {
     uint size = tile_size(params);
     uint missed = 0u;
+    uint light_count = params.source_count;
     uint area = 0u;
     for (; area < params.source_count; area++) {
         AreaSampleBlock light = area_samples[(area * params.most + iteration) * size + slot];
@@ -65,11 +66,13 @@ void contribute(Point point, uint slot, uint iteration, inout Estimate estimate)
     uint punctual = 0u;
     for (; punctual < params.light_count; punctual++) {
         Incident incident = incident_from(lights[punctual], point.position_ws);
-        precise float cosine = max(dot(point.normal_ws, incident.direction_ws), 0.0);
-        add_light(point, incident.irradiance * cosine, incident.direction_ws, incident.distance, estimate, missed);
+        if (incident.irradiance != vec3(0.0)) {
+            precise float cosine = max(dot(point.normal_ws, incident.direction_ws), 0.0);
+            add_light(point, incident.irradiance * cosine, incident.direction_ws, incident.distance, estimate, missed);
+            light_count++;
+        }
     }
     expect_done(punctual == params.light_count);
-    uint light_count = params.source_count + params.light_count;
     estimate.information += light_count > 0u ? float(missed) / float(light_count) : 0.0;
 }
 
