@@ -12,11 +12,8 @@ use crate::passes::filter::{Filter, FilterPass, FilterSetup};
 use crate::passes::gbuffer::GBuffer;
 use crate::plan::{Plan, Resources};
 use crate::techniques::Inputs;
-use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::interleaved_deferred::resources::{DISCONTINUITY, NAME};
 use std::sync::Arc;
-
-/// The pass that flags.
-const DISCONTINUITY: &str = "interleaved_deferred.discontinuity";
 
 /// Discontinuities, the filter, and what they write.
 pub struct FilterStage {

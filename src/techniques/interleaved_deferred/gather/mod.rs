@@ -19,7 +19,7 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::filter::discontinuity;
 use crate::plan::{Plan, Resources};
-use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::interleaved_deferred::resources::{DISCONTINUITY, NAME};
 use blocks::GatherBlocks;
 use filtered::GatherFiltered;
 use fragment::{FragmentGather, FragmentGatherBlocks};
@@ -49,7 +49,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies, shaded: String) 
     fragment::plan(plan, mapping, copies.by);
     let mut source = vec![(shaded, storage.read(stage))];
     if choices.gather_filters() {
-        source.push((discontinuity::flags(NAME), Access::ComputeRead));
+        source.push((discontinuity::flags(DISCONTINUITY), Access::ComputeRead));
     }
     let target = match stage {
         Stage::Compute => vec![(gathered.clone(), Access::ComputeWrite)],
