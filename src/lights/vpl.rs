@@ -47,7 +47,13 @@ const PATIENCE: u64 = 1024;
 /// Where a walk starts.
 enum Source<'a> {
     Punctual(&'a Light),
-    Emissive { corners: [Vec3; 3], mesh: usize, triangle: usize },
+    /// `is_mirrored`: its draw turns the winding around, not the surface.
+    Emissive {
+        corners: [Vec3; 3],
+        mesh: usize,
+        triangle: usize,
+        is_mirrored: bool,
+    },
 }
 
 /// Rays start off their surface by this part of the scene's diagonal.
@@ -116,7 +122,8 @@ fn sources<'a>(scene: &Scene, lights: &'a [Light], emissive: bool, radius: f32) 
             let power = luminous(material.emissive) * f64::from(std::f32::consts::PI * area);
             if power > 0.0 {
                 powers.push(power);
-                sources.push(Source::Emissive { corners, mesh: draw.mesh, triangle });
+                let is_mirrored = draw.world_from_object.determinant() < 0.0;
+                sources.push(Source::Emissive { corners, mesh: draw.mesh, triangle, is_mirrored });
             }
         }
     }
@@ -166,7 +173,7 @@ impl Tracer<'_> {
                 let numbers = [numbers.next(), numbers.next()];
                 LightStart::of(punctual, numbers, self.center, self.radius)
             }
-            Source::Emissive { corners, mesh, triangle } => {
+            Source::Emissive { corners, mesh, triangle, is_mirrored } => {
                 let mesh = &self.scene.meshes[*mesh];
                 let material = &self.scene.materials[mesh.material];
                 let (u, v) = (numbers.next(), numbers.next());
@@ -175,7 +182,7 @@ impl Tracer<'_> {
                 let position = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
                 let point = MeshPoint::on(mesh, mesh.corners(*triangle), weights);
                 let twice = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                let mut normal = twice.normalize_or_zero();
+                let mut normal = if *is_mirrored { -twice } else { twice }.normalize_or_zero();
                 let mut area = 0.5 * twice.length();
                 if material.double_sided {
                     // Both sides shine: each walk takes one of them, and stands for both.
@@ -337,6 +344,21 @@ mod tests {
         let found = walk(&scene, &bvh, &[], &Walk { count: 512, bounces: 1, emissive: true, starts: true, seed: 1 });
         // Radiance 3 times an area of 4; the panel faces up and the floor is black, so nothing else is lit.
         assert!((total(&found) - 12.0).abs().max_element() < 1e-3, "{}", total(&found));
+    }
+
+    /// The winding of a mirrored draw is turned around, and its front is where it was.
+    #[test]
+    fn a_mirrored_panel_shines_the_way_its_front_faces() {
+        let mut scene = floor(0.5);
+        scene.materials.push(Material { emissive: Vec3::splat(3.0), ..Material::diffuse("panel", Vec3::ZERO) });
+        scene.meshes.push(square(2.0, 1.0, 1));
+        scene.draws.push(Draw { mesh: 1, world_from_object: Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) });
+        let bvh = Bvh::build(&scene).unwrap();
+        let walk = Walk { count: 64, bounces: 1, emissive: true, starts: true, seed: 1 };
+        let found = super::walk(&scene, &bvh, &[], &walk);
+        // It faces up: its lights are its own starts, and none is on the floor.
+        assert_eq!(found.found_count, 64);
+        assert!(found.vpls.iter().all(|vpl| vpl.normal_ws[1] > 0.99 && (vpl.position_ws[1] - 2.0).abs() < 1e-5));
     }
 
     #[test]
