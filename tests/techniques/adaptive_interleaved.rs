@@ -193,6 +193,58 @@ fn each_tile_is_between_no_refinement_and_all_of_it() {
     }
 }
 
+/// Under one light both guidances are the paper's; under several a tile is refined by `each` where some light is hidden
+/// from some of its pixels and not from others.
+#[test]
+fn each_light_guides_by_itself() {
+    let watched = Watched::open("cornell");
+    let own = [("components", "ss"), ("tile", "3x3")];
+    let hash = |guidance, emissive| {
+        watched.hash(NAME, &both(&both(&CORNELL, &own), &[("ss-guidance", guidance), ("emissive", emissive)]))
+    };
+    assert_eq!(hash("each", "off"), hash("mean", "off"), "one light");
+    assert_ne!(hash("each", "on"), hash("mean", "on"), "two lights");
+
+    let scene = &watched.session.scene;
+    let bvh = Bvh::build(scene).unwrap();
+    let offset = 1e-4 * scene.lasting_bounds().diagonal();
+    let shown = shown(&watched, &bvh);
+    let points = area_lights(scene, 16)[0].points(scene, 9 * 9, 1 ^ 0x9e37_79b9);
+    let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["guidance.ss.iterations"]);
+    let iterations = watched.integers(&renderer, "guidance.ss.iterations");
+    let (mut parted_count, mut tile_count, mut off) = (0, 0, 0);
+    for tile_y in 0..EXTENT.height / 3 {
+        for tile_x in 0..EXTENT.width / 3 {
+            let is_own = |shown: &&Shown| shown.pixel[0] / 3 == tile_x && shown.pixel[1] / 3 == tile_y;
+            let own: Vec<&Shown> = shown.iter().filter(is_own).collect();
+            // What rays are not sure of is left to the tests of pictures.
+            if own.len() < 9 {
+                continue;
+            }
+            let met = |shown: &&Shown| {
+                let slot = shown.pixel[1] % 3 * 3 + shown.pixel[0] % 3;
+                let point = &points[slot as usize];
+                let lamp = scene.lights[0].position;
+                let faces = shown.normal.dot(lamp - shown.position) > 0.0;
+                let panel = area_irradiance(shown, point) != Vec3::ZERO;
+                [panel && sees(&bvh, offset, shown, xyz(point.position_ws)), faces && sees(&bvh, offset, shown, lamp)]
+            };
+            let met: Vec<[bool; 2]> = own.iter().map(met).collect();
+            // How many pixels each light is hidden from; only those that part the tile count.
+            let hidden = [0, 1].map(|light| met.iter().filter(|met| !met[light]).count());
+            let parted: Vec<usize> = hidden.into_iter().filter(|count| (1..9).contains(count)).collect();
+            let refine = parted.iter().sum::<usize>() as f64 / (9 * parted.len().max(1)) as f64;
+            let expected = 1 + ((refine * 9.0 + 1e-3) as u32).min(8);
+            let found = iterations[(tile_y * 3 * EXTENT.width + tile_x * 3) as usize];
+            off += u32::from(found != expected);
+            parted_count += u32::from(!parted.is_empty());
+            tile_count += 1;
+        }
+    }
+    assert!(tile_count > 200 && parted_count > 8 && parted_count < tile_count / 3, "{parted_count} of {tile_count}");
+    assert!(off * 50 <= tile_count, "{off} of {tile_count} are others");
+}
+
 /// Listed and dispatched from the device, or each tile in a loop of its own.
 #[test]
 fn both_ways_to_refine_give_the_same_picture() {

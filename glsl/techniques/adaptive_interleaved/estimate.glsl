@@ -31,11 +31,15 @@ struct Point {
 
 struct Estimate {
     vec3 sum;
+    // What guides: the component's own, summed over the iterations.
     float information;
+    // Lights that were met in any of them, and in all, a bit each.
+    uint lit_any;
+    uint lit_all;
     uint ray_count;
 };
 
-const Estimate NO_ESTIMATE = Estimate(vec3(0.0), 0.0, 0u);
+const Estimate NO_ESTIMATE = Estimate(vec3(0.0), 0.0, 0u, 0xffffffffu, 0u);
 
 Point point_at(uvec2 texel) {
     uvec2 pixel = texel * params.scale;
@@ -63,11 +67,13 @@ Estimate initial_estimate(Point point, uint slot) {
     Estimate estimate = NO_ESTIMATE;
     if (point.has_surface) {
         iterate(point, slot, 0u, params.base, estimate);
-        estimate.information /= float(params.base);
-    } else {
-        estimate.information = -1.0;
     }
     return estimate;
+}
+
+// What guidance.glsl reads of it.
+uint found_by(Point point, uint slot, Estimate estimate) {
+    return point.has_surface ? found_word(slot, estimate) : NO_SURFACE;
 }
 
 void write_mean(uint index, Estimate estimate, uint iteration_count) {

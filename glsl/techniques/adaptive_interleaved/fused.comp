@@ -10,8 +10,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 8) writeonly buffer Guidance { uint guidance[]; };
 
-// -1: beyond the component, or no surface.
-shared float found[REFINE_LANES];
+shared uint found[REFINE_LANES];
 
 void main() {
     uint size = tile_size(params);
@@ -28,21 +27,17 @@ void main() {
         point = point_at(texel);
     }
     Estimate estimate = initial_estimate(point, slot);
-    found[lane] = estimate.information;
+    found[lane] = found_by(point, slot, estimate);
     barrier();
-    precise float information = 0.0;
-    uint surface_count = 0u;
+    TileFound of_tile = NOTHING_FOUND;
     uint first = lane - slot;
     for (uint other = first; other < min(first + size, REFINE_LANES); other++) {
-        if (found[other] >= 0.0) {
-            information += found[other];
-            surface_count++;
-        }
+        add_found(params, found[other], of_tile);
     }
     if (!is_own) {
         return;
     }
-    uint further = further_iterations(params, information, surface_count);
+    uint further = further_iterations(params, of_tile);
     uint end = params.base + further;
     if (point.has_surface) {
         iterate(point, slot, params.base, end, estimate);

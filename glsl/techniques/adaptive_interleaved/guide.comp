@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push { AdaptiveParams params; };
-layout(std430, set = 0, binding = 3) readonly buffer Estimates { vec4 estimates[]; };
+layout(std430, set = 0, binding = 3) readonly buffer Estimates { uvec4 estimates[]; };
 // Further iterations of each tile.
 layout(std430, set = 0, binding = 8) writeonly buffer Guidance { uint guidance[]; };
 layout(std430, set = 0, binding = 9) buffer Bins { BinsBlock bins; };
@@ -18,19 +18,14 @@ void main() {
     if (tile >= params.tile_count) {
         return;
     }
-    precise float information = 0.0;
-    uint surface_count = 0u;
+    TileFound found = NOTHING_FOUND;
     for (uint slot = 0u; slot < tile_size(params); slot++) {
         uvec2 texel = texel_of(params, tile, slot);
         if (has_texel(params, texel)) {
-            float found = estimates[index_of(params, texel)].w;
-            if (found >= 0.0) {
-                information += found;
-                surface_count++;
-            }
+            add_found(params, estimates[index_of(params, texel)].w, found);
         }
     }
-    uint further = further_iterations(params, information, surface_count);
+    uint further = further_iterations(params, found);
     guidance[tile] = further;
     if (further > 0u) {
         atomicAdd(bins.counts[further], 1u);

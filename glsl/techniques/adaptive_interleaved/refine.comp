@@ -7,7 +7,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430, set = 0, binding = 3) readonly buffer Estimates { vec4 estimates[]; };
+layout(std430, set = 0, binding = 3) readonly buffer Estimates { uvec4 estimates[]; };
 layout(std430, set = 0, binding = 8) readonly buffer Guidance { uint guidance[]; };
 layout(std430, set = 0, binding = 9) readonly buffer Bins { BinsBlock bins; };
 layout(std430, set = 0, binding = 10) readonly buffer Tiles { uint tiles[]; };
@@ -30,8 +30,9 @@ void main() {
         return;
     }
     uint index = index_of(params, texel);
-    vec4 initial = estimates[index];
-    Estimate estimate = Estimate(initial.rgb, initial.w, rays[index]);
+    Estimate estimate = NO_ESTIMATE;
+    estimate.sum = uintBitsToFloat(estimates[index].rgb);
+    estimate.ray_count = rays[index];
     uint end = params.base + guidance[tile];
     iterate(point, slot, params.base, end, estimate);
     write_mean(index, estimate, end);

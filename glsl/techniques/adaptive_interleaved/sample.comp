@@ -6,16 +6,18 @@
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
 
-// Sum of the iterations; w: what guides, -1 without a surface.
-layout(std430, set = 0, binding = 3) writeonly buffer Estimates { vec4 estimates[]; };
+// Sum of the iterations as bits; w: what guides.
+layout(std430, set = 0, binding = 3) writeonly buffer Estimates { uvec4 estimates[]; };
 
 void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
     if (!has_texel(params, texel)) {
         return;
     }
-    Estimate estimate = initial_estimate(point_at(texel), slot_of(params, texel));
+    Point point = point_at(texel);
+    uint slot = slot_of(params, texel);
+    Estimate estimate = initial_estimate(point, slot);
     uint index = index_of(params, texel);
-    estimates[index] = vec4(estimate.sum, estimate.information);
+    estimates[index] = uvec4(floatBitsToUint(estimate.sum), found_by(point, slot, estimate));
     write_mean(index, estimate, params.base);
 }

@@ -19,6 +19,8 @@ struct AdaptiveParams {
     uint most;
     // 1: every tile refines to the most (--mode max).
     uint refines_all;
+    // 1: each light guides by itself (--ss-guidance each).
+    uint guides_each;
     // Virtual point lights, or area lights.
     uint source_count;
     // Punctual lights.
@@ -26,6 +28,9 @@ struct AdaptiveParams {
     // Square of --vpl-clamp, in square metres.
     float least_squared;
 };
+
+// What a texel without a surface has found in the initial pass; that of others is a component's own word.
+const uint NO_SURFACE = 0xffffffffu;
 
 uint tile_size(AdaptiveParams params) {
     return params.tile_x * params.tile_y;

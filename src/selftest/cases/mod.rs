@@ -71,8 +71,9 @@ mod tests {
     #[test]
     fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_METHODS: [&str; 25] = [
+        const NO_METHODS: [&str; 26] = [
             "mode",
+            "ss-guidance",
             "direct-light",
             "rig",
             "sun",

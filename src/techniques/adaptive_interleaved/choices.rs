@@ -103,6 +103,7 @@ impl Choices {
                 tile_count: columns * own.height.div_ceil(tile_y),
                 base,
                 most: if mode == Mode::Igi { base } else { most },
+                guides_each: u32::from(method.guides_each(values)),
                 refines_all: u32::from(mode == Mode::Max),
                 source_count: count.sources,
                 light_count: if count.has_lights { inputs.lights.lights.len() as u32 } else { 0 },

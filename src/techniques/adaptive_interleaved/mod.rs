@@ -17,7 +17,12 @@
 //!   open)
 //! - of virtual lights those count as hidden, of all that could light the point, that something hides (Listing 2); a
 //!   surface that turns away from an area light hides it itself (Listing 3)
-//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do where
+//! - of several lights each guides by itself: by the part that is hidden of those that some pixels of a tile meet and
+//!   others
+//!   do not. Listing 3 takes the mean over all lights, by which every tile in the shadow of one of two is in a penumbra
+//!   (`--ss-guidance mean`); under one light both are the same
+//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do
+//!   where
 //!   their range reaches
 //! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
 //! - upsampling is guided by normals and by distances from the pixel's plane, where the paper has depths (section 4.1):

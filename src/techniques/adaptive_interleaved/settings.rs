@@ -29,6 +29,16 @@ choices! {
 }
 
 choices! {
+    /// What of several lights guides soft shadows (`--ss-guidance`).
+    pub enum Guidance {
+        /// The lights that tell a tile's pixels apart.
+        "each" => Each,
+        /// The mean over all of them.
+        "mean" => Mean,
+    }
+}
+
+choices! {
     /// How the refinement finds its tiles (`--refine`).
     pub enum Refine {
         /// A list of them is made on the device, and a dispatch goes over it.
@@ -112,6 +122,20 @@ pub const SETTINGS: &[Setting] = &[
         help: "Most iterations of soft shadows, the initial pass's included: points of each area light that a pixel \
                sends shadow rays to",
         unread: |values| without(values, Component::Ss),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "ss-guidance",
+        kind: Kind::Choice(Guidance::WORDS),
+        default: "each",
+        paper: "Dubla 2009, 3.3, Listing 3",
+        help: "Tiles that soft shadows refine: those in the penumbra of any light, by the part of these lights that is \
+               hidden (each); or those in which some of all lights are hidden and others not (mean, the paper's, which \
+               is the same under one light). More than 31 lights share what tells them apart",
+        unread: |values| {
+            without(values, Component::Ss)
+                .or_else(|| Unread::unless(values, "mode", &[Mode::Adaptive], "no tile is guided"))
+        },
         ..Setting::changing(Changes::Samples)
     },
     Setting {

@@ -37,4 +37,9 @@ void contribute(Point point, uint slot, uint iteration, inout Estimate estimate)
     estimate.ray_count += ray_count;
 }
 
+// The mean of the iterations' ratios.
+uint found_word(uint slot, Estimate estimate) {
+    return floatBitsToUint(estimate.information / float(params.base));
+}
+
 #endif

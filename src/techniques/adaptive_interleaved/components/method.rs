@@ -14,6 +14,11 @@ pub trait ComponentMethod: Sync {
         1
     }
 
+    /// Whether each of its lights guides by itself.
+    fn guides_each(&self, _: &Values) -> bool {
+        false
+    }
+
     /// Whether `--components auto` has it in this scene.
     fn shines(&self, _: &Inputs<'_>) -> bool {
         true

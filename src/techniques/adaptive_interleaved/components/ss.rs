@@ -8,12 +8,17 @@ use crate::lights::area::{AreaLight, area_lights};
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::adaptive_interleaved::resources::NAME;
+use crate::techniques::adaptive_interleaved::settings::Guidance;
 
 pub struct SoftShadows;
 
 impl ComponentMethod for SoftShadows {
     fn most_iterations(&self, values: &Values) -> u32 {
         values.integer("ss-max") as u32
+    }
+
+    fn guides_each(&self, values: &Values) -> bool {
+        values.is("ss-guidance", Guidance::Each)
     }
 
     fn shines(&self, inputs: &Inputs<'_>) -> bool {
