@@ -136,6 +136,11 @@ impl Technique for InterleavedDeferred {
         Ok(settings)
     }
 
+    /// 2: light walks leave mirrored emissive surfaces from their front.
+    fn estimator_version(&self) -> u32 {
+        2
+    }
+
     fn bench_stages(&self) -> &'static [BenchStage] {
         bench_stages::STAGES
     }
