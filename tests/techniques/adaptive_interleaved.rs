@@ -203,6 +203,13 @@ fn each_light_guides_by_itself() {
         watched.hash(NAME, &both(&both(&CORNELL, &own), &[("ss-guidance", guidance), ("emissive", emissive)]))
     };
     assert_eq!(hash("each", "off"), hash("mean", "off"), "one light");
+    // Wholly dark tiles are refined by neither.
+    let iterations = |guidance| {
+        let own = both(&own, &[("ss-guidance", guidance), ("emissive", "off")]);
+        let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["guidance.ss.iterations"]);
+        watched.integers(&renderer, "guidance.ss.iterations")
+    };
+    assert_eq!(iterations("each"), iterations("mean"), "one light");
     assert_ne!(hash("each", "on"), hash("mean", "on"), "two lights");
 
     let scene = &watched.session.scene;
