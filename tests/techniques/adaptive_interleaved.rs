@@ -1,15 +1,17 @@
 //! Adaptive interleaved sampling: each component against a plain estimator on the host, the modes and the ways to
 //! refine against each other, the filter against a few lines, and the whole against paths (Dubla 2009).
 
+use crate::support::boxes::{camera, panel, rectangle};
 use crate::support::difference::{require_same, rmse};
 use crate::support::seen::{self, Seen, point_at};
 use crate::support::watched::{Watched, both};
-use glam::Vec3;
+use glam::{Vec3, vec3};
 use quincunx::bvh::Bvh;
 use quincunx::frame::View;
 use quincunx::gpu::shader::structs::{AreaSampleBlock, VplBlock};
 use quincunx::lights::area::area_lights;
 use quincunx::lights::vpl;
+use quincunx::scene::{Material, Scene};
 use quincunx::units::Extent;
 
 const NAME: &str = "adaptive_interleaved";
@@ -150,6 +152,48 @@ fn soft_shadows_are_the_mean_over_the_pixel_s_own_points() {
         areas + punctual.sum::<Vec3>()
     });
     assert!(part > 0.985, "{part}");
+}
+
+/// Two panels of unlike light and size over a floor with a shelf between: each has its own points, whatever the mode takes of
+/// them.
+#[test]
+fn each_area_light_has_points_of_its_own_in_every_mode() {
+    let mut scene = Scene { name: "panels".to_owned(), hash: "panels".to_owned(), ..Scene::default() };
+    let grey = Material::diffuse("floor", Vec3::splat(0.5));
+    rectangle(&mut scene, Vec3::ZERO, 4.0 * Vec3::X, -4.0 * Vec3::Z, grey.clone());
+    rectangle(&mut scene, vec3(0.3, 1.0, 0.0), 0.8 * Vec3::X, -0.6 * Vec3::Z, grey);
+    rectangle(&mut scene, vec3(-2.0, 3.0, 0.0), 0.5 * Vec3::X, 0.5 * Vec3::Z, panel(Vec3::splat(9.0)));
+    rectangle(&mut scene, vec3(2.0, 2.5, 0.5), 0.3 * Vec3::X, 0.2 * Vec3::Z, panel(vec3(20.0, 5.0, 1.0)));
+    scene.cameras.push(camera(vec3(0.0, 4.0, 6.0), Vec3::ZERO, 0.8));
+    let watched = Watched::with_scene(scene);
+    let scene = &watched.session.scene;
+    let bvh = Bvh::build(scene).unwrap();
+    let offset = 1e-4 * scene.lasting_bounds().diagonal();
+    let shown = shown(&watched, &bvh);
+    let seed = |light: u32| 1 ^ (light + 1).wrapping_mul(0x9e37_79b9);
+    let lights = area_lights(scene, 16);
+    assert_eq!(lights.len(), 2);
+    let points: Vec<_> = (0u32..).zip(&lights).map(|(index, light)| light.points(scene, 4 * 6, seed(index))).collect();
+    for (mode, iteration_count) in [("max", 4), ("igi", 1)] {
+        let own = [("components", "ss"), ("mode", mode), ("tile", "3x2"), ("ss-max", "4"), ("rig", "none")];
+        let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["irradiance.ss"]);
+        let irradiance = watched.rgb(&renderer, "irradiance.ss");
+        let part = agreeing_part(&irradiance, &shown, |shown| {
+            let slot = shown.pixel[1] % 2 * 3 + shown.pixel[0] % 3;
+            let met = |points: &Vec<AreaSampleBlock>, iteration: u32| {
+                let point = &points[(iteration * 6 + slot) as usize];
+                if sees(&bvh, offset, shown, xyz(point.position_ws)) {
+                    area_irradiance(shown, point)
+                } else {
+                    Vec3::ZERO
+                }
+            };
+            let iterations =
+                (0..iteration_count).flat_map(|iteration| points.iter().map(move |own| met(own, iteration)));
+            iterations.sum::<Vec3>() / iteration_count as f32
+        });
+        assert!(part > 0.985, "{mode}: {part}");
+    }
 }
 
 /// A pixel of a tile that was refined to the most has the light of `max`, one of a tile that was not has that of `igi`,

@@ -61,12 +61,6 @@ impl Choices {
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let (values, extent) = (inputs.values, inputs.view.extent);
         let (mode, [tile_x, tile_y]) = (values.choice("mode"), values.pair("tile"));
-        if tile_x > extent.width || tile_y > extent.height {
-            return Err(Error::request(format!(
-                "{NAME}: --tile {tile_x}x{tile_y} is larger than the picture's {extent}"
-            ))
-            .note("a smaller --tile, or a larger --size"));
-        }
         // What lights reach in one frame of an animation, they reach in all of them.
         let diagonal = inputs.scene.lasting_bounds().diagonal();
         let vpl_clamp_m = values.length("vpl-clamp", diagonal);
@@ -102,7 +96,7 @@ impl Choices {
                 tile_columns: columns,
                 tile_count: columns * own.height.div_ceil(tile_y),
                 base,
-                most: if mode == Mode::Igi { base } else { most },
+                most,
                 guides_each: u32::from(method.guides_each(values)),
                 refines_all: u32::from(mode == Mode::Max),
                 source_count: count.sources,
