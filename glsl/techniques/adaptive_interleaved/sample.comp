@@ -18,6 +18,7 @@ void main() {
     uint slot = slot_of(params, texel);
     Estimate estimate = initial_estimate(point, slot);
     uint index = index_of(params, texel);
-    estimates[index] = uvec4(floatBitsToUint(estimate.sum), found_by(point, slot, estimate));
+    // The refinement adds to it: what a driver has cut short stays no number.
+    estimates[index] = uvec4(floatBitsToUint(nan_if_cut(estimate.sum)), found_by(point, slot, estimate));
     write_mean(index, estimate, params.base);
 }
