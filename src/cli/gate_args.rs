@@ -1,7 +1,6 @@
 //! The flags that judge an error: what `compare` and everything with a `--reference` share.
 
 use crate::error::{Error, Result};
-
 use crate::metrics::gate::{Bound, Gate};
 use crate::metrics::{DEFAULT_THRESHOLD, Metrics};
 use clap::{Arg, ArgAction, ArgMatches, Command};

@@ -29,7 +29,8 @@ pub struct AreaLight {
     power: f64,
 }
 
-/// The area lights of a scene, the most powerful first; where there are more than `most`, all beyond it are the last one.
+/// The area lights of a scene, the most powerful first; where there are more than `most`, at least 1, all
+/// beyond it are the last one.
 ///
 /// Textures are left out of the choice of triangles: one that is off costs noise, not truth.
 pub fn area_lights(scene: &Scene, most: usize) -> Vec<AreaLight> {
@@ -59,7 +60,7 @@ pub fn area_lights(scene: &Scene, most: usize) -> Vec<AreaLight> {
     }
     lights.sort_by(|one, other| other.power.total_cmp(&one.power));
     if lights.len() > most {
-        let beyond = lights.split_off(most.max(1) - 1);
+        let beyond = lights.split_off(most - 1);
         let power = beyond.iter().map(|light| light.power).sum();
         lights.push(AreaLight { triangles: beyond.into_iter().flat_map(|light| light.triangles).collect(), power });
     }
@@ -108,11 +109,6 @@ fn connected(mesh: &Mesh) -> Vec<Vec<usize>> {
 }
 
 impl AreaLight {
-    /// Triangles that it has.
-    pub fn triangle_count(&self) -> usize {
-        self.triangles.len()
-    }
-
     /// `count` of its points, each of which stands for all of the light: the mean over them is what the light gives.
     /// `count`: at most 65,536.
     pub fn points(&self, scene: &Scene, count: u32, seed: u32) -> Vec<AreaSampleBlock> {
@@ -182,7 +178,7 @@ mod tests {
         // The second touches the first, the third is apart.
         let counts = |most| {
             let lights = area_lights(&panels(&[0.0, 1.0, 5.0, 9.0]), most);
-            lights.iter().map(AreaLight::triangle_count).collect::<Vec<_>>()
+            lights.iter().map(|light| light.triangles.len()).collect::<Vec<_>>()
         };
         assert_eq!(counts(9), [4, 2, 2]);
         assert_eq!(counts(2), [4, 4]);

@@ -1,5 +1,5 @@
 // The list of the tiles that refine, those with most iterations first, and the dispatch over it. A tile a thread.
-// Pass: src/techniques/adaptive_interleaved/refine.rs.
+// Pass: src/techniques/adaptive_interleaved/compact.rs.
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/tile.glsl"

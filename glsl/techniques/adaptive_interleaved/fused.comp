@@ -41,8 +41,6 @@ void main() {
     uint end = params.base + further;
     if (point.has_surface) {
         iterate(point, slot, params.base, end, estimate);
-    } else {
-        end = params.base;
     }
     write_mean(index_of(params, texel), estimate, end);
     if (slot == 0u) {

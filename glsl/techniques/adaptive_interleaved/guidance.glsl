@@ -25,9 +25,9 @@ struct TileFound {
 
 const TileFound NOTHING_FOUND = TileFound(0u, 0.0, 0u, 0xffffffffu, 0u);
 
-// The bits that lights have: one each, up to 31.
+// The bits that lights have.
 uint light_bits(AdaptiveParams params) {
-    return (1u << min(params.source_count + params.light_count, 31u)) - 1u;
+    return (1u << min(params.source_count + params.light_count, LIGHT_BITS)) - 1u;
 }
 
 void add_found(AdaptiveParams params, uint word, inout TileFound found) {

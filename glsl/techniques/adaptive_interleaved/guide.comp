@@ -1,5 +1,5 @@
 // Adaptive guidance of one component, a tile a thread. Dubla 2009, Listing 1, lines 8 to 13.
-// Pass: src/techniques/adaptive_interleaved/refine.rs.
+// Pass: src/techniques/adaptive_interleaved/guide.rs.
 // variants: COMPONENT=id|ss
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"

@@ -32,6 +32,10 @@ struct AdaptiveParams {
 // What a texel without a surface has found in the initial pass; that of others is a component's own word.
 const uint NO_SURFACE = 0xffffffffu;
 
+// Lights that have a bit of their own in the word of a texel; more share them. One bit fewer than a word has: all of them
+// together are not NO_SURFACE.
+const uint LIGHT_BITS = 31u;
+
 uint tile_size(AdaptiveParams params) {
     return params.tile_x * params.tile_y;
 }

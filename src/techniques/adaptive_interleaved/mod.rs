@@ -7,35 +7,31 @@
 //! and albedo comes last.
 //!
 //! Passes, in order: samples of each component (on the host); gbuffer; of each component sample, guide, compact and
-//! refine (with `--refine fused` sample does all of it, with `--mode igi` there is no other); discontinuity and filter
-//! (not with `--tile 1x1`); composite.
+//! refine (with `--refine fused` sample does all of it, with `--mode igi` there is no other); discontinuity; of each
+//! component filter, and upsample where it is estimated at fewer pixels than the frame has; composite; blend (where the
+//! scene has BLEND surfaces).
 //!
 //! Differs from the paper
 //! - a device draws what pixels see and casts the shadow rays, where the paper had eight processor cores
 //! - a tile's further iterations are rounded down, and with the initial pass no more than the most (Listing 1 leaves
-//!   both
-//!   open)
+//!   both open)
 //! - of virtual lights those count as hidden, of all that could light the point, that something hides (Listing 2); a
 //!   surface that turns away from an area light hides it itself (Listing 3)
 //! - of several lights each guides by itself: by the part that is hidden of those that some pixels of a tile meet and
-//!   others
-//!   do not. Listing 3 takes the mean over all lights, by which every tile in the shadow of one of two is in a penumbra
-//!   (`--ss-guidance mean`); under one light both are the same
+//!   others do not. Listing 3 takes the mean over all lights, by which every tile in the shadow of one of two is in a
+//!   penumbra (`--ss-guidance mean`); under one light both are the same
 //! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do
-//!   where
-//!   their range reaches
+//!   where their range reaches
 //! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
 //! - upsampling is guided by normals and by distances from the pixel's plane, where the paper has depths (section 4.1):
-//!   a
-//!   floor that is seen at a slant stays one surface
+//!   a floor that is seen at a slant stays one surface
 //! - participating media (`pm`, section 3.4) are not there
 //! - BLEND surfaces are drawn over the picture: punctual lights cast shadows on them, virtual ones none, and area
-//!   lights do
-//!   not light them
+//!   lights do not light them
 //!
 //! Equal to others: `--mode adaptive` where every tile refines to the most is `--mode max`; `--refine fused` and
-//! `indirect` are the same bits; with `--id-max` of all the tile's pixels `--mode max` lights every pixel by every
-//! virtual light, and needs no filter.
+//! `indirect` are the same bits; with `--id-max` of all the tile's pixels `--mode max` lights every texel of `id` by
+//! every virtual light, so that the box has nothing to smooth.
 
 mod aov;
 mod bench_stages;
@@ -151,7 +147,11 @@ impl Technique for AdaptiveInterleaved {
         let refined = Component::WORDS.iter().filter_map(|key| {
             let [iterations, tiles] =
                 ["iterations", "tiles_refined"].map(|what| figures.counter(&format!("{what}_{key}")));
-            Some(format!("{key}: {:.2} iterations a pixel, {:.1} % of the tiles refined", iterations?, 100.0 * tiles?))
+            Some(format!(
+                "{key}: {:.2} iterations in the mean, {:.1} % of the tiles refined",
+                iterations?,
+                100.0 * tiles?
+            ))
         });
         [format!("{rays:.2} shadow rays a pixel")].into_iter().chain(refined).collect()
     }

@@ -27,9 +27,6 @@ vec3 area_irradiance(AreaSampleBlock light, vec3 position_ws, vec3 normal_ws, ve
     return light.intensity.rgb * (facing / (squared * squared));
 }
 
-// Lights that have a bit of their own; more share them.
-const uint LIGHT_BITS = 31u;
-
 // What a point meets in one iteration.
 struct Met {
     uint missed_count;

@@ -9,7 +9,7 @@ pub trait ComponentMethod: Sync {
     /// Most iterations of a pixel, the initial pass's included.
     fn most_iterations(&self, values: &Values) -> u32;
 
-    /// Each how manieth pixel of both directions it is estimated at.
+    /// Pixels from one that it is estimated at to the next, in both directions.
     fn scale(&self, _: &Values) -> u32 {
         1
     }
