@@ -48,9 +48,14 @@ const RAY_OFFSET: f32 = 1e-4;
 impl DirectSettings {
     /// Reads `--brdf` and `--direct-shadow`.
     pub fn new(values: &Values, lights: &LightSet, scene: &Scene) -> Self {
+        Self::with(values.choice("brdf"), shadow(values, lights), lights, scene)
+    }
+
+    /// The same of a technique whose settings leave neither open.
+    pub fn with(brdf: Brdf, shadow: DirectShadow, lights: &LightSet, scene: &Scene) -> Self {
         Self {
-            brdf: values.choice("brdf"),
-            shadow: shadow(values, lights),
+            brdf,
+            shadow,
             sun_count: lights.sun_count() as u64,
             ray_offset: RAY_OFFSET * scene.lasting_bounds().diagonal().max(1e-6),
             extras: scene.drawn_materials().any(Material::has_extras),
@@ -71,7 +76,12 @@ impl DirectSettings {
 
     /// DIRECT_SHADOW and RAY_OFFSET.
     pub fn shadow_constants(&self) -> [(&'static str, u32); 2] {
-        [("DIRECT_SHADOW", self.shadow as u32), ("RAY_OFFSET", self.ray_offset.to_bits())]
+        [("DIRECT_SHADOW", self.shadow as u32), self.offset_constant()]
+    }
+
+    /// RAY_OFFSET.
+    pub fn offset_constant(&self) -> (&'static str, u32) {
+        ("RAY_OFFSET", self.ray_offset.to_bits())
     }
 
     /// LIGHT_KINDS.

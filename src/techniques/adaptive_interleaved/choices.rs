@@ -1,20 +1,21 @@
 //! What the settings come to: the tile, and each component.
 
-use super::components::SampleCount;
+use super::components::PreparedComponent;
 use super::resources::NAME;
 use super::settings::{self, Component, Mode, Refine};
+use crate::choice::Choice;
 use crate::error::{Error, Result};
+use crate::gpu::Gpu;
+use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::{AdaptiveParams, LightBlock};
+use crate::gpu::shader::{Shader, variant};
 use crate::lights::object_lists::ObjectLists;
-use crate::passes::{blend, direct};
-use crate::scene::Material;
+use crate::passes::blend;
+use crate::passes::direct::{self, DirectSettings};
 use crate::settings::{Brdf, DirectShadow, PositionStorage};
-use crate::shading::light;
 use crate::techniques::Inputs;
 use crate::units::Extent;
-
-/// Shadow rays start this part of the scene's diagonal off their surface: more than positions of 16 bits are off by.
-const RAY_OFFSET: f32 = 1e-4;
+use std::sync::Arc;
 
 pub struct Choices {
     pub extent: Extent,
@@ -23,8 +24,9 @@ pub struct Choices {
     pub tile_px: [u32; 2],
     pub refine: Refine,
     pub mode: Mode,
+    /// Diffuse light, and a shadow ray for every light.
+    pub direct: DirectSettings,
     /// Metres.
-    pub ray_offset: f32,
     pub vpl_clamp_m: f32,
     pub is_emissive: bool,
     /// In the order in which they are listed.
@@ -33,14 +35,13 @@ pub struct Choices {
     pub lights: Vec<LightBlock>,
     /// Lists of those for what blends.
     pub blended: ObjectLists,
-    /// Whether a drawn material has `Material::has_extras`.
-    extras: bool,
 }
 
 /// One component.
 pub struct ComponentChoice {
     pub component: Component,
-    pub count: SampleCount,
+    /// What makes its samples.
+    pub prepared: Box<dyn PreparedComponent>,
     pub params: AdaptiveParams,
 }
 
@@ -65,7 +66,9 @@ impl Choices {
         let diagonal = inputs.scene.lasting_bounds().diagonal();
         let vpl_clamp_m = values.length("vpl-clamp", diagonal);
         let base = values.integer("base") as u32;
-        let components = components(inputs).into_iter().map(|component| {
+        let listed = settings::listed(values);
+        let candidates = listed.clone().unwrap_or_else(|| Component::ALL.to_vec());
+        let components = candidates.into_iter().map(|component| {
             let (method, key) = (component.method(), component.name());
             let most = method.most_iterations(values);
             if base > most {
@@ -85,7 +88,8 @@ impl Choices {
                 return Err(Error::request(format!("{NAME}: --tile {tile_x}x{tile_y} is larger than the {of}"))
                     .note("a smaller --tile, or a larger --size"));
             }
-            let count = method.count(inputs, [tile_x, tile_y])?;
+            let Some(prepared) = method.prepare(inputs, [tile_x, tile_y], listed.is_some())? else { return Ok(None) };
+            let count = prepared.count();
             let columns = own.width.div_ceil(tile_x);
             let params = AdaptiveParams {
                 width: own.width,
@@ -103,21 +107,20 @@ impl Choices {
                 light_count: if count.has_lights { inputs.lights.lights.len() as u32 } else { 0 },
                 least_squared: vpl_clamp_m * vpl_clamp_m,
             };
-            Ok(ComponentChoice { component, count, params })
+            Ok(Some(ComponentChoice { component, prepared, params }))
         });
-        let components = components.collect::<Result<_>>()?;
+        let components = components.filter_map(Result::transpose).collect::<Result<_>>()?;
         let lights = direct::light_blocks(inputs.lights, values);
         Ok(Self {
             blended: blend::lists(inputs.scene, &lights, values, inputs.caps)?,
             lights,
-            extras: inputs.scene.drawn_materials().any(Material::has_extras),
             extent,
             position: values.choice("position"),
             workgroup: values.pair("workgroup"),
             tile_px: [tile_x, tile_y],
             refine: values.choice("refine"),
             mode,
-            ray_offset: RAY_OFFSET * diagonal.max(1e-6),
+            direct: DirectSettings::with(Brdf::Lambert, DirectShadow::Ray, inputs.lights, inputs.scene),
             vpl_clamp_m,
             is_emissive: inputs.emissive_lights(),
             components,
@@ -129,21 +132,16 @@ impl Choices {
         [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
     }
 
-    /// RAY_OFFSET.
-    pub fn ray_constants(&self) -> [(&'static str, u32); 1] {
-        [("RAY_OFFSET", self.ray_offset.to_bits())]
-    }
-
-    /// What blended surfaces are shaded with: diffuse, and in the shadows of punctual lights.
-    pub fn blend_constants(&self, inputs: &Inputs<'_>) -> [(&'static str, u32); 5] {
-        let [offset] = self.ray_constants();
-        [
-            ("BRDF_KIND", Brdf::Lambert as u32),
-            ("SURFACE_EXTRAS", u32::from(self.extras)),
-            ("LIGHT_KINDS", light::kinds(&inputs.lights.lights)),
-            ("DIRECT_SHADOW", DirectShadow::Ray as u32),
-            offset,
-        ]
+    /// The pipeline of a pass that estimates a component: of those variants the one of its positions and its component.
+    pub fn estimating_pipeline(
+        &self,
+        gpu: &Arc<Gpu>,
+        variants: &'static [&'static Shader],
+        component: Component,
+        constants: &[(&'static str, u32)],
+    ) -> Result<ComputePipeline> {
+        let shader = variant(variants, &[self.position.name(), component.name()]);
+        ComputePipeline::new(gpu, shader, &[constants, &[self.direct.offset_constant()]].concat())
     }
 
     /// Whether tiles are refined by a dispatch of their own.
@@ -155,12 +153,4 @@ impl Choices {
     pub fn is_fused(&self) -> bool {
         self.mode != Mode::Igi && self.refine == Refine::Fused
     }
-}
-
-/// Those that are listed, or that light the scene.
-fn components(inputs: &Inputs<'_>) -> Vec<Component> {
-    settings::listed(inputs.values).unwrap_or_else(|| {
-        let shines = |component: &Component| component.method().shines(inputs);
-        [Component::Id, Component::Ss].into_iter().filter(shines).collect()
-    })
 }

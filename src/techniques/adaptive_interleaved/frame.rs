@@ -45,7 +45,7 @@ impl Blended {
         choices: &Choices,
     ) -> Result<Option<Self>> {
         let params = blend::all_lights(choices.vpl_clamp_m * choices.vpl_clamp_m);
-        let (constants, target) = (choices.blend_constants(inputs), BlendTarget::plain(&choices.blended));
+        let (constants, target) = (choices.direct.light_constants(), BlendTarget::plain(&choices.blended));
         let Some(blend) = Blend::new(gpu, scene, inputs.view, params, &constants, &target)? else { return Ok(None) };
         Ok(Some(Self {
             blend,

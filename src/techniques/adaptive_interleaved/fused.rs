@@ -11,7 +11,6 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::adaptive_interleaved::bins::REFINE_LANES;
 use crate::gpu::shader::techniques::adaptive_interleaved::fused::COMP_VARIANTS;
-use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
@@ -22,8 +21,8 @@ pub struct FusedPass {
 
 impl FusedPass {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, choice: &ComponentChoice) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.position.name(), choice.component.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.ray_constants())? })
+        let pipeline = choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &[])?;
+        Ok(Self { pipeline })
     }
 
     pub fn record(

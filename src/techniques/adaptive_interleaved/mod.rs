@@ -192,10 +192,10 @@ impl Prepared for PreparedAdaptive {
     fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart> {
         let choices = self.choices;
         let (mut passes, mut samples) = (Vec::new(), Vec::new());
-        for component in choices.components.iter().map(|choice| choice.component) {
+        for choice in &choices.components {
             let started = Instant::now();
-            samples.push(component.method().samples(inputs, choices.tile_px)?);
-            passes.push((of_component("samples", component.name()), started.elapsed().as_nanos() as u64));
+            samples.push(choice.prepared.samples(inputs)?);
+            passes.push((of_component("samples", choice.component.name()), started.elapsed().as_nanos() as u64));
         }
         let own = samples.iter().flat_map(|samples| samples.counters.iter().copied());
         let counters = own.chain(blend::counters(&choices.blended)).collect();

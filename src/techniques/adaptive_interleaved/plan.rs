@@ -50,7 +50,7 @@ fn plan_component(plan: &mut Plan, choices: &Choices, choice: &ComponentChoice) 
     use Access::{ComputeRead, ComputeWrite, IndirectRead, TransferWrite};
     let full = |what: &str| of_component(what, choice.component.name());
     let (texels, tiles) = (choice.extent().pixel_count(), u64::from(choice.params.tile_count));
-    plan.buffer("samples", full("sources"), choice.count.source_bytes);
+    plan.buffer("samples", full("sources"), choice.prepared.count().source_bytes);
     plan.buffer("counters", full("rays"), texels * 4);
     let surface = gbuffer::surface(NAME, choices.position);
     plan.buffer("irradiance", full("irradiance"), texels * IRRADIANCE_BYTES);

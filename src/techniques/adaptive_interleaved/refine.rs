@@ -8,7 +8,6 @@ use super::choices::{Choices, ComponentChoice};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::adaptive_interleaved::refine::COMP_VARIANTS;
-use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
@@ -29,8 +28,8 @@ pub struct Listed<'a> {
 
 impl RefinePass {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, choice: &ComponentChoice) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.position.name(), choice.component.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.ray_constants())? })
+        let pipeline = choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &[])?;
+        Ok(Self { pipeline })
     }
 
     pub fn record(

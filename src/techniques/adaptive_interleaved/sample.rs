@@ -9,7 +9,6 @@ use super::choices::{Choices, ComponentChoice};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::adaptive_interleaved::sample::COMP_VARIANTS;
-use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::gbuffer::GBuffer;
 use std::sync::Arc;
@@ -20,9 +19,9 @@ pub struct SamplePass {
 
 impl SamplePass {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, choice: &ComponentChoice) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.position.name(), choice.component.name()]);
-        let constants = [&choices.workgroup_constants()[..], &choices.ray_constants()].concat();
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
+        let pipeline =
+            choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &choices.workgroup_constants())?;
+        Ok(Self { pipeline })
     }
 
     pub fn record(

@@ -3,7 +3,7 @@
 //! Virtual point lights of a light walk, in N x M subsets, each as well spread as the whole, because the walk's order
 //! is a low-discrepancy one. What emissive surfaces give straight is soft shadows' and not counted here.
 
-use super::method::{ComponentMethod, SampleCount, Samples};
+use super::method::{ComponentMethod, PreparedComponent, SampleCount, Samples};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::VplBlock;
 use crate::lights::vpl;
@@ -24,8 +24,8 @@ impl ComponentMethod for IndirectDiffuse {
         values.unless_auto("id-scale", Values::integer).map_or(auto, |scale| scale as u32)
     }
 
-    fn count(&self, inputs: &Inputs<'_>, [x, y]: [u32; 2]) -> Result<SampleCount> {
-        let count = inputs.values.integer("vpls") as u32;
+    fn prepare(&self, inputs: &Inputs<'_>, [x, y]: [u32; 2], _: bool) -> Result<Option<Box<dyn PreparedComponent>>> {
+        let vpl_count = inputs.values.integer("vpls") as u32;
         let (most, subset_count) = (self.most_iterations(inputs.values), x * y);
         if most > subset_count {
             return Err(Error::request(format!(
@@ -34,19 +34,28 @@ impl ComponentMethod for IndirectDiffuse {
             ))
             .note(format!("--id-max {subset_count}, or a larger --tile")));
         }
-        if count < subset_count {
+        if vpl_count < subset_count {
             return Err(Error::request(format!(
-                "{NAME}: --vpls {count} for the {subset_count} subsets of --tile {x}x{y}: each needs one"
+                "{NAME}: --vpls {vpl_count} for the {subset_count} subsets of --tile {x}x{y}: each needs one"
             ))
             .note(format!("--vpls {subset_count} or more, or a smaller --tile")));
         }
-        let source_bytes = u64::from(count) * size_of::<VplBlock>() as u64;
-        Ok(SampleCount { sources: count, source_bytes, has_lights: false })
+        Ok(Some(Box::new(PreparedIndirect { vpl_count })))
+    }
+}
+
+struct PreparedIndirect {
+    vpl_count: u32,
+}
+
+impl PreparedComponent for PreparedIndirect {
+    fn count(&self) -> SampleCount {
+        let source_bytes = u64::from(self.vpl_count) * size_of::<VplBlock>() as u64;
+        SampleCount { sources: self.vpl_count, source_bytes, has_lights: false }
     }
 
-    fn samples(&self, inputs: &Inputs<'_>, _: [u32; 2]) -> Result<Samples> {
-        let values = inputs.values;
-        let count = values.integer("vpls") as u32;
+    fn samples(&self, inputs: &Inputs<'_>) -> Result<Samples> {
+        let (values, count) = (inputs.values, self.vpl_count);
         let walk = vpl::Walk {
             count,
             bounces: values.integer("vpl-bounces") as u32,

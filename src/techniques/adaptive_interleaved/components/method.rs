@@ -19,20 +19,27 @@ pub trait ComponentMethod: Sync {
         false
     }
 
-    /// Whether `--components auto` has it in this scene.
-    fn shines(&self, _: &Inputs<'_>) -> bool {
-        true
-    }
-
-    /// How many sources and lights its samples have, for tiles of `tile_px`.
+    /// Its choices for tiles of `tile_px`. None: nothing in this scene is its light; never where it is `listed` by
+    /// `--components`.
     ///
     /// Errors: settings that contradict each other or the scene (exit code 2).
-    fn count(&self, inputs: &Inputs<'_>, tile_px: [u32; 2]) -> Result<SampleCount>;
+    fn prepare(
+        &self,
+        inputs: &Inputs<'_>,
+        tile_px: [u32; 2],
+        listed: bool,
+    ) -> Result<Option<Box<dyn PreparedComponent>>>;
+}
+
+/// A component whose choices are made.
+pub trait PreparedComponent {
+    /// How many sources and lights its samples have.
+    fn count(&self) -> SampleCount;
 
     /// Its samples, as many as `count` says.
     ///
     /// Errors: the tree cannot be built (exit code 2); the user has asked to stop (130).
-    fn samples(&self, inputs: &Inputs<'_>, tile_px: [u32; 2]) -> Result<Samples>;
+    fn samples(&self, inputs: &Inputs<'_>) -> Result<Samples>;
 }
 
 /// How much a component's shader reads.

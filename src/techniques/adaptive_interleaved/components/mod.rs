@@ -6,7 +6,7 @@ mod id;
 mod method;
 mod ss;
 
-pub use method::{SampleCount, Samples};
+pub use method::{PreparedComponent, Samples};
 
 use super::settings::Component;
 use method::ComponentMethod;
