@@ -141,11 +141,10 @@ impl AreaLight {
         let [a, b, c] = corners(draw, mesh, shining.triangle);
         let root = u.sqrt();
         let weights = [1.0 - root, root * (1.0 - v), root * v];
-        let twice = (b - a).cross(c - a);
-        // A mirrored draw turns the winding around, not the surface.
-        let front = if draw.world_from_object.determinant() < 0.0 { -twice } else { twice };
+        // As long as twice the area.
+        let front = draw.front(mesh, shining.triangle).as_vec3();
         let radiance = emissive_at(scene, material, &MeshPoint::on(mesh, mesh.corners(shining.triangle), weights));
-        let area = f64::from(0.5 * twice.length()) / chance;
+        let area = f64::from(0.5 * front.length()) / chance;
         AreaSampleBlock {
             position_ws: (a * weights[0] + b * weights[1] + c * weights[2]).extend(0.0).to_array(),
             normal_ws: front.normalize_or_zero().extend(f32::from(u8::from(material.double_sided))).to_array(),

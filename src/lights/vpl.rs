@@ -11,6 +11,7 @@
 
 use crate::bvh::{Bvh, Hit};
 use crate::gpu::shader::structs::VplBlock;
+use crate::lights::emitters::luminous;
 use crate::scene::{Light, Scene};
 use crate::shading::light::LightStart;
 use crate::shading::material::MeshPoint;
@@ -93,10 +94,6 @@ pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> VplWalk 
     let found_count = vpls.len() as u32;
     vpls.resize(walk.count as usize, vpl(bounds.center(), Vec3::Y, Vec3::ZERO));
     VplWalk { vpls, found_count, walk_count: walk_count as u32 }
-}
-
-fn luminous(color: Vec3) -> f64 {
-    f64::from(color.x + color.y + color.z)
 }
 
 fn sources<'a>(scene: &Scene, lights: &'a [Light], emissive: bool, radius: f32) -> (Vec<Source<'a>>, Vec<f64>) {

@@ -5,10 +5,11 @@ use crate::support::boxes::{camera, panel, rectangle};
 use crate::support::difference::{require_same, rmse};
 use crate::support::seen::{self, Seen, point_at};
 use crate::support::watched::{Watched, both};
+use bytemuck::Zeroable;
 use glam::{Vec3, vec3};
 use quincunx::bvh::Bvh;
 use quincunx::frame::View;
-use quincunx::gpu::shader::structs::{AreaSampleBlock, VplBlock};
+use quincunx::gpu::shader::structs::{AdaptiveParams, AreaSampleBlock, VplBlock};
 use quincunx::lights::area::area_lights;
 use quincunx::lights::vpl;
 use quincunx::scene::{Material, Scene};
@@ -18,6 +19,11 @@ const NAME: &str = "adaptive_interleaved";
 const EXTENT: Extent = Extent { width: 97, height: 53 };
 /// Emissive surfaces shine beside the lamp, positions are exact, and every pixel has an estimate of its own.
 const CORNELL: [(&str, &str); 4] = [("size", "97x53"), ("emissive", "on"), ("position", "float"), ("id-scale", "1")];
+
+/// The host's twin of the shaders' sampler.
+fn sampler([tile_x, tile_y]: [u32; 2], most: u32) -> AdaptiveParams {
+    AdaptiveParams { tile_x, tile_y, base: 1, most, ..AdaptiveParams::zeroed() }
+}
 
 /// What a pixel shows, by a ray on the host.
 struct Shown {
@@ -119,6 +125,16 @@ fn indirect_light_of_all_subsets_is_every_virtual_light_with_its_shadow() {
         });
         assert!(part > 0.985, "{tile}: {part}");
     }
+    // The initial pass alone has the pixel's own stretch of them, which stands for all.
+    let own = [("components", "id"), ("mode", "igi"), ("vpls", "64"), ("tile", "3x2"), ("id-max", "6")];
+    let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["irradiance.id"]);
+    let sampler = AdaptiveParams { source_count: 64, ..sampler([3, 2], 6) };
+    let part = agreeing_part(&watched.rgb(&renderer, "irradiance.id"), &shown, |shown| {
+        let [first, end] = sampler.id_stretch(sampler.slot_of(shown.pixel), 0).map(|index| index as usize);
+        let lit = |vpl: &&VplBlock| sees(&bvh, 1e-4 * diagonal, shown, xyz(vpl.position_ws));
+        6.0 * vpls[first..end].iter().filter(lit).map(|vpl| vpl_irradiance(shown, vpl, 0.02 * diagonal)).sum::<Vec3>()
+    });
+    assert!(part > 0.985, "3x2, igi: {part}");
 }
 
 /// The mean over the points of the sampler that belong to the pixel's place in the tile.
@@ -137,9 +153,9 @@ fn soft_shadows_are_the_mean_over_the_pixel_s_own_points() {
     let irradiance = watched.rgb(&renderer, "irradiance.ss");
     let lamps = &scene.lights;
     let part = agreeing_part(&irradiance, &shown, |shown| {
-        let slot = shown.pixel[1] % y * x + shown.pixel[0] % x;
+        let sampler = sampler([x, y], most);
         let of_iteration = |iteration: u32| {
-            let point = &points[(iteration * x * y + slot) as usize];
+            let point = &points[sampler.ss_point(0, sampler.slot_of(shown.pixel), iteration) as usize];
             if sees(&bvh, offset, shown, xyz(point.position_ws)) { area_irradiance(shown, point) } else { Vec3::ZERO }
         };
         let areas: Vec3 = (0..most).map(of_iteration).sum::<Vec3>() / most as f32;
@@ -173,23 +189,24 @@ fn each_area_light_has_points_of_its_own_in_every_mode() {
     let seed = |light: u32| 1 ^ (light + 1).wrapping_mul(0x9e37_79b9);
     let lights = area_lights(scene, 16);
     assert_eq!(lights.len(), 2);
-    let points: Vec<_> = (0u32..).zip(&lights).map(|(index, light)| light.points(scene, 4 * 6, seed(index))).collect();
+    let points: Vec<_> =
+        (0u32..).zip(&lights).flat_map(|(index, light)| light.points(scene, 4 * 6, seed(index))).collect();
+    let sampler = sampler([3, 2], 4);
     for (mode, iteration_count) in [("max", 4), ("igi", 1)] {
         let own = [("components", "ss"), ("mode", mode), ("tile", "3x2"), ("ss-max", "4"), ("rig", "none")];
         let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["irradiance.ss"]);
         let irradiance = watched.rgb(&renderer, "irradiance.ss");
         let part = agreeing_part(&irradiance, &shown, |shown| {
-            let slot = shown.pixel[1] % 2 * 3 + shown.pixel[0] % 3;
-            let met = |points: &Vec<AreaSampleBlock>, iteration: u32| {
-                let point = &points[(iteration * 6 + slot) as usize];
+            let slot = sampler.slot_of(shown.pixel);
+            let met = |(light, iteration): (u32, u32)| {
+                let point = &points[sampler.ss_point(light, slot, iteration) as usize];
                 if sees(&bvh, offset, shown, xyz(point.position_ws)) {
                     area_irradiance(shown, point)
                 } else {
                     Vec3::ZERO
                 }
             };
-            let iterations =
-                (0..iteration_count).flat_map(|iteration| points.iter().map(move |own| met(own, iteration)));
+            let iterations = (0..iteration_count).flat_map(|iteration| [(0, iteration), (1, iteration)]).map(met);
             iterations.sum::<Vec3>() / iteration_count as f32
         });
         assert!(part > 0.985, "{mode}: {part}");
@@ -261,6 +278,7 @@ fn each_light_guides_by_itself() {
     let offset = 1e-4 * scene.lasting_bounds().diagonal();
     let shown = shown(&watched, &bvh);
     let points = area_lights(scene, 16)[0].points(scene, 9 * 9, 1 ^ 0x9e37_79b9);
+    let sampler = sampler([3, 3], 9);
     let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["guidance.ss.iterations"]);
     let iterations = watched.integers(&renderer, "guidance.ss.iterations");
     let (mut parted_count, mut tile_count, mut off) = (0, 0, 0);
@@ -273,8 +291,7 @@ fn each_light_guides_by_itself() {
                 continue;
             }
             let met = |shown: &&Shown| {
-                let slot = shown.pixel[1] % 3 * 3 + shown.pixel[0] % 3;
-                let point = &points[slot as usize];
+                let point = &points[sampler.ss_point(0, sampler.slot_of(shown.pixel), 0) as usize];
                 let lamp = scene.lights[0].position;
                 let faces = shown.normal.dot(lamp - shown.position) > 0.0;
                 let panel = area_irradiance(shown, point) != Vec3::ZERO;
@@ -284,8 +301,8 @@ fn each_light_guides_by_itself() {
             // How many pixels each light is hidden from; only those that part the tile count.
             let hidden = [0, 1].map(|light| met.iter().filter(|met| !met[light]).count());
             let parted: Vec<usize> = hidden.into_iter().filter(|count| (1..9).contains(count)).collect();
-            let refine = parted.iter().sum::<usize>() as f64 / (9 * parted.len().max(1)) as f64;
-            let expected = 1 + ((refine * 9.0 + 1e-3) as u32).min(8);
+            let refine = parted.iter().sum::<usize>() as f32 / (9 * parted.len().max(1)) as f32;
+            let expected = sampler.base + sampler.further_iterations(refine, true);
             let found = iterations[(tile_y * 3 * EXTENT.width + tile_x * 3) as usize];
             off += u32::from(found != expected);
             parted_count += u32::from(!parted.is_empty());

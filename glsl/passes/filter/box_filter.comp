@@ -14,7 +14,6 @@ struct BoxParams {
     uint below;
     // Texel of the target at which it begins to write.
     uint target_first;
-    uint _unused;
 };
 
 // Half of the widest box.

@@ -42,7 +42,6 @@ impl BoxFilter {
             above: (height - 1) / 2,
             below,
             target_first,
-            _unused: 0,
         };
         Ok(Self { label, pipeline: ComputePipeline::new(gpu, &COMP, workgroup)?, params })
     }

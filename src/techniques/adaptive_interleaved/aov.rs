@@ -70,8 +70,9 @@ pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
     }
     for name in AOVS {
         let Some((stage, component)) = stage_of(name) else { continue };
+        let key = component.name();
         if choices.components.iter().all(|choice| choice.component != component) {
-            left_out.push((*name, format!("--components does not list {}", component.name())));
+            left_out.push((*name, format!("{key} is not estimated here; --components {key} asks for it")));
         } else if matches!(stage, Stage::Guidance | Stage::Iterations) && choices.mode == Mode::Igi {
             left_out.push((*name, "--mode igi refines no tile; adaptive and max do".to_owned()));
         }

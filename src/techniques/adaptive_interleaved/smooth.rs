@@ -20,7 +20,7 @@ use crate::techniques::Inputs;
 use std::sync::Arc;
 
 /// The pass that flags the pixels of the frame.
-pub const DISCONTINUITY: &str = "adaptive_interleaved.discontinuity";
+const DISCONTINUITY: &str = "adaptive_interleaved.discontinuity";
 
 /// Name of the pass that flags what a component is filtered by: the frame's, or its own.
 fn flagging(choice: &ComponentChoice) -> String {
