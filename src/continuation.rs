@@ -65,22 +65,22 @@ impl Continuation {
         let (pixels, texts) = image_file::read_exr_channels(path, extent, CHANNELS).map_err(|error| {
             error.within("--continue").note("`render --technique path_traced -o FILE.exr` writes what it reads")
         })?;
-        let earlier = Self { path: path.to_owned(), texts, sums: Vec::new(), sample_count: 0 };
-        let samples = earlier.text(SAMPLES)?;
+        let unsummed = Self { path: path.to_owned(), texts, sums: Vec::new(), sample_count: 0 };
+        let samples = unsummed.text(SAMPLES)?;
         let Some(count) = samples.parse().ok().filter(|count| COUNTS.contains(count)) else {
             let (least, most) = (COUNTS.start(), COUNTS.end());
-            return Err(earlier.refused(&format!("{SAMPLES} is {}; it must be {least} to {most}", quoted(samples))));
+            return Err(unsummed.refused(&format!("{SAMPLES} is {}; it must be {least} to {most}", quoted(samples))));
         };
         if let Some(index) = pixels.iter().position(|pixel| !is_mean(pixel, count as f32)) {
             let (x, y) = (index as u32 % extent.width, index as u32 / extent.width);
-            return Err(earlier.refused(&format!(
+            return Err(unsummed.refused(&format!(
                 "pixel ({x}, {y}) is {:?}, which {count} samples with the sums {:?} cannot give",
                 &pixels[index][..3],
                 &pixels[index][3..]
             )));
         }
         let sums = pixels.iter().map(|pixel| [pixel[3], pixel[4], pixel[5], pixel[6]]).collect();
-        Ok(Self { sums, sample_count: count as u32, ..earlier })
+        Ok(Self { sums, sample_count: count as u32, ..unsummed })
     }
 
     /// `values`: the settings of the run that continues.

@@ -38,7 +38,7 @@ pub struct Job {
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
     /// A picture to continue, instead of starting anew.
-    pub earlier: Option<Continuation>,
+    pub continuation: Option<Continuation>,
     /// What the picture is judged against.
     pub reference: Option<ReferenceRequest>,
     /// An index or a part of a name, as `devices` lists them.
@@ -111,7 +111,7 @@ impl Job {
             aovs: Vec::new(),
             output: None,
             report: None,
-            earlier: None,
+            continuation: None,
             reference: None,
             device: None,
             profile: false,
@@ -146,7 +146,9 @@ impl Job {
     pub fn run_on(&self, request: &DeviceRequest) -> Result<Outcome> {
         self.check()?;
         let scene = self.load_scene()?;
-        self.earlier.as_ref().map_or(Ok(()), |earlier| earlier.require(self.technique, &self.values, &scene))?;
+        self.continuation
+            .as_ref()
+            .map_or(Ok(()), |continuation| continuation.require(self.technique, &self.values, &scene))?;
         let path = self.output_path(&scene);
         let session = self.open_session(request, scene)?;
         let outcome = self.picture(&session, &self.values, &path, Unfinished::Kept)?;
@@ -182,8 +184,8 @@ impl Job {
         let recording = Recording { has_statistics: self.statistics, ..submits.into() };
         let mut renderer = session.renderer(self.technique, values, &self.aovs, recording)?;
         let settings = settings(session, &renderer, values);
-        if let Some(earlier) = &self.earlier {
-            earlier.begin(&mut renderer, self.technique, &settings)?;
+        if let Some(continuation) = &self.continuation {
+            continuation.begin(&mut renderer, self.technique, &settings)?;
         }
         let asked_ev = values.unless_auto("exposure", Values::number);
         let rendered = self.rendered(session, &renderer, settings, asked_ev, unfinished)?;

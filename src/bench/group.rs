@@ -88,8 +88,14 @@ impl Group {
     }
 
     /// Adds the baseline as a member.
-    pub fn add_baseline(&mut self, ground: &Measurement<'_>, candidate: usize, variant: &Rc<Variant>, values: &Values) {
-        let [identity, copy] = self.companions(ground, variant, values);
+    pub fn add_baseline(
+        &mut self,
+        measurement: &Measurement<'_>,
+        candidate: usize,
+        variant: &Rc<Variant>,
+        values: &Values,
+    ) {
+        let [identity, copy] = self.companions(measurement, variant, values);
         self.members.push(Member { candidate, variant: variant.clone(), probe: BASELINE, identity, copy });
     }
 
@@ -97,9 +103,9 @@ impl Group {
     ///
     /// Errors: as `Measurement::variant` has them; and where others are in the group, memory for what stands beside it (exit
     /// code 4): with fewer of them there may be enough.
-    pub fn add(&mut self, ground: &Measurement<'_>, candidate: usize, values: &Values) -> Result<()> {
-        let variant = Rc::new(ground.variant(values)?);
-        let [identity, copy] = self.companions(ground, &variant, values);
+    pub fn add(&mut self, measurement: &Measurement<'_>, candidate: usize, values: &Values) -> Result<()> {
+        let variant = Rc::new(measurement.variant(values)?);
+        let [identity, copy] = self.companions(measurement, &variant, values);
         if !self.members.is_empty() {
             let refused = [&identity, &copy].into_iter().flatten().filter_map(|companion| companion.as_ref().err());
             if let Some(error) = refused.into_iter().find(|error| is_of_memory(error)) {
@@ -113,9 +119,14 @@ impl Group {
     }
 
     /// Identity and copy, of a copying stage.
-    fn companions(&mut self, ground: &Measurement<'_>, variant: &Variant, values: &Values) -> [Option<Companion>; 2] {
+    fn companions(
+        &mut self,
+        measurement: &Measurement<'_>,
+        variant: &Variant,
+        values: &Values,
+    ) -> [Option<Companion>; 2] {
         let Some(copying) = variant.stage.and_then(BenchStage::copying) else { return [None, None] };
-        [Some(self.identity(ground, copying, values)), Some(self.copy(ground, variant.result_bytes()))]
+        [Some(self.identity(measurement, copying, values)), Some(self.copy(measurement, variant.result_bytes()))]
     }
 
     fn push(&mut self, probe: Rc<dyn Probe>) -> usize {
@@ -124,26 +135,27 @@ impl Group {
     }
 
     /// Variants that differ only in what the identity settles share it.
-    fn identity(&mut self, ground: &Measurement<'_>, copying: &Copying, values: &Values) -> Companion {
-        let identity = identity_values(ground.job, copying, values)?;
+    fn identity(&mut self, measurement: &Measurement<'_>, copying: &Copying, values: &Values) -> Companion {
+        let identity = identity_values(measurement.job, copying, values)?;
         let key = format!("{identity:?}");
         if let Some(known) = self.identities.get(&key) {
             return known.clone();
         }
         // It shades nothing that is timed: it need not be fair.
-        let made = Variant::new(ground.session, ground.job.technique, ground.what, &identity).map(|variant| {
-            self.renderer_count += 1;
-            self.push(Rc::new(variant))
-        });
+        let made =
+            Variant::new(measurement.session, measurement.job.technique, measurement.what, &identity).map(|variant| {
+                self.renderer_count += 1;
+                self.push(Rc::new(variant))
+            });
         self.identities.insert(key, made.clone());
         made
     }
 
-    fn copy(&mut self, ground: &Measurement<'_>, bytes: u64) -> Companion {
+    fn copy(&mut self, measurement: &Measurement<'_>, bytes: u64) -> Companion {
         if let Some(known) = self.copies.get(&bytes) {
             return known.clone();
         }
-        let made = BufferCopy::new(&ground.session.gpu, bytes).map(|copy| self.push(Rc::new(copy)));
+        let made = BufferCopy::new(&measurement.session.gpu, bytes).map(|copy| self.push(Rc::new(copy)));
         self.copies.insert(bytes, made.clone());
         made
     }

@@ -28,7 +28,7 @@ const SCHEMA: u32 = 1;
 
 /// What every row of a run shares.
 pub struct Head<'a> {
-    pub ground: Measurement<'a>,
+    pub measurement: Measurement<'a>,
     pub repeat: usize,
     /// The baseline's label.
     pub baseline: String,
@@ -48,7 +48,7 @@ impl Head<'_> {
     /// The keys that say what a row is of. Settings are as they were typed: their resolved values are known when they
     /// are made.
     pub fn row(&self, candidate: &Candidate) -> BenchRow {
-        let Measurement { job, session, what, is_fair } = &self.ground;
+        let Measurement { job, session, what, is_fair } = &self.measurement;
         let text = |(key, text): (&String, &String)| (key.clone(), SettingValue::Text(text.clone()));
         BenchRow {
             schema: SCHEMA,
@@ -84,7 +84,7 @@ impl Head<'_> {
         rounds: &Rounds,
         reference: &Found,
     ) -> Result<BenchRow> {
-        let Measurement { job, session, what, .. } = &self.ground;
+        let Measurement { job, session, what, .. } = &self.measurement;
         let renderer = &member.variant.renderer;
         let samples = &rounds.samples;
         let values = candidate.values.as_ref().map_err(Error::clone)?;
@@ -139,7 +139,7 @@ impl Head<'_> {
         member: &Member,
         samples: &[Samples],
     ) -> Result<Option<IndexMap<String, f64>>> {
-        let Measurement { session, what, .. } = &self.ground;
+        let Measurement { session, what, .. } = &self.measurement;
         if *what == What::Frame {
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             return Ok(pass_ms(&candidate.job, session, values)?.map(|passes| passes.into_iter().collect()));
@@ -177,7 +177,7 @@ impl Head<'_> {
     ///
     /// Errors: the device fails (exit code 4).
     fn counted(&self, candidate: &Candidate) -> Result<Option<BTreeMap<&'static str, f64>>> {
-        let (technique, session) = (candidate.job.technique, self.ground.session);
+        let (technique, session) = (candidate.job.technique, self.measurement.session);
         let values = candidate.values.as_ref().map_err(Error::clone)?;
         let counted = counted(technique, values);
         if counted == *values {

@@ -129,10 +129,10 @@ impl<'a> Sweep<'a> {
         observer: &'a mut dyn Observer,
     ) -> Result<Self> {
         let Request { job, what, repeat, is_fair, .. } = *request;
-        let ground = Measurement { job, session, what, is_fair };
+        let measurement = Measurement { job, session, what, is_fair };
         let mut refused = Vec::new();
         let tried = named.map_or(0..candidates.len(), |index| index..index + 1);
-        let found = tried.into_iter().find_map(|index| match possible(&ground, &candidates[index]) {
+        let found = tried.into_iter().find_map(|index| match possible(&measurement, &candidates[index]) {
             Err(error) if is_impossible(&error) => {
                 refused.push((index, error));
                 None
@@ -150,7 +150,7 @@ impl<'a> Sweep<'a> {
             });
         };
         let (baseline, baseline_variant) = found?;
-        let head = Head { ground, repeat, baseline: candidates[baseline].label.clone() };
+        let head = Head { measurement, repeat, baseline: candidates[baseline].label.clone() };
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
         let rows = candidates.iter().map(kept).collect();
         let references = References::default();
@@ -185,15 +185,15 @@ impl<'a> Sweep<'a> {
         let mut group = Group::new(&self.baseline_variant);
         if self.rows[self.baseline].is_none() {
             let values = self.candidates[self.baseline].values.clone()?;
-            let ground = self.head.ground.of(&self.candidates[self.baseline]);
-            group.add_baseline(&ground, self.baseline, &self.baseline_variant, &values);
+            let measurement = self.head.measurement.of(&self.candidates[self.baseline]);
+            group.add_baseline(&measurement, self.baseline, &self.baseline_variant, &values);
         }
-        while group.has_room(self.head.ground.what)
+        while group.has_room(self.head.measurement.what)
             && let Some(index) = waiting.front().copied()
         {
             interrupt::check()?;
             let added = match &self.candidates[index].values {
-                Ok(values) => group.add(&self.head.ground.of(&self.candidates[index]), index, values),
+                Ok(values) => group.add(&self.head.measurement.of(&self.candidates[index]), index, values),
                 Err(error) => Err(error.clone()),
             };
             match added {
@@ -225,11 +225,11 @@ impl<'a> Sweep<'a> {
         for (member, picture) in group.members.iter().zip(&pictures) {
             interrupt::check()?;
             let candidate = &self.candidates[member.candidate];
-            let Measurement { job, session, what, .. } = self.head.ground.of(candidate);
+            let Measurement { job, session, what, .. } = self.head.measurement.of(candidate);
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             let reference = self.references.of(job, session, what, values)?;
             let mut row = self.head.measured(candidate, member, picture, &rounds, &reference)?;
-            if let Some(asked) = &self.head.ground.job.reference {
+            if let Some(asked) = &self.head.measurement.job.reference {
                 match asked.judge(picture, job.technique, values, session) {
                     Ok(judged) => {
                         row.errors = Some(judged.errors);
@@ -264,7 +264,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-fn possible(ground: &Measurement<'_>, candidate: &Candidate) -> Result<Variant> {
+fn possible(measurement: &Measurement<'_>, candidate: &Candidate) -> Result<Variant> {
     let values = candidate.values.as_ref().map_err(Error::clone)?;
-    ground.of(candidate).variant(values)
+    measurement.of(candidate).variant(values)
 }

@@ -75,7 +75,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.report = matches.get_one::<PathBuf>("report").cloned();
     job.aovs = matches.get_many::<String>("aov").into_iter().flatten().cloned().collect();
     let earlier = matches.get_one::<PathBuf>("continue");
-    job.earlier = earlier.map(|path| Continuation::read(path, job.values.extent("size"))).transpose()?;
+    job.continuation = earlier.map(|path| Continuation::read(path, job.values.extent("size"))).transpose()?;
     job.reference = reference_args::asked(matches)?;
     job.profile = matches.get_flag("profile");
     job.statistics = matches.get_flag("statistics");

@@ -53,13 +53,13 @@ impl DrawList {
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
-            let lens = DrawView::new(scene, call, view, raster);
+            let draw_view = DrawView::new(scene, call, view, raster);
             for cluster in &clusters[call.clusters()] {
-                if choice == GeometryChoice::Culled && lens.sees_nothing_of(cluster, &indices[cluster.indices()]) {
+                if choice == GeometryChoice::Culled && draw_view.sees_nothing_of(cluster, &indices[cluster.indices()]) {
                     clusters_culled += 1;
                 } else {
                     let Cluster { first_index, index_count, bounds } = *cluster;
-                    kept.push((lens.distance(&bounds), DrawCall { first_index, index_count, ..*call }));
+                    kept.push((draw_view.distance(&bounds), DrawCall { first_index, index_count, ..*call }));
                 }
             }
         }
