@@ -48,6 +48,11 @@ impl Unread {
         (values.number(key) <= 0.0).then(|| Self { with: format!("--{key} {}", values.text(key)), why, readers })
     }
 
+    /// What is not read at the value that `key` has; `readers`: an option with a value at which it is.
+    pub fn at(values: &Values, key: &str, readers: &str, why: &'static str) -> Self {
+        Self { with: format!("--{key} {}", values.text(key)), why, readers: readers.to_owned() }
+    }
+
     /// The refusal of `--KEY VALUE`, in one sentence.
     pub fn sentence(&self, key: &str, value: &str) -> String {
         let Self { with, why, readers } = self;

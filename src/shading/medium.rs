@@ -1,6 +1,9 @@
-//! Homogeneous media: the twin of glsl/shading/medium.glsl's phase function, and what `--medium` says.
+//! Homogeneous media: the twin of glsl/shading/medium.glsl, and what `--medium` says.
 
+use crate::gpu::shader::structs::MediumBlock;
+use crate::scene::{Light, LightSource, Scene};
 use crate::settings::Values;
+use glam::Vec3;
 
 /// A homogeneous medium that does something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,11 +33,71 @@ impl Medium {
         let base = 1.0 + squared - 2.0 * self.asymmetry * cosine;
         (1.0 - squared) / (4.0 * std::f64::consts::PI * base.powf(1.5))
     }
+
+    /// The medium in its box: around all that is drawn while animations play, the eye, and the lights that are
+    /// somewhere. Outside it, light from the sun and the sky comes undimmed.
+    pub fn around<'a>(&self, scene: &Scene, eye: Vec3, lights: impl Iterator<Item = &'a Light>) -> MediumBlock {
+        let mut bounds = scene.lasting_bounds();
+        bounds.include(eye);
+        for light in lights {
+            if let LightSource::At(position) = light.source() {
+                bounds.include(position);
+            }
+        }
+        MediumBlock {
+            min_ws: bounds.min.extend(0.0).to_array(),
+            max_ws: bounds.max.extend(0.0).to_array(),
+            scattering: self.scattering as f32,
+            extinction: self.extinction() as f32,
+            asymmetry: self.asymmetry as f32,
+            _unused: 0,
+        }
+    }
+}
+
+impl MediumBlock {
+    /// Where its box begins and ends on the first `distance` metres of a ray.
+    pub fn stretch(&self, origin: Vec3, direction: Vec3, distance: f32) -> [f32; 2] {
+        let inverse = Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(1e-20), direction).recip();
+        let [near, far] = [self.min_ws, self.max_ws].map(|[x, y, z, _]| (Vec3::new(x, y, z) - origin) * inverse);
+        let begin = near.min(far).max_element().max(0.0);
+        let end = near.max(far).min_element().min(distance);
+        [begin, begin.max(end)]
+    }
+
+    /// Part of the light that passes the first `distance` metres of a ray.
+    pub fn passed(&self, origin: Vec3, direction: Vec3, distance: f32) -> f32 {
+        let [begin, end] = self.stretch(origin, direction, distance);
+        (-self.extinction * (end - begin)).exp()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A box of 2 x 4 x 6 m around the origin, and outside it nothing.
+    #[test]
+    fn light_is_dimmed_inside_the_box_alone() {
+        let medium = MediumBlock {
+            min_ws: [-1.0, -2.0, -3.0, 0.0],
+            max_ws: [1.0, 2.0, 3.0, 0.0],
+            extinction: 0.5,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        for (origin, direction, distance, metres) in [
+            (Vec3::ZERO, Vec3::X, 9.0, 1.0),
+            (Vec3::new(-5.0, 1.0, 0.0), Vec3::X, 100.0, 2.0),
+            (Vec3::new(-5.0, 1.0, 0.0), Vec3::X, 4.5, 0.5),
+            (Vec3::new(0.0, 0.0, 9.0), -Vec3::Z, 8.0, 2.0),
+            (Vec3::new(0.0, 0.0, 9.0), Vec3::Z, 8.0, 0.0),
+            (Vec3::new(0.0, 3.0, 0.0), Vec3::X, 8.0, 0.0),
+            (Vec3::new(-2.0, -2.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize(), 50.0, 2.0 * std::f32::consts::SQRT_2),
+        ] {
+            let passed = medium.passed(origin, direction, distance);
+            assert!((passed - (-0.5 * metres).exp()).abs() < 1e-6, "{origin} {direction}: {passed}, {metres} m");
+        }
+    }
 
     /// Over all directions the density sums to 1, and the cosine to the asymmetry.
     #[test]

@@ -2,7 +2,6 @@
 #ifndef PATH_TRACED_AIRLIGHT_GLSL
 #define PATH_TRACED_AIRLIGHT_GLSL
 
-#include "shading/medium.glsl"
 #include "techniques/path_traced/next_event.glsl"
 
 const uint MEDIUM_NONE = 0u;
@@ -10,26 +9,10 @@ const uint MEDIUM_NONE = 0u;
 const uint MEDIUM_DIMS = 1u;
 const uint MEDIUM_SCATTERS = 2u;
 
-// Where the medium's box begins and ends on a ray between two places of it, in metres.
-vec2 in_medium(vec3 origin, vec3 direction, float from, float to) {
-    vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
-    vec3 near = (params.medium_min_ws.xyz - origin) * inverse;
-    vec3 far = (params.medium_max_ws.xyz - origin) * inverse;
-    vec3 low = min(near, far);
-    vec3 high = max(near, far);
-    float begin = max(max(low.x, low.y), max(low.z, from));
-    float end = min(min(high.x, high.y), min(high.z, to));
-    return vec2(begin, max(begin, end));
-}
-
-float passed_by(vec2 ends) {
-    return exp(-params.extinction * (ends.y - ends.x));
-}
-
 // What arrives of `light`, which waits at `origin`, through the medium.
 Waiting dimmed(Waiting light, vec3 origin) {
     if (MEDIUM != MEDIUM_NONE && light.distance > 0.0) {
-        light.radiance *= passed_by(in_medium(origin, light.direction_ws, 0.0, light.distance));
+        light.radiance *= passed_by(params.medium, in_medium(params.medium, origin, light.direction_ws, 0.0, light.distance));
     }
     return light;
 }
@@ -60,28 +43,31 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
     } else {
         source_ws = place_of(source.index, barycentric);
     }
-    Stretch stretch = stretch_of(origin, direction, ends, params.extinction, source_ws, is_somewhere);
+    Stretch stretch = stretch_of(origin, direction, ends, params.medium.extinction, source_ws, is_somewhere);
     float place = place_on(stretch, choices.y, number);
     place_ws = origin + direction * place;
     Waiting waiting = NOTHING;
     if (is_punctual) {
         Incident incident = incident_from(light, place_ws);
         waiting = Waiting(incident.irradiance / source.chance, incident.direction_ws, incident.distance);
-        waiting.radiance *= phase(params.asymmetry, dot(incident.direction_ws, direction));
+        waiting.radiance *= phase(params.medium.asymmetry, dot(incident.direction_ws, direction));
     } else {
         uint triangle = source.index;
         Shining shining = shining_to(place_ws, source, source_ws);
         if (shining.density > 0.0) {
-            float scattered = phase(params.asymmetry, dot(shining.direction_ws, direction));
+            float scattered = phase(params.medium.asymmetry, dot(shining.direction_ws, direction));
             waiting = Waiting(emitted_at(triangle, barycentric), shining.direction_ws, shining.distance);
             waiting.radiance *= scattered / shining.density;
-            if (LIGHT_VISIBILITY != 0u) {
-                waiting.radiance *= weight_of(shining.density, scattered);
+            // Directions that the medium scatters into find emitters too.
+            if (AIRLIGHT_SEEN == 0u) {
+                if (LIGHT_VISIBILITY != 0u) {
+                    waiting.radiance *= weight_of(shining.density, scattered);
+                }
             }
         }
     }
-    float passed = exp(-params.extinction * (place - ends.x));
-    waiting.radiance *= params.scattering * passed / (density_on(stretch, place) * part);
+    float passed = exp(-params.medium.extinction * (place - ends.x));
+    waiting.radiance *= params.medium.scattering * passed / (density_on(stretch, place) * part);
     return dimmed(waiting, place_ws);
 }
 

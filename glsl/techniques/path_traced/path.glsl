@@ -7,6 +7,7 @@
 #include "loops.glsl"
 #include "resident_traced.glsl"
 #include "shading/light.glsl"
+#include "shading/medium.glsl"
 #include "shading/scatter.glsl"
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
@@ -30,18 +31,13 @@ layout(constant_id = 11) const uint HAS_LENS = 0;
 layout(constant_id = 12) const uint AMBIENT_VISIBILITY = 1;
 // 0: what comes straight to the surface that is seen is not counted.
 layout(constant_id = 13) const uint DIRECT_LIGHT = 1;
+// 1: what the medium scatters is light of lights on the ray that is seen.
+layout(constant_id = 14) const uint AIRLIGHT_SEEN = 0;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.
     vec4 sphere_ws;
-    // The medium's box.
-    vec4 medium_min_ws;
-    vec4 medium_max_ws;
-    // Light that the medium scatters, and all that it stops, per metre.
-    float scattering;
-    float extinction;
-    // Mean cosine of the angle by which the medium scatters light, -1 to 1.
-    float asymmetry;
+    MediumBlock medium;
     // Radius of the lens, and distance from it to the plane in focus, in metres.
     float lens_radius;
     float focus;

@@ -28,6 +28,9 @@ struct Path {
     // Surfaces and places of the medium that have scattered it.
     uint bounce;
     bool goes_on;
+    // Whether what shines on the place that the path comes from is counted: by DIRECT_LIGHT not on the surface that is
+    // seen.
+    bool is_lit;
     // Width of the ray's cone at the origin, metres, and by how much it grows a metre.
     float cone_width;
     float cone_spread;
@@ -67,7 +70,7 @@ Path view_path(FrameBlock view, vec2 at_px, vec2 lens) {
     vec3 origin = is_perspective ? view.eye_ws.xyz + direction * behind : start;
     float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
     float width = params.cone_width + params.cone_spread * behind;
-    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true, width, params.cone_spread);
+    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true, true, width, params.cone_spread);
     if (HAS_LENS != 0u) {
         through_lens(view, path, lens, dot(start - view.eye_ws.xyz, view.forward_ws.xyz));
     }
@@ -91,25 +94,22 @@ Path camera_path(vec2 at_px) {
     return path;
 }
 
-// Whether what a surface or a light sends straight to the place of this bounce is counted: the camera's own view is.
-bool counts_straight(uint bounce) {
-    return DIRECT_LIGHT != 0u || bounce != 1u;
+// Whether what shines straight on a surface that this path finds is counted.
+bool lights_surface(Path path) {
+    return DIRECT_LIGHT != 0u || path.bounce != 0u;
 }
 
-// Radiance from around the scene on a ray that leaves it.
-vec3 around_scene(uint bounce) {
-    if (bounce == 0u) {
-        return frame.background.rgb;
-    }
-    if (!counts_straight(bounce)) {
-        return vec3(0.0);
-    }
+// Radiance from around the scene on a ray that was scattered.
+vec3 surroundings() {
     return AMBIENT_VISIBILITY != 0u ? frame.background.rgb + frame.ambient.rgb : vec3(0.0);
 }
 
-// What a path may still find by scattering once more: a last scattering leads to what shines by itself alone.
+// What a path may still find by scattering in the medium: a last scattering leads to what shines by itself alone.
 bool finds_more(Path path) {
-    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u || largest(around_scene(path.bounce + 1u)) > 0.0;
+    if (AIRLIGHT_SEEN != 0u) {
+        return false;
+    }
+    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u || largest(surroundings()) > 0.0;
 }
 
 // Width of the path's cone at a distance from its origin.
@@ -118,7 +118,15 @@ float cone_width_at(Path path, float distance) {
 }
 
 // `distance`: from the path's origin to the new one. `spread`: by how much more its cone grows a metre from there on.
-void turn(inout Path path, float distance, float spread, vec3 origin, vec3 direction, float survivor) {
+void turn(
+    inout Path path,
+    float distance,
+    float spread,
+    vec3 origin,
+    vec3 direction,
+    bool is_lit,
+    float survivor
+) {
     path.cone_width = cone_width_at(path, distance);
     path.cone_spread += spread;
     if (ROULETTE != 0u && path.bounce >= ROULETTE_FROM) {
@@ -130,6 +138,7 @@ void turn(inout Path path, float distance, float spread, vec3 origin, vec3 direc
     path.direction = direction;
     path.limit = FAR;
     path.behind = 0.0;
+    path.is_lit = is_lit;
     path.bounce++;
 }
 
@@ -137,10 +146,10 @@ void scatter_in_medium(inout Path path, float distance) {
     vec3 place_ws = path.origin + path.direction * distance;
     vec2 numbers = next_pair();
     vec2 choice = next_pair();
-    vec3 scattered = phase_direction(params.asymmetry, path.direction, numbers);
-    path.density = phase(params.asymmetry, dot(scattered, path.direction));
-    path.throughput *= params.scattering / params.extinction;
-    turn(path, distance, 1.0, place_ws, scattered, choice.y);
+    vec3 scattered = phase_direction(params.medium.asymmetry, path.direction, numbers);
+    path.density = phase(params.medium.asymmetry, dot(scattered, path.direction));
+    path.throughput *= params.medium.scattering / params.medium.extinction;
+    turn(path, distance, 1.0, place_ws, scattered, true, choice.y);
 }
 
 void scatter_at(inout Path path, SurfacePoint point, float distance) {
@@ -153,7 +162,7 @@ void scatter_at(inout Path path, SurfacePoint point, float distance) {
     bool leaves = dot(scattered, point.plane_ws) > 0.0 && path.density > 0.0;
     path.throughput *= leaves ? reflected / max(path.density, 1e-20) : vec3(0.0);
     float spread = BRDF_KIND == BRDF_LAMBERT ? 1.0 : point.surface.roughness * point.surface.roughness;
-    turn(path, distance, spread, off_surface(point), scattered, choice.y);
+    turn(path, distance, spread, off_surface(point), scattered, lights_surface(path), choice.y);
 }
 
 // What a surface sends along the path by itself.
@@ -161,7 +170,7 @@ vec3 emitted_along(Path path, SurfacePoint point, float distance) {
     if (path.bounce == 0u) {
         return path.throughput * point.emitted;
     }
-    if (counts_straight(path.bounce) && point.emitter_density > 0.0 && LIGHT_VISIBILITY != 0u && IS_WALKED == 0u) {
+    if (path.is_lit && point.emitter_density > 0.0 && LIGHT_VISIBILITY != 0u && IS_WALKED == 0u) {
         float cosine = max(abs(dot(point.plane_ws, path.direction)), 1e-12);
         float other = point.emitter_density * distance * distance / cosine;
         return path.throughput * point.emitted * weight_of(path.density, other);
@@ -222,24 +231,28 @@ vec3 radiance_along(vec2 at_px) {
         bool is_in_medium = false;
         float place = 0.0;
         if (MEDIUM != MEDIUM_NONE) {
-            vec2 ends = in_medium(path.origin, path.direction, -path.behind, hit.distance);
+            vec2 ends = in_medium(params.medium, path.origin, path.direction, -path.behind, hit.distance);
             bool scatters = MEDIUM == MEDIUM_SCATTERS && path.bounce < BOUNCES;
+            if (AIRLIGHT_SEEN != 0u) {
+                scatters = scatters && path.bounce == 0u;
+            }
             if (scatters) {
                 air = airlight(path.origin, path.direction, ends, air_ws);
                 air.radiance *= path.throughput;
                 is_waiting = air.distance > 0.0;
             }
             if (scatters && finds_more(path)) {
-                place = ends.x - log(1.0 - next_pair().x) / params.extinction;
+                place = ends.x - log(1.0 - next_pair().x) / params.medium.extinction;
                 is_in_medium = place < ends.y;
             } else {
-                path.throughput *= passed_by(ends);
+                path.throughput *= passed_by(params.medium, ends);
             }
         }
         if (is_in_medium) {
             scatter_in_medium(path, place);
         } else if (!hit.is_hit) {
-            radiance += path.throughput * around_scene(path.bounce);
+            vec3 around = path.bounce == 0u ? frame.background.rgb : path.is_lit ? surroundings() : vec3(0.0);
+            radiance += path.throughput * around;
             path.goes_on = false;
         } else {
             SurfacePoint point = surface_point(hit.triangle, hit.barycentric, path.direction, cone_width_at(path, hit.distance));
@@ -256,7 +269,7 @@ vec3 radiance_along(vec2 at_px) {
                 vec3 to_eye = -path.direction;
                 light = punctual_light(point, to_eye);
                 panel = IS_WALKED != 0u ? NOTHING : emitter(point, to_eye);
-                if (!counts_straight(path.bounce + 1u)) {
+                if (!lights_surface(path)) {
                     light = NOTHING;
                     panel = NOTHING;
                 }

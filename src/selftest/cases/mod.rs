@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_METHODS: [&str; 26] = [
+        const NO_METHODS: [&str; 27] = [
             "mode",
             "ss-guidance",
             "direct-light",
@@ -83,6 +83,7 @@ mod tests {
             "ambient-visibility",
             "punctual",
             "transport",
+            "airlight",
             "emissive",
             "direct",
             "blend-lights",

@@ -1,12 +1,10 @@
-//! The medium of `--medium` as the shader takes it (glsl/techniques/path_traced/airlight.glsl): which light it is asked for,
-//! and the box that it fills.
+//! What light the medium of `--medium` is asked for (glsl/techniques/path_traced/airlight.glsl).
 
 use crate::error::{Error, Result};
-use crate::gpu::shader::structs::SampleParams;
-use crate::scene::{Light, LightSource};
+use crate::settings::Values;
 use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
-use crate::techniques::path_traced::settings::Transport;
+use crate::techniques::path_traced::settings::{Airlight, Transport};
 
 /// What the medium does to the paths of a picture; the number is the shader's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +19,7 @@ impl Air {
     pub fn new(inputs: &Inputs<'_>) -> Result<(Self, Option<Medium>)> {
         let (values, medium) = (inputs.values, Medium::from_values(inputs.values));
         let transport = values.choice("transport");
-        let is_scattered = matches!(transport, Transport::SingleScatter | Transport::Full);
+        let is_scattered = matches!(transport, Transport::SingleScatter | Transport::Full) || is_seen(values);
         match medium {
             None if transport == Transport::SingleScatter => {
                 Err(Error::request("--transport single-scatter: there is no medium that scatters light")
@@ -38,24 +36,7 @@ impl Air {
     }
 }
 
-/// Writes the medium and its box: around all that is drawn while animations play, the eye, and the lights that are
-/// somewhere. Outside it, light from the sun and the sky comes undimmed.
-pub fn write<'a>(
-    params: &mut SampleParams,
-    medium: &Medium,
-    inputs: &Inputs<'_>,
-    lights: impl Iterator<Item = &'a Light>,
-) {
-    let mut bounds = inputs.scene.lasting_bounds();
-    bounds.include(inputs.view.eye());
-    for light in lights {
-        if let LightSource::At(position) = light.source() {
-            bounds.include(position);
-        }
-    }
-    params.medium_min_ws = bounds.min.extend(0.0).to_array();
-    params.medium_max_ws = bounds.max.extend(0.0).to_array();
-    params.scattering = medium.scattering as f32;
-    params.extinction = medium.extinction() as f32;
-    params.asymmetry = medium.asymmetry as f32;
+/// Whether a medium scatters nothing but light of lights on the ray that is seen.
+pub fn is_seen(values: &Values) -> bool {
+    values.is("airlight", Airlight::Seen)
 }

@@ -32,7 +32,8 @@
 //!   when it closes, one moment a path; chances of emitters are those of the opening
 //! - `--medium`: a homogeneous medium in the box around all that is drawn, the eye and the lights. On each stretch of a path
 //!   one light, chosen by power, is looked for at one place, drawn by the angle under which the light sees the stretch or as
-//!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces
+//!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces. With
+//!   `--airlight seen` the stretch that the camera sees is the only one, and light of lights all that is scattered
 //!
 //! Equal to others: `--transport direct` is `deferred --direct-shadow ray`; `--transport one-bounce --vpl-visibility off` is
 //! the limit of `interleaved_deferred --split none` with ever more virtual point lights.
@@ -222,7 +223,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
     };
     [params.cone_width, params.cone_spread] = inputs.view.pixel_cone();
     if let Some(medium) = medium {
-        airlight::write(&mut params, &medium, inputs, sources.all_lights());
+        params.medium = medium.around(inputs.scene, inputs.view.eye(), sources.all_lights());
     }
     let lens = Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?);
     if let Some(lens) = lens {
@@ -243,6 +244,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),
         is_tested: is_tested(inputs),
         air,
+        airlight_seen: airlight::is_seen(values),
         has_lens: lens.is_some(),
         params,
     })

@@ -41,6 +41,8 @@ pub struct Choices {
     /// The scene has MASK or BLEND surfaces.
     pub is_tested: bool,
     pub air: Air,
+    /// Its airlight is that of the ray that is seen.
+    pub airlight_seen: bool,
     /// The camera has a lens that is open.
     pub has_lens: bool,
     pub params: SampleParams,
@@ -100,6 +102,7 @@ impl Sample {
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
             ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
             ("MEDIUM", choices.air as u32),
+            ("AIRLIGHT_SEEN", u32::from(choices.airlight_seen)),
             ("HAS_LENS", u32::from(choices.has_lens)),
         ];
         let mut constants = [&own[..], &layout.constants()].concat();

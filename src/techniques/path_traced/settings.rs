@@ -6,6 +6,7 @@ use crate::settings::{
     APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP,
     Values, WORKGROUP,
 };
+use crate::shading::medium::Medium;
 
 /// Paths a pixel, at most: float sums of more lose what a path adds.
 pub const MOST_SAMPLES: u32 = 1 << 16;
@@ -29,6 +30,16 @@ choices! {
         "one-bounce" => OneBounce,
         "single-scatter" => SingleScatter,
         "full" => Full,
+    }
+}
+
+choices! {
+    /// Where a medium scatters light (`--airlight`).
+    pub enum Airlight {
+        /// Anywhere on a path, as often as the transport says.
+        "path" => Path,
+        /// On the ray that is seen, once.
+        "seen" => Seen,
     }
 }
 
@@ -72,6 +83,19 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Picture)
     },
     Setting {
+        key: "airlight",
+        kind: Kind::Choice(Airlight::WORDS),
+        default: "path",
+        paper: "Dubla 2009, 3.4",
+        help: "Light that --medium scatters: at any place of a path, as often as --transport says (path); or once, from \
+               lights straight into the ray that is seen, with any --transport (seen)",
+        unread: |values| {
+            let is_none = Medium::from_values(values).is_none();
+            is_none.then(|| Unread::at(values, "medium", "--medium 0.1,0,0", "nothing scatters on the way"))
+        },
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
         key: "bounces",
         kind: Kind::Integer { min: 1, max: 64 },
         default: "16",
@@ -88,7 +112,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         help: "Whether light is counted that comes straight from lights, emissive surfaces or the surroundings to the \
                surface that is seen; off: only what other surfaces, or --medium, have scattered before",
-        unread: |values| Unread::with(values, "transport", &[Transport::Direct], "there is no other light"),
+        unread: |values| {
+            Unread::with(values, "transport", &[Transport::Direct], "there is no other light")
+                .filter(|_| !values.is("airlight", Airlight::Seen))
+        },
         ..Setting::changing(Changes::Picture)
     },
     Setting {

@@ -147,6 +147,16 @@ fn the_airlight_of_a_panel_is_its_integral_over_the_panel() {
             println!("{medium:?}, visibility {visibility}: {found} for {expected}");
             require_within(found, expected, 0.01, &format!("{medium:?}, visibility {visibility}"));
         }
+        // The same light without what would shine on the wall, and as what any transport can be given.
+        for more in [
+            &[("direct-light", "off")][..],
+            &[("airlight", "seen"), ("transport", "direct")],
+            &[("airlight", "seen"), ("transport", "one-bounce"), ("direct-light", "off")],
+            &[("airlight", "seen"), ("transport", "full"), ("light-visibility", "off")],
+        ] {
+            let found = mean(&watched.picture(NAME, &both(&both(&changes, &[("medium", &text(&medium))]), more)));
+            require_within(found, expected, 0.01, &format!("{medium:?}, {more:?}"));
+        }
     }
 }
 
