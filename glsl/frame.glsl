@@ -34,4 +34,34 @@ vec3 to_eye(FrameBlock frame, vec3 position_ws) {
     return frame.eye_ws.w > 0.0 ? normalize(frame.eye_ws.xyz - position_ws) : -frame.forward_ws.xyz;
 }
 
+// What is seen through a place of the picture, from the near plane to the far one.
+struct ViewRay {
+    vec3 origin;
+    vec3 direction;
+    // How far it reaches, and how far before its origin it would begin if no near plane cut it, in metres.
+    float limit;
+    float behind;
+    // How far before the eye's plane the near plane lies, in metres.
+    float near;
+};
+
+// Where a ray ends that nothing does.
+const float FAR = 1e30;
+
+ViewRay view_ray(FrameBlock frame, vec2 at_px) {
+    vec2 ndc = at_px / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0;
+    vec4 near = frame.world_from_clip * vec4(ndc, 1.0, 1.0);
+    vec4 far = frame.world_from_clip * vec4(ndc, 0.0, 1.0);
+    bool is_perspective = frame.eye_ws.w > 0.0;
+    // A far plane at infinity has w = 0: this is a direction all the same.
+    vec3 direction = is_perspective ? normalize(far.xyz - frame.eye_ws.xyz * far.w) : frame.forward_ws.xyz;
+    vec3 start = near.xyz / near.w;
+    float behind = is_perspective ? distance(start, frame.eye_ws.xyz) : 0.0;
+    // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
+    vec3 origin = is_perspective ? frame.eye_ws.xyz + direction * behind : start;
+    float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
+    float near_m = dot(start - frame.eye_ws.xyz, frame.forward_ws.xyz);
+    return ViewRay(origin, direction, limit, behind, near_m);
+}
+
 #endif

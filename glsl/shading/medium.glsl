@@ -1,38 +1,10 @@
-// Homogeneous media: the box that one fills and what it stops, how it scatters (Henyey and Greenstein 1941), and where
-// along a ray a light's share of it is looked for (Kulla and Fajardo 2012). Twin: src/shading/medium.rs.
+// Homogeneous media: how they scatter (Henyey and Greenstein 1941), and where along a ray a light's share of it is looked
+// for (Kulla and Fajardo 2012). Twin: src/shading/medium.rs.
 #ifndef SHADING_MEDIUM_GLSL
 #define SHADING_MEDIUM_GLSL
 
+#include "shading/medium_box.glsl"
 #include "shading/scatter.glsl"
-
-struct MediumBlock {
-    // The box that it fills; all 0 where there is no medium.
-    vec4 min_ws;
-    vec4 max_ws;
-    // Light that a metre scatters, and all that it stops.
-    float scattering;
-    float extinction;
-    // Mean cosine of the angle by which light is turned, -1 to 1.
-    float asymmetry;
-    uint _unused;
-};
-
-// Where the medium's box begins and ends on a ray between two places of it, in metres.
-vec2 in_medium(MediumBlock medium, vec3 origin, vec3 direction, float from, float to) {
-    vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
-    vec3 near = (medium.min_ws.xyz - origin) * inverse;
-    vec3 far = (medium.max_ws.xyz - origin) * inverse;
-    vec3 low = min(near, far);
-    vec3 high = max(near, far);
-    float begin = max(max(low.x, low.y), max(low.z, from));
-    float end = min(min(high.x, high.y), min(high.z, to));
-    return vec2(begin, max(begin, end));
-}
-
-// Part of the light that passes a stretch of a ray.
-float passed_by(MediumBlock medium, vec2 ends) {
-    return exp(-medium.extinction * (ends.y - ends.x));
-}
 
 // Density over solid angle; `cosine`: between the directions in which light travels before and after.
 float phase(float asymmetry, float cosine) {

@@ -10,7 +10,7 @@
 //! number of walks biases the sum by about 1/N.
 
 use crate::bvh::{Bvh, Hit};
-use crate::gpu::shader::structs::VplBlock;
+use crate::gpu::shader::structs::{MediumBlock, VplBlock};
 use crate::lights::emitters::luminous;
 use crate::scene::{Light, Scene};
 use crate::shading::light::LightStart;
@@ -29,6 +29,8 @@ pub struct Walk {
     pub emissive: bool,
     /// Whether a start on one of them is a light itself; without, what the panel gives straight is another's.
     pub starts: bool,
+    /// What the walks pass through.
+    pub medium: Option<MediumBlock>,
     pub seed: u32,
 }
 
@@ -158,6 +160,8 @@ struct Tracer<'a> {
 
 /// A surface point that a walk landed on.
 struct Landing {
+    /// From where the ray began, in metres.
+    distance: f32,
     position: Vec3,
     normal: Vec3,
     albedo: Vec3,
@@ -200,7 +204,8 @@ impl Tracer<'_> {
         flux /= chance;
         for _ in 0..walk.bounces {
             let Some(landing) = self.land(origin, direction) else { return };
-            flux *= landing.albedo;
+            let passed = walk.medium.map_or(1.0, |medium| medium.passed(origin, direction, landing.distance));
+            flux *= landing.albedo * passed;
             // A black or metallic surface sends nothing on: no light is spent on it.
             if flux == Vec3::ZERO {
                 return;
@@ -229,7 +234,7 @@ impl Tracer<'_> {
             normal = -normal;
         }
         let albedo = material::albedo_at(self.scene, material, &self.point(&hit));
-        Some(Landing { position: origin + direction * hit.distance, normal, albedo })
+        Some(Landing { distance: hit.distance, position: origin + direction * hit.distance, normal, albedo })
     }
 
     fn corners(&self, hit: &Hit) -> (&crate::scene::Mesh, &crate::scene::Draw, [usize; 3]) {
@@ -312,6 +317,30 @@ mod tests {
         found.vpls.iter().map(|vpl| Vec4::from_array(vpl.intensity).truncate()).sum()
     }
 
+    /// A sun's walks fall straight through the two metres of the medium's box, and the floor sends on what is left.
+    #[test]
+    fn a_medium_takes_its_part_of_a_walk() {
+        let scene = floor(0.5);
+        let bvh = Bvh::build(&scene).unwrap();
+        let sun = Light { kind: LightKind::Directional, ..point(1.0) };
+        let medium = MediumBlock {
+            min_ws: [-50.0, 0.0, -50.0, 0.0],
+            max_ws: [50.0, 2.0, 50.0, 0.0],
+            extinction: 0.25,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let light = |medium| {
+            total(&walk(
+                &scene,
+                &bvh,
+                std::slice::from_ref(&sun),
+                &Walk { count: 64, bounces: 1, emissive: false, starts: true, medium, seed: 1 },
+            ))
+        };
+        let ratio = light(Some(medium)) / light(None);
+        assert!((ratio - (-0.5f32).exp()).abs().max_element() < 1e-4, "{ratio}");
+    }
+
     #[test]
     fn the_flux_that_lands_is_the_flux_that_leaves() {
         let scene = floor(0.5);
@@ -320,7 +349,7 @@ mod tests {
             &scene,
             &bvh,
             &[point(1.0)],
-            &Walk { count: 4096, bounces: 1, emissive: false, starts: true, seed: 3 },
+            &Walk { count: 4096, bounces: 1, emissive: false, starts: true, medium: None, seed: 3 },
         );
         assert_eq!(found.vpls.len(), 4096);
         // Half of 4 pi I goes down and nearly all of that lands on a floor of 50 m; half of it is kept; a Lambert patch
@@ -338,7 +367,12 @@ mod tests {
         scene.meshes.push(square(2.0, 1.0, 1));
         scene.draws.push(Draw { mesh: 1, world_from_object: Mat4::IDENTITY });
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[], &Walk { count: 512, bounces: 1, emissive: true, starts: true, seed: 1 });
+        let found = walk(
+            &scene,
+            &bvh,
+            &[],
+            &Walk { count: 512, bounces: 1, emissive: true, starts: true, medium: None, seed: 1 },
+        );
         // Radiance 3 times an area of 4; the panel faces up and the floor is black, so nothing else is lit.
         assert!((total(&found) - 12.0).abs().max_element() < 1e-3, "{}", total(&found));
     }
@@ -351,7 +385,7 @@ mod tests {
         scene.meshes.push(square(2.0, 1.0, 1));
         scene.draws.push(Draw { mesh: 1, world_from_object: Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) });
         let bvh = Bvh::build(&scene).unwrap();
-        let walk = Walk { count: 64, bounces: 1, emissive: true, starts: true, seed: 1 };
+        let walk = Walk { count: 64, bounces: 1, emissive: true, starts: true, medium: None, seed: 1 };
         let found = super::walk(&scene, &bvh, &[], &walk);
         // It faces up: its lights are its own starts, and none is on the floor.
         assert_eq!(found.found_count, 64);
@@ -367,7 +401,12 @@ mod tests {
         scene.draws.push(Draw { mesh: 1, world_from_object: down });
         let sun = Light { kind: LightKind::Directional, ..point(0.0) };
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[sun], &Walk { count: 4, bounces: 1, emissive: false, starts: true, seed: 1 });
+        let found = walk(
+            &scene,
+            &bvh,
+            &[sun],
+            &Walk { count: 4, bounces: 1, emissive: false, starts: true, medium: None, seed: 1 },
+        );
         assert_eq!((found.vpls.len(), found.found_count, total(&found)), (4, 0, Vec3::ZERO));
     }
 
@@ -375,7 +414,12 @@ mod tests {
     fn where_nothing_shines_all_lights_are_dark() {
         let scene = floor(0.5);
         let bvh = Bvh::build(&scene).unwrap();
-        let found = walk(&scene, &bvh, &[], &Walk { count: 4, bounces: 1, emissive: true, starts: true, seed: 1 });
+        let found = walk(
+            &scene,
+            &bvh,
+            &[],
+            &Walk { count: 4, bounces: 1, emissive: true, starts: true, medium: None, seed: 1 },
+        );
         assert_eq!((found.vpls.len(), found.found_count, found.walk_count), (4, 0, 0));
     }
 }

@@ -28,6 +28,7 @@ use crate::bvh::LazyBvh;
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::frame::View;
+use crate::gpu::shader::structs::MediumBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::picture::Aov;
@@ -36,6 +37,7 @@ use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
 use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
 use crate::settings::{COMMON, DirectShadow, EMISSIVE, INSTRUMENT, Setting, Values};
+use crate::shading::medium::Medium;
 use bench_stage::{BenchStage, PlainForm};
 use glam::Vec2;
 use notes::Figures;
@@ -59,6 +61,12 @@ impl Inputs<'_> {
     /// Whether emissive triangles light other surfaces (`--emissive`).
     fn emissive_lights(&self) -> bool {
         emissive_lights(self.values, self.lights)
+    }
+
+    /// The medium of `--medium` in its box.
+    fn medium(&self) -> Option<MediumBlock> {
+        let medium = Medium::from_values(self.values)?;
+        Some(medium.around(self.scene, self.view.eye(), self.lights.lights.iter()))
     }
 
     /// The triangles of solid surfaces that are drawn.

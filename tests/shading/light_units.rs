@@ -341,7 +341,7 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
         ];
         let stages = ["gbuffer.normal", "shade.irradiance"];
         let renderer = watched.render_stages("interleaved_deferred", &changes, &stages);
-        let walk = vpl::Walk { count, bounces: 1, emissive: false, starts: true, seed: 5 };
+        let walk = vpl::Walk { count, bounces: 1, emissive: false, starts: true, medium: None, seed: 5 };
         let vpls = vpl::walk(&session.scene, &bvh, &renderer.lights.lights, &walk).vpls;
         let mapping = mapping(renderer.view.extent, pattern, pattern);
         let grid = Pattern::grid(pattern);

@@ -1,9 +1,12 @@
 // A texel's estimate of one component, iteration by iteration: the part of Listing 1 (Dubla 2009, section 3.1) that all
-// components share. What differs is the component's own file: `contribute`, and in guidance.glsl `refines`.
+// components share. What differs is the component's own file (component.glsl).
 //
 // The including shader has the axes POSITION and COMPONENT.
 #ifndef ADAPTIVE_INTERLEAVED_ESTIMATE_GLSL
 #define ADAPTIVE_INTERLEAVED_ESTIMATE_GLSL
+
+// The component's file has its samples.
+#define ESTIMATES
 
 #include "passes/gbuffer_read.glsl"
 #include "bvh.glsl"
@@ -24,6 +27,7 @@ layout(std430, set = 0, binding = 5) writeonly buffer Irradiance { uvec2 irradia
 
 // What the pixel of a texel shows.
 struct Point {
+    uvec2 pixel;
     vec3 position_ws;
     vec3 normal_ws;
     bool has_surface;
@@ -44,14 +48,10 @@ const Estimate NO_ESTIMATE = Estimate(vec3(0.0), 0.0, 0u, 0xffffffffu, 0u);
 Point point_at(uvec2 texel) {
     uvec2 pixel = texel * params.scale;
     uvec2 bits = normal_words(pixel);
-    return Point(unpack_position(frame, position_words(pixel), pixel), unpack_normal(bits), has_surface(bits));
+    return Point(pixel, unpack_position(frame, position_words(pixel), pixel), unpack_normal(bits), has_surface(bits));
 }
 
-#if defined(COMPONENT_ID)
-#include "techniques/adaptive_interleaved/components/id.glsl"
-#elif defined(COMPONENT_SS)
-#include "techniques/adaptive_interleaved/components/ss.glsl"
-#endif
+#include "techniques/adaptive_interleaved/component.glsl"
 
 // Iterations `from` to `end`, without it.
 void iterate(Point point, uint slot, uint from, uint end, inout Estimate estimate) {
@@ -65,7 +65,7 @@ void iterate(Point point, uint slot, uint from, uint end, inout Estimate estimat
 // The initial pass of a texel.
 Estimate initial_estimate(Point point, uint slot) {
     Estimate estimate = NO_ESTIMATE;
-    if (point.has_surface) {
+    if (is_estimated(point)) {
         iterate(point, slot, 0u, params.base, estimate);
     }
     return estimate;
@@ -73,7 +73,7 @@ Estimate initial_estimate(Point point, uint slot) {
 
 // What guidance.glsl reads of it.
 uint found_by(Point point, uint slot, Estimate estimate) {
-    return point.has_surface ? found_word(slot, estimate) : NO_SURFACE;
+    return is_estimated(point) ? found_word(slot, estimate) : NOT_ESTIMATED;
 }
 
 void write_mean(uint index, Estimate estimate, uint iteration_count) {

@@ -1,6 +1,6 @@
 // All three steps of one component in one dispatch: each tile iterates as often as it must, its texels a thread each,
 // as many whole tiles as a workgroup holds. Dubla 2009, Listing 1. Pass: src/techniques/adaptive_interleaved/fused.rs.
-// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss
+// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/estimate.glsl"
@@ -22,24 +22,26 @@ void main() {
     bool has_tile = lane < tiles_per_group * size && tile < params.tile_count;
     uvec2 texel = texel_of(params, tile, slot);
     bool is_own = has_tile && has_texel(params, texel);
-    Point point = Point(vec3(0.0), vec3(0.0), false);
+    Point point;
+    Estimate estimate = NO_ESTIMATE;
+    found[lane] = NOT_ESTIMATED;
     if (is_own) {
         point = point_at(texel);
+        estimate = initial_estimate(point, slot);
+        found[lane] = found_by(point, slot, estimate);
     }
-    Estimate estimate = initial_estimate(point, slot);
-    found[lane] = found_by(point, slot, estimate);
     barrier();
-    TileFound of_tile = NOTHING_FOUND;
+    TileFound of_tile = TILE_UNKNOWN;
     uint first = lane - slot;
     for (uint other = first; other < min(first + size, REFINE_LANES); other++) {
-        add_found(params, found[other], of_tile);
+        add_word(params, found[other], of_tile);
     }
     if (!is_own) {
         return;
     }
     uint further = further_iterations(params, of_tile);
     uint end = params.base + further;
-    if (point.has_surface) {
+    if (is_estimated(point)) {
         iterate(point, slot, params.base, end, estimate);
     }
     write_mean(index_of(params, texel), estimate, end);

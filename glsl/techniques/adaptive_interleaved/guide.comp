@@ -1,6 +1,6 @@
 // Adaptive guidance of one component, a tile a thread. Dubla 2009, Listing 1, lines 8 to 13.
 // Pass: src/techniques/adaptive_interleaved/guide.rs.
-// variants: COMPONENT=id|ss
+// variants: COMPONENT=id|ss|pm
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/guidance.glsl"
@@ -18,11 +18,11 @@ void main() {
     if (tile >= params.tile_count) {
         return;
     }
-    TileFound found = NOTHING_FOUND;
+    TileFound found = TILE_UNKNOWN;
     for (uint slot = 0u; slot < tile_size(params); slot++) {
         uvec2 texel = texel_of(params, tile, slot);
         if (has_texel(params, texel)) {
-            add_found(params, estimates[index_of(params, texel)].w, found);
+            add_word(params, estimates[index_of(params, texel)].w, found);
         }
     }
     uint further = further_iterations(params, found);

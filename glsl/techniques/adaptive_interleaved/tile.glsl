@@ -3,7 +3,10 @@
 #ifndef ADAPTIVE_INTERLEAVED_TILE_GLSL
 #define ADAPTIVE_INTERLEAVED_TILE_GLSL
 
+#include "shading/medium_box.glsl"
+
 struct AdaptiveParams {
+    MediumBlock medium;
     // Texels of the component: the frame's pixels, or each scale-th of them in both directions.
     uint width;
     uint height;
@@ -27,14 +30,13 @@ struct AdaptiveParams {
     uint light_count;
     // Square of --vpl-clamp, in square metres.
     float least_squared;
+    // Metres that a march along a ray advances, and from a light within which its place is in the light's halo.
+    float march_step;
+    float halo;
 };
 
-// What a texel without a surface has found in the initial pass; that of others is a component's own word.
-const uint NO_SURFACE = 0xffffffffu;
-
-// Lights that have a bit of their own in the word of a texel; more share them. One bit fewer than a word has: all of them
-// together are not NO_SURFACE.
-const uint LIGHT_BITS = 31u;
+// What a texel that is not estimated has found in the initial pass; that of others is a component's own word.
+const uint NOT_ESTIMATED = 0xffffffffu;
 
 uint tile_size(AdaptiveParams params) {
     return params.tile_x * params.tile_y;

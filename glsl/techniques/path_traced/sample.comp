@@ -11,7 +11,6 @@
 #include "techniques/path_traced/airlight.glsl"
 #include "techniques/path_traced/light_walk.glsl"
 
-const float FAR = 1e30;
 // Paths end by chance from this surface on.
 const uint ROULETTE_FROM = 3u;
 
@@ -58,21 +57,11 @@ void through_lens(FrameBlock view, inout Path path, vec2 numbers, float near) {
 
 // The ray of `view` through a place of the picture and, as `lens` says, of the lens, from the near plane to the far one.
 Path view_path(FrameBlock view, vec2 at_px, vec2 lens) {
-    vec2 ndc = at_px / vec2(view.width_px, view.height_px) * 2.0 - 1.0;
-    vec4 near = view.world_from_clip * vec4(ndc, 1.0, 1.0);
-    vec4 far = view.world_from_clip * vec4(ndc, 0.0, 1.0);
-    bool is_perspective = view.eye_ws.w > 0.0;
-    // A far plane at infinity has w = 0: this is a direction all the same.
-    vec3 direction = is_perspective ? normalize(far.xyz - view.eye_ws.xyz * far.w) : view.forward_ws.xyz;
-    vec3 start = near.xyz / near.w;
-    float behind = is_perspective ? distance(start, view.eye_ws.xyz) : 0.0;
-    // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
-    vec3 origin = is_perspective ? view.eye_ws.xyz + direction * behind : start;
-    float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
-    float width = params.cone_width + params.cone_spread * behind;
-    Path path = Path(origin, direction, limit, behind, vec3(1.0), 0.0, 0u, true, true, width, params.cone_spread);
+    ViewRay ray = view_ray(view, at_px);
+    float width = params.cone_width + params.cone_spread * ray.behind;
+    Path path = Path(ray.origin, ray.direction, ray.limit, ray.behind, vec3(1.0), 0.0, 0u, true, true, width, params.cone_spread);
     if (HAS_LENS != 0u) {
-        through_lens(view, path, lens, dot(start - view.eye_ws.xyz, view.forward_ws.xyz));
+        through_lens(view, path, lens, ray.near);
     }
     return path;
 }

@@ -16,23 +16,24 @@ use std::sync::Arc;
 
 const FLAGS: &str = "discontinuity.flags";
 
+macro_rules! names {
+    ($($key:literal),*) => {
+        &[
+            "gbuffer.normal",
+            "gbuffer.color",
+            "gbuffer.color.id",
+            FLAGS,
+            $(concat!("guidance.", $key),)*
+            $(concat!("guidance.", $key, ".iterations"),)*
+            $(concat!("rays.", $key),)*
+            $(concat!("irradiance.", $key),)*
+            $(concat!("filter.irradiance.", $key),)*
+        ]
+    };
+}
+
 /// Names that `--aov` takes: those of the G-buffer, where the filter stops, then five of each component.
-pub const AOVS: &[&str] = &[
-    "gbuffer.normal",
-    "gbuffer.color",
-    "gbuffer.color.id",
-    FLAGS,
-    "guidance.id",
-    "guidance.ss",
-    "guidance.id.iterations",
-    "guidance.ss.iterations",
-    "rays.id",
-    "rays.ss",
-    "irradiance.id",
-    "irradiance.ss",
-    "filter.irradiance.id",
-    "filter.irradiance.ss",
-];
+pub const AOVS: &[&str] = names!("id", "ss", "pm");
 
 /// What a stage shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +44,7 @@ enum Stage {
     Iterations,
     /// Shadow rays of a texel.
     Rays,
-    /// Irradiance before the filter.
+    /// Irradiance before the filter, of airlight radiance.
     Irradiance,
     /// Irradiance after it.
     Filtered,

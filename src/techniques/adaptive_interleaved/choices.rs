@@ -7,7 +7,7 @@ use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::{AdaptiveParams, LightBlock};
+use crate::gpu::shader::structs::{AdaptiveParams, LightBlock, MediumBlock};
 use crate::gpu::shader::{Shader, variant};
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend;
@@ -15,6 +15,7 @@ use crate::passes::direct::{self, DirectSettings};
 use crate::settings::{Brdf, DirectShadow, PositionStorage};
 use crate::techniques::Inputs;
 use crate::units::Extent;
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 pub struct Choices {
@@ -29,6 +30,8 @@ pub struct Choices {
     /// Metres.
     pub vpl_clamp_m: f32,
     pub is_emissive: bool,
+    /// What light passes through.
+    pub medium: Option<MediumBlock>,
     /// In the order in which they are listed.
     pub components: Vec<ComponentChoice>,
     /// The scene's own lights.
@@ -66,6 +69,7 @@ impl Choices {
         let diagonal = inputs.scene.lasting_bounds().diagonal();
         let vpl_clamp_m = values.length("vpl-clamp", diagonal);
         let base = values.integer("base") as u32;
+        let medium = inputs.medium();
         let listed = settings::listed(values);
         let candidates = listed.clone().unwrap_or_else(|| Component::ALL.to_vec());
         let components = candidates.into_iter().map(|component| {
@@ -91,7 +95,8 @@ impl Choices {
             let Some(prepared) = method.prepare(inputs, [tile_x, tile_y], listed.is_some())? else { return Ok(None) };
             let count = prepared.count();
             let columns = own.width.div_ceil(tile_x);
-            let params = AdaptiveParams {
+            let mut params = AdaptiveParams {
+                medium: medium.unwrap_or_else(MediumBlock::zeroed),
                 width: own.width,
                 height: own.height,
                 scale,
@@ -106,7 +111,10 @@ impl Choices {
                 source_count: count.sources,
                 light_count: if count.has_lights { inputs.lights.lights.len() as u32 } else { 0 },
                 least_squared: vpl_clamp_m * vpl_clamp_m,
+                march_step: 0.0,
+                halo: 0.0,
             };
+            prepared.write(&mut params);
             Ok(Some(ComponentChoice { component, prepared, params }))
         });
         let components = components.filter_map(Result::transpose).collect::<Result<_>>()?;
@@ -123,6 +131,7 @@ impl Choices {
             direct: DirectSettings::with(Brdf::Lambert, DirectShadow::Ray, inputs.lights, inputs.scene),
             vpl_clamp_m,
             is_emissive: inputs.emissive_lights(),
+            medium,
             components,
         })
     }

@@ -1,15 +1,18 @@
-//! Composite: irradiance of all components times albedo, emission, ambient light. Shader: composite.comp.
+//! Composite: irradiance of all components times albedo, emission, ambient light, and the medium before it. Shader:
+//! composite.comp.
 //! reads  the G-buffer, the irradiance      writes  adaptive_interleaved.composite.color  image, RGBA32F, frame extent
 
 use super::choices::Choices;
 use super::resources::NAME;
+use super::settings::Component;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::ComposeParams;
+use crate::gpu::shader::structs::{ComposeParams, MediumBlock};
 use crate::gpu::shader::techniques::adaptive_interleaved::composite::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::gbuffer::{GBuffer, emissive_name};
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 pub struct Composite {
@@ -21,10 +24,16 @@ impl Composite {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, has_emissive: bool, has_extras: bool) -> Result<Self> {
         let extras = ("SURFACE_EXTRAS", u32::from(has_extras));
         let constants = [&choices.workgroup_constants()[..], &[extras]].concat();
-        let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[emissive_name(has_emissive)]), &constants)?;
+        let shader = variant(COMP_VARIANTS, &[choices.position.name(), emissive_name(has_emissive)]);
+        let pipeline = ComputePipeline::new(gpu, shader, &constants)?;
+        let component_count = choices.components.len();
+        let airlight = choices.components.iter().position(|choice| choice.component == Component::Pm);
         let params = ComposeParams {
+            medium: choices.medium.unwrap_or_else(MediumBlock::zeroed),
             texel_count: choices.extent.pixel_count() as u32,
-            component_count: choices.components.len() as u32,
+            component_count: component_count as u32,
+            airlight: airlight.unwrap_or(component_count) as u32,
+            _unused: 0,
         };
         Ok(Self { pipeline, params })
     }
@@ -56,7 +65,6 @@ impl Composite {
                 ("color", Bound::Storage(color)),
             ]);
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);
-            // It reads no position.
             let bound = self.pipeline.interface.own(&bound);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })?;

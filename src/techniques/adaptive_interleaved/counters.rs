@@ -18,21 +18,23 @@ struct Keys {
     idle: &'static str,
 }
 
+macro_rules! keys {
+    ($key:literal) => {
+        Keys {
+            rays: concat!("rays_", $key),
+            iterations: concat!("iterations_", $key),
+            refined: concat!("tiles_refined_", $key),
+            idle: concat!("lanes_idle_", $key),
+        }
+    };
+}
+
 impl Component {
     fn keys(self) -> Keys {
         match self {
-            Self::Id => Keys {
-                rays: "rays_id",
-                iterations: "iterations_id",
-                refined: "tiles_refined_id",
-                idle: "lanes_idle_id",
-            },
-            Self::Ss => Keys {
-                rays: "rays_ss",
-                iterations: "iterations_ss",
-                refined: "tiles_refined_ss",
-                idle: "lanes_idle_ss",
-            },
+            Self::Id => keys!("id"),
+            Self::Ss => keys!("ss"),
+            Self::Pm => keys!("pm"),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Dubla, Debattista and Chalmers 2009: Adaptive Interleaved Sampling for Interactive High-Fidelity Rendering.
 //!
 //! Light is estimated component by component: indirect diffuse light from virtual point lights (`id`), soft shadows of
-//! area lights (`ss`). A tile of N x M pixels shares a component's samples, each pixel with its own; after an initial
+//! area lights (`ss`), light that a medium scatters once (`pm`). A tile of N x M pixels shares a component's samples, each pixel with its own; after an initial
 //! pass the tile decides, by what its own rays met, how many further iterations all of its pixels need, each with
 //! samples that the pixel has not used. A box of the tile's size that stops at discontinuities smooths each component,
 //! and albedo comes last.
@@ -25,9 +25,13 @@
 //! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
 //! - upsampling is guided by normals and by distances from the pixel's plane, where the paper has depths (section 4.1):
 //!   a floor that is seen at a slant stays one surface
-//! - participating media (`pm`, section 3.4) are not there
-//! - BLEND surfaces are drawn over the picture: punctual lights cast shadows on them, virtual ones none, and area
-//!   lights do not light them
+//! - a march through the medium looks at the middle of its stretches, and of their parts at the middle one first: at
+//!   their starts, as section 3.4 has it, the light nearest the eye counts twice and the farthest never
+//! - Listing 4's line 13 is read as `missed > 0`; a place is in a halo where any light is near, and hidden from those
+//!   that shine elsewhere; the first pixel of a tile is compared with none
+//! - light on its way to surfaces, from them and along light walks is dimmed by the medium
+//! - BLEND surfaces are drawn over the picture: punctual lights cast shadows on them, virtual ones none, area lights do
+//!   not light them, and the medium dims them not
 //!
 //! Equal to others: `--mode adaptive` where every tile refines to the most is `--mode max`; `--refine fused` and
 //! `indirect` are the same bits; with `--id-max` of all the tile's pixels `--mode max` lights every texel of `id` by
@@ -66,6 +70,7 @@ use crate::plan::Plan;
 use crate::resident::SceneGpu;
 use crate::sampling::pattern::Pattern;
 use crate::settings::{LIGHT_LISTS, Setting, Values};
+use crate::shading::medium::Medium;
 use buffers::Shared;
 use choices::Choices;
 use frame::AdaptiveFrame;
@@ -118,17 +123,21 @@ impl Technique for AdaptiveInterleaved {
         Vec::new()
     }
 
-    /// Diffuse light of the components that are there: straight, by as many surfaces as light walks land on, or both.
+    /// Diffuse light of the components that are there: straight, by as many surfaces as light walks land on, or both, and
+    /// what a medium scatters once.
     fn reference_settings(&self, values: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let listed = settings::listed(values);
         let has = |component| listed.as_ref().is_none_or(|listed| listed.contains(&component));
-        let (has_id, has_ss) = (has(Component::Id), has(Component::Ss));
+        let [has_id, has_ss, has_pm] = [Component::Id, Component::Ss, Component::Pm].map(has);
         let on_or_off = |is_on: bool| if is_on { "on" } else { "off" }.to_owned();
         let mut settings = vec![
             ("brdf", "lambert".to_owned()),
             ("ambient-visibility", "off".to_owned()),
             ("direct-light", on_or_off(has_ss)),
         ];
+        if Medium::from_values(values).is_some() {
+            settings.push(("airlight", if has_pm { "seen" } else { "none" }.to_owned()));
+        }
         match values.integer("vpl-bounces") {
             _ if !has_id => settings.push(("transport", "direct".to_owned())),
             1 => settings.push(("transport", "one-bounce".to_owned())),

@@ -2,7 +2,7 @@
 
 use crate::choice::choices;
 use crate::settings::{
-    Changes, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION, POSITION_THRESHOLD, Setting, TEXELS, Unread,
+    Changes, EMISSIVE, GEOMETRY, Kind, MEDIUM, NORMAL_THRESHOLD, POSITION, POSITION_THRESHOLD, Setting, TEXELS, Unread,
     VPL_CLAMP, Values, WORKGROUP,
 };
 
@@ -13,6 +13,8 @@ choices! {
         "id" => Id,
         /// Soft shadows: light straight from area lights and punctual ones.
         "ss" => Ss,
+        /// Airlight: what a medium scatters once.
+        "pm" => Pm,
     }
 }
 
@@ -60,8 +62,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         paper: "Dubla 2009, 3",
         help: "Light that is estimated, each with its own samples, guidance and filter: indirect diffuse light from \
-               virtual point lights (id), soft shadows of area lights and hard ones of punctual lights (ss); auto: both, \
-               and ss only where anything shines",
+               virtual point lights (id), soft shadows of area lights and hard ones of punctual lights (ss), light that \
+               --medium scatters once, into the ray that is seen (pm); auto: id, ss where anything shines, and pm where \
+               --medium scatters it. Without pm a medium dims alone",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -144,7 +147,40 @@ pub const SETTINGS: &[Setting] = &[
         default: "16",
         help: "Most area lights that each have points of their own: connected emissive surfaces, the most powerful \
                first; all that are left are one more light",
-        unread: |values| without(values, Component::Ss),
+        unread: |values| without_all(values, &[Component::Ss, Component::Pm]),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "pm-max",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: "9",
+        paper: "Dubla 2009, 4.2 (PMmaxSamples)",
+        help: "Most marches of a pixel through the medium, the initial pass's included, each with places of its own",
+        unread: |values| without(values, Component::Pm),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "pm-steps",
+        kind: Kind::Integer { min: 1, max: 1024 },
+        default: "16",
+        paper: "Dubla 2009, 3.4",
+        help: "Steps of a march as long as the diagonal of the medium's box: one place in each is looked at, and the \
+               pixels of a tile divide a step among them",
+        unread: |values| without(values, Component::Pm),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "pm-distance",
+        kind: Kind::Number { min: 0.0, max: 1e6 },
+        default: "1",
+        unit: "m",
+        paper: "Dubla 2009, 4.2 and Listing 4, line 9",
+        help: "Distance from a light, less what a metre of the medium stops, within which a place is in its halo: tiles \
+               whose pixels have unlike parts in one are refined",
+        unread: |values| {
+            without(values, Component::Pm)
+                .or_else(|| Unread::unless(values, "mode", &[Mode::Adaptive], "no tile is guided"))
+        },
         ..Setting::changing(Changes::Samples)
     },
     Setting {
@@ -166,6 +202,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting { unread: |values| without(values, Component::Id), ..VPL_CLAMP },
     EMISSIVE,
+    MEDIUM,
     Setting {
         key: "refine",
         kind: Kind::Choice(Refine::WORDS),
@@ -186,6 +223,11 @@ pub const SETTINGS: &[Setting] = &[
 /// Those of `--components`; None: `auto`.
 pub fn listed(values: &Values) -> Option<Vec<Component>> {
     values.unless_auto("components", Values::listed)
+}
+
+/// Some where none of them is estimated.
+fn without_all(values: &Values, components: &[Component]) -> Option<Unread> {
+    components.iter().map(|component| without(values, *component)).reduce(Option::and).flatten()
 }
 
 fn without(values: &Values, component: Component) -> Option<Unread> {

@@ -211,6 +211,7 @@ impl Prepared for PreparedInterleaved {
             bounces: inputs.values.integer("vpl-bounces") as u32,
             emissive,
             starts: true,
+            medium: None,
             seed: inputs.values.integer("seed") as u32,
         };
         let bvh = inputs.bvh.over(inputs.scene)?;

@@ -19,7 +19,11 @@ impl Air {
     pub fn new(inputs: &Inputs<'_>) -> Result<(Self, Option<Medium>)> {
         let (values, medium) = (inputs.values, Medium::from_values(inputs.values));
         let transport = values.choice("transport");
-        let is_scattered = matches!(transport, Transport::SingleScatter | Transport::Full) || is_seen(values);
+        let is_scattered = match values.choice("airlight") {
+            Airlight::Path => matches!(transport, Transport::SingleScatter | Transport::Full),
+            Airlight::Seen => true,
+            Airlight::None => false,
+        };
         match medium {
             None if transport == Transport::SingleScatter => {
                 Err(Error::request("--transport single-scatter: there is no medium that scatters light")

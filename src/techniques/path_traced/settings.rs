@@ -40,6 +40,8 @@ choices! {
         "path" => Path,
         /// On the ray that is seen, once.
         "seen" => Seen,
+        /// Nowhere: it dims.
+        "none" => None,
     }
 }
 
@@ -88,7 +90,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "path",
         paper: "Dubla 2009, 3.4",
         help: "Light that --medium scatters: at any place of a path, as often as --transport says (path); or once, from \
-               lights straight into the ray that is seen, with any --transport (seen)",
+               lights straight into the ray that is seen, with any --transport (seen); or none, so that it dims alone",
         unread: |values| {
             let is_none = Medium::from_values(values).is_none();
             is_none.then(|| Unread::at(values, "medium", "--medium 0.1,0,0", "nothing scatters on the way"))

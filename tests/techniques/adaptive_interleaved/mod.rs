@@ -1,6 +1,7 @@
 //! Adaptive interleaved sampling: each component against a plain estimator on the host, the modes and the ways to
 //! refine against each other, and the whole against paths (Dubla 2009).
 
+mod airlight;
 mod smoothing;
 
 use crate::support::boxes::{camera, panel, rectangle};
@@ -104,7 +105,7 @@ fn indirect_light_of_all_subsets_is_every_virtual_light_with_its_shadow() {
     let shown = shown(&watched, &bvh);
     assert!(shown.len() > 1000);
     let lights = &scene.lights;
-    let walk = vpl::Walk { count: 64, bounces: 1, emissive: true, starts: false, seed: 1 };
+    let walk = vpl::Walk { count: 64, bounces: 1, emissive: true, starts: false, medium: None, seed: 1 };
     let vpls = vpl::walk(scene, &bvh, lights, &walk).vpls;
     for tile in ["2x2", "3x3", "4x2"] {
         let own = [("components", "id"), ("mode", "max"), ("vpls", "64"), ("tile", tile)];
@@ -423,8 +424,10 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("vpls", "8")][..], "--vpls 8 for the 9 subsets of --tile 3x3", "--vpls 9 or more"),
         (&[("base", "4"), ("ss-max", "3")][..], "--base 4 with --ss-max 3", "--base 3 or fewer"),
         (&[("components", "id"), ("ss-max", "3")][..], "--ss-max 3 with --components id", ""),
-        (&[("components", "ss,ss")][..], "one or more of id, ss", ""),
-        (&[("components", "pm")][..], "one or more of id, ss", ""),
+        (&[("components", "ss,ss")][..], "one or more of id, ss, pm", ""),
+        (&[("components", "id,pm")][..], "--components pm: --medium none scatters no light", "--medium 0.1,0,0"),
+        (&[("components", "pm"), ("medium", "0,1,0")][..], "--medium 0,1,0 scatters no light", "--medium 0.1,0,0"),
+        (&[("pm-max", "0")][..], "--pm-max", ""),
     ] {
         let mut job = quincunx::job::Job::new("cornell", quincunx::techniques::find(NAME).unwrap());
         let set = changes.iter().try_for_each(|(key, value)| job.set(key, value));

@@ -3,7 +3,34 @@
 #ifndef ADAPTIVE_INTERLEAVED_ID_GLSL
 #define ADAPTIVE_INTERLEAVED_ID_GLSL
 
+// The sum of the texels' numbers.
+struct Found {
+    float sum;
+};
+
+const Found NOTHING_FOUND = Found(0.0);
+
+void add_found(AdaptiveParams params, uint word, inout Found found) {
+    precise float sum = found.sum + uintBitsToFloat(word);
+    found.sum = sum;
+}
+
+// The mean part of the virtual lights that is hidden.
+float refine_of(AdaptiveParams params, Found found, uint texel_count) {
+    return found.sum / float(texel_count);
+}
+
+bool refines(float refine) {
+    return refine > 0.0;
+}
+
+#ifdef ESTIMATES
+
 layout(std430, set = 0, binding = 6) readonly buffer Sources { VplBlock vpls[]; };
+
+bool is_estimated(Point point) {
+    return point.has_surface;
+}
 
 // The ratio of virtual lights that something hides, of those that could light the point, is what guides.
 void contribute(Point point, uint slot, uint iteration, inout Estimate estimate) {
@@ -21,11 +48,12 @@ void contribute(Point point, uint slot, uint iteration, inout Estimate estimate)
         if (received != vec3(0.0)) {
             vec3 to_light = light.position_ws.xyz - point.position_ws;
             float distance = length(to_light);
+            vec3 direction = to_light / max(distance, 1e-12);
             ray_count++;
-            if (occluded(point.position_ws, point.normal_ws, to_light / max(distance, 1e-12), distance)) {
+            if (occluded(point.position_ws, point.normal_ws, direction, distance)) {
                 missed_count++;
             } else {
-                sum += received;
+                sum += received * passed_towards(params.medium, point.position_ws, direction, distance);
             }
         }
     }
@@ -41,5 +69,7 @@ void contribute(Point point, uint slot, uint iteration, inout Estimate estimate)
 uint found_word(uint slot, Estimate estimate) {
     return floatBitsToUint(estimate.information / float(params.base));
 }
+
+#endif
 
 #endif

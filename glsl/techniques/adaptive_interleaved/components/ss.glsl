@@ -4,27 +4,62 @@
 #ifndef ADAPTIVE_INTERLEAVED_SS_GLSL
 #define ADAPTIVE_INTERLEAVED_SS_GLSL
 
-// A point of an area light.
-struct AreaSampleBlock {
-    vec4 position_ws;
-    // xyz: unit normal; w: 1 where both sides shine, else 0.
-    vec4 normal_ws;
-    // rgb: radiance times the area that the point stands for, candela.
-    vec4 intensity;
+// What the texels of a tile found together: the sum of their numbers; or, of a word with a bit for each light, bits that
+// any has, and that all have, and how many are missing in all of them together.
+struct Found {
+    float sum;
+    uint any;
+    uint all;
+    uint missing_count;
 };
 
-// Each light has a stretch of most * N * M points: those of an iteration lie together, one for each pixel of a tile.
-layout(std430, set = 0, binding = 6) readonly buffer Sources { AreaSampleBlock area_samples[]; };
+const Found NOTHING_FOUND = Found(0.0, 0u, 0xffffffffu, 0u);
+
+// Lights that have a bit of their own in the word of a texel; more share them. One bit fewer than a word has: all of them
+// together are not NOT_ESTIMATED.
+const uint LIGHT_BITS = 31u;
+
+// The bits that lights have.
+uint light_bits(AdaptiveParams params) {
+    return (1u << min(params.source_count + params.light_count, LIGHT_BITS)) - 1u;
+}
+
+void add_found(AdaptiveParams params, uint word, inout Found found) {
+    if (params.guides_each != 0u) {
+        found.any |= word;
+        found.all &= word;
+        found.missing_count += bitCount(~word & light_bits(params));
+    } else {
+        precise float sum = found.sum + uintBitsToFloat(word);
+        found.sum = sum;
+    }
+}
+
+// The mean of the numbers; with a bit for each light the part that is hidden of those lights alone that some texels
+// meet and others do not.
+float refine_of(AdaptiveParams params, Found found, uint texel_count) {
+    if (params.guides_each == 0u) {
+        return found.sum / float(texel_count);
+    }
+    uint bits = light_bits(params);
+    uint parted_count = bitCount(found.any & ~found.all & bits);
+    uint missing_count = found.missing_count - bitCount(~found.any & bits) * texel_count;
+    return parted_count > 0u ? float(missing_count) / float(parted_count * texel_count) : 0.0;
+}
+
+// Wholly lit and wholly dark tiles have no penumbra.
+bool refines(float refine) {
+    return refine > 0.0 && refine < 1.0;
+}
+
+#ifdef ESTIMATES
+
+#include "techniques/adaptive_interleaved/area_samples.glsl"
+
 layout(std430, set = 0, binding = 7) readonly buffer Lights { LightBlock lights[]; };
 
-vec3 area_irradiance(AreaSampleBlock light, vec3 position_ws, vec3 normal_ws, vec3 to_light) {
-    precise float distance_squared = dot(to_light, to_light);
-    float leaving = -dot(light.normal_ws.xyz, to_light);
-    leaving = light.normal_ws.w != 0.0 ? abs(leaving) : max(leaving, 0.0);
-    precise float facing = max(dot(normal_ws, to_light), 0.0) * leaving;
-    // Both cosines carry one factor 1/d.
-    precise float squared = max(distance_squared, LEAST_DISTANCE_SQUARED);
-    return light.intensity.rgb * (facing / (squared * squared));
+bool is_estimated(Point point) {
+    return point.has_surface;
 }
 
 // What a point meets in one iteration.
@@ -55,7 +90,8 @@ void add_light(
         met.missed_count++;
     } else {
         met.lit ^= 1u << (index % LIGHT_BITS);
-        precise vec3 sum = estimate.sum + received;
+        precise vec3 sum =
+            estimate.sum + received * passed_towards(params.medium, point.position_ws, direction_ws, distance);
         estimate.sum = sum;
     }
 }
@@ -68,7 +104,7 @@ void contribute(Point point, uint slot, uint iteration, inout Estimate estimate)
     for (; area < params.source_count; area++) {
         AreaSampleBlock light = area_samples[(area * params.most + iteration) * size + slot];
         vec3 to_light = light.position_ws.xyz - point.position_ws;
-        vec3 received = area_irradiance(light, point.position_ws, point.normal_ws, to_light);
+        vec3 received = area_irradiance(light, point.normal_ws, to_light);
         float distance = length(to_light);
         add_light(point, received, to_light / max(distance, 1e-12), distance, area, estimate, met);
     }
@@ -97,5 +133,7 @@ uint found_word(uint slot, Estimate estimate) {
     }
     return (slot & 1u) == 0u ? estimate.lit_any : estimate.lit_all & estimate.lit_any;
 }
+
+#endif
 
 #endif

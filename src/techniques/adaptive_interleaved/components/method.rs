@@ -1,6 +1,7 @@
 //! What a component is asked for: Dubla 2009, Listing 1.
 
 use crate::error::Result;
+use crate::gpu::shader::structs::AdaptiveParams;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 
@@ -35,6 +36,9 @@ pub trait ComponentMethod: Sync {
 pub trait PreparedComponent {
     /// How many sources and lights its samples have.
     fn count(&self) -> SampleCount;
+
+    /// Writes those of its numbers that no other component has.
+    fn write(&self, _: &mut AdaptiveParams) {}
 
     /// Its samples, as many as `count` says.
     ///

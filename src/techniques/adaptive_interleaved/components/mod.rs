@@ -2,8 +2,10 @@
 //! getRefinementInformation, getAdaptiveGuidance, refinementConditions, getIterations). A component is a file here,
 //! which makes its samples, and one in glsl/techniques/adaptive_interleaved/components, which uses them.
 
+mod area_samples;
 mod id;
 mod method;
+mod pm;
 mod ss;
 
 pub use method::{PreparedComponent, Samples};
@@ -17,6 +19,7 @@ impl Component {
         match self {
             Self::Id => &id::IndirectDiffuse,
             Self::Ss => &ss::SoftShadows,
+            Self::Pm => &pm::Airlight,
         }
     }
 }
