@@ -351,7 +351,7 @@ fn the_page_of_the_report_names_every_key() {
         "render lamps:objects=5,lights=6 --technique inferred_lighting --volumes scissor --shadow-volumes 2",
         "render cornell --technique forward --direct-shadow map --msaa 4",
         "render cornell --technique deferred --cull tiled",
-        "render cornell --technique adaptive_interleaved --emissive on",
+        "render cornell --technique adaptive_interleaved --emissive on --medium 0.1,0,0 --ambient 0.1 --components id,ss,pm,ao",
         "render cornell --technique path_traced --spp 4",
         "render cornell --vpls 16 --frames 0..1",
     ]);

@@ -11,6 +11,8 @@
 #include "techniques/adaptive_interleaved/components/ss.glsl"
 #elif defined(COMPONENT_PM)
 #include "techniques/adaptive_interleaved/components/pm.glsl"
+#elif defined(COMPONENT_AO)
+#include "techniques/adaptive_interleaved/components/ao.glsl"
 #endif
 
 #endif

@@ -16,7 +16,8 @@ struct ComposeParams {
     uint component_count;
     // Which of them is no irradiance but what the medium scatters to the eye; none where it is as many as there are.
     uint airlight;
-    uint _unused;
+    // 1: all of --ambient reaches every surface; 0: it is among the components.
+    uint adds_ambient;
 };
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
@@ -69,7 +70,9 @@ void main() {
         }
 #endif
         precise vec3 radiance = emitted + albedo_of(surface) * received / PI;
-        radiance += ambient_reflectance(BRDF_LAMBERT, surface) * frame.ambient.rgb * openness;
+        if (params.adds_ambient != 0u) {
+            radiance += ambient_reflectance(BRDF_LAMBERT, surface) * frame.ambient.rgb * openness;
+        }
         value = vec4(radiance, 1.0);
     }
     if (params.medium.extinction > 0.0) {

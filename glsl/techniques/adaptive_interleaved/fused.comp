@@ -1,6 +1,6 @@
 // All three steps of one component in one dispatch: each tile iterates as often as it must, its texels a thread each,
 // as many whole tiles as a workgroup holds. Dubla 2009, Listing 1. Pass: src/techniques/adaptive_interleaved/fused.rs.
-// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm
+// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm|ao
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/estimate.glsl"

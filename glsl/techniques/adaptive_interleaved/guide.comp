@@ -1,6 +1,6 @@
 // Adaptive guidance of one component, a tile a thread. Dubla 2009, Listing 1, lines 8 to 13.
 // Pass: src/techniques/adaptive_interleaved/guide.rs.
-// variants: COMPONENT=id|ss|pm
+// variants: COMPONENT=id|ss|pm|ao
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/guidance.glsl"

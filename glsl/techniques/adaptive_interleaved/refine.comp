@@ -1,6 +1,6 @@
 // The refinement of one component: a texel of a listed tile a thread. Dubla 2009, Listing 1, lines 14 to 19.
 // Pass: src/techniques/adaptive_interleaved/refine.rs.
-// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm
+// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm|ao
 #version 460
 #include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/estimate.glsl"

@@ -1,6 +1,6 @@
 // The initial pass of one component, a texel a thread. Dubla 2009, Listing 1, lines 1 to 7.
 // Pass: src/techniques/adaptive_interleaved/sample.rs.
-// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm
+// variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm|ao
 #version 460
 #include "techniques/adaptive_interleaved/estimate.glsl"
 

@@ -27,12 +27,19 @@ layout(constant_id = 9) const uint WALK_LANDINGS = 0;
 layout(constant_id = 10) const uint MEDIUM = 0;
 // 1: rays leave all over a lens, or from beside the camera.
 layout(constant_id = 11) const uint HAS_LENS = 0;
-// 0: ambient light is added to the surface that is seen, and nothing else comes from around the scene.
+// AMBIENT_.
 layout(constant_id = 12) const uint AMBIENT_VISIBILITY = 1;
 // 0: what comes straight to the surface that is seen is not counted.
 layout(constant_id = 13) const uint DIRECT_LIGHT = 1;
 // 1: what the medium scatters is light of lights on the ray that is seen.
 layout(constant_id = 14) const uint AIRLIGHT_SEEN = 0;
+
+// Ambient light is added to the surface that is seen, and nothing else comes from around the scene.
+const uint AMBIENT_ADDED = 0u;
+// Rays that leave the scene find it, and the background.
+const uint AMBIENT_FOUND = 1u;
+// Those that were scattered once find it alone.
+const uint AMBIENT_FOUND_ONCE = 2u;
 
 struct SampleParams {
     // The scene's sphere: what a sun's walk starts over.

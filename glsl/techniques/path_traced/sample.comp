@@ -88,9 +88,15 @@ bool lights_surface(Path path) {
     return DIRECT_LIGHT != 0u || path.bounce != 0u;
 }
 
-// Radiance from around the scene on a ray that was scattered.
-vec3 surroundings() {
-    return AMBIENT_VISIBILITY != 0u ? frame.background.rgb + frame.ambient.rgb : vec3(0.0);
+// Radiance from around the scene on a ray that was scattered so often.
+vec3 surroundings(uint bounce, bool is_lit) {
+    if (AMBIENT_VISIBILITY == AMBIENT_FOUND) {
+        return is_lit ? frame.background.rgb + frame.ambient.rgb : vec3(0.0);
+    }
+    if (AMBIENT_VISIBILITY == AMBIENT_FOUND_ONCE) {
+        return bounce == 1u ? frame.ambient.rgb : vec3(0.0);
+    }
+    return vec3(0.0);
 }
 
 // What a path may still find by scattering in the medium: a last scattering leads to what shines by itself alone.
@@ -98,7 +104,7 @@ bool finds_more(Path path) {
     if (AIRLIGHT_SEEN != 0u) {
         return false;
     }
-    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u || largest(surroundings()) > 0.0;
+    return path.bounce + 1u < BOUNCES || params.emitter_count > 0u || largest(surroundings(path.bounce + 1u, true)) > 0.0;
 }
 
 // Width of the path's cone at a distance from its origin.
@@ -240,7 +246,7 @@ vec3 radiance_along(vec2 at_px) {
         if (is_in_medium) {
             scatter_in_medium(path, place);
         } else if (!hit.is_hit) {
-            vec3 around = path.bounce == 0u ? frame.background.rgb : path.is_lit ? surroundings() : vec3(0.0);
+            vec3 around = path.bounce == 0u ? frame.background.rgb : surroundings(path.bounce, path.is_lit);
             radiance += path.throughput * around;
             path.goes_on = false;
         } else {
@@ -251,7 +257,7 @@ vec3 radiance_along(vec2 at_px) {
                 path.goes_on = !point.is_unlit && path.bounce < BOUNCES;
             }
             if (path.goes_on) {
-                if (AMBIENT_VISIBILITY == 0u && path.bounce == 0u) {
+                if (AMBIENT_VISIBILITY == AMBIENT_ADDED && path.bounce == 0u) {
                     vec3 reflected = ambient_reflectance(BRDF_KIND, point.surface) * frame.ambient.rgb;
                     radiance += path.throughput * reflected * point.openness;
                 }

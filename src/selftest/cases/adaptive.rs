@@ -49,6 +49,15 @@ pub const GROUPS: &[Group] = &[
         must: Must::Equal(ROUNDING),
     },
     Group {
+        name: "airlight",
+        technique: NAME,
+        place: CORNELL,
+        common: &[EMISSIVE, ("medium", "0.1,0.05,0.3"), ("ambient", "0.1"), ("components", "id,ss,pm,ao")],
+        twin: Twin::Method(&[("refine", "fused")]),
+        methods: &[&[("refine", "indirect")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
         name: "submits",
         technique: NAME,
         place: CORNELL,

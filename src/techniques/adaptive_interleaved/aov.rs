@@ -33,7 +33,7 @@ macro_rules! names {
 }
 
 /// Names that `--aov` takes: those of the G-buffer, where the filter stops, then five of each component.
-pub const AOVS: &[&str] = names!("id", "ss", "pm");
+pub const AOVS: &[&str] = names!("id", "ss", "pm", "ao");
 
 /// What a stage shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -75,12 +75,6 @@ impl Choices {
         let components = candidates.into_iter().map(|component| {
             let (method, key) = (component.method(), component.name());
             let most = method.most_iterations(values);
-            if base > most {
-                return Err(Error::request(format!(
-                    "{NAME}: --base {base} with --{key}-max {most}: the initial pass alone has more iterations"
-                ))
-                .note(format!("--base {most} or fewer, or --{key}-max {base}")));
-            }
             let scale = method.scale(values);
             let own = extent.reduced(scale);
             if tile_x > own.width || tile_y > own.height {
@@ -93,6 +87,12 @@ impl Choices {
                     .note("a smaller --tile, or a larger --size"));
             }
             let Some(prepared) = method.prepare(inputs, [tile_x, tile_y], listed.is_some())? else { return Ok(None) };
+            if base > most {
+                return Err(Error::request(format!(
+                    "{NAME}: --base {base} with --{key}-max {most}: the initial pass alone has more iterations"
+                ))
+                .note(format!("--base {most} or fewer, or --{key}-max {base}")));
+            }
             let count = prepared.count();
             let columns = own.width.div_ceil(tile_x);
             let mut params = AdaptiveParams {

@@ -27,13 +27,13 @@ impl Composite {
         let shader = variant(COMP_VARIANTS, &[choices.position.name(), emissive_name(has_emissive)]);
         let pipeline = ComputePipeline::new(gpu, shader, &constants)?;
         let component_count = choices.components.len();
-        let airlight = choices.components.iter().position(|choice| choice.component == Component::Pm);
+        let place = |component| choices.components.iter().position(|choice| choice.component == component);
         let params = ComposeParams {
             medium: choices.medium.unwrap_or_else(MediumBlock::zeroed),
             texel_count: choices.extent.pixel_count() as u32,
             component_count: component_count as u32,
-            airlight: airlight.unwrap_or(component_count) as u32,
-            _unused: 0,
+            airlight: place(Component::Pm).unwrap_or(component_count) as u32,
+            adds_ambient: u32::from(place(Component::Ao).is_none()),
         };
         Ok(Self { pipeline, params })
     }

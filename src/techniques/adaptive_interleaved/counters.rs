@@ -35,6 +35,7 @@ impl Component {
             Self::Id => keys!("id"),
             Self::Ss => keys!("ss"),
             Self::Pm => keys!("pm"),
+            Self::Ao => keys!("ao"),
         }
     }
 }

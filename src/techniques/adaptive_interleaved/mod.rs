@@ -1,7 +1,8 @@
 //! Dubla, Debattista and Chalmers 2009: Adaptive Interleaved Sampling for Interactive High-Fidelity Rendering.
 //!
 //! Light is estimated component by component: indirect diffuse light from virtual point lights (`id`), soft shadows of
-//! area lights (`ss`), light that a medium scatters once (`pm`). A tile of N x M pixels shares a component's samples, each pixel with its own; after an initial
+//! area lights (`ss`), light that a medium scatters once (`pm`), and, not the paper's, ambient light that no surface
+//! stops (`ao`). A tile of N x M pixels shares a component's samples, each pixel with its own; after an initial
 //! pass the tile decides, by what its own rays met, how many further iterations all of its pixels need, each with
 //! samples that the pixel has not used. A box of the tile's size that stops at discontinuities smooths each component,
 //! and albedo comes last.
@@ -127,12 +128,15 @@ impl Technique for AdaptiveInterleaved {
     /// what a medium scatters once.
     fn reference_settings(&self, values: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let listed = settings::listed(values);
-        let has = |component| listed.as_ref().is_none_or(|listed| listed.contains(&component));
-        let [has_id, has_ss, has_pm] = [Component::Id, Component::Ss, Component::Pm].map(has);
+        let has = |component| match &listed {
+            Some(listed) => listed.contains(&component),
+            None => component != Component::Ao,
+        };
+        let [has_id, has_ss, has_pm, has_ao] = [Component::Id, Component::Ss, Component::Pm, Component::Ao].map(has);
         let on_or_off = |is_on: bool| if is_on { "on" } else { "off" }.to_owned();
         let mut settings = vec![
             ("brdf", "lambert".to_owned()),
-            ("ambient-visibility", "off".to_owned()),
+            ("ambient-visibility", if has_ao { "seen" } else { "off" }.to_owned()),
             ("direct-light", on_or_off(has_ss)),
         ];
         if Medium::from_values(values).is_some() {

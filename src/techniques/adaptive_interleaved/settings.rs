@@ -15,6 +15,8 @@ choices! {
         "ss" => Ss,
         /// Airlight: what a medium scatters once.
         "pm" => Pm,
+        /// Ambient occlusion: light from all around that no surface stops.
+        "ao" => Ao,
     }
 }
 
@@ -63,8 +65,9 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Dubla 2009, 3",
         help: "Light that is estimated, each with its own samples, guidance and filter: indirect diffuse light from \
                virtual point lights (id), soft shadows of area lights and hard ones of punctual lights (ss), light that \
-               --medium scatters once, into the ray that is seen (pm); auto: id, ss where anything shines, and pm where \
-               --medium scatters it. Without pm a medium dims alone",
+               --medium scatters once, into the ray that is seen (pm), --ambient that no surface stops (ao); auto: id, \
+               ss where anything shines, and pm where --medium scatters it. Without pm a medium dims alone, and without ao \
+               nothing stops --ambient",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -181,6 +184,15 @@ pub const SETTINGS: &[Setting] = &[
             without(values, Component::Pm)
                 .or_else(|| Unread::unless(values, "mode", &[Mode::Adaptive], "no tile is guided"))
         },
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "ao-max",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: "9",
+        help: "Most iterations of ambient occlusion, the initial pass's included: rays of a pixel, each over the whole \
+               hemisphere",
+        unread: |values| Unread::unlisted(values, "components", Component::Ao.name(), "it is not estimated"),
         ..Setting::changing(Changes::Samples)
     },
     Setting {

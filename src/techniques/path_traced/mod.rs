@@ -13,7 +13,8 @@
 //! - emissive triangles: seen always; they light others with `--emissive`
 //! - rays that leave the scene: those from the camera find `--background`, those from surfaces `--background` and
 //!   `--ambient` together. What the others add to every surface as ambient light comes from outside here, and is shadowed;
-//!   with `--ambient-visibility off` it is added to the surface that is seen, as the others do, and nothing comes from outside
+//!   with `--ambient-visibility off` it is added to the surface that is seen, as the others do, and nothing comes from outside;
+//!   with `seen` what leaves that surface finds `--ambient` alone, and other rays nothing
 //! - backs of single-sided surfaces: not there for the camera, as the others draw them; for all other rays black walls, as
 //!   for the shadow rays and light walks of the others
 //! - MASK surfaces have their holes for every ray, BLEND surfaces stop the part of all rays that alpha says (the others'
@@ -66,7 +67,7 @@ use crate::scene::{AlphaMode, Light, Material};
 use crate::settings::written::SettingValue;
 use crate::settings::{Brdf, Setting, TREE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
-use crate::techniques::path_traced::settings::{RaySource, Transport};
+use crate::techniques::path_traced::settings::{AmbientVisibility, RaySource, Transport};
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -145,7 +146,7 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
     };
     let reads = Reads {
         levels: values.choice("texture-level"),
-        occlusion: !values.is_on("ambient-visibility") && inputs.lights.ambient != Vec3::ZERO,
+        occlusion: values.is("ambient-visibility", AmbientVisibility::Off) && inputs.lights.ambient != Vec3::ZERO,
     };
     Layout::new(inputs.scene, bvh, rays, reads, limits.max_storage_buffer_range_bytes)
 }
@@ -236,7 +237,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         roulette: transport == Transport::Full && !is_walked,
         direct_light: values.is_on("direct-light"),
         light_visibility: values.is_on("light-visibility"),
-        ambient_visibility: values.is_on("ambient-visibility"),
+        ambient_visibility: values.choice("ambient-visibility"),
         walk_landings: is_walked.then_some(bounces - 1),
         brdf: values.choice::<Brdf>("brdf") as u32,
         extras: inputs.scene.drawn_materials().any(Material::has_extras),

@@ -8,6 +8,7 @@ use crate::bvh::nodes::Nodes;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
+use crate::gpu::shader::techniques::path_traced::path::{AMBIENT_ADDED, AMBIENT_FOUND, AMBIENT_FOUND_ONCE};
 use crate::gpu::shader::techniques::path_traced::sample::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
@@ -16,6 +17,7 @@ use crate::progress::Stage;
 use crate::resident::traced::{Layout, TracedGpu};
 use crate::techniques::Inputs;
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
+use crate::techniques::path_traced::settings::AmbientVisibility;
 use bytemuck::bytes_of;
 use std::sync::Arc;
 
@@ -30,7 +32,7 @@ pub struct Choices {
     pub direct_light: bool,
     pub light_visibility: bool,
     /// What surrounds the scene lights it as rays find it.
-    pub ambient_visibility: bool,
+    pub ambient_visibility: AmbientVisibility,
     /// Light walks instead of paths between surfaces, each with this many landings.
     pub walk_landings: Option<u32>,
     pub brdf: u32,
@@ -88,6 +90,11 @@ impl Sample {
     ) -> Result<Self> {
         let PathTree { bvh, layout } = *tree;
         let alpha = if choices.is_tested { "tested" } else { "opaque" };
+        let ambient_visibility = match choices.ambient_visibility {
+            AmbientVisibility::Off => AMBIENT_ADDED,
+            AmbientVisibility::On => AMBIENT_FOUND,
+            AmbientVisibility::Seen => AMBIENT_FOUND_ONCE,
+        };
         let own = [
             ("WORKGROUP_X", choices.workgroup[0]),
             ("WORKGROUP_Y", choices.workgroup[1]),
@@ -98,7 +105,7 @@ impl Sample {
             ("ROULETTE", u32::from(choices.roulette)),
             ("DIRECT_LIGHT", u32::from(choices.direct_light)),
             ("LIGHT_VISIBILITY", u32::from(choices.light_visibility)),
-            ("AMBIENT_VISIBILITY", u32::from(choices.ambient_visibility)),
+            ("AMBIENT_VISIBILITY", ambient_visibility),
             ("IS_WALKED", u32::from(choices.walk_landings.is_some())),
             ("WALK_LANDINGS", choices.walk_landings.unwrap_or(0)),
             ("MEDIUM", choices.air as u32),

@@ -34,6 +34,16 @@ choices! {
 }
 
 choices! {
+    /// Which surfaces light from all around finds, as rays do (`--ambient-visibility`).
+    pub enum AmbientVisibility {
+        "on" => On,
+        "off" => Off,
+        /// The surface that is seen alone.
+        "seen" => Seen,
+    }
+}
+
+choices! {
     /// Where a medium scatters light (`--airlight`).
     pub enum Airlight {
         /// Anywhere on a path, as often as the transport says.
@@ -117,6 +127,7 @@ pub const SETTINGS: &[Setting] = &[
         unread: |values| {
             Unread::with(values, "transport", &[Transport::Direct], "there is no other light")
                 .filter(|_| !values.is("airlight", Airlight::Seen))
+                .filter(|_| !values.is("ambient-visibility", AmbientVisibility::Seen))
         },
         ..Setting::changing(Changes::Picture)
     },
@@ -139,11 +150,11 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "ambient-visibility",
-        kind: Kind::Choice(&["on", "off"]),
+        kind: Kind::Choice(AmbientVisibility::WORDS),
         default: "on",
         help: "Light surfaces from all around by --ambient and --background, as light that other surfaces stop and \
                scatter; off: as in all other techniques, each visible surface reflects all of --ambient, which goes no \
-               further, and --background is seen but lights nothing",
+               further, and --background is seen but lights nothing; seen: as off, but other surfaces stop --ambient",
         ..Setting::changing(Changes::Picture)
     },
     Setting {

@@ -75,7 +75,7 @@ fn airlight_is_the_mean_of_the_pixel_s_own_marches() {
 
 /// A floor, a wall and a shelf, under a panel that the camera does not see and a lamp behind it: no pixel shows what
 /// shines.
-fn shelf() -> Scene {
+pub fn shelf() -> Scene {
     let mut scene = Scene { name: "shelf".to_owned(), hash: "shelf".to_owned(), ..Scene::default() };
     let material = |albedo| Material::diffuse("matt", albedo);
     rectangle(&mut scene, Vec3::ZERO, 9.0 * Vec3::X, -9.0 * Vec3::Z, material(vec3(0.7, 0.5, 0.3)));

@@ -2,6 +2,7 @@
 //! refine against each other, and the whole against paths (Dubla 2009).
 
 mod airlight;
+mod occlusion;
 mod smoothing;
 
 use crate::support::boxes::{camera, panel, rectangle};
@@ -424,10 +425,11 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("vpls", "8")][..], "--vpls 8 for the 9 subsets of --tile 3x3", "--vpls 9 or more"),
         (&[("base", "4"), ("ss-max", "3")][..], "--base 4 with --ss-max 3", "--base 3 or fewer"),
         (&[("components", "id"), ("ss-max", "3")][..], "--ss-max 3 with --components id", ""),
-        (&[("components", "ss,ss")][..], "one or more of id, ss, pm", ""),
+        (&[("components", "ss,ss")][..], "one or more of id, ss, pm, ao", ""),
         (&[("components", "id,pm")][..], "--components pm: --medium none scatters no light", "--medium 0.1,0,0"),
         (&[("components", "pm"), ("medium", "0,1,0")][..], "--medium 0,1,0 scatters no light", "--medium 0.1,0,0"),
-        (&[("pm-max", "0")][..], "--pm-max", ""),
+        (&[("components", "ao"), ("ambient", "0")][..], "there is no ambient light", "--ambient 0.3"),
+        (&[("ao-max", "3")][..], "--ao-max 3 with --components auto", ""),
     ] {
         let mut job = quincunx::job::Job::new("cornell", quincunx::techniques::find(NAME).unwrap());
         let set = changes.iter().try_for_each(|(key, value)| job.set(key, value));

@@ -3,22 +3,7 @@
 #ifndef ADAPTIVE_INTERLEAVED_ID_GLSL
 #define ADAPTIVE_INTERLEAVED_ID_GLSL
 
-// The sum of the texels' numbers.
-struct Found {
-    float sum;
-};
-
-const Found NOTHING_FOUND = Found(0.0);
-
-void add_found(AdaptiveParams params, uint word, inout Found found) {
-    precise float sum = found.sum + uintBitsToFloat(word);
-    found.sum = sum;
-}
-
-// The mean part of the virtual lights that is hidden.
-float refine_of(AdaptiveParams params, Found found, uint texel_count) {
-    return found.sum / float(texel_count);
-}
+#include "techniques/adaptive_interleaved/mean_guidance.glsl"
 
 bool refines(float refine) {
     return refine > 0.0;

@@ -2,6 +2,7 @@
 //! getRefinementInformation, getAdaptiveGuidance, refinementConditions, getIterations). A component is a file here,
 //! which makes its samples, and one in glsl/techniques/adaptive_interleaved/components, which uses them.
 
+mod ao;
 mod area_samples;
 mod id;
 mod method;
@@ -20,6 +21,7 @@ impl Component {
             Self::Id => &id::IndirectDiffuse,
             Self::Ss => &ss::SoftShadows,
             Self::Pm => &pm::Airlight,
+            Self::Ao => &ao::AmbientOcclusion,
         }
     }
 }
