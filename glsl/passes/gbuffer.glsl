@@ -17,7 +17,8 @@
 const float HALF_MAX = 65504.0;
 
 uvec2 pack_halves(vec3 value, uint last16) {
-    vec3 held = min(value, vec3(HALF_MAX));
+    // A minimum may take the other number for NaN, and what fails a picture would be a bright one.
+    precise vec3 held = mix(value, vec3(HALF_MAX), greaterThan(value, vec3(HALF_MAX)));
     return uvec2(packHalf2x16(held.xy), (packHalf2x16(vec2(held.z, 0.0)) & 0xffffu) | (last16 << 16));
 }
 

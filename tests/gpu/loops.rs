@@ -3,22 +3,33 @@
 use crate::support;
 use crate::support::difference::require_same;
 use crate::support::shared_scenes;
-use crate::support::watched::Watched;
+use crate::support::watched::{Changes, Watched};
 use quincunx::caps::quirks::LoopEnd;
 
 /// One light more than the iterations of the defect; a driver without it adds them all.
 #[test]
 fn a_sum_that_the_driver_ends_early_is_no_picture() {
     let watched = Watched::open("cornell");
-    let changes = [("size", "16x16"), ("lights", "65536"), ("direct-shadow", "none"), ("cull", "none")];
-    let picture = watched.render("deferred", &changes).picture();
-    match watched.session.gpu.caps.identity.loop_end() {
-        None => drop(picture.unwrap()),
-        Some(LoopEnd { iterations, gone_in }) => {
-            let error = picture.unwrap_err();
-            assert_eq!(error.exit_code(), 1, "{error}");
-            assert!(error.to_string().contains(&format!("after {iterations} iterations")), "{error}");
-            assert!(error.to_string().contains(&format!("a newer driver ({gone_in})")), "{error}");
+    for (technique, changes) in [
+        (
+            "deferred",
+            &[("size", "16x16"), ("lights", "65536"), ("direct-shadow", "none"), ("cull", "none")] as Changes<'_>,
+        ),
+        // What ends early goes through half floats, a filter and an upsampling here.
+        (
+            "adaptive_interleaved",
+            &[("size", "8x8"), ("components", "id"), ("vpls", "65536"), ("tile", "1x1"), ("id-max", "1")],
+        ),
+    ] {
+        let picture = watched.render(technique, changes).picture();
+        match watched.session.gpu.caps.identity.loop_end() {
+            None => drop(picture.unwrap()),
+            Some(LoopEnd { iterations, gone_in }) => {
+                let error = picture.unwrap_err();
+                assert_eq!(error.exit_code(), 1, "{technique}: {error}");
+                assert!(error.to_string().contains(&format!("after {iterations} iterations")), "{technique}: {error}");
+                assert!(error.to_string().contains(&format!("a newer driver ({gone_in})")), "{technique}: {error}");
+            }
         }
     }
 }
