@@ -17,7 +17,7 @@ struct LightBlock {
     vec4 position_ws;
     // rgb: candela, or lux where directional; w: range in metres, 0 without range.
     vec4 intensity;
-    // xyz: unit vector in which it shines; w: unused.
+    // xyz: unit vector in which it shines; w: radius of the sphere that shines, in metres, 0 of a point.
     vec4 direction_ws;
     // The cone as clamp(cos * scale + offset, 0, 1)^2.
     float spot_scale;
@@ -54,6 +54,20 @@ bool is_directional(LightBlock light) {
     return is_kind(light, LIGHT_DIRECTIONAL);
 }
 
+// Irradiance of what faces a point or spot light, where its light comes from `direction_ws`.
+vec3 irradiance_along(LightBlock light, float distance_squared, vec3 direction_ws) {
+    // glTF's window: clamp(1 - (d/range)^4, 0, 1), exactly 0 from the range on.
+    precise float fraction_squared = distance_squared * light.position_ws.w;
+    precise float window = clamp(1.0 - fraction_squared * fraction_squared, 0.0, 1.0);
+    precise float attenuation = window / max(distance_squared, LEAST_DISTANCE_SQUARED);
+    if (is_kind(light, LIGHT_SPOT)) {
+        precise float cone = dot(light.direction_ws.xyz, -direction_ws) * light.spot_scale + light.spot_offset;
+        cone = clamp(cone, 0.0, 1.0);
+        attenuation *= cone * cone;
+    }
+    return light.intensity.rgb * attenuation;
+}
+
 Incident incident_from(LightBlock light, vec3 position_ws) {
     Incident incident;
     if (is_directional(light)) {
@@ -66,16 +80,7 @@ Incident incident_from(LightBlock light, vec3 position_ws) {
     precise float distance_squared = dot(to_light, to_light);
     incident.distance = sqrt(distance_squared);
     incident.direction_ws = to_light / max(incident.distance, 1e-12);
-    // glTF's window: clamp(1 - (d/range)^4, 0, 1), exactly 0 from the range on.
-    precise float fraction_squared = distance_squared * light.position_ws.w;
-    precise float window = clamp(1.0 - fraction_squared * fraction_squared, 0.0, 1.0);
-    precise float attenuation = window / max(distance_squared, LEAST_DISTANCE_SQUARED);
-    if (is_kind(light, LIGHT_SPOT)) {
-        precise float cone = dot(light.direction_ws.xyz, -incident.direction_ws) * light.spot_scale + light.spot_offset;
-        cone = clamp(cone, 0.0, 1.0);
-        attenuation *= cone * cone;
-    }
-    incident.irradiance = light.intensity.rgb * attenuation;
+    incident.irradiance = irradiance_along(light, distance_squared, incident.direction_ws);
     return incident;
 }
 

@@ -128,6 +128,7 @@ mod tests {
             position: Vec3::ZERO,
             direction: -Vec3::Y,
             range: None,
+            radius: 0.0,
         };
         let (sources, power) = punctual(&[light(Vec3::ZERO), light(vec3(1.0, 2.0, 3.0)), light(Vec3::splat(2.0))], 1.0);
         assert_eq!(sources.iter().map(|source| source.index).collect::<Vec<_>>(), [1, 2]);

@@ -12,7 +12,7 @@ pub mod vpl;
 use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::scene::{Light, LightKind, Material, Scene};
-use crate::settings::{Rig, Values, parse_color};
+use crate::settings::{Rig, Values, light_radius_m, parse_color};
 use glam::Vec3;
 
 /// The default rig's key light, in lux: white, from the camera's upper left.
@@ -70,6 +70,9 @@ impl LightSet {
         let kept = |light: &&Light| sun || !light.kind.is_directional();
         let mut lights: Vec<Light> = scene.lights.iter().filter(kept).cloned().collect();
         lights.extend(scattered(scene, values)?);
+        for light in &mut lights {
+            light.radius = light_radius_m(values);
+        }
         let has_punctual = !lights.is_empty();
         let emissive = scene.drawn_materials().any(Material::is_emissive);
         let (has_rig, faint_part) = match (opening, values.choice("rig")) {
@@ -111,6 +114,7 @@ fn rig_key(view: &View) -> Light {
         position: Vec3::ZERO,
         direction: -from,
         range: None,
+        radius: 0.0,
     }
 }
 
@@ -150,6 +154,7 @@ fn scattered(scene: &Scene, values: &Values) -> Result<Vec<Light>> {
                 position,
                 direction: -Vec3::Y,
                 range: None,
+                radius: 0.0,
             }
         })
         .collect())

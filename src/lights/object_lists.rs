@@ -189,6 +189,7 @@ mod tests {
             position: point(count + index),
             direction: -Vec3::Y,
             range: Some(0.5 + number(index, 3).abs()),
+            radius: 0.0,
         };
         let lights = (0..count).map(|index| light::block(&light(index), 0.0)).collect();
         let materials = vec![Material::default()];

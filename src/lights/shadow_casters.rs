@@ -124,7 +124,15 @@ mod tests {
 
     fn light(kind: LightKind, intensity: f32) -> Light {
         let (position, direction) = (Vec3::new(3.0, 9.0, 2.0), Vec3::NEG_Y);
-        Light { name: String::new(), kind, intensity: Vec3::splat(intensity), position, direction, range: None }
+        Light {
+            name: String::new(),
+            kind,
+            intensity: Vec3::splat(intensity),
+            position,
+            direction,
+            range: None,
+            radius: 0.0,
+        }
     }
 
     #[test]

@@ -147,6 +147,10 @@ impl Numbers {
         self.dimension += 1;
         sobol_burley::sample(self.index, self.dimension - 1, self.seed)
     }
+
+    fn pair(&mut self) -> [f32; 2] {
+        [self.next(), self.next()]
+    }
 }
 
 struct Tracer<'a> {
@@ -171,8 +175,9 @@ impl Tracer<'_> {
     fn one(&self, source: &Source<'_>, chance: f32, walk: &Walk, numbers: &mut Numbers, vpls: &mut Vec<VplBlock>) {
         let LightStart { mut origin, mut direction, mut flux } = match source {
             Source::Punctual(punctual) => {
-                let numbers = [numbers.next(), numbers.next()];
-                LightStart::of(punctual, numbers, self.center, self.radius)
+                let start = LightStart::of(punctual, numbers.pair(), self.center, self.radius);
+                // Points have no numbers for a place on them.
+                if punctual.radius > 0.0 { start.on_sphere(punctual, numbers.pair()) } else { start }
             }
             Source::Emissive { corners, mesh, triangle, is_mirrored } => {
                 let mesh = &self.scene.meshes[*mesh];
@@ -310,6 +315,7 @@ mod tests {
             position: Vec3::new(0.0, height, 0.0),
             direction: -Vec3::Y,
             range: None,
+            radius: 0.0,
         }
     }
 

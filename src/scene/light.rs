@@ -75,6 +75,9 @@ pub struct Light {
     pub direction: Vec3,
     /// Distance in metres at which the light ends (glTF's window); None: no end of its own.
     pub range: Option<f32>,
+    /// Metres: of the sphere around `position` whose surface shines, alike all over; 0: the light is a point. Unused by
+    /// directional lights.
+    pub radius: f32,
 }
 
 impl Light {
@@ -92,7 +95,8 @@ mod tests {
     fn a_light_says_where_it_shines_from() {
         let (position, direction) = (Vec3::X, Vec3::NEG_Y);
         let source = |kind: LightKind| {
-            Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None }.source()
+            Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None, radius: 0.0 }
+                .source()
         };
         assert_eq!(source(LightKind::Point), LightSource::At(position));
         assert_eq!(source(LightKind::Spot { inner_angle: 0.1, outer_angle: 0.2 }), LightSource::At(position));

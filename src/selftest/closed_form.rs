@@ -74,6 +74,7 @@ impl ClosedForm {
             position: Vec3::ZERO,
             direction: SUN.normalize(),
             range: None,
+            radius: 0.0,
         };
         match self {
             Self::Empty | Self::Sun => light,
@@ -82,6 +83,7 @@ impl ClosedForm {
                 intensity: LAMP_CANDELA,
                 position: LAMP,
                 range: Some(LAMP_RANGE_M),
+                radius: 0.0,
                 ..light
             },
         }

@@ -11,8 +11,8 @@ mod tree;
 pub mod written;
 
 pub use optics::{
-    APERTURE, FOCUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes, earlier_s,
-    exposure_s,
+    APERTURE, FOCUS, LIGHT_RADIUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes,
+    earlier_s, exposure_s, light_radius_m,
 };
 pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAPS};
 pub use tables::{

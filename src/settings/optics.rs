@@ -126,6 +126,24 @@ pub fn exposure_s(values: &Values) -> Result<[f64; 2]> {
     Ok([time_s + open_s, time_s + close_s])
 }
 
+/// How large point and spot lights are.
+pub const LIGHT_RADIUS: Setting = Setting {
+    key: "light-radius",
+    kind: Kind::Number { min: 0.0, max: 1e6 },
+    default: "0",
+    unit: "m",
+    paper: "Dubla 2009, 3.3",
+    help: "Radius of the sphere that a point or spot light is, alike bright all over: its shadows have penumbrae; far off \
+           it is as bright as the light has it, and inside it is dark. 0: lights are points, whose shadows are hard",
+    ..Setting::changing(Changes::Picture)
+};
+
+/// `--light-radius` in metres; 0 where the technique reads no such setting.
+pub fn light_radius_m(values: &Values) -> f32 {
+    let is_read = values.iter().any(|(key, _)| key == LIGHT_RADIUS.key);
+    if is_read { values.number(LIGHT_RADIUS.key) as f32 } else { 0.0 }
+}
+
 /// A homogeneous medium that fills the scene.
 pub const MEDIUM: Setting = Setting {
     key: "medium",

@@ -31,7 +31,7 @@ pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
     let mut block = LightBlock {
         position_ws: light.position.extend(if range > 0.0 { 1.0 / (range * range) } else { 0.0 }).to_array(),
         intensity: light.intensity.extend(range).to_array(),
-        direction_ws: light.direction.extend(0.0).to_array(),
+        direction_ws: light.direction.extend(light.radius).to_array(),
         kind: number(light.kind),
         ..LightBlock::zeroed()
     };
@@ -48,15 +48,20 @@ pub fn block(light: &Light, cutoff_lux: f32) -> LightBlock {
 
 /// Direction to the light, its distance, and the irradiance that it gives a surface that faces it.
 pub fn incident_from(light: &LightBlock, position_ws: Vec3) -> (Vec3, f32, Vec3) {
-    let intensity = Vec4::from_array(light.intensity).truncate();
-    let direction = Vec4::from_array(light.direction_ws).truncate();
     if light.kind == LIGHT_DIRECTIONAL {
-        return (-direction, 1e30, intensity);
+        let three = |v: [f32; 4]| Vec4::from_array(v).truncate();
+        return (-three(light.direction_ws), 1e30, three(light.intensity));
     }
     let to_light = Vec4::from_array(light.position_ws).truncate() - position_ws;
-    let distance_squared = to_light.length_squared();
-    let distance = distance_squared.sqrt();
+    let distance = to_light.length_squared().sqrt();
     let towards = to_light / distance.max(1e-12);
+    (towards, distance, irradiance_along(light, to_light.length_squared(), towards))
+}
+
+/// Irradiance of what faces a point or spot light, at the square of a distance, where its light comes along -`towards`.
+fn irradiance_along(light: &LightBlock, distance_squared: f32, towards: Vec3) -> Vec3 {
+    let intensity = Vec4::from_array(light.intensity).truncate();
+    let direction = Vec4::from_array(light.direction_ws).truncate();
     let fraction_squared = distance_squared * light.position_ws[3];
     let window = (1.0 - fraction_squared * fraction_squared).clamp(0.0, 1.0);
     let mut attenuation = window / distance_squared.max(LEAST_DISTANCE_SQUARED);
@@ -64,7 +69,33 @@ pub fn incident_from(light: &LightBlock, position_ws: Vec3) -> (Vec3, f32, Vec3)
         let cone = (direction.dot(-towards) * light.spot_scale + light.spot_offset).clamp(0.0, 1.0);
         attenuation *= cone * cone;
     }
-    (towards, distance, intensity * attenuation)
+    intensity * attenuation
+}
+
+/// The same from a point of the light's sphere, drawn evenly over the part that is seen: the mean over `numbers`, 0 to 1,
+/// is what all of the sphere gives. As `incident_from` where the light is a point or directional; dark inside the sphere.
+pub fn incident_from_sphere(light: &LightBlock, position_ws: Vec3, [u, v]: [f32; 2]) -> (Vec3, f32, Vec3) {
+    let radius = light.direction_ws[3];
+    let (to_center, center_distance, irradiance) = incident_from(light, position_ws);
+    if light.kind == LIGHT_DIRECTIONAL || radius <= 0.0 {
+        return (to_center, center_distance, irradiance);
+    }
+    if center_distance <= radius {
+        return (to_center, center_distance, Vec3::ZERO);
+    }
+    let sine_squared = (radius / center_distance).powi(2);
+    let least_cosine = (1.0 - sine_squared).max(0.0).sqrt();
+    // 1 - cosine, without the difference of two numbers next to each other.
+    let fallen = u * sine_squared / (1.0 + least_cosine);
+    let (cosine, sine) = (1.0 - fallen, (fallen * (2.0 - fallen)).max(0.0).sqrt());
+    let (x, y) = to_center.any_orthonormal_pair();
+    let angle = std::f32::consts::TAU * v;
+    let towards = x * (sine * angle.cos()) + y * (sine * angle.sin()) + to_center * cosine;
+    let beside_squared = center_distance * center_distance * sine * sine;
+    let distance = center_distance * cosine - (radius * radius - beside_squared).max(0.0).sqrt();
+    // Radiance is intensity over the sphere's disc, and the sphere covers 2 pi (1 - least_cosine).
+    let seen = 2.0 / (1.0 + least_cosine);
+    (towards, distance, irradiance_along(light, center_distance * center_distance, towards) * seen)
 }
 
 /// Irradiance that a virtual point light gives a surface; `least`: the least distance (--vpl-clamp), in metres.
@@ -128,6 +159,18 @@ impl LightStart {
             }
         }
     }
+
+    /// The same start on the sphere of `light`, evenly over the disc that is seen from where it goes: a point's is its
+    /// middle. `numbers`: 0 to 1.
+    pub fn on_sphere(self, light: &Light, [u, v]: [f32; 2]) -> Self {
+        if light.kind.is_directional() {
+            return self;
+        }
+        let (x, y) = self.direction.any_orthonormal_pair();
+        let (r, angle) = (u.sqrt(), std::f32::consts::TAU * v);
+        let out = x * (r * angle.cos()) + y * (r * angle.sin()) + self.direction * (1.0 - u).max(0.0).sqrt();
+        Self { origin: self.origin + light.radius * out, ..self }
+    }
 }
 
 #[cfg(test)]
@@ -142,6 +185,7 @@ mod tests {
             position: Vec3::new(0.0, 2.0, 0.0),
             direction: -Vec3::Y,
             range: None,
+            radius: 0.0,
         }
     }
 
@@ -174,6 +218,46 @@ mod tests {
         assert!(at(0.61).abs() < 1e-6);
         let half = ((0.45f32.cos() - 0.6f32.cos()) / (0.3f32.cos() - 0.6f32.cos())).powi(2);
         assert!((at(0.45) - 8.0 * half).abs() < 1e-3);
+    }
+
+    /// Irradiance of a surface that faces a sphere's middle is that of a point of the same intensity, however near it is.
+    #[test]
+    fn a_sphere_gives_a_surface_that_faces_it_what_its_point_does() {
+        let block = block(&Light { radius: 0.9, ..light(LightKind::Point) }, 0.0);
+        for distance in [0.95f32, 2.0, 30.0] {
+            let position = Vec3::new(0.0, 2.0 - distance, 0.0);
+            let steps = 64;
+            let mut mean = 0.0;
+            for step in 0..steps * steps {
+                let numbers = [step % steps, step / steps].map(|step| (step as f32 + 0.5) / steps as f32);
+                let (towards, length, irradiance) = incident_from_sphere(&block, position, numbers);
+                let met = position + towards * length - Vec3::new(0.0, 2.0, 0.0);
+                assert!((met.length() - 0.9).abs() < 1e-4 * distance.max(1.0), "{distance}: {met}");
+                mean += irradiance.x * towards.y / (steps * steps) as f32;
+            }
+            let expected = 8.0 / (distance * distance);
+            assert!((mean / expected - 1.0).abs() < 2e-3, "{distance}: {mean} and {expected}");
+        }
+        assert_eq!(incident_from_sphere(&block, Vec3::new(0.0, 2.5, 0.0), [0.5; 2]).2, Vec3::ZERO, "inside");
+        let point = super::block(&light(LightKind::Point), 0.0);
+        assert_eq!(incident_from_sphere(&point, Vec3::X, [0.3; 2]), incident_from(&point, Vec3::X));
+    }
+
+    /// Starts lie on the side of a sphere that they leave, and over all of its disc.
+    #[test]
+    fn a_start_on_a_sphere_leaves_it() {
+        let light = Light { radius: 0.5, ..light(LightKind::Point) };
+        let mut mean_squared = 0.0;
+        for step in 0..256 {
+            let number = |scale: u32| ((step * scale) % 256) as f32 / 256.0;
+            let start = LightStart::of(&light, [number(1), number(3)], Vec3::ZERO, 1.0);
+            let LightStart { origin, direction, .. } = start.on_sphere(&light, [number(5), number(7)]);
+            let out = origin - light.position;
+            assert!((out.length() - 0.5).abs() < 1e-5 && out.dot(direction) >= 0.0, "{out} {direction}");
+            mean_squared += (out - direction * out.dot(direction)).length_squared() / 256.0;
+        }
+        // Evenly over a disc: half of its squared radius.
+        assert!((mean_squared / 0.125 - 1.0).abs() < 0.02, "{mean_squared}");
     }
 
     /// What starts carry is what light gives: a metre from a light with a place its flux over the solid angle, in lux; from

@@ -36,6 +36,7 @@ fn panes() -> Scene {
         position: Vec3::new(if index < 3 { 0.0 } else { 40.0 }, 0.0, 1.0),
         direction: Vec3::NEG_Y,
         range: Some(5.0),
+        radius: 0.0,
     };
     scene.lights = (0..6).map(lamp).collect();
     let projection = Projection::Orthographic { x_mag: 21.0, y_mag: 1.0, z_near: 0.1, z_far: 9.0 };

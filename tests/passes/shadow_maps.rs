@@ -38,7 +38,7 @@ fn gray() -> Material {
 }
 
 fn light(kind: LightKind, position: Vec3, direction: Vec3) -> Light {
-    Light { name: String::new(), kind, intensity: Vec3::splat(20.0), position, direction, range: None }
+    Light { name: String::new(), kind, intensity: Vec3::splat(20.0), position, direction, range: None, radius: 0.0 }
 }
 
 fn spot(degrees: f32, position: Vec3, direction: Vec3) -> Light {

@@ -76,7 +76,7 @@ fn plane(lights: &[Light]) -> Scene {
 
 fn light(kind: LightKind, position: Vec3, direction: Vec3) -> Light {
     let (name, intensity) = (String::new(), vec3(120.0, 60.0, 30.0));
-    Light { name, kind, intensity, position, direction: direction.normalize(), range: None }
+    Light { name, kind, intensity, position, direction: direction.normalize(), range: None, radius: 0.0 }
 }
 
 /// Whether a pixel's point is the one that its ray meets, as formulas need it; where not, the test is skipped.

@@ -203,6 +203,7 @@ fn occlusion_darkens_ambient_light_and_no_other() {
         position: Vec3::ZERO,
         direction: Vec3::NEG_Z,
         range: None,
+        radius: 0.0,
     }];
     for strength in [0.0, 0.6, 1.0] {
         scene.materials[0].occlusion_strength = strength;
@@ -238,6 +239,7 @@ fn an_unlit_surface_shows_its_colour_and_takes_no_light() {
         position: Vec3::new(0.3, 0.2, 0.1),
         direction: Vec3::NEG_Z,
         range: None,
+        radius: 0.0,
     }];
     for brdf in words("deferred", "brdf") {
         for (alpha, bound) in [(AlphaMode::Opaque, HALF), (AlphaMode::Blend, 1e-6)] {
@@ -384,6 +386,7 @@ fn headlight() -> Light {
         position: Vec3::ZERO,
         direction: Vec3::NEG_Z,
         range: None,
+        radius: 0.0,
     }
 }
 

@@ -51,6 +51,7 @@ pub fn point_light(position: Vec3, candela: f32) -> Light {
         position,
         direction: -Vec3::Y,
         range: None,
+        radius: 0.0,
     }
 }
 

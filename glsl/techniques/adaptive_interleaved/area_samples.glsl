@@ -1,9 +1,10 @@
-// Points of area lights, which stand for the lights. Host part:
+// Points of area lights, which stand for the lights, and of punctual lights that are spheres. Host part:
 // src/techniques/adaptive_interleaved/components/area_samples.rs.
 #ifndef ADAPTIVE_INTERLEAVED_AREA_SAMPLES_GLSL
 #define ADAPTIVE_INTERLEAVED_AREA_SAMPLES_GLSL
 
-#include "shading/light.glsl"
+#include "sampling/sobol.glsl"
+#include "shading/light_sphere.glsl"
 
 struct AreaSampleBlock {
     vec4 position_ws;
@@ -15,6 +16,15 @@ struct AreaSampleBlock {
 
 // Each light has a stretch of most * N * M points: those of an iteration lie together, one for each pixel of a tile.
 layout(std430, set = 0, binding = 6) readonly buffer Sources { AreaSampleBlock area_samples[]; };
+
+// What a place receives of the index-th punctual light, from the point of its sphere that has the number `own`: as many
+// as an area light has points, none of them twice.
+Incident incident_of(LightBlock light, uint index, vec3 position_ws, uint own) {
+    if (radius_of(light) <= 0.0) {
+        return incident_from(light, position_ws);
+    }
+    return incident_from_sphere(light, position_ws, sobol_pair(own, pair_seed(params.seed, index)));
+}
 
 // Cosine at the light times the distance: 0 where it does not shine.
 float leaving_towards(AreaSampleBlock light, vec3 to_light) {

@@ -33,6 +33,7 @@ struct AdaptiveParams {
     // Metres that a march along a ray advances, and from a light within which its place is in the light's halo.
     float march_step;
     float halo;
+    uint seed;
 };
 
 // What a texel that is not estimated has found in the initial pass; that of others is a component's own word.

@@ -48,7 +48,7 @@ Waiting airlight(vec3 origin, vec3 direction, vec2 ends, out vec3 place_ws) {
     place_ws = origin + direction * place;
     Waiting waiting = NOTHING;
     if (is_punctual) {
-        Incident incident = incident_from(light, place_ws);
+        Incident incident = incident_at(light, place_ws, next_on_sphere());
         waiting = Waiting(incident.irradiance / source.chance, incident.direction_ws, incident.distance);
         waiting.radiance *= phase(params.medium.asymmetry, dot(incident.direction_ws, direction));
     } else {

@@ -33,7 +33,11 @@ LightStart start_on_punctual(float number, float chance) {
     SourceBlock source = source_of(params.emitter_count, params.punctual_count, number);
     LightBlock light = light_at(source.index);
     light.intensity.rgb /= source.chance * chance;
-    return start_of(light, next_pair(), params.sphere_ws);
+    LightStart start = start_of(light, next_pair(), params.sphere_ws);
+    if (HAS_SPHERES != 0u) {
+        start.origin += leaving_sphere(radius_of(light), start.direction, next_pair());
+    }
+    return start;
 }
 
 // Irradiance of the point.

@@ -30,13 +30,15 @@ Waiting punctual_light(SurfacePoint point, vec3 to_eye) {
         return chosen;
     }
     vec2 numbers = next_pair();
+    // One point of each is what its chance is of: lights may share its numbers.
+    vec2 on_sphere = next_on_sphere();
     uint stride = (frame.light_count + MOST_LOOKS - 1u) / MOST_LOOKS;
     float sum = 0.0;
     float choice = numbers.x;
     float chosen_weight = 1.0;
     uint light = min(uint(numbers.y * float(stride)), stride - 1u);
     for (; light < frame.light_count; light += stride) {
-        Incident incident = incident_from(light_at(light), point.position_ws);
+        Incident incident = incident_at(light_at(light), point.position_ws, on_sphere);
         vec3 radiance = reflected_by(point, incident.direction_ws, to_eye) * incident.irradiance;
         float weight = largest(radiance);
         if (weight > 0.0) {

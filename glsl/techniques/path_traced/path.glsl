@@ -6,7 +6,7 @@
 #include "bvh.glsl"
 #include "loops.glsl"
 #include "resident_traced.glsl"
-#include "shading/light.glsl"
+#include "shading/light_sphere.glsl"
 #include "shading/medium.glsl"
 #include "shading/scatter.glsl"
 
@@ -33,6 +33,8 @@ layout(constant_id = 12) const uint AMBIENT_VISIBILITY = 1;
 layout(constant_id = 13) const uint DIRECT_LIGHT = 1;
 // 1: what the medium scatters is light of lights on the ray that is seen.
 layout(constant_id = 14) const uint AIRLIGHT_SEEN = 0;
+// 1: some of the lights are spheres.
+layout(constant_id = 15) const uint HAS_SPHERES = 0;
 
 // Ambient light is added to the surface that is seen, and nothing else comes from around the scene.
 const uint AMBIENT_ADDED = 0u;
@@ -129,6 +131,15 @@ LightBlock light_at(uint index) {
         light.direction_ws.xyz = normalize(mix(light.direction_ws.xyz, closing.direction_ws.xyz, shutter_part));
     }
     return light;
+}
+
+// Numbers for a point of a light, where there are lights of which one is drawn.
+vec2 next_on_sphere() {
+    return HAS_SPHERES != 0u ? next_pair() : vec2(0.0);
+}
+
+Incident incident_at(LightBlock light, vec3 position_ws, vec2 on_sphere) {
+    return HAS_SPHERES != 0u ? incident_from_sphere(light, position_ws, on_sphere) : incident_from(light, position_ws);
 }
 
 // The first of `count` sources from `first` on whose sum of chances is beyond `number`.

@@ -324,7 +324,7 @@ mod tests {
     const ROOM: Bounds = Bounds { min: Vec3::new(-4.0, -1.0, -3.0), max: Vec3::new(5.0, 3.0, 2.0) };
 
     fn light(kind: LightKind, position: Vec3, direction: Vec3) -> Light {
-        Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None }
+        Light { name: String::new(), kind, intensity: Vec3::ONE, position, direction, range: None, radius: 0.0 }
     }
 
     fn values(changes: &[(&str, &str)]) -> Values {

@@ -75,5 +75,6 @@ fn read_light(
         position: placed.world_from_node.w_axis.truncate(),
         direction,
         range: light.range().filter(|_| !kind.is_directional()),
+        radius: 0.0,
     }))
 }

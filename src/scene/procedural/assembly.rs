@@ -105,7 +105,15 @@ impl Assembly {
     /// Adds a point light: candela per channel, metres.
     pub fn point_light(&mut self, name: String, position: Vec3, intensity: Vec3, range: Option<f32>) {
         let direction = Vec3::NEG_Y;
-        self.scene.lights.push(Light { name, kind: LightKind::Point, intensity, position, direction, range });
+        self.scene.lights.push(Light {
+            name,
+            kind: LightKind::Point,
+            intensity,
+            position,
+            direction,
+            range,
+            radius: 0.0,
+        });
     }
 
     /// Adds a spot light at `position` that shines toward `target`: candela per channel, metres; half angles of its cone
@@ -114,7 +122,7 @@ impl Assembly {
         let [inner_angle, outer_angle] = angles;
         let direction = (target - position).normalize().as_vec3().normalize();
         let (kind, position) = (LightKind::Spot { inner_angle, outer_angle }, position.as_vec3());
-        self.scene.lights.push(Light { name, kind, intensity, position, direction, range: None });
+        self.scene.lights.push(Light { name, kind, intensity, position, direction, range: None, radius: 0.0 });
     }
 
     /// Adds a perspective camera at `eye` that looks at `target`, y up. Metres, radians.

@@ -113,6 +113,8 @@ impl Choices {
                 least_squared: vpl_clamp_m * vpl_clamp_m,
                 march_step: 0.0,
                 halo: 0.0,
+                seed: values.integer("seed") as u32,
+                ..AdaptiveParams::zeroed()
             };
             prepared.write(&mut params);
             Ok(Some(ComponentChoice { component, prepared, params }))

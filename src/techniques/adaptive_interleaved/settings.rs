@@ -2,8 +2,8 @@
 
 use crate::choice::choices;
 use crate::settings::{
-    Changes, EMISSIVE, GEOMETRY, Kind, MEDIUM, NORMAL_THRESHOLD, POSITION, POSITION_THRESHOLD, Setting, TEXELS, Unread,
-    VPL_CLAMP, Values, WORKGROUP,
+    Changes, EMISSIVE, GEOMETRY, Kind, LIGHT_RADIUS, MEDIUM, NORMAL_THRESHOLD, POSITION, POSITION_THRESHOLD, Setting,
+    TEXELS, Unread, VPL_CLAMP, Values, WORKGROUP,
 };
 
 choices! {
@@ -214,6 +214,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting { unread: |values| without(values, Component::Id), ..VPL_CLAMP },
     EMISSIVE,
+    LIGHT_RADIUS,
     MEDIUM,
     Setting {
         key: "refine",

@@ -84,6 +84,7 @@ mod tests {
             position: Vec3::new(x, 0.0, 0.0),
             direction,
             range: None,
+            radius: 0.0,
         };
         let middle = between(&light(1.0, Vec3::X), &light(3.0, Vec3::Y));
         assert_eq!((middle.position, middle.intensity), (Vec3::new(2.0, 0.0, 0.0), Vec3::splat(4.0)));

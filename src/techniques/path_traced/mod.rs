@@ -247,6 +247,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         air,
         airlight_seen: airlight::is_seen(values),
         has_lens: lens.is_some(),
+        has_spheres: sources.all_lights().any(|light| light.radius > 0.0),
         params,
     })
 }

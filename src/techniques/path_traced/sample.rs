@@ -47,6 +47,8 @@ pub struct Choices {
     pub airlight_seen: bool,
     /// The camera has a lens that is open.
     pub has_lens: bool,
+    /// Some of the lights are spheres.
+    pub has_spheres: bool,
     pub params: SampleParams,
 }
 
@@ -111,6 +113,7 @@ impl Sample {
             ("MEDIUM", choices.air as u32),
             ("AIRLIGHT_SEEN", u32::from(choices.airlight_seen)),
             ("HAS_LENS", u32::from(choices.has_lens)),
+            ("HAS_SPHERES", u32::from(choices.has_spheres)),
         ];
         let mut constants = [&own[..], &layout.constants()].concat();
         constants.extend(layout.nodes().into_iter().flat_map(Nodes::constants));

@@ -3,8 +3,8 @@
 use crate::choice::choices;
 use crate::resident::traced::TexelLevels;
 use crate::settings::{
-    APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting, Unread, VPL_CLAMP,
-    Values, WORKGROUP,
+    APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting,
+    Unread, VPL_CLAMP, Values, WORKGROUP,
 };
 use crate::shading::medium::Medium;
 
@@ -189,6 +189,7 @@ pub const SETTINGS: &[Setting] = &[
     STEREO_EYES,
     SHUTTER,
     MEDIUM,
+    LIGHT_RADIUS,
     EMISSIVE,
     VPL_CLAMP,
     BRDF,

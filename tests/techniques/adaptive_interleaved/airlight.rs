@@ -87,7 +87,7 @@ pub fn shelf() -> Scene {
     scene
 }
 
-fn mean(picture: &Picture) -> f32 {
+pub fn mean(picture: &Picture) -> f32 {
     picture.pixels.as_flattened().iter().sum::<f32>() / picture.pixels.len() as f32
 }
 

@@ -4,6 +4,7 @@
 mod airlight;
 mod occlusion;
 mod smoothing;
+mod spheres;
 
 use crate::support::boxes::{camera, panel, rectangle};
 use crate::support::difference::{require_same, rmse};

@@ -107,7 +107,7 @@ Met met_at(vec3 place_ws, vec3 seen_along, uint place, uint own, inout Estimate 
     expect_done(area == params.source_count);
     uint punctual = 0u;
     for (; punctual < params.light_count; punctual++) {
-        Incident light = incident_from(lights[punctual], place_ws);
+        Incident light = incident_of(lights[punctual], punctual, place_ws, (own + place) % point_count);
         add_scattered(place_ws, seen_along, light.irradiance, light.direction_ws, light.distance, estimate, met);
     }
     expect_done(punctual == params.light_count);

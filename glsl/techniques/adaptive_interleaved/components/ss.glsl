@@ -111,7 +111,7 @@ void contribute(Point point, uint slot, uint iteration, inout Estimate estimate)
     expect_done(area == params.source_count);
     uint punctual = 0u;
     for (; punctual < params.light_count; punctual++) {
-        Incident incident = incident_from(lights[punctual], point.position_ws);
+        Incident incident = incident_of(lights[punctual], punctual, point.position_ws, iteration * size + slot);
         if (incident.irradiance != vec3(0.0)) {
             precise float cosine = max(dot(point.normal_ws, incident.direction_ws), 0.0);
             vec3 received = incident.irradiance * cosine;

@@ -96,6 +96,7 @@ mod tests {
             position,
             direction: -Vec3::Y,
             range: Some(range),
+            radius: 0.0,
         };
         block(&light, 0.0)
     }
