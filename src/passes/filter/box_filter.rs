@@ -7,7 +7,7 @@
 
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::passes::filter::box_filter::{COMP, MOST_REACH};
+use crate::gpu::shader::passes::filter::box_filter::COMP;
 use crate::gpu::shader::structs::BoxParams;
 use crate::gpu::{Access, Barrier, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::units::Extent;
@@ -18,32 +18,35 @@ pub struct BoxFilter {
     label: String,
     pipeline: ComputePipeline,
     params: BoxParams,
+    /// Pixels that a thread filters: of a column.
+    rows: u32,
+    /// Pixels of the box: columns and rows.
+    size_px: [u32; 2],
 }
 
 impl BoxFilter {
-    /// `size_px`: of the box, at most twice `MOST_REACH` each. `target_first`: texel of the target at which it begins
-    /// to write.
+    /// `size_px`: of the box. `rows`: of pixels that a thread filters, at least 1; the same bits for every count.
+    /// `target_first`: texel of the target at which it begins to write.
     pub fn new(
         gpu: &Arc<Gpu>,
         label: String,
         workgroup: &[(&'static str, u32)],
+        rows: u32,
         extent: Extent,
         size_px: [u32; 2],
         target_first: u32,
     ) -> Result<Self> {
         let [width, height] = size_px;
-        let (right, below) = (width / 2, height / 2);
-        assert!(right.max(below) <= MOST_REACH, "a box of {width}x{height}");
-        let params = BoxParams {
-            width_px: extent.width,
-            height_px: extent.height,
-            left: (width - 1) / 2,
-            right,
-            above: (height - 1) / 2,
-            below,
-            target_first,
-        };
-        Ok(Self { label, pipeline: ComputePipeline::new(gpu, &COMP, workgroup)?, params })
+        let reach = [
+            ("LEFT", (width - 1) / 2),
+            ("RIGHT", width / 2),
+            ("ABOVE", (height - 1) / 2),
+            ("BELOW", height / 2),
+            ("ROWS", rows),
+        ];
+        let pipeline = ComputePipeline::new(gpu, &COMP, &[workgroup, &reach].concat())?;
+        let params = BoxParams { width_px: extent.width, height_px: extent.height, target_first };
+        Ok(Self { label, pipeline, params, rows, size_px })
     }
 
     /// `becomes_writable`: the target's barrier.
@@ -55,10 +58,12 @@ impl BoxFilter {
         target: &Buffer,
         becomes_writable: Barrier,
     ) -> Result<()> {
-        let BoxParams { width_px, height_px, left, right, above, below, .. } = self.params;
-        let texels = u64::from(width_px) * u64::from(height_px);
-        let taps = u64::from(left + right + 1) * u64::from(above + below + 1);
-        let traffic = Traffic { read_bytes: texels * taps * 12, written_bytes: texels * 8, invocations: Some(texels) };
+        let BoxParams { width_px, height_px, .. } = self.params;
+        let down = height_px.div_ceil(self.rows);
+        let [texels, threads] = [height_px, down].map(|rows| u64::from(width_px) * u64::from(rows));
+        let taps = u64::from(self.size_px[0]) * u64::from(self.size_px[1] + self.rows - 1);
+        let traffic =
+            Traffic { read_bytes: threads * taps * 12, written_bytes: texels * 8, invocations: Some(threads) };
         cmd.pass(&self.label, traffic, |cmd| {
             cmd.barriers([source.to(Access::ComputeRead), flags.to(Access::ComputeRead), becomes_writable]);
             let bound = [
@@ -66,7 +71,7 @@ impl BoxFilter {
                 ("Flags", Bound::Buffer(flags.resource)),
                 ("Target", Bound::Buffer(target)),
             ];
-            let groups = self.pipeline.groups([width_px, height_px, 1]);
+            let groups = self.pipeline.groups([width_px, down, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
         })
     }

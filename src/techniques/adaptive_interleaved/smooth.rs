@@ -124,7 +124,7 @@ impl Smoothing {
             let by_label = |known: &Flagged| known.label == flagging(choice);
             filters.push(ComponentFilter {
                 flagged: flagged.iter().position(by_label).expect("each component is flagged"),
-                filter: BoxFilter::new(gpu, full("filter"), &workgroup, extent, choices.tile_px, first)?,
+                filter: BoxFilter::new(gpu, full("filter"), &workgroup, rows, extent, choices.tile_px, first)?,
                 upsampled: choice.is_reduced().then(|| upsample(resources)).transpose()?,
             });
         }
