@@ -1,8 +1,7 @@
 // The list of the tiles that refine, those with most iterations first, and the dispatch over it. A tile a thread.
 // Pass: src/techniques/adaptive_interleaved/compact.rs.
 #version 460
-#include "techniques/adaptive_interleaved/bins.glsl"
-#include "techniques/adaptive_interleaved/tile.glsl"
+#include "techniques/adaptive_interleaved/lanes.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -21,7 +20,7 @@ void main() {
         for (uint further = 1u; further < BIN_COUNT; further++) {
             refined_count += bins.counts[further];
         }
-        uint group_count = (refined_count * tile_size(params) + REFINE_LANES - 1u) / REFINE_LANES;
+        uint group_count = refine_group_count(params, refined_count);
         bins.refined_count = refined_count;
         bins.groups[0] = min(group_count, REFINE_ROW);
         bins.groups[1] = (group_count + REFINE_ROW - 1u) / REFINE_ROW;

@@ -43,6 +43,9 @@ struct Estimate {
     uint ray_count;
 };
 
+// Weights of Rec. 709's primaries.
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+
 const Estimate NO_ESTIMATE = Estimate(vec3(0.0), 0.0, 0u, 0xffffffffu, 0u);
 
 Point point_at(uvec2 texel) {
@@ -73,7 +76,13 @@ Estimate initial_estimate(Point point, uint slot) {
 
 // What guidance.glsl reads of it.
 uint found_by(Point point, uint slot, Estimate estimate) {
-    return is_estimated(point) ? found_word(slot, estimate) : NOT_ESTIMATED;
+    if (!is_estimated(point)) {
+        return NOT_ESTIMATED;
+    }
+    if (params.until_error > 0.0) {
+        return floatBitsToUint(dot(estimate.sum, LUMINANCE) / float(params.base));
+    }
+    return found_word(slot, estimate);
 }
 
 void write_mean(uint index, Estimate estimate, uint iteration_count) {

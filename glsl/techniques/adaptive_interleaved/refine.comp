@@ -2,8 +2,8 @@
 // Pass: src/techniques/adaptive_interleaved/refine.rs.
 // variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm|ao
 #version 460
-#include "techniques/adaptive_interleaved/bins.glsl"
 #include "techniques/adaptive_interleaved/estimate.glsl"
+#include "techniques/adaptive_interleaved/lanes.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -14,13 +14,12 @@ layout(std430, set = 0, binding = 10) readonly buffer Tiles { uint tiles[]; };
 
 void main() {
     uint group = gl_WorkGroupID.y * REFINE_ROW + gl_WorkGroupID.x;
-    uint lane = group * REFINE_LANES + gl_LocalInvocationIndex;
-    uint listed = lane / tile_size(params);
-    if (listed >= bins.refined_count) {
+    uvec2 own = listed_and_slot(params, group * REFINE_LANES + gl_LocalInvocationIndex);
+    if (own.x >= bins.refined_count) {
         return;
     }
-    uint tile = tiles[listed];
-    uint slot = lane % tile_size(params);
+    uint tile = tiles[own.x];
+    uint slot = own.y;
     uvec2 texel = texel_of(params, tile, slot);
     if (!has_texel(params, texel)) {
         return;

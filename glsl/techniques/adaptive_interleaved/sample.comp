@@ -3,6 +3,7 @@
 // variants: POSITION=half|unorm16|depth|float COMPONENT=id|ss|pm|ao
 #version 460
 #include "techniques/adaptive_interleaved/estimate.glsl"
+#include "techniques/adaptive_interleaved/lanes.glsl"
 
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
 
@@ -10,7 +11,7 @@ layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id
 layout(std430, set = 0, binding = 3) writeonly buffer Estimates { uvec4 estimates[]; };
 
 void main() {
-    uvec2 texel = gl_GlobalInvocationID.xy;
+    uvec2 texel = texel_of_thread(params, gl_GlobalInvocationID.xy);
     if (!has_texel(params, texel)) {
         return;
     }

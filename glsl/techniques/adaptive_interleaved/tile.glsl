@@ -34,6 +34,8 @@ struct AdaptiveParams {
     float march_step;
     float halo;
     uint seed;
+    // Relative standard error of a tile's mean at which it needs no more (--until-error); 0: what its rays met guides.
+    float until_error;
 };
 
 // What a texel that is not estimated has found in the initial pass; that of others is a component's own word.

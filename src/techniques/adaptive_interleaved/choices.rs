@@ -2,7 +2,7 @@
 
 use super::components::PreparedComponent;
 use super::resources::NAME;
-use super::settings::{self, Component, Mode, Refine};
+use super::settings::{self, Component, LightChoice, Mode, RayOrder, Refine};
 use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
@@ -24,6 +24,9 @@ pub struct Choices {
     pub workgroup: [u32; 2],
     pub tile_px: [u32; 2],
     pub refine: Refine,
+    pub ray_order: RayOrder,
+    /// How the virtual lights of `id` are chosen.
+    pub light_choice: LightChoice,
     pub mode: Mode,
     /// Diffuse light, and a shadow ray for every light.
     pub direct: DirectSettings,
@@ -114,6 +117,7 @@ impl Choices {
                 march_step: 0.0,
                 halo: 0.0,
                 seed: values.integer("seed") as u32,
+                until_error: values.number("until-error") as f32,
                 ..AdaptiveParams::zeroed()
             };
             prepared.write(&mut params);
@@ -129,6 +133,8 @@ impl Choices {
             workgroup: values.pair("workgroup"),
             tile_px: [tile_x, tile_y],
             refine: values.choice("refine"),
+            ray_order: values.choice("ray-order"),
+            light_choice: values.choice("id-choice"),
             mode,
             direct: DirectSettings::with(Brdf::Lambert, DirectShadow::Ray, inputs.lights, inputs.scene),
             vpl_clamp_m,
@@ -143,6 +149,16 @@ impl Choices {
         [("WORKGROUP_X", self.workgroup[0]), ("WORKGROUP_Y", self.workgroup[1])]
     }
 
+    /// Whether threads that lie together have one slot of several tiles.
+    pub fn is_by_slot(&self) -> bool {
+        self.ray_order == RayOrder::Slot && !self.is_fused()
+    }
+
+    /// BY_SLOT.
+    pub fn order_constant(&self) -> (&'static str, u32) {
+        ("BY_SLOT", u32::from(self.is_by_slot()))
+    }
+
     /// The pipeline of a pass that estimates a component: of those variants the one of its positions and its component.
     pub fn estimating_pipeline(
         &self,
@@ -152,7 +168,11 @@ impl Choices {
         constants: &[(&'static str, u32)],
     ) -> Result<ComputePipeline> {
         let shader = variant(variants, &[self.position.name(), component.name()]);
-        ComputePipeline::new(gpu, shader, &[constants, &[self.direct.offset_constant()]].concat())
+        let mut all = [constants, &[self.direct.offset_constant()]].concat();
+        if component == Component::Id {
+            all.push(("BY_CONTRIBUTION", u32::from(self.light_choice == LightChoice::Contribution)));
+        }
+        ComputePipeline::new(gpu, shader, &all)
     }
 
     /// Whether tiles are refined by a dispatch of their own.

@@ -3,6 +3,7 @@
 //! reads  guidance, bins      writes  tiles  buffer, 4 B a tile, and bins
 
 use super::buffers::ComponentBuffers;
+use super::choices::Choices;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::adaptive_interleaved::compact::COMP;
@@ -14,8 +15,8 @@ pub struct CompactPass {
 }
 
 impl CompactPass {
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])? })
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
+        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[choices.order_constant()])? })
     }
 
     /// `guidance` and `bins`: as the guidance left them.

@@ -54,7 +54,7 @@ pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static s
         counters.insert(keys.rays, rays / pixels);
         counters.insert(keys.iterations, mean_iterations(steps, &further));
         counters.insert(keys.refined, refined_count as f64 / further.len() as f64);
-        counters.insert(keys.idle, idle_part(further, steps.buffers.params.tile_size()));
+        counters.insert(keys.idle, idle_part(further, steps.tile_lanes));
     }
     counters.insert("rays", all_rays);
     Ok(counters)
@@ -88,12 +88,12 @@ fn mean_iterations(steps: &ComponentSteps, further: &[u32]) -> f64 {
 }
 
 /// Part of the lanes' time in the refinement in which they wait for the slowest of their workgroup: tiles are listed by
-/// their iterations, the most first, and `tile_size` lanes have one.
-fn idle_part(mut further: Vec<u32>, tile_size: u32) -> f64 {
+/// their iterations, the most first, and `tile_lanes` lanes of a workgroup have one.
+fn idle_part(mut further: Vec<u32>, tile_lanes: u32) -> f64 {
     further.retain(|further| *further > 0);
     further.sort_unstable_by(|one, other| other.cmp(one));
     let lanes: Vec<u32> =
-        further.iter().flat_map(|further| std::iter::repeat_n(*further, tile_size as usize)).collect();
+        further.iter().flat_map(|further| std::iter::repeat_n(*further, tile_lanes as usize)).collect();
     let (mut busy, mut held) = (0u64, 0u64);
     for group in lanes.chunks(REFINE_LANES as usize) {
         busy += group.iter().copied().map(u64::from).sum::<u64>();

@@ -28,7 +28,8 @@ pub struct Listed<'a> {
 
 impl RefinePass {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, choice: &ComponentChoice) -> Result<Self> {
-        let pipeline = choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &[])?;
+        let pipeline =
+            choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &[choices.order_constant()])?;
         Ok(Self { pipeline })
     }
 

@@ -19,8 +19,9 @@ pub struct SamplePass {
 
 impl SamplePass {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, choice: &ComponentChoice) -> Result<Self> {
-        let pipeline =
-            choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &choices.workgroup_constants())?;
+        let [x, y] = choices.workgroup_constants();
+        let constants = [x, y, choices.order_constant()];
+        let pipeline = choices.estimating_pipeline(gpu, COMP_VARIANTS, choice.component, &constants)?;
         Ok(Self { pipeline })
     }
 
@@ -40,7 +41,9 @@ impl SamplePass {
             let mut bound = buffers.bound(shared, gbuffer.resource);
             bound.push(("Estimates", Bound::Buffer(estimates)));
             let bound = self.pipeline.interface.own(&bound);
-            let groups = self.pipeline.groups([buffers.params.width, buffers.params.height, 1]);
+            // By slots the last tile of a row, which may be cut, has all of its threads.
+            let across = buffers.params.tile_columns * buffers.params.tile_x;
+            let groups = self.pipeline.groups([across, buffers.params.height, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&buffers.params), &bound, groups)
         })
     }

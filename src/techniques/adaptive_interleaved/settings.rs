@@ -52,6 +52,26 @@ choices! {
     }
 }
 
+choices! {
+    /// Which texels threads that lie together have (`--ray-order`).
+    pub enum RayOrder {
+        /// Those of a tile, each with its own samples.
+        "tile" => Tile,
+        /// Those of one place in neighbouring tiles, which have the same samples.
+        "slot" => Slot,
+    }
+}
+
+choices! {
+    /// Which virtual lights a pixel looks at (`--id-choice`).
+    pub enum LightChoice {
+        /// Those of its own subset.
+        "even" => Even,
+        /// As many of all of them, by what each would give if nothing hid it.
+        "contribution" => Contribution,
+    }
+}
+
 /// Largest side of a tile, px: 64 of its pixels are a workgroup.
 pub const MOST_TILE_PX: u32 = 8;
 
@@ -128,6 +148,15 @@ pub const SETTINGS: &[Setting] = &[
         help: "Most iterations of soft shadows, the initial pass's included: points of each area light that a pixel \
                sends shadow rays to",
         unread: |values| without(values, Component::Ss),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "until-error",
+        kind: Kind::Number { min: 0.0, max: 1.0 },
+        default: "0",
+        help: "Relative standard error of a tile's mean at which it is refined no more, as far as its own pixels tell in \
+               the initial pass; 0: tiles are refined by what their rays met, as in the paper",
+        unread: |values| Unread::unless(values, "mode", &[Mode::Adaptive], "no tile is asked"),
         ..Setting::changing(Changes::Samples)
     },
     Setting {
@@ -212,6 +241,15 @@ pub const SETTINGS: &[Setting] = &[
         unread: |values| without(values, Component::Id),
         ..Setting::changing(Changes::Picture)
     },
+    Setting {
+        key: "id-choice",
+        kind: Kind::Choice(LightChoice::WORDS),
+        default: "even",
+        help: "Virtual point lights that a pixel looks at in an iteration: its own subset of them (even, the paper's); or \
+               as many of all of them, drawn by what each would give it if nothing hid it (contribution)",
+        unread: |values| without(values, Component::Id),
+        ..Setting::changing(Changes::Samples)
+    },
     Setting { unread: |values| without(values, Component::Id), ..VPL_CLAMP },
     EMISSIVE,
     LIGHT_RADIUS,
@@ -223,6 +261,17 @@ pub const SETTINGS: &[Setting] = &[
         help: "How tiles that refine come to their threads: listed on the device, those with most iterations first, \
                and dispatched from there (indirect); or in the initial pass itself, each tile going on as long as it \
                must (fused); the same picture",
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "ray-order",
+        kind: Kind::Choice(RayOrder::WORDS),
+        default: "slot",
+        paper: "Segovia 2006, 3",
+        help: "Which texels threads that lie together have: those of a tile, each of which looks at other lights (tile); \
+               or those of one place in neighbouring tiles, whose rays go to the same lights from near places (slot); the \
+               same picture",
+        unread: |values| Unread::unless(values, "refine", &[Refine::Indirect], "a tile's threads decide together"),
         ..Setting::changing(Changes::Nothing)
     },
     NORMAL_THRESHOLD,

@@ -19,6 +19,8 @@ use std::sync::Arc;
 /// One component on the device.
 pub struct ComponentSteps {
     pub buffers: ComponentBuffers,
+    /// Threads of a workgroup of the refinement that a tile has.
+    pub tile_lanes: u32,
     steps: Steps,
 }
 
@@ -69,7 +71,7 @@ impl ComponentSteps {
             if choices.has_refinement() {
                 let refinement = Refinement {
                     guide: GuidePass::new(gpu, choice)?,
-                    compact: CompactPass::new(gpu)?,
+                    compact: CompactPass::new(gpu, choices)?,
                     refine: RefinePass::new(gpu, choices, choice)?,
                     guidance: buffer("guidance"),
                     bins: buffer("bins"),
@@ -80,7 +82,8 @@ impl ComponentSteps {
                 Steps::Initial { sample, estimates }
             }
         };
-        Ok(Self { buffers: ComponentBuffers::new(gpu, resources, choice, samples)?, steps })
+        let tile_lanes = if choices.is_by_slot() { 1 } else { choice.params.tile_size() };
+        Ok(Self { buffers: ComponentBuffers::new(gpu, resources, choice, samples)?, tile_lanes, steps })
     }
 
     /// Further iterations of each tile, a word each; None where no tile has any.

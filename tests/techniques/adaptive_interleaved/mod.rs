@@ -2,6 +2,7 @@
 //! refine against each other, and the whole against paths (Dubla 2009).
 
 mod airlight;
+mod beyond;
 mod occlusion;
 mod smoothing;
 mod spheres;

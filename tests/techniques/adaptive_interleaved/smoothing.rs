@@ -114,9 +114,8 @@ fn upsampling_is_guided_by_normals_and_planes() {
 fn filters_of_one_pixel_a_thread_and_of_many_are_the_same() {
     let watched = Watched::open("cornell");
     for tile in ["1x1", "3x3", "2x5", "8x8"] {
-        let hash = |texels| {
-            watched.hash(NAME, &both(&CORNELL, &[("components", "ss"), ("tile", tile), ("texels", texels)]))
-        };
+        let hash =
+            |texels| watched.hash(NAME, &both(&CORNELL, &[("components", "ss"), ("tile", tile), ("texels", texels)]));
         let plain = hash("1");
         for texels in ["2", "8"] {
             assert_eq!(hash(texels), plain, "{tile}, {texels}");
