@@ -52,7 +52,7 @@ pub fn emissive_at(scene: &Scene, material: &Material, point: &MeshPoint) -> Vec
 /// Vertices' normal and tangent at one point of a triangle, in world space as they are interpolated.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexFrame {
-    /// Of any length.
+    /// Any length.
     pub normal_ws: Vec3,
     /// w: the sign of the bitangent. xyz is 0 where there is no normal map.
     pub tangent_ws: Vec4,

@@ -3,14 +3,17 @@
 //! Virtual point lights of a light walk, in N x M subsets, each as well spread as the whole, because the walk's order
 //! is a low-discrepancy one. What emissive surfaces give straight is soft shadows' and not counted here.
 
+use super::host::{Estimate, Given, HostComponent, Point};
 use super::method::{ComponentMethod, PreparedComponent, SampleCount, Samples};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::VplBlock;
 use crate::lights::vpl;
 use crate::settings::Values;
+use crate::shading::light::vpl_irradiance;
 use crate::techniques::Inputs;
 use crate::techniques::adaptive_interleaved::resources::NAME;
 use crate::techniques::adaptive_interleaved::settings::Mode;
+use glam::{Vec3, Vec4};
 
 pub struct IndirectDiffuse;
 
@@ -73,5 +76,44 @@ impl PreparedComponent for PreparedIndirect {
                 ("light_walks", f64::from(found.walk_count)),
             ],
         })
+    }
+
+    fn host(&self, samples: &Samples) -> Box<dyn HostComponent> {
+        Box::new(HostIndirect { vpls: samples.sources_as() })
+    }
+}
+
+struct HostIndirect {
+    vpls: Vec<VplBlock>,
+}
+
+impl HostComponent for HostIndirect {
+    fn contribute(&self, given: &Given<'_>, point: &Point, slot: u32, iteration: u32, estimate: &mut Estimate) {
+        let params = given.params;
+        let [first, end] = params.id_stretch(slot, iteration).map(|index| index as usize);
+        let (mut ray_count, mut missed_count, mut sum) = (0, 0, Vec3::ZERO);
+        for light in &self.vpls[first..end] {
+            let received = vpl_irradiance(light, point.position_ws, point.normal_ws, params.least_squared);
+            if received == Vec3::ZERO {
+                continue;
+            }
+            let to_light = Vec4::from_array(light.position_ws).truncate() - point.position_ws;
+            let distance = to_light.length();
+            let direction = to_light / distance.max(1e-12);
+            ray_count += 1;
+            if given.shadows.occluded(point.position_ws, point.normal_ws, direction, distance) {
+                missed_count += 1;
+            } else {
+                sum += received * params.medium.passed(point.position_ws, direction, distance);
+            }
+        }
+        // A subset stands for all N x M of them.
+        estimate.sum += sum * params.tile_size() as f32;
+        estimate.information += if ray_count > 0 { missed_count as f32 / ray_count as f32 } else { 0.0 };
+        estimate.ray_count += ray_count;
+    }
+
+    fn is_penumbra(&self) -> bool {
+        false
     }
 }
