@@ -1,5 +1,5 @@
 // A ray through the tree, without a stack. The including shader declares `bvh_nodes[]`, in the order of src/bvh/flat.rs, and
-// `bvh_triangles[]` (bvh.glsl has their types). Twin: src/bvh/mod.rs, `Bvh::occluded`.
+// `bvh_triangles[]` (bvh.glsl has their types). Twin: src/bvh/shadow.rs.
 #ifndef BVH_WALK_GLSL
 #define BVH_WALK_GLSL
 

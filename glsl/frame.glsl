@@ -34,7 +34,7 @@ vec3 to_eye(FrameBlock frame, vec3 position_ws) {
     return frame.eye_ws.w > 0.0 ? normalize(frame.eye_ws.xyz - position_ws) : -frame.forward_ws.xyz;
 }
 
-// What is seen through a place of the picture, from the near plane to the far one.
+// What is seen through a place of the picture, from the near plane to the far one. Twin: src/frame.rs.
 struct ViewRay {
     vec3 origin;
     vec3 direction;

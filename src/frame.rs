@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::framing;
+use crate::gpu::shader::frame::FAR;
 use crate::gpu::shader::structs::FrameBlock;
 use crate::scene::{Bounds, Camera, Projection, Scene};
 use crate::units::Extent;
@@ -180,6 +181,40 @@ impl View {
     }
 }
 
+/// What is seen through a place of the picture, from the near plane to the far one: the twin of `view_ray` in
+/// glsl/frame.glsl.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewRay {
+    /// On the near plane, world space.
+    pub origin: Vec3,
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Metres that it reaches.
+    pub limit: f32,
+    /// Metres before its origin at which it would begin if no near plane cut it.
+    pub behind: f32,
+}
+
+impl ViewRay {
+    /// Through the place `at_px` of the picture, in pixels from its upper left corner.
+    pub fn through(frame: &FrameBlock, at_px: Vec2) -> Self {
+        let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+        let world_from_clip = Mat4::from_cols_array_2d(&frame.world_from_clip);
+        let ndc = at_px / Vec2::new(frame.width_px as f32, frame.height_px as f32) * 2.0 - 1.0;
+        let [near, far] = [1.0, 0.0].map(|depth| world_from_clip * ndc.extend(depth).extend(1.0));
+        let (eye, is_perspective) = (three(frame.eye_ws), frame.eye_ws[3] > 0.0);
+        let start = near.truncate() / near.w;
+        // A far plane at infinity has w = 0: this is a direction all the same.
+        let seen = || (far.truncate() - eye * far.w).normalize();
+        let (direction, behind) =
+            if is_perspective { (seen(), start.distance(eye)) } else { (three(frame.forward_ws), 0.0) };
+        // Along the ray, and not to the near plane's own point, which floats place too roughly next to the eye.
+        let origin = if is_perspective { eye + direction * behind } else { start };
+        let limit = if far.w > 0.0 { (far.truncate() / far.w).distance(origin).min(FAR) } else { FAR };
+        Self { origin, direction, limit, behind }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -201,6 +236,32 @@ mod tests {
             // Vulkan's y points down: what is up in the world has a negative y.
             assert!(clip.project_point3(Vec3::new(0.0, 0.5, 0.0)).y < 0.0);
             assert!(clip.project_point3(Vec3::new(0.5, 0.0, 0.0)).x > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_ray_through_a_pixel_goes_from_the_near_plane_to_the_far_one() {
+        let perspective = |z_far| Projection::Perspective { y_fov: 1.0, aspect: None, z_near: 1.0, z_far };
+        let orthographic = Projection::Orthographic { x_mag: 4.0, y_mag: 2.0, z_near: 1.0, z_far: 10.0 };
+        for (projection, has_end) in [(perspective(Some(10.0)), true), (perspective(None), false), (orthographic, true)]
+        {
+            let view = view(projection);
+            let block = view.block(&Bounds::EMPTY, Vec3::ZERO, Vec3::ZERO, 0, 0);
+            for at_px in [Vec2::new(0.5, 0.5), Vec2::new(160.25, 20.0)] {
+                let ray = ViewRay::through(&block, at_px);
+                assert!((ray.direction.length() - 1.0).abs() < 1e-6);
+                assert!((ray.origin.z - 4.0).abs() < 1e-5, "{projection:?}: {ray:?}");
+                let begun = ray.origin - ray.direction * ray.behind;
+                let is_perspective = matches!(projection, Projection::Perspective { .. });
+                assert!(!is_perspective || (begun - view.eye()).length() < 1e-5, "{ray:?}");
+                let end = ray.origin + ray.direction * if has_end { ray.limit } else { 50.0 };
+                assert!(if has_end { (end.z + 5.0).abs() < 1e-4 } else { ray.limit == FAR }, "{projection:?}: {ray:?}");
+                for point in [ray.origin, end] {
+                    let clip = view.clip_from_world().project_point3(point);
+                    let found = (clip.truncate() + 1.0) * 0.5 * Vec2::new(200.0, 100.0);
+                    assert!((found - at_px).length() < 1e-2, "{projection:?}: {found} for {at_px}");
+                }
+            }
         }
     }
 

@@ -23,7 +23,7 @@ use crate::report::memory::MemoryTable;
 use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Prepared, Sums, Technique, bindable, fitness, stages};
+use crate::techniques::{Frame, Inputs, Prepared, Run, Sums, Technique, bindable, fitness, stages};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -36,10 +36,10 @@ const GPU_SUBMIT_MS: f64 = 100.0;
 /// A device and a scene.
 pub struct Session {
     pub gpu: Arc<Gpu>,
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     pub stats: SceneStats,
     scene_gpu: Arc<SceneGpu>,
-    bvh: LazyBvh,
+    bvh: Arc<LazyBvh>,
 }
 
 /// One technique with its settings, ready to make frames.
@@ -55,8 +55,10 @@ pub struct Renderer {
     runs: Cell<u32>,
     /// What a picture begins with: sums, and how many samples a pixel they are of.
     earlier: Option<(Vec<[f32; 4]>, u32)>,
-    _scene: Arc<SceneGpu>,
+    _scene_gpu: Arc<SceneGpu>,
     gpu: Arc<Gpu>,
+    scene: Arc<Scene>,
+    bvh: Arc<LazyBvh>,
     pub view: View,
     pub lights: LightSet,
     pub host_passes: Vec<(String, u64)>,
@@ -107,7 +109,7 @@ impl Session {
         let stats = SceneStats::of(&scene);
         let uploaded = SceneGpu::new(&gpu, &scene, kept).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);
-        Ok(Self { gpu, scene, stats, scene_gpu, bvh: LazyBvh::default() })
+        Ok(Self { gpu, scene: Arc::new(scene), stats, scene_gpu, bvh: Arc::default() })
     }
 
     /// Makes a technique real for these settings, and records its frame. `aovs`: the stages that will be read back.
@@ -220,8 +222,10 @@ impl Session {
             numbers,
             runs: Cell::new(0),
             earlier: None,
-            _scene: self.scene_gpu.clone(),
+            _scene_gpu: self.scene_gpu.clone(),
             gpu: self.gpu.clone(),
+            scene: self.scene.clone(),
+            bvh: self.bvh.clone(),
             view,
             lights,
             host_passes,
@@ -288,7 +292,7 @@ impl Renderer {
     /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes, or fewer
     /// where its error is small enough before. Ctrl-C ends it after a run, whose number is in `runs`.
     ///
-    /// Errors: the device fails, memory for reading the sums back (exit code 4).
+    /// Errors: the device fails, memory for reading the sums back (exit code 4); Ctrl-C in the host's part of a run (130).
     pub fn frame(&self) -> Result<FrameTime> {
         let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
         let until_error = self.frame.sums().and_then(|sums| sums.until_error);
@@ -351,10 +355,10 @@ impl Renderer {
         let numbers = FrameBlock { sample_index: index, ..numbers };
         // The run before has ended: the device reads the block no more.
         self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
-        self.frame.begin_run(index);
+        let host = self.frame.begin_run(&Run { index, frame: &numbers, scene: &self.scene, bvh: &self.bvh })?;
         let time = self.recorded.run_times(times)?;
         self.runs.set(index + times);
-        Ok(time)
+        Ok(FrameTime { host, ..time })
     }
 
     /// What was summed up so far (`Sums`), row-major; None where the technique sums nothing up.

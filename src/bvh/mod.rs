@@ -7,12 +7,13 @@
 pub mod boxes;
 pub mod flat;
 pub mod nodes;
+pub mod shadow;
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::bvh::{TRIANGLE_MIRRORED, TRIANGLE_SINGLE_SIDED, TRIANGLE_TESTED};
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock};
 use crate::progress::Stage;
-use crate::scene::{AlphaMode, Draw, Material, Scene};
+use crate::scene::{AlphaMode, Draw, Material, Mesh, Scene};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
 use std::sync::OnceLock;
@@ -94,6 +95,17 @@ pub struct Hit {
     pub barycentric: [f32; 2],
 }
 
+/// What the scene knows of a hit.
+#[derive(Clone, Copy, Debug)]
+pub struct HitPlace<'a> {
+    pub mesh: &'a Mesh,
+    pub draw: &'a Draw,
+    pub material: &'a Material,
+    /// Vertices of the triangle, and their weights, which add up to 1.
+    pub vertices: [usize; 3],
+    pub weights: [f32; 3],
+}
+
 impl Bvh {
     /// Builds the tree over everything opaque or masked, in world space.
     ///
@@ -172,14 +184,33 @@ impl Bvh {
         Some(Hit { distance, triangle, barycentric })
     }
 
-    /// Whether a ray of this direction meets the back of a single-sided surface, which is not drawn.
-    pub fn is_culled_back(&self, hit: &Hit, direction: Vec3) -> bool {
+    /// Where in `scene`, over which the tree is, a hit lies.
+    pub fn place<'a>(&self, scene: &'a Scene, hit: &Hit) -> HitPlace<'a> {
+        let source = self.sources[hit.triangle];
+        let draw = &scene.draws[source.draw as usize];
+        let mesh = &scene.meshes[draw.mesh];
+        let [u, v] = hit.barycentric;
+        HitPlace {
+            mesh,
+            draw,
+            material: &scene.materials[mesh.material],
+            vertices: mesh.corners(source.triangle as usize),
+            weights: [1.0 - u - v, u, v],
+        }
+    }
+
+    /// Whether a ray of this direction meets the front of a surface.
+    pub fn is_front(&self, hit: &Hit, direction: Vec3) -> bool {
         let triangle = &self.triangles[hit.triangle];
         let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
-        let flags = triangle.corner[3].to_bits();
-        let is_front = (three(triangle.edge1).cross(three(triangle.edge2)).dot(direction) < 0.0)
-            != (flags & TRIANGLE_MIRRORED != 0);
-        !is_front && flags & TRIANGLE_SINGLE_SIDED != 0
+        let is_mirrored = triangle.corner[3].to_bits() & TRIANGLE_MIRRORED != 0;
+        (three(triangle.edge1).cross(three(triangle.edge2)).dot(direction) < 0.0) != is_mirrored
+    }
+
+    /// Whether a ray of this direction meets the back of a single-sided surface, which is not drawn.
+    pub fn is_culled_back(&self, hit: &Hit, direction: Vec3) -> bool {
+        let flags = self.triangles[hit.triangle].corner[3].to_bits();
+        flags & TRIANGLE_SINGLE_SIDED != 0 && !self.is_front(hit, direction)
     }
 
     /// Whether anything lies on the ray before `limit`.

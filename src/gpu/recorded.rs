@@ -24,6 +24,8 @@ pub struct Recorded {
 
 /// What one run of a frame took, and what the device counted in it.
 pub struct FrameTime {
+    /// What the host did before the first submit, pass by pass: name and nanoseconds.
+    pub host: Vec<(String, u64)>,
     /// First submit to last fence.
     pub wall_ns: u64,
     /// By the device's clock, where it has one that is read: from the first pass's beginning to the last one's end in
@@ -36,12 +38,15 @@ pub struct FrameTime {
 }
 
 impl FrameTime {
-    /// The frame's time by this clock; by the host's where the device has none.
+    /// The frame's time: what the host did before, and then the device by this clock; by the host's where the device has
+    /// none.
     pub fn figure_ns(&self, clock: Clock) -> u64 {
-        match clock {
-            Clock::Wall => self.wall_ns,
-            Clock::Timestamps => self.device_ns.unwrap_or(self.wall_ns),
-        }
+        let host_ns: u64 = self.host.iter().map(|(_, ns)| ns).sum();
+        host_ns
+            + match clock {
+                Clock::Wall => self.wall_ns,
+                Clock::Timestamps => self.device_ns.unwrap_or(self.wall_ns),
+            }
     }
 
     /// Another run of the same frame, which makes the same picture with it. Statistics become its own, as counters are
@@ -49,6 +54,7 @@ impl FrameTime {
     pub fn add(&mut self, run: Self) {
         let sum = |total: &mut Option<u64>, more: Option<u64>| *total = total.zip(more).map(|(a, b)| a + b);
         self.wall_ns += run.wall_ns;
+        self.host.iter_mut().zip(&run.host).for_each(|((_, total), (_, more))| *total += more);
         sum(&mut self.device_ns, run.device_ns);
         self.statistics = run.statistics;
         for (total, more) in self.passes.iter_mut().zip(&run.passes) {
@@ -182,7 +188,7 @@ impl Recorded {
             Some(statistics) => statistics.read_first(pass_count)?,
             None => Vec::new(),
         };
-        Ok(FrameTime { wall_ns, device_ns, passes, statistics })
+        Ok(FrameTime { host: Vec::new(), wall_ns, device_ns, passes, statistics })
     }
 
     /// Where a submit ends that begins with the piece `first`.

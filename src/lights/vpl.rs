@@ -9,7 +9,7 @@
 //! end on the back of a single-sided surface, count and leave nothing. Stopping at the N-th light instead of at a fixed
 //! number of walks biases the sum by about 1/N.
 
-use crate::bvh::{Bvh, Hit};
+use crate::bvh::{Bvh, Hit, HitPlace};
 use crate::gpu::shader::structs::{MediumBlock, VplBlock};
 use crate::lights::emitters::luminous;
 use crate::scene::{Light, Scene};
@@ -224,9 +224,8 @@ impl Tracer<'_> {
     /// The first surface that stops a ray; None where there is none, or where the ray meets a single-sided one's back.
     fn land(&self, origin: Vec3, direction: Vec3) -> Option<Landing> {
         let hit = self.bvh.closest_hit(origin, direction, 4.0 * self.radius, |hit| !self.is_hole(hit))?;
-        let (mesh, draw, corners) = self.corners(&hit);
-        let material = &self.scene.materials[mesh.material];
-        let positions = corners.map(|corner| draw.world_from_object.transform_point3(mesh.positions[corner]));
+        let place @ HitPlace { mesh, draw, material, vertices, .. } = self.bvh.place(self.scene, &hit);
+        let positions = vertices.map(|vertex| draw.world_from_object.transform_point3(mesh.positions[vertex]));
         let mut normal = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize_or_zero();
         // A mirrored draw turns the winding around, not the surface.
         if draw.world_from_object.determinant() < 0.0 {
@@ -238,27 +237,18 @@ impl Tracer<'_> {
             }
             normal = -normal;
         }
-        let albedo = material::albedo_at(self.scene, material, &self.point(&hit));
+        let albedo = material::albedo_at(self.scene, material, &point(&place));
         Some(Landing { distance: hit.distance, position: origin + direction * hit.distance, normal, albedo })
     }
 
-    fn corners(&self, hit: &Hit) -> (&crate::scene::Mesh, &crate::scene::Draw, [usize; 3]) {
-        let source = self.bvh.sources[hit.triangle];
-        let draw = &self.scene.draws[source.draw as usize];
-        let mesh = &self.scene.meshes[draw.mesh];
-        (mesh, draw, mesh.corners(source.triangle as usize))
-    }
-
-    fn point(&self, hit: &Hit) -> MeshPoint {
-        let (mesh, _, corners) = self.corners(hit);
-        let [u, v] = hit.barycentric;
-        MeshPoint::on(mesh, corners, [1.0 - u - v, u, v])
-    }
-
     fn is_hole(&self, hit: &Hit) -> bool {
-        let (mesh, _, _) = self.corners(hit);
-        material::is_hole(self.scene, &self.scene.materials[mesh.material], &self.point(hit))
+        let place = self.bvh.place(self.scene, hit);
+        material::is_hole(self.scene, place.material, &point(&place))
     }
+}
+
+fn point(place: &HitPlace<'_>) -> MeshPoint {
+    MeshPoint::on(place.mesh, place.vertices, place.weights)
 }
 
 fn cosine_direction(normal: Vec3, numbers: &mut Numbers) -> Vec3 {

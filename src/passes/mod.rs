@@ -6,6 +6,7 @@ pub mod cull;
 pub mod decode;
 pub mod depth_prepass;
 pub mod direct;
+pub mod encode;
 pub mod filter;
 pub mod fullscreen;
 pub mod gbuffer;

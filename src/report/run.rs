@@ -149,7 +149,7 @@ pub struct Times {
 pub struct PassRow {
     /// `technique.pass`.
     pub name: String,
-    /// `host, once` or `device, once`; None of a pass of each frame.
+    /// `host, once`, `device, once` or, of the host's part of each frame, `host`; None of a pass of the device in each.
     #[serde(default, rename = "where", skip_serializing_if = "Option::is_none")]
     pub place: Option<String>,
     /// Bytes that it reads by its own reckoning; None of what ran once.
@@ -311,6 +311,12 @@ impl Times {
     pub fn of(passes: &Passes<'_>, frames: &[FrameTime], profile: bool) -> Self {
         let mut rows: Vec<PassRow> = passes.host.iter().map(|pass| PassRow::once(pass, "host, once")).collect();
         rows.extend(passes.once.iter().map(|pass| PassRow::once(pass, "device, once")));
+        // Each frame has the same.
+        for (index, (name, _)) in frames.first().map_or(&[][..], |frame| &frame.host).iter().enumerate() {
+            let ms: Vec<f64> = frames.iter().map(|frame| milliseconds(frame.host[index].1)).collect();
+            let (name, place, ms) = (name.clone(), Some("host".to_owned()), Some(Spread::of(&ms)));
+            rows.push(PassRow { name, place, ms, ..PassRow::default() });
+        }
         let clock = passes.clock;
         let mut timing_warnings = Vec::new();
         for (index, pass) in passes.each_frame.iter().enumerate() {

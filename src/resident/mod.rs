@@ -31,11 +31,11 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
 use crate::gpu::{Access, AccessSet, Buffer, Gpu, upload};
 use crate::plan::{Resources, Sharing};
-use crate::scene::{AlphaMode, Draw, Material, Scene, object_ids};
+use crate::scene::{AlphaMode, Material, Scene, object_ids};
 use ash::vk;
 use bytemuck::Zeroable;
 pub use draw_call::{DrawCall, ExtendedAttributes, VertexAttributes};
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 pub use stats::SceneStats;
 use std::sync::Arc;
 use textures::MaterialSets;
@@ -177,22 +177,13 @@ fn sort(calls: &mut [DrawCall]) {
     });
 }
 
-/// Turns normals as a draw turns its surface: the inverse transpose up to a positive factor, which normalising takes out
-/// again.
-fn normals_from(draw: &Draw) -> Mat3 {
-    let linear = Mat3::from_mat4(draw.world_from_object);
-    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-    Mat3::from_cols(sign * y.cross(z), sign * z.cross(x), sign * x.cross(y))
-}
-
 pub fn draw_blocks(scene: &Scene) -> Vec<DrawBlock> {
     scene
         .draws
         .iter()
         .zip(object_ids::of(scene))
         .map(|(draw, object_id)| {
-            let normals = normals_from(draw);
+            let normals = draw.normals_from_object();
             let column = |v: Vec3| v.extend(0.0).to_array();
             DrawBlock {
                 world_from_object: draw.world_from_object.to_cols_array_2d(),

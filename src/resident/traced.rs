@@ -388,7 +388,7 @@ impl<'a> Corners<'a> {
     }
 
     fn triangle(&self) -> TracedTriangleBlock {
-        let normals = super::normals_from(self.draw);
+        let normals = self.draw.normals_from_object();
         let uvs = self.vertices.map(|vertex| self.mesh.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO));
         let corner = |at: usize| {
             let normal: Vec3 = normals * self.mesh.normals[self.vertices[at]];

@@ -1,6 +1,6 @@
 //! Triangle lists and where they stand.
 
-use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat3, Mat4, Vec2, Vec3, Vec4};
 
 /// One triangle list with one material, in object space.
 ///
@@ -92,6 +92,15 @@ pub struct Node {
 }
 
 impl Draw {
+    /// Turns normals as the draw turns its surface: the inverse transpose up to a positive factor, which normalising takes
+    /// out again.
+    pub fn normals_from_object(&self) -> Mat3 {
+        let linear = Mat3::from_mat4(self.world_from_object);
+        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+        Mat3::from_cols(sign * y.cross(z), sign * z.cross(x), sign * x.cross(y))
+    }
+
     /// The front's normal of triangle `triangle` of `mesh`, which is the one drawn, in world space; as long as twice the area.
     pub fn front(&self, mesh: &Mesh, triangle: usize) -> DVec3 {
         let [a, b, c] =

@@ -98,13 +98,14 @@ pub fn incident_from_sphere(light: &LightBlock, position_ws: Vec3, [u, v]: [f32;
     (towards, distance, irradiance_along(light, center_distance * center_distance, towards) * seen)
 }
 
-/// Irradiance that a virtual point light gives a surface; `least`: the least distance (--vpl-clamp), in metres.
-pub fn vpl_irradiance(vpl: &VplBlock, position_ws: Vec3, normal_ws: Vec3, least: f32) -> Vec3 {
+/// Irradiance that a virtual point light gives a surface; `least_squared`: the square of the least distance
+/// (--vpl-clamp), in square metres.
+pub fn vpl_irradiance(vpl: &VplBlock, position_ws: Vec3, normal_ws: Vec3, least_squared: f32) -> Vec3 {
     let three = |v: [f32; 4]| Vec4::from_array(v).truncate();
     let to_vpl = three(vpl.position_ws) - position_ws;
     let distance_squared = to_vpl.length_squared();
     let facing = normal_ws.dot(to_vpl).max(0.0) * (-three(vpl.normal_ws).dot(to_vpl)).max(0.0);
-    three(vpl.intensity) * (facing / (distance_squared.max(1e-12) * distance_squared.max(least * least)))
+    three(vpl.intensity) * (facing / (distance_squared.max(1e-12) * distance_squared.max(least_squared)))
 }
 
 /// Flux in lumens (per channel); a directional light's is what falls through a disc of `radius` metres.
@@ -293,10 +294,10 @@ mod tests {
     #[test]
     fn a_virtual_point_light_shines_like_a_small_lambert_patch() {
         let vpl = VplBlock { position_ws: [0.0, 2.0, 0.0, 0.0], normal_ws: [0.0, -1.0, 0.0, 0.0], intensity: [4.0; 4] };
-        assert!((vpl_irradiance(&vpl, Vec3::ZERO, Vec3::Y, 0.1).x - 1.0).abs() < 1e-6);
+        assert!((vpl_irradiance(&vpl, Vec3::ZERO, Vec3::Y, 0.01).x - 1.0).abs() < 1e-6);
         // At 45 degrees: both cosines are 1/sqrt 2, the distance squared is 8.
-        assert!((vpl_irradiance(&vpl, Vec3::new(2.0, 0.0, 0.0), Vec3::Y, 0.1).x - 4.0 * 0.5 / 8.0).abs() < 1e-6);
-        assert_eq!(vpl_irradiance(&vpl, Vec3::new(0.0, 3.0, 0.0), -Vec3::Y, 0.1), Vec3::ZERO);
+        assert!((vpl_irradiance(&vpl, Vec3::new(2.0, 0.0, 0.0), Vec3::Y, 0.01).x - 4.0 * 0.5 / 8.0).abs() < 1e-6);
+        assert_eq!(vpl_irradiance(&vpl, Vec3::new(0.0, 3.0, 0.0), -Vec3::Y, 0.01), Vec3::ZERO);
         // Nearer than the clamp it grows no more.
         assert!((vpl_irradiance(&vpl, Vec3::new(0.0, 1.9, 0.0), Vec3::Y, 1.0).x - 4.0).abs() < 1e-5);
     }

@@ -1,9 +1,10 @@
-//! A material at one point, on the host: what a light walk reads where its rays land. Finest texture level,
-//! bilinear, or nearest where the sampler magnifies so. Twin of glsl/shading/texel.glsl.
+//! A material at one point, on the host: what rays and light walks read where they land. Finest texture level, bilinear,
+//! or nearest where the sampler magnifies so: a device that shows more texels than pixels has the mean of several. Twin
+//! of glsl/shading/texel.glsl, and for normals of glsl/shading/material.glsl.
 
 use crate::picture::tonemap::linear_from_srgb;
-use crate::scene::{AlphaMode, ColorSpace, Image, Material, Mesh, Scene, Texture, TextureSlot, Wrap};
-use glam::{Vec2, Vec3, Vec4};
+use crate::scene::{AlphaMode, ColorSpace, Draw, Image, Material, Mesh, Scene, Texture, TextureSlot, Wrap};
+use glam::{Mat3, Vec2, Vec3, Vec4};
 
 /// What a mesh says of a point on one of its triangles.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +47,46 @@ pub fn albedo_at(scene: &Scene, material: &Material, point: &MeshPoint) -> Vec3 
 /// Radiance that the surface sends of its own to others.
 pub fn emissive_at(scene: &Scene, material: &Material, point: &MeshPoint) -> Vec3 {
     material.emissive * texel_of(scene, material, TextureSlot::Emissive, point).truncate()
+}
+
+/// Vertices' normal and tangent at one point of a triangle, in world space as they are interpolated.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexFrame {
+    /// Any length.
+    pub normal_ws: Vec3,
+    /// w: the sign of the bitangent. xyz is 0 where there is no normal map.
+    pub tangent_ws: Vec4,
+}
+
+impl VertexFrame {
+    /// Between the vertices `corners` of a mesh where `draw` has it; `weights` add up to 1.
+    pub fn on(mesh: &Mesh, draw: &Draw, corners: [usize; 3], weights: [f32; 3]) -> Self {
+        let (normals, tangents) = (draw.normals_from_object(), Mat3::from_mat4(draw.world_from_object));
+        let normal = |corner: usize| normals * mesh.normals[corners[corner]] * weights[corner];
+        let tangent = |corner: usize| {
+            let tangent = mesh.tangents.get(corners[corner]).copied().unwrap_or(Vec4::ZERO);
+            (tangents * tangent.truncate()).extend(tangent.w) * weights[corner]
+        };
+        Self { normal_ws: normal(0) + normal(1) + normal(2), tangent_ws: tangent(0) + tangent(1) + tangent(2) }
+    }
+}
+
+/// Unit shading normal, on the viewer's side where the material is double-sided; `is_front`: the viewer sees the front.
+pub fn normal_at(scene: &Scene, material: &Material, point: &MeshPoint, frame: &VertexFrame, is_front: bool) -> Vec3 {
+    let mut normal = frame.normal_ws.normalize_or_zero();
+    let tangent_ws = frame.tangent_ws.truncate();
+    if material.normal_texture.is_some() && tangent_ws != Vec3::ZERO {
+        let tangent = tangent_ws.normalize_or_zero();
+        let bitangent = normal.cross(tangent) * frame.tangent_ws.w;
+        let mapped = texel_of(scene, material, TextureSlot::Normal, point).truncate() * 2.0 - 1.0;
+        let scale = material.normal_scale;
+        let bent = tangent * (mapped.x * scale) + bitangent * (mapped.y * scale) + normal * mapped.z;
+        // A map that points nowhere leaves the surface as it is.
+        if bent.dot(bent) > 1e-12 {
+            normal = bent.normalize();
+        }
+    }
+    if material.double_sided && !is_front { -normal } else { normal }
 }
 
 /// Whether a MASK surface has a hole here.
@@ -115,7 +156,7 @@ fn texel(image: &Image, x: u32, y: u32, color_space: ColorSpace) -> Vec4 {
 mod tests {
     use super::*;
     use crate::scene::{Placement, Sampler};
-    use glam::Affine2;
+    use glam::{Affine2, Mat4};
 
     #[test]
     fn wrap_modes_reach_beyond_both_edges() {
@@ -145,6 +186,41 @@ mod tests {
         let faint = MeshPoint { color: Vec4::new(0.5, 0.25, 1.0, 0.4), ..at(0.1) };
         assert!(is_hole(&scene, &material, &faint), "the vertex's alpha counts too");
         assert_eq!(base_color_at(&scene, &material, &faint), faint.color);
+    }
+
+    /// A map of two texels, one that leans to the side of growing u and one that points nowhere, on a draw that is
+    /// stretched and mirrored.
+    #[test]
+    fn a_normal_map_bends_the_normal_in_the_frame_of_its_triangle() {
+        let image =
+            Image { name: String::new(), width: 2, height: 1, rgba8: vec![255, 128, 255, 255, 128, 128, 128, 255] };
+        let sampler = Sampler { wrap_u: Wrap::ClampToEdge, mag_linear: false, ..Sampler::default() };
+        let texture = Texture { image: 0, sampler, color_space: ColorSpace::Linear };
+        let scene = Scene { images: vec![image.into()], textures: vec![texture], ..Scene::default() };
+        let mesh =
+            Mesh { normals: vec![Vec3::Z; 3], tangents: vec![Vec4::new(1.0, 0.0, 0.0, -1.0); 3], ..Mesh::default() };
+        let draw = Draw { mesh: 0, world_from_object: Mat4::from_scale(Vec3::new(-2.0, 1.0, 5.0)) };
+        let frame = VertexFrame::on(&mesh, &draw, [0, 1, 2], [0.25, 0.25, 0.5]);
+        let material = |scale, double_sided| Material {
+            normal_texture: Some(0),
+            normal_scale: scale,
+            double_sided,
+            ..Material::default()
+        };
+        let normal = |material: Material, x: f32, is_front| {
+            let point = MeshPoint { uvs: [Vec2::new(x, 0.5), Vec2::ZERO], color: Vec4::ONE };
+            normal_at(&scene, &material, &point, &frame, is_front)
+        };
+        let near = |found: Vec3, expected: Vec3| assert!((found - expected).length() < 6e-3, "{found} for {expected}");
+        // 128 of 255 is next to the middle.
+        near(normal(material(1.0, false), 0.2, true), Vec3::new(-1.0, 0.0, 1.0).normalize());
+        near(normal(material(0.5, false), 0.2, true), Vec3::new(-0.5, 0.0, 1.0).normalize());
+        near(normal(material(0.5, false), 0.2, false), Vec3::new(-0.5, 0.0, 1.0).normalize());
+        near(normal(material(0.5, true), 0.2, false), Vec3::new(0.5, 0.0, -1.0).normalize());
+        let plain = Material { normal_texture: None, ..material(1.0, false) };
+        assert_eq!(normal(plain, 0.2, true), Vec3::Z);
+        // Green grows against the bitangent of w = -1, which is +y here: the draw mirrors, the sign stays.
+        assert_eq!(frame.tangent_ws, Vec4::new(-2.0, 0.0, 0.0, -1.0));
     }
 
     #[test]

@@ -56,19 +56,29 @@ impl Medium {
 }
 
 impl MediumBlock {
-    /// Where its box begins and ends on the first `distance` metres of a ray.
-    pub fn stretch(&self, origin: Vec3, direction: Vec3, distance: f32) -> [f32; 2] {
+    /// Where its box begins and ends on a ray between two places of it, in metres.
+    pub fn stretch(&self, origin: Vec3, direction: Vec3, [from, to]: [f32; 2]) -> [f32; 2] {
         let inverse = Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(1e-20), direction).recip();
         let [near, far] = [self.min_ws, self.max_ws].map(|[x, y, z, _]| (Vec3::new(x, y, z) - origin) * inverse);
-        let begin = near.min(far).max_element().max(0.0);
-        let end = near.max(far).min_element().min(distance);
+        let begin = near.min(far).max_element().max(from);
+        let end = near.max(far).min_element().min(to);
         [begin, begin.max(end)]
     }
 
-    /// Part of the light that passes the first `distance` metres of a ray.
+    /// Part of the light that passes the first `distance` metres of a ray; all of it where there is no medium.
     pub fn passed(&self, origin: Vec3, direction: Vec3, distance: f32) -> f32 {
-        let [begin, end] = self.stretch(origin, direction, distance);
+        if self.extinction <= 0.0 {
+            return 1.0;
+        }
+        let [begin, end] = self.stretch(origin, direction, [0.0, distance]);
         (-self.extinction * (end - begin)).exp()
+    }
+
+    /// `Medium::phase` in the shader's order of operations.
+    pub fn phase(&self, cosine: f32) -> f32 {
+        let squared = self.asymmetry * self.asymmetry;
+        let base = 1.0 + squared - 2.0 * self.asymmetry * cosine;
+        (1.0 - squared) / (4.0 * std::f32::consts::PI * base * base.sqrt())
     }
 }
 
@@ -107,7 +117,10 @@ mod tests {
             let (steps, mut sum, mut mean) = (100_000, 0.0, 0.0);
             for step in 0..steps {
                 let cosine = -1.0 + 2.0 * (f64::from(step) + 0.5) / f64::from(steps);
-                let part = 4.0 * std::f64::consts::PI / f64::from(steps) * medium.phase(cosine);
+                let density = medium.phase(cosine);
+                let part = 4.0 * std::f64::consts::PI / f64::from(steps) * density;
+                let block = MediumBlock { asymmetry: asymmetry as f32, ..bytemuck::Zeroable::zeroed() };
+                assert!((f64::from(block.phase(cosine as f32)) / density - 1.0).abs() < 1e-4, "{asymmetry} {cosine}");
                 sum += part;
                 mean += part * cosine;
             }

@@ -11,3 +11,4 @@ pub mod brdf;
 pub mod light;
 pub mod material;
 pub mod medium;
+pub mod scatter;

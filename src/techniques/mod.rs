@@ -28,7 +28,7 @@ use crate::bvh::LazyBvh;
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::frame::View;
-use crate::gpu::shader::structs::MediumBlock;
+use crate::gpu::shader::structs::{FrameBlock, MediumBlock};
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::picture::Aov;
@@ -226,6 +226,15 @@ pub struct Sums<'a> {
     pub until_error: Option<f64>,
 }
 
+/// What the host's part of a run may read.
+pub struct Run<'a> {
+    pub index: u32,
+    /// As shaders read it in this run.
+    pub frame: &'a FrameBlock,
+    pub scene: &'a Scene,
+    pub bvh: &'a LazyBvh,
+}
+
 /// A technique on the device.
 pub trait Frame {
     /// Records one frame. `frame`: the block of glsl/frame.glsl.
@@ -246,8 +255,13 @@ pub trait Frame {
         false
     }
 
-    /// The host's part of a run, before it is submitted: the run before has ended.
-    fn begin_run(&self, _run: u32) {}
+    /// The host's part of a run, before it is submitted: the run before has ended. Its passes, with their time in
+    /// nanoseconds, which is part of the frame's; the same in each run.
+    ///
+    /// Errors: the user has asked to stop (exit code 130).
+    fn begin_run(&self, _: &Run<'_>) -> Result<Vec<(String, u64)>> {
+        Ok(Vec::new())
+    }
 
     /// Pixels to the right and down by which the picture of this run is moved, each less than half a pixel.
     fn offset_px(&self, _run: u32) -> Vec2 {

@@ -6,7 +6,7 @@
 
 use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::Figures;
-use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Sums, Technique};
+use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Run, Sums, Technique};
 use crate::caps::Caps;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
@@ -178,8 +178,8 @@ impl Frame for FrameWithPass {
         self.frame.runs_alike()
     }
 
-    fn begin_run(&self, run: u32) {
-        self.frame.begin_run(run);
+    fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
+        self.frame.begin_run(run)
     }
 
     fn offset_px(&self, run: u32) -> Vec2 {

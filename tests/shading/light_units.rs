@@ -363,7 +363,8 @@ fn irradiance_is_the_sum_over_the_virtual_point_lights() {
             let subset = &subsets[mapping.subset_of([x, y]) as usize];
             let own = &vpls[subset.vpl_first as usize..][..subset.vpl_count as usize];
             let irradiance = |position: Vec3| {
-                let received = |vpl| vpl_irradiance(vpl, position, Vec3::from_array(*normal), 0.02 * diagonal);
+                let received =
+                    |vpl| vpl_irradiance(vpl, position, Vec3::from_array(*normal), (0.02 * diagonal).powi(2));
                 own.iter().map(received).sum::<Vec3>() * mapping.subset_count() as f32
             };
             let expected = irradiance(position);

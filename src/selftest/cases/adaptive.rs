@@ -1,15 +1,24 @@
-//! Adaptive interleaved sampling: both ways to refine, positions as the G-buffer stores them, lists of lights for
-//! glass.
+//! Adaptive interleaved sampling: both ways to refine, the host's threads, positions as the G-buffer stores them, lists of
+//! lights for glass.
 
 use super::super::case::{Group, Place, Twin};
 use crate::selftest::cases::bounds::{AGAIN, CUT, ROUNDING, SAME, WHOLE};
-use crate::selftest::judge::Must;
+use crate::selftest::judge::{Bounds, Must};
 
 const NAME: &str = "adaptive_interleaved";
 const CORNELL: Place = Place::Scene("cornell");
 const EMISSIVE: (&str, &str) = ("emissive", "on");
 /// Every tile refines: what rounding turns is a ray, and no number of iterations.
 const ALL: (&str, &str) = ("mode", "max");
+
+const HOST: Bounds = Bounds {
+    apart: 0.01,
+    rmse: 0.02,
+    flip: 0.005,
+    mean: 0.004,
+    why: "the same estimator on the host: rays that graze an edge meet it on one side and not on the other, and a pixel's \
+          middle on an edge is its neighbour's",
+};
 
 pub const GROUPS: &[Group] = &[
     Group {
@@ -74,6 +83,15 @@ pub const GROUPS: &[Group] = &[
         twin: Twin::Method(&[("refine", "fused")]),
         methods: &[&[("refine", "indirect")]],
         must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "trace",
+        technique: NAME,
+        place: CORNELL,
+        common: &[EMISSIVE, ALL, ("medium", "0.1,0.05,0.3"), ("ambient", "0.1"), ("components", "id,ss,pm,ao")],
+        twin: Twin::Method(&[("trace", "host")]),
+        methods: &[&[("trace", "device")]],
+        must: Must::Near(HOST),
     },
     Group {
         name: "submits",

@@ -108,7 +108,7 @@ pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
             AovChannels::YU32(of_tiles(frame, steps, &further, |further| params.base + further))
         }
         Stage::Rays => {
-            let rays = words(gpu, &steps.buffers.rays, Access::ComputeWrite)?;
+            let rays = words(gpu, &steps.buffers.rays, steps.last_write())?;
             AovChannels::YU32(of_texels(frame, steps, |[x, y]| rays[(y * params.width + x) as usize]))
         }
         Stage::Irradiance => {

@@ -1,9 +1,17 @@
 //! What a benchmark times of adaptive interleaved sampling.
 
+use super::settings::Trace;
+use crate::settings::Values;
 use crate::techniques::bench_stage::{BenchStage, Count, GBUFFER, PIXELS, Unit, Work, never};
 
 /// Shadow rays of a frame.
 const RAYS: Count = Count { unit: Unit::Ray, of: |done| Some(done.counter("rays")? * done.pixels()) };
+
+/// The host's passes are no stages of the device.
+fn on_host(values: &Values) -> Option<String> {
+    let why = "--trace host: the host estimates; `bench frame` has its time in the frame's";
+    values.is("trace", Trace::Host).then(|| why.to_owned())
+}
 
 const fn stage(name: &'static str, summary: &'static str, passes: &'static [&'static str]) -> BenchStage {
     BenchStage {
@@ -13,7 +21,7 @@ const fn stage(name: &'static str, summary: &'static str, passes: &'static [&'st
         work: Work::Counted(&[PIXELS]),
         made_with: &[],
         fused_by: Some(("refine", "fused")),
-        left_out: never,
+        left_out: on_host,
     }
 }
 
@@ -35,6 +43,7 @@ pub const STAGES: &[BenchStage] = &[
     ),
     BenchStage {
         fused_by: None,
+        left_out: never,
         ..stage("smooth", "Discontinuities and the box filter, in nanoseconds a pixel", &["discontinuity", "filter"])
     },
 ];

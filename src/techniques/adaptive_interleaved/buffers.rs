@@ -1,6 +1,6 @@
 //! What the passes of a component share on the device: its buffers, and those that all components have.
 
-use super::choices::ComponentChoice;
+use super::choices::{Choices, ComponentChoice};
 use super::components::Samples;
 use super::resources::of_component;
 use super::settings::Component;
@@ -33,10 +33,18 @@ pub struct ComponentBuffers {
 
 impl ComponentBuffers {
     /// Takes what `plan` put in, and fills what the host makes.
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choice: &ComponentChoice, samples: &Samples) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        choices: &Choices,
+        choice: &ComponentChoice,
+        samples: &Samples,
+    ) -> Result<Self> {
         let key = choice.component.name();
         let sources = resources.buffer(&of_component("sources", key));
-        upload::buffer(gpu, &sources, &samples.sources, Access::ComputeRead | Access::GraphicsRead)?;
+        if choices.has_device_samples(choice.component) {
+            upload::buffer(gpu, &sources, &samples.sources, Access::ComputeRead | Access::GraphicsRead)?;
+        }
         Ok(Self {
             component: choice.component,
             params: choice.params,

@@ -2,7 +2,8 @@
 
 use super::components::PreparedComponent;
 use super::resources::NAME;
-use super::settings::{self, Component, LightChoice, Mode, RayOrder, Refine};
+use super::settings::{self, Component, LightChoice, Mode, RayOrder, Refine, Trace};
+use crate::bvh::Bvh;
 use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
@@ -23,6 +24,7 @@ pub struct Choices {
     pub position: PositionStorage,
     pub workgroup: [u32; 2],
     pub tile_px: [u32; 2],
+    pub trace: Trace,
     pub refine: Refine,
     pub ray_order: RayOrder,
     /// How the virtual lights of `id` are chosen.
@@ -33,6 +35,8 @@ pub struct Choices {
     /// Metres.
     pub vpl_clamp_m: f32,
     pub is_emissive: bool,
+    /// Whether the scene has BLEND surfaces.
+    pub has_blend: bool,
     /// What light passes through.
     pub medium: Option<MediumBlock>,
     /// In the order in which they are listed.
@@ -132,6 +136,7 @@ impl Choices {
             position: values.choice("position"),
             workgroup: values.pair("workgroup"),
             tile_px: [tile_x, tile_y],
+            trace: values.choice("trace"),
             refine: values.choice("refine"),
             ray_order: values.choice("ray-order"),
             light_choice: values.choice("id-choice"),
@@ -139,6 +144,7 @@ impl Choices {
             direct: DirectSettings::with(Brdf::Lambert, DirectShadow::Ray, inputs.lights, inputs.scene),
             vpl_clamp_m,
             is_emissive: inputs.emissive_lights(),
+            has_blend: inputs.stats.has_blend,
             medium,
             components,
         })
@@ -175,13 +181,31 @@ impl Choices {
         ComputePipeline::new(gpu, shader, &all)
     }
 
+    /// Whether tiles iterate on after the initial pass.
+    pub fn is_guided(&self) -> bool {
+        self.mode != Mode::Igi
+    }
+
     /// Whether tiles are refined by a dispatch of their own.
     pub fn has_refinement(&self) -> bool {
-        self.mode != Mode::Igi && self.refine == Refine::Indirect
+        self.is_guided() && self.trace == Trace::Device && self.refine == Refine::Indirect
     }
 
     /// Whether all is one dispatch.
     pub fn is_fused(&self) -> bool {
-        self.mode != Mode::Igi && self.refine == Refine::Fused
+        self.is_guided() && self.trace == Trace::Device && self.refine == Refine::Fused
+    }
+
+    /// The tree that rays of the device walk: the empty one where none is cast, for blended surfaces cast shadow rays too.
+    pub fn device_tree<'a>(&self, inputs: &Inputs<'a>) -> Result<&'a Bvh> {
+        match self.trace == Trace::Host && !self.has_blend {
+            true => Ok(inputs.bvh.empty()),
+            false => inputs.bvh.over(inputs.scene),
+        }
+    }
+
+    /// Whether the device reads the samples of a component: blended surfaces are lit by virtual lights.
+    pub fn has_device_samples(&self, component: Component) -> bool {
+        self.trace == Trace::Device || component == Component::Id && self.has_blend
     }
 }

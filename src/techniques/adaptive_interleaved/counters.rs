@@ -47,14 +47,16 @@ pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static s
     let mut all_rays = 0.0;
     for steps in &frame.components {
         let keys = steps.buffers.component.keys();
-        let rays: f64 = words(gpu, &steps.buffers.rays, Access::ComputeWrite)?.into_iter().map(f64::from).sum();
+        let rays: f64 = words(gpu, &steps.buffers.rays, steps.last_write())?.into_iter().map(f64::from).sum();
         all_rays += rays / pixels;
         let further = further_iterations(steps, gpu)?;
         let refined_count = further.iter().filter(|further| **further > 0).count();
         counters.insert(keys.rays, rays / pixels);
         counters.insert(keys.iterations, mean_iterations(steps, &further));
         counters.insert(keys.refined, refined_count as f64 / further.len() as f64);
-        counters.insert(keys.idle, idle_part(further, steps.tile_lanes));
+        if !steps.is_on_host() {
+            counters.insert(keys.idle, idle_part(further, steps.tile_lanes));
+        }
     }
     counters.insert("rays", all_rays);
     Ok(counters)
@@ -65,7 +67,7 @@ pub fn read(frame: &AdaptiveFrame, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static s
 /// Errors: memory for the copy (exit code 4).
 pub fn further_iterations(steps: &ComponentSteps, gpu: &Arc<Gpu>) -> Result<Vec<u32>> {
     match steps.guidance() {
-        Some(guidance) => words(gpu, guidance, Access::ComputeWrite),
+        Some(guidance) => words(gpu, guidance, steps.last_write()),
         None => Ok(vec![0; steps.buffers.params.tile_count as usize]),
     }
 }

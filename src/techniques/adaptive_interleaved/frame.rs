@@ -3,8 +3,9 @@
 use super::choices::Choices;
 use super::components::Samples;
 use super::composite::Composite;
+use super::host::HostTrace;
 use super::resources::{COLOR, NAME, NO_VPLS};
-use super::settings::Component;
+use super::settings::{Component, Trace};
 use super::smooth::Smoothing;
 use super::steps::ComponentSteps;
 use crate::error::Result;
@@ -21,6 +22,8 @@ pub struct AdaptiveFrame {
     pub gbuffer_pass: GBufferPass,
     pub gbuffer: GBuffer,
     pub direct: DirectGpu,
+    /// Where the host estimates the components.
+    pub host: Option<HostTrace>,
     pub components: Vec<ComponentSteps>,
     pub smoothing: Smoothing,
     pub composite: Composite,
@@ -66,12 +69,18 @@ impl AdaptiveFrame {
         samples: &[Samples],
     ) -> Result<Self> {
         let (position, has_emissive) = (choices.position, inputs.stats.has_emissive);
+        let host = (choices.trace == Trace::Host).then(|| HostTrace {
+            position,
+            offset_m: choices.direct.ray_offset,
+            lights: choices.lights.clone(),
+        });
         let list = inputs.draw_list(scene, Coverage::Middle);
         let components = choices.components.iter().zip(samples);
         Ok(Self {
             gbuffer_pass: GBufferPass::new(gpu, scene, list, position, has_emissive)?,
             gbuffer: GBuffer::new(gpu, resources, NAME, position, has_emissive)?,
-            direct: DirectGpu::new(gpu, resources, NAME, &choices.lights, false, inputs.bvh.over(inputs.scene)?)?,
+            direct: DirectGpu::new(gpu, resources, NAME, &choices.lights, false, choices.device_tree(inputs)?)?,
+            host,
             components: components
                 .map(|(choice, samples)| ComponentSteps::new(gpu, resources, choices, choice, samples))
                 .collect::<Result<_>>()?,

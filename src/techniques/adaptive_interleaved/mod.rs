@@ -8,12 +8,14 @@
 //! and albedo comes last.
 //!
 //! Passes, in order: samples of each component (on the host); gbuffer; of each component sample, guide, compact and
-//! refine (with `--refine fused` sample does all of it, with `--mode igi` there is no other); discontinuity; of each
+//! refine (with `--refine fused` sample does all of it, with `--mode igi` there is no other; with `--trace host` the host
+//! has hit and of each component sample in their place, and the device upload); discontinuity; of each
 //! component filter, and upsample where it is estimated at fewer pixels than the frame has; composite; blend (where the
 //! scene has BLEND surfaces).
 //!
 //! Differs from the paper
-//! - a device draws what pixels see and casts the shadow rays, where the paper had eight processor cores
+//! - a device draws what pixels see and casts the shadow rays, where the paper had eight processor cores: `--trace host`
+//!   is theirs, with single rays
 //! - a tile's further iterations are rounded down, and with the initial pass no more than the most (Listing 1 leaves
 //!   both open)
 //! - of virtual lights those count as hidden, of all that could light the point, that something hides (Listing 2); a
@@ -35,7 +37,7 @@
 //!   not light them, and the medium dims them not
 //!
 //! Equal to others: `--mode adaptive` where every tile refines to the most is `--mode max`; `--refine fused` and
-//! `indirect` are the same bits; with `--id-max` of all the tile's pixels `--mode max` lights every texel of `id` by
+//! `indirect` are the same bits, and `--trace host` and `device` within the rounding of floats; with `--id-max` of all the tile's pixels `--mode max` lights every texel of `id` by
 //! every virtual light, so that the box has nothing to smooth.
 
 mod aov;
@@ -49,6 +51,7 @@ mod counters;
 mod frame;
 mod fused;
 mod guide;
+mod host;
 mod plan;
 mod refine;
 mod resources;
@@ -60,7 +63,7 @@ mod steps;
 
 use super::bench_stage::BenchStage;
 use super::notes::Figures;
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
@@ -76,7 +79,7 @@ use buffers::Shared;
 use choices::Choices;
 use frame::AdaptiveFrame;
 use resources::{NAME, of_component};
-use settings::Component;
+use settings::{Component, Trace};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -204,6 +207,10 @@ impl Prepared for PreparedAdaptive {
 
     fn host_part(self: Box<Self>, inputs: &Inputs<'_>) -> Result<HostPart> {
         let choices = self.choices;
+        if choices.trace == Trace::Host {
+            // Its building is in no frame's time.
+            inputs.bvh.over(inputs.scene)?;
+        }
         let (mut passes, mut samples) = (Vec::new(), Vec::new());
         for choice in &choices.components {
             let started = Instant::now();
@@ -233,10 +240,14 @@ impl Frame for AdaptiveFrame {
         for component in &self.components {
             gbuffer = component.record(cmd, &shared, gbuffer)?;
         }
-        let irradiance = self.components.iter().map(|steps| steps.buffers.irradiance.from(Access::ComputeWrite));
+        let irradiance = self.components.iter().map(|steps| steps.buffers.irradiance.from(steps.last_write()));
         let (gbuffer, irradiance) = self.smoothing.record(cmd, frame, gbuffer, irradiance)?;
         let gbuffer = self.composite.record(cmd, frame, gbuffer, irradiance, &self.color)?;
         self.record_blend(cmd, scene, frame, gbuffer)
+    }
+
+    fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
+        self.host.as_ref().map_or(Ok(Vec::new()), |host| host.run(run, &self.components))
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {

@@ -2,7 +2,8 @@
 
 use super::choices::{Choices, ComponentChoice};
 use super::resources::{COLOR, FILTERED, IRRADIANCE_BYTES, NAME, NO_VPLS, of_component};
-use super::smooth;
+use super::settings::Trace;
+use super::{host, smooth};
 use crate::error::Result;
 use crate::gpu::Access;
 use crate::gpu::shader::structs::BinsBlock;
@@ -20,7 +21,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     let (extent, has_emissive, position) = (choices.extent, inputs.stats.has_emissive, choices.position);
     let mut plan = Plan::default();
     gbuffer::plan(&mut plan, NAME, extent, position, has_emissive);
-    direct::plan(&mut plan, NAME, choices.lights.len(), inputs.bvh.over(inputs.scene)?);
+    direct::plan(&mut plan, NAME, choices.lights.len(), choices.device_tree(inputs)?);
     plan.pass(format!("{NAME}.gbuffer"), gbuffer::written(NAME, position, has_emissive));
     for choice in &choices.components {
         plan_component(&mut plan, choices, choice);
@@ -30,7 +31,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     plan.picture(COLOR, extent);
     composed.extend([(FILTERED.to_owned(), Access::ComputeRead), (COLOR.to_owned(), Access::ComputeWrite)]);
     plan.pass(format!("{NAME}.composite"), composed);
-    if inputs.stats.has_blend {
+    if choices.has_blend {
         blend::plan_lists(&mut plan, NAME, &choices.blended);
         // What blended surfaces bind where there are no virtual lights, or none in subsets.
         plan.buffer("lights", NO_VPLS, 0);
@@ -45,15 +46,24 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     Ok(plan)
 }
 
-/// The buffers of one component, and its passes: all that one dispatch does, or those of the three steps.
+/// The buffers of one component, and its passes: what comes from the host, all that one dispatch does, or those of the three
+/// steps.
 fn plan_component(plan: &mut Plan, choices: &Choices, choice: &ComponentChoice) {
     use Access::{ComputeRead, ComputeWrite, IndirectRead, TransferWrite};
     let full = |what: &str| of_component(what, choice.component.name());
     let (texels, tiles) = (choice.extent().pixel_count(), u64::from(choice.params.tile_count));
-    plan.buffer("samples", full("sources"), choice.prepared.count().source_bytes);
+    let has_samples = choices.has_device_samples(choice.component);
+    plan.buffer("samples", full("sources"), if has_samples { choice.prepared.count().source_bytes } else { 0 });
     plan.buffer("counters", full("rays"), texels * 4);
     let surface = gbuffer::surface(NAME, choices.position);
     plan.buffer("irradiance", full("irradiance"), texels * IRRADIANCE_BYTES);
+    if choices.trace == Trace::Host {
+        if choices.is_guided() {
+            plan.buffer("guidance", full("guidance"), tiles * 4);
+        }
+        host::upload::plan(plan, choice, choices.is_guided());
+        return;
+    }
     let written = [(full("rays"), ComputeWrite), (full("irradiance"), ComputeWrite)];
     let estimated: Vec<_> = surface.into_iter().chain(written).collect();
     if choices.is_fused() {

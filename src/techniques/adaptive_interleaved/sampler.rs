@@ -54,6 +54,23 @@ impl AdaptiveParams {
         let refines = refine > 0.0 && !(is_penumbra && refine >= 1.0);
         if refines { ((refine * self.most as f32 + ROUNDING_GRACE) as u32).min(left) } else { 0 }
     }
+
+    /// The same by the luminances that its pixels with a surface have from the initial pass: as many that the standard error
+    /// of their mean comes to `until_error` of it.
+    pub fn further_until_error(&self, luminances: &[f32]) -> u32 {
+        let (left, count) = (self.most - self.base, luminances.len() as f32);
+        match (luminances, self.refines_all) {
+            ([], _) => return 0,
+            ([_], _) | (_, 1) => return left,
+            _ => {}
+        }
+        let mean = luminances.iter().sum::<f32>() / count;
+        let mean_square = luminances.iter().map(|one| one * one).sum::<f32>() / count;
+        let variance = (mean_square - mean * mean).max(0.0) * (count / (count - 1.0));
+        let bound = self.until_error * mean;
+        let needed = if bound > 0.0 { self.base as f32 * variance / (count * bound * bound) } else { 0.0 };
+        ((needed.min(self.most as f32) - ROUNDING_GRACE).ceil() - self.base as f32).max(0.0).min(left as f32) as u32
+    }
 }
 
 #[cfg(test)]

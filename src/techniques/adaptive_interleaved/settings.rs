@@ -72,6 +72,16 @@ choices! {
     }
 }
 
+choices! {
+    /// What estimates the components (`--trace`).
+    pub enum Trace {
+        /// Compute shaders.
+        "device" => Device,
+        /// Threads of the host.
+        "host" => Host,
+    }
+}
+
 /// Largest side of a tile, px: 64 of its pixels are a workgroup.
 pub const MOST_TILE_PX: u32 = 8;
 
@@ -261,6 +271,9 @@ pub const SETTINGS: &[Setting] = &[
         help: "How tiles that refine come to their threads: listed on the device, those with most iterations first, \
                and dispatched from there (indirect); or in the initial pass itself, each tile going on as long as it \
                must (fused); the same picture",
+        unread: |values| {
+            Unread::unless(values, "trace", &[Trace::Device], "the host's threads take tiles as they come")
+        },
         ..Setting::changing(Changes::Nothing)
     },
     Setting {
@@ -273,6 +286,16 @@ pub const SETTINGS: &[Setting] = &[
                same picture",
         unread: |values| Unread::unless(values, "refine", &[Refine::Indirect], "a tile's threads decide together"),
         ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "trace",
+        kind: Kind::Choice(Trace::WORDS),
+        default: "device",
+        paper: "Dubla 2009, 4.1",
+        help: "What estimates the components, in each frame: the device (device), or the host's threads, a tile each, which \
+               find by rays what each pixel sees, too (host, as the paper has it); the same samples, and the same picture \
+               but for rounding and where textures are read from coarser levels",
+        ..Setting::changing(Changes::Picture)
     },
     NORMAL_THRESHOLD,
     POSITION_THRESHOLD,

@@ -1,15 +1,17 @@
 //! The three steps of one component, in their order: initial pass, tile-local guidance, refinement (Dubla 2009, section
-//! 3 and figure 2).
+//! 3 and figure 2), or what brings their results from the host.
 
 use super::buffers::{ComponentBuffers, Shared};
 use super::choices::{Choices, ComponentChoice};
 use super::compact::CompactPass;
-use super::components::Samples;
+use super::components::{Given, Point, Samples};
 use super::fused::FusedPass;
 use super::guide::GuidePass;
+use super::host::upload::HostSteps;
 use super::refine::{Listed, RefinePass};
 use super::resources::of_component;
 use super::sample::SamplePass;
+use super::settings::Trace;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::gbuffer::GBuffer;
@@ -42,6 +44,8 @@ enum Steps {
         estimates: Buffer,
         refinement: Refinement,
     },
+    /// The host has done all of it.
+    Host(HostSteps),
 }
 
 /// Guidance, compaction, and the dispatch over what is listed.
@@ -64,7 +68,9 @@ impl ComponentSteps {
         samples: &Samples,
     ) -> Result<Self> {
         let mut buffer = |what: &str| resources.buffer(&of_component(what, choice.component.name()));
-        let steps = if choices.is_fused() {
+        let steps = if choices.trace == Trace::Host {
+            Steps::Host(HostSteps::new(resources, choices, choice, samples))
+        } else if choices.is_fused() {
             Steps::Fused { fused: FusedPass::new(gpu, choices, choice)?, guidance: buffer("guidance") }
         } else {
             let (sample, estimates) = (SamplePass::new(gpu, choices, choice)?, buffer("estimates"));
@@ -83,7 +89,7 @@ impl ComponentSteps {
             }
         };
         let tile_lanes = if choices.is_by_slot() { 1 } else { choice.params.tile_size() };
-        Ok(Self { buffers: ComponentBuffers::new(gpu, resources, choice, samples)?, tile_lanes, steps })
+        Ok(Self { buffers: ComponentBuffers::new(gpu, resources, choices, choice, samples)?, tile_lanes, steps })
     }
 
     /// Further iterations of each tile, a word each; None where no tile has any.
@@ -92,6 +98,26 @@ impl ComponentSteps {
             Steps::Initial { .. } => None,
             Steps::Fused { guidance, .. } => Some(guidance),
             Steps::Apart { refinement, .. } => Some(&refinement.guidance),
+            Steps::Host(host) => host.guidance(),
+        }
+    }
+
+    /// What writes rays, irradiance and guidance last.
+    pub fn last_write(&self) -> Access {
+        if self.is_on_host() { Access::TransferWrite } else { Access::ComputeWrite }
+    }
+
+    pub fn is_on_host(&self) -> bool {
+        matches!(self.steps, Steps::Host(_))
+    }
+
+    /// The host's part of a run; nothing where the device estimates. `points`: what the frame's pixels see.
+    ///
+    /// Errors: Ctrl-C (exit code 130).
+    pub fn estimate_on_host(&self, given: &Given<'_>, points: &[Point]) -> Result<()> {
+        match &self.steps {
+            Steps::Host(host) => host.estimate(given, points),
+            Steps::Initial { .. } | Steps::Fused { .. } | Steps::Apart { .. } => Ok(()),
         }
     }
 
@@ -103,8 +129,13 @@ impl ComponentSteps {
         gbuffer: Edge<'a, GBuffer>,
     ) -> Result<Edge<'a, GBuffer>> {
         let buffers = &self.buffers;
+        if let Steps::Host(host) = &self.steps {
+            host.record(cmd, buffers)?;
+            return Ok(gbuffer);
+        }
         let sampled = gbuffer.after(Access::ComputeSample);
         match &self.steps {
+            Steps::Host(_) => {}
             Steps::Initial { sample, estimates } => {
                 sample.record(cmd, buffers, shared, gbuffer, estimates)?;
             }

@@ -26,7 +26,7 @@ use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, SPIDS, full};
 use crate::techniques::deep_shading::visibility::samples::Samples;
-use crate::techniques::{Frame, Inputs};
+use crate::techniques::{Frame, Inputs, Run};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -205,10 +205,11 @@ impl Frame for DeepFrame {
         Ok(())
     }
 
-    fn begin_run(&self, run: u32) {
+    fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
         if let Some(separate) = self.separate() {
-            separate.begin_run(run);
+            separate.begin_run(run.index);
         }
+        Ok(Vec::new())
     }
 
     fn run_count(&self) -> u32 {

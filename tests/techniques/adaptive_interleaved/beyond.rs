@@ -3,7 +3,6 @@
 use super::{CORNELL, EXTENT, NAME, sampler};
 use crate::support::difference::require_same;
 use crate::support::watched::{Watched, both};
-use bytemuck::Zeroable;
 use glam::{Vec3, vec3};
 use quincunx::gpu::shader::structs::AdaptiveParams;
 

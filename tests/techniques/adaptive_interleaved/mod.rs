@@ -3,6 +3,7 @@
 
 mod airlight;
 mod beyond;
+mod host;
 mod occlusion;
 mod smoothing;
 mod spheres;
@@ -432,6 +433,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("components", "pm"), ("medium", "0,1,0")][..], "--medium 0,1,0 scatters no light", "--medium 0.1,0,0"),
         (&[("components", "ao"), ("ambient", "0")][..], "there is no ambient light", "--ambient 0.3"),
         (&[("ao-max", "3")][..], "--ao-max 3 with --components auto", ""),
+        (&[("trace", "host"), ("refine", "fused")][..], "--refine fused with --trace host", "--trace device"),
     ] {
         let mut job = quincunx::job::Job::new("cornell", quincunx::techniques::find(NAME).unwrap());
         let set = changes.iter().try_for_each(|(key, value)| job.set(key, value));

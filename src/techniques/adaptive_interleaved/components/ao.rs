@@ -1,13 +1,16 @@
 //! Ambient occlusion (AO): light from all around that no surface stops. The fourth component, and not the paper's: its
 //! section 3 says that others are added alike. Shader: components/ao.glsl.
 
+use super::host::{Estimate, Given, HostComponent, Point};
 use super::method::{ComponentMethod, PreparedComponent, SampleCount, Samples};
 use crate::error::{Error, Result};
+use crate::gpu::shader::frame::FAR;
 use crate::settings::Values;
+use crate::shading::scatter::around;
 use crate::techniques::Inputs;
 use crate::techniques::adaptive_interleaved::resources::NAME;
-use glam::Vec3;
-use std::f32::consts::TAU;
+use glam::{Vec3, Vec4};
+use std::f32::consts::{PI, TAU};
 
 pub struct AmbientOcclusion;
 
@@ -50,6 +53,34 @@ impl PreparedComponent for PreparedOcclusion {
         let seed = inputs.values.integer("seed") as u32;
         let directions: Vec<[f32; 4]> = (0..self.direction_count).map(|index| direction(index, seed)).collect();
         Ok(Samples { sources: bytemuck::cast_slice(&directions).to_vec(), counters: Vec::new() })
+    }
+
+    fn host(&self, samples: &Samples) -> Box<dyn HostComponent> {
+        Box::new(HostOcclusion { directions: samples.sources_as() })
+    }
+}
+
+struct HostOcclusion {
+    /// Around z.
+    directions: Vec<[f32; 4]>,
+}
+
+impl HostComponent for HostOcclusion {
+    fn contribute(&self, given: &Given<'_>, point: &Point, slot: u32, iteration: u32, estimate: &mut Estimate) {
+        let params = given.params;
+        let local = self.directions[(iteration * params.tile_size() + slot) as usize];
+        let direction = around(point.normal_ws, Vec4::from_array(local).truncate());
+        estimate.ray_count += 1;
+        if given.shadows.occluded(point.position_ws, point.normal_ws, direction, FAR) {
+            estimate.information += 1.0;
+            return;
+        }
+        let passed = params.medium.passed(point.position_ws, direction, FAR);
+        estimate.sum += Vec4::from_array(given.frame.ambient).truncate() * (PI * passed);
+    }
+
+    fn is_penumbra(&self) -> bool {
+        true
     }
 }
 

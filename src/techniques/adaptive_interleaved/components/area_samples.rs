@@ -1,9 +1,13 @@
 //! Points that stand for the scene's area lights (Dubla 2009, section 3.3), of the components that send rays to them.
 //! Shader: area_samples.glsl.
 
-use crate::gpu::shader::structs::AreaSampleBlock;
+use crate::gpu::shader::shading::light::LEAST_DISTANCE_SQUARED;
+use crate::gpu::shader::structs::{AdaptiveParams, AreaSampleBlock, LightBlock};
 use crate::lights::area::{AreaLight, area_lights};
+use crate::sampling::sobol;
+use crate::shading::light::incident_from_sphere;
 use crate::techniques::Inputs;
+use glam::{Vec3, Vec4};
 
 /// Area lights, and how many points each has.
 pub struct AreaSamples {
@@ -38,4 +42,36 @@ impl AreaSamples {
         };
         (1u32..).zip(&self.areas).flat_map(points).collect()
     }
+}
+
+/// What a place receives of the index-th punctual light, from the point of its sphere that has the number `own`: direction
+/// to it, distance, and irradiance of what faces it.
+pub fn incident_of(
+    params: &AdaptiveParams,
+    light: &LightBlock,
+    index: u32,
+    position_ws: Vec3,
+    own: u32,
+) -> (Vec3, f32, Vec3) {
+    incident_from_sphere(light, position_ws, sobol::pair(own, sobol::pair_seed(params.seed, index)))
+}
+
+/// Cosine at the light times the distance: 0 where it does not shine.
+fn leaving_towards(light: &AreaSampleBlock, to_light: Vec3) -> f32 {
+    let leaving = -Vec4::from_array(light.normal_ws).truncate().dot(to_light);
+    if light.normal_ws[3] != 0.0 { leaving.abs() } else { leaving.max(0.0) }
+}
+
+/// Irradiance of a surface of this normal.
+pub fn area_irradiance(light: &AreaSampleBlock, normal_ws: Vec3, to_light: Vec3) -> Vec3 {
+    let facing = normal_ws.dot(to_light).max(0.0) * leaving_towards(light, to_light);
+    // Both cosines carry one factor 1/d.
+    let squared = to_light.length_squared().max(LEAST_DISTANCE_SQUARED);
+    Vec4::from_array(light.intensity).truncate() * (facing / (squared * squared))
+}
+
+/// Irradiance of what faces the light.
+pub fn facing_irradiance(light: &AreaSampleBlock, to_light: Vec3) -> Vec3 {
+    let squared = to_light.length_squared().max(LEAST_DISTANCE_SQUARED);
+    Vec4::from_array(light.intensity).truncate() * (leaving_towards(light, to_light) / (squared * squared.sqrt()))
 }

@@ -1,9 +1,11 @@
 //! What a component is asked for: Dubla 2009, Listing 1.
 
+use super::host::HostComponent;
 use crate::error::Result;
 use crate::gpu::shader::structs::AdaptiveParams;
 use crate::settings::Values;
 use crate::techniques::Inputs;
+use bytemuck::{AnyBitPattern, NoUninit};
 
 /// One component.
 pub trait ComponentMethod: Sync {
@@ -44,6 +46,9 @@ pub trait PreparedComponent {
     ///
     /// Errors: the tree cannot be built (exit code 2); the user has asked to stop (130).
     fn samples(&self, inputs: &Inputs<'_>) -> Result<Samples>;
+
+    /// What estimates it on the host from these samples of its own: the twin of its shader.
+    fn host(&self, samples: &Samples) -> Box<dyn HostComponent>;
 }
 
 /// How much a component's shader reads.
@@ -63,4 +68,11 @@ pub struct Samples {
     pub sources: Vec<u8>,
     /// Numbers for the report's `counters`.
     pub counters: Vec<(&'static str, f64)>,
+}
+
+impl Samples {
+    /// Its sources as the shader reads them.
+    pub fn sources_as<T: AnyBitPattern + NoUninit>(&self) -> Vec<T> {
+        bytemuck::pod_collect_to_vec(&self.sources)
+    }
 }
