@@ -110,7 +110,7 @@ impl Job {
                 None => self.open_session(&self.device_request(), scene)?,
                 Some(session) => {
                     let scene = self.with_texture_limit(scene, &session.gpu.caps);
-                    session.showing(scene)?
+                    session.at_moment(scene, values.number("tree-growth"))?
                 }
             };
             let made = self.picture(&shown, &values, &path, Unfinished::Dropped);
