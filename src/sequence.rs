@@ -8,6 +8,7 @@ use crate::report::run::RunReport;
 use crate::session::Session;
 use crate::settings::Values;
 use crate::whole_file::write_whole;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::ops::RangeInclusive;
@@ -20,7 +21,7 @@ const DIGITS: usize = 4;
 const FPS: RangeInclusive<f64> = 0.001..=1000.0;
 
 /// Frames `first` to `last`, both included; frame n is n / fps seconds after `--time`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frames {
     first: u32,
     last: u32,
@@ -57,6 +58,24 @@ impl Frames {
         }
     }
 
+    pub fn first(&self) -> u32 {
+        self.first
+    }
+
+    pub fn last(&self) -> u32 {
+        self.last
+    }
+
+    /// In order.
+    pub fn numbers(&self) -> RangeInclusive<u32> {
+        self.first..=self.last
+    }
+
+    /// The flags that ask for them again.
+    pub fn arguments(&self) -> [String; 4] {
+        ["--frames".to_owned(), format!("{}..{}", self.first, self.last), "--fps".to_owned(), self.fps.to_string()]
+    }
+
     /// How many there are, at least one.
     pub fn count(&self) -> usize {
         (self.last - self.first) as usize + 1
@@ -72,7 +91,7 @@ impl Frames {
     /// The settings of a frame: those of `job` at the frame's time, at this exposure where it is known.
     ///
     /// Errors: the time is later than `--time` can be (exit code 2).
-    fn values(&self, job: &Job, frame: u32, exposure_ev: Option<f64>) -> Result<Values> {
+    pub fn values(&self, job: &Job, frame: u32, exposure_ev: Option<f64>) -> Result<Values> {
         let time_s = job.values.number("time") + f64::from(frame) / self.fps;
         let mut at = job.at(&job.values);
         at.set("time", &time_s.to_string()).map_err(|error| error.within(format!("frame {frame}")))?;
@@ -98,7 +117,7 @@ impl Job {
         // flicker.
         let mut exposure_ev: Option<f64> = None;
         let mut sequence = Sequence { reports: Vec::new(), is_interrupted: false, gates: Ok(()) };
-        for frame in frames.first..=frames.last {
+        for frame in frames.numbers() {
             if interrupt::check().is_err() {
                 sequence.is_interrupted = true;
                 break;
@@ -110,7 +129,7 @@ impl Job {
                 None => self.open_session(&self.device_request(), scene)?,
                 Some(session) => {
                     let scene = self.with_texture_limit(scene, &session.gpu.caps);
-                    session.showing(scene)?
+                    session.at_moment(scene, values.number("tree-growth"))?
                 }
             };
             let made = self.picture(&shown, &values, &path, Unfinished::Dropped);

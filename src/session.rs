@@ -87,29 +87,41 @@ impl Session {
     ///
     /// Errors: as `open`, except for the device.
     pub fn showing(self, scene: Scene) -> Result<Self> {
+        self.at_moment(scene, 0.0)
+    }
+
+    /// The same, with the trees that rays walk refitted where `scene` has the same triangles elsewhere, as long as their
+    /// cost has not grown by more than the share `tree_growth` since they were built (`--tree-growth`).
+    ///
+    /// Errors: as `showing`.
+    pub fn at_moment(self, scene: Scene, tree_growth: f64) -> Result<Self> {
         if scene.hash == self.scene.hash && scene.texture_limit_px == self.scene.texture_limit_px {
             return Ok(self);
         }
         require_triangle(&scene, &scene.name)?;
-        let (gpu, textures) = (self.gpu.clone(), self.scene_gpu.textures());
+        let Self { gpu, scene: before, scene_gpu, bvh, .. } = self;
+        let textures = scene_gpu.textures();
+        // A renderer of before that is still there keeps its trees to itself.
+        let earlier = Arc::into_inner(bvh);
+        let bvh = earlier.map_or_else(LazyBvh::default, |bvh| LazyBvh::after(bvh, [&before, &scene], tree_growth));
         // The old scene goes first: the device need not have room for both.
-        drop(self);
-        Self::with_textures(gpu, scene, Some(textures))
+        drop((scene_gpu, before));
+        Self::with_kept(gpu, scene, Some(textures), bvh)
     }
 
     /// Uploads the scene.
     ///
     /// Errors: memory (exit code 4).
     pub(crate) fn on(gpu: Arc<Gpu>, scene: Scene) -> Result<Self> {
-        Self::with_textures(gpu, scene, None)
+        Self::with_kept(gpu, scene, None, LazyBvh::default())
     }
 
-    fn with_textures(gpu: Arc<Gpu>, scene: Scene, kept: Option<Arc<Textures>>) -> Result<Self> {
+    fn with_kept(gpu: Arc<Gpu>, scene: Scene, kept: Option<Arc<Textures>>, bvh: LazyBvh) -> Result<Self> {
         let _stage = Stage::begin("uploading the scene");
         let stats = SceneStats::of(&scene);
         let uploaded = SceneGpu::new(&gpu, &scene, kept).map_err(|error| resident::advise(error, &gpu, &scene));
         let scene_gpu = Arc::new(uploaded?);
-        Ok(Self { gpu, scene: Arc::new(scene), stats, scene_gpu, bvh: Arc::default() })
+        Ok(Self { gpu, scene: Arc::new(scene), stats, scene_gpu, bvh: Arc::new(bvh) })
     }
 
     /// Makes a technique real for these settings, and records its frame. `aovs`: the stages that will be read back.
@@ -126,6 +138,7 @@ impl Session {
         if recording.has_statistics {
             statistics::require(&self.gpu.caps)?;
         }
+        self.bvh.begin_use();
         let view = View::new(&self.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&self.scene, &view, values)?;
         // It says itself what would fit.
@@ -193,12 +206,18 @@ impl Session {
         let numbers = view.block(&self.scene.bounds(), background, lights.ambient, light_count, vpl_count);
         let mut block = resources.buffer(&block_name(technique));
         block.mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
-        let (host_passes, mut counters) = (host.passes, host.counters);
+        let (mut host_passes, mut counters) = (host.passes, host.counters);
         let blended = self.scene_gpu.calls.iter().filter(|call| call.alpha == AlphaMode::Blend);
         counters.insert("blended_draws", blended.count() as f64);
         let _stage = Stage::begin("compiling pipelines");
         let frame = (host.build)(&self.gpu, &inputs, &self.scene_gpu, &mut resources)?;
         counters.extend(frame.drawn());
+        if let Some(used) = self.bvh.used() {
+            counters.extend([("tree_refits", used.refits.into()), ("tree_cost", used.cost)]);
+            if used.made_ns > 0 {
+                host_passes.insert(0, (format!("{}.bvh", technique.name()), used.made_ns));
+            }
+        }
         let once_passes = frame.once();
         let mut cmd = Commands::begin(&self.gpu, technique.name(), recording)?;
         cmd.set_heirs(resources.heirs(&sharing));

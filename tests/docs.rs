@@ -367,6 +367,7 @@ fn the_page_of_the_report_names_every_key() {
         "bench split cornell --vpls 16 --repeat 3 --fair",
         "bench shade cornell --vpls 16 --sweep pattern=4x4,8x8 --repeat 3",
         "bench filter cornell --vpls 16 --repeat 3",
+        "bench frame cornell:motion=on --vpls 16 --repeat 3 --frames 0..2",
     ]);
     let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
     let told_of_row = told(&page, "A benchmark's row");

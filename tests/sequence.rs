@@ -1,11 +1,14 @@
 //! `render --time` and `render --frames` from outside: which files, which reports, which exit codes.
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::support::gltf_file::{GltfFile, painted_png};
 use crate::support::program::{Program, quincunx};
+use crate::support::shared_scenes;
 use crate::support::watched::Watched;
+use quincunx::picture::{Picture, image_file};
 use quincunx::scene::{AnimationChoice, Scene};
 use serde_json::json;
 
@@ -130,6 +133,97 @@ fn a_built_in_scene_is_the_same_at_all_times() {
         assert_eq!(report["image"]["hash"], still["image"]["hash"]);
     }
     program.fails(&["render", "cornell", "--animation", "walk"], 2, &["--animation walk", "the scene has none"]);
+}
+
+/// One frame's report, and its picture.
+struct Framed {
+    hash: String,
+    picture: Picture,
+    /// Counters of the tree that rays walk, and whether a pass of the host says how long making it took.
+    refits: f64,
+    cost: f64,
+    has_pass: bool,
+}
+
+/// Frames 0 to 4 of `scene`, rendered by `technique` in one session.
+fn frames_of(scene: &str, technique: &str, more: &[&str]) -> Vec<Framed> {
+    let program = Program::new();
+    let base = ["render", scene, "--technique", technique, "--size", "48x27", "--frames", "0..4", "--json", "--quiet"];
+    let document = program.run(&[&base[..], &["-o", "a.exr", "--validate"], more].concat()).fine().json();
+    let framed = |report: &serde_json::Value| {
+        let counter = |key: &str| report["counters"][key].as_f64().unwrap();
+        let has_pass = report["passes"].as_array().unwrap().iter().any(|pass| {
+            pass["name"] == format!("{technique}.bvh") && pass["where"] == "host, once" && pass["ms"]["median"].is_f64()
+        });
+        let text = |key: &str| report["image"][key].as_str().unwrap().to_owned();
+        let picture = image_file::read(Path::new(&program.path(&text("path")))).unwrap();
+        let (refits, cost) = (counter("tree_refits"), counter("tree_cost"));
+        Framed { hash: text("hash"), picture, refits, cost, has_pass }
+    };
+    document["frames"].as_array().unwrap().iter().map(framed).collect()
+}
+
+/// The same bits, of a technique whose rays ask whether anything is there, and of one whose rays ask for the nearest. Of
+/// the latter `most_pixels` may be a last bit off: of two triangles that meet in an edge, a ray meets on it that which is
+/// tried first. The greatest cost of a refitted tree.
+#[track_caller]
+fn refitting_shows_in_no_picture(scene: &str, most_pixels: usize) -> f64 {
+    let mut most_cost: f64 = 0.0;
+    for (technique, own, most_pixels) in [
+        ("adaptive_interleaved", &["--emissive", "on", "--vpls", "16"][..], 0),
+        ("path_traced", &["--spp", "1", "--bounces", "2"], most_pixels),
+    ] {
+        let of = |growth: &str| frames_of(scene, technique, &[own, &["--fps", "3", "--tree-growth", growth]].concat());
+        let (refitted, built) = (of("1000"), of("0"));
+        for (frame, (a, b)) in refitted.iter().zip(&built).enumerate() {
+            let pixels = a.picture.pixels.iter().zip(&b.picture.pixels);
+            let differing: Vec<_> = pixels.filter(|(a, b)| a != b).collect();
+            assert!(differing.len() <= most_pixels, "{scene}, {technique}, frame {frame}: {differing:?}");
+            assert!(
+                differing.iter().all(|(a, b)| (0..3).all(|at| (a[at] - b[at]).abs() <= 4e-7 * a[at])),
+                "{differing:?}"
+            );
+            assert_eq!((a.refits, a.has_pass), (frame as f64, true), "{scene}, {technique}");
+            assert_eq!((b.refits, b.cost, b.has_pass), (0.0, 1.0, true), "{scene}, {technique}");
+            most_cost = most_cost.max(a.cost);
+        }
+        assert_ne!(built[0].hash, built[4].hash, "{scene}, {technique}: nothing moves");
+    }
+    most_cost
+}
+
+#[test]
+fn a_refitted_tree_shows_in_no_picture_of_a_built_in_scene() {
+    let most_cost = refitting_shows_in_no_picture("chess:triangles=12000", 0);
+    assert!(most_cost > 1.0, "{most_cost}");
+}
+
+#[test]
+fn a_refitted_tree_shows_in_no_picture_of_skins_and_nodes_that_move() {
+    let Some(folder) = shared_scenes() else { return };
+    for (file, least_cost, most_pixels) in [("RiggedSimple", 1.2, 0), ("BoxAnimated", 1.2, 1)] {
+        let path = folder.join(format!("samples/{file}/{file}.gltf"));
+        let most_cost = refitting_shows_in_no_picture(path.to_str().unwrap(), most_pixels);
+        assert!(most_cost > least_cost, "{file}: {most_cost}");
+    }
+}
+
+/// The beam bends and comes back: its tree is built anew as often as its cost has grown by the share.
+#[test]
+fn a_tree_is_built_anew_where_its_cost_has_grown() {
+    let Some(folder) = shared_scenes() else { return };
+    let path = folder.join("samples/RiggedSimple/RiggedSimple.gltf");
+    let more = ["--fps", "3", "--direct-shadow", "ray"];
+    let refits = |growth: &str| {
+        let rows = frames_of(path.to_str().unwrap(), "deferred", &[&more[..], &["--tree-growth", growth]].concat());
+        let greatest = 1.0 + growth.parse::<f64>().unwrap();
+        let costs: Vec<f64> = rows.iter().map(|row| row.cost).collect();
+        assert!(costs.iter().all(|cost| *cost <= greatest), "{growth}: {costs:?}");
+        rows.iter().map(|row| row.refits).collect::<Vec<_>>()
+    };
+    assert_eq!(refits("1"), [0.0, 1.0, 2.0, 3.0, 4.0]);
+    let some = refits("0.1");
+    assert!(some[1..].contains(&0.0) && some.iter().any(|count| *count > 0.0), "{some:?}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, changed};
 use super::copy::BufferCopy;
+use super::frames::{Sequence, VariantSequence};
 use super::rounds::{self, Probe, Samples};
 use super::variant::Variant;
 use super::what::What;
@@ -54,6 +55,8 @@ pub struct Measurement<'a> {
     pub what: What,
     /// All variants shade as many texels a thread as `--texels` says.
     pub is_fair: bool,
+    /// None without `--frames`; with it, `session` shows its first frame.
+    pub sequence: Option<&'a Rc<Sequence>>,
 }
 
 impl<'a> Measurement<'a> {
@@ -66,7 +69,8 @@ impl<'a> Measurement<'a> {
     ///
     /// Errors: as `Variant::new` has them; it cannot be fair (exit code 2).
     pub fn variant(&self, values: &Values) -> Result<Variant> {
-        let variant = Variant::new(self.session, self.job.technique, self.what, values)?;
+        let mut variant = Variant::new(self.session, self.job.technique, self.what, values)?;
+        variant.sequence = self.sequence.map(|sequence| VariantSequence::new(sequence, self.job.at(values)));
         if self.is_fair {
             variant.require_texels(values)?;
         }

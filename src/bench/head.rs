@@ -16,6 +16,7 @@ use crate::metrics;
 use crate::picture::Picture;
 use crate::reference::ReferenceRequest;
 use crate::report::spread::Spread;
+use crate::sequence::Frames;
 use crate::settings::Values;
 use crate::settings::written::{SettingValue, WrittenSettings};
 use crate::techniques::bench_stage::{Done, PlainForm};
@@ -32,6 +33,8 @@ pub struct Head<'a> {
     pub repeat: usize,
     /// The baseline's label.
     pub baseline: String,
+    /// None: one moment.
+    pub frames: Option<Frames>,
 }
 
 /// The rounds in which a row was measured.
@@ -48,7 +51,7 @@ impl Head<'_> {
     /// The keys that say what a row is of. Settings are as they were typed: their resolved values are known when they
     /// are made.
     pub fn row(&self, candidate: &Candidate) -> BenchRow {
-        let Measurement { job, session, what, is_fair } = &self.measurement;
+        let Measurement { job, session, what, is_fair, .. } = &self.measurement;
         let text = |(key, text): (&String, &String)| (key.clone(), SettingValue::Text(text.clone()));
         BenchRow {
             schema: SCHEMA,
@@ -64,6 +67,7 @@ impl Head<'_> {
             baseline: self.baseline.clone(),
             fair: is_fair.then_some(true),
             reference: job.reference.as_ref().map(ReferenceRequest::identity),
+            frames: self.frames.clone(),
             ..BenchRow::default()
         }
     }
@@ -84,7 +88,7 @@ impl Head<'_> {
         rounds: &Rounds,
         reference: &Found,
     ) -> Result<BenchRow> {
-        let Measurement { job, session, what, .. } = &self.measurement;
+        let Measurement { session, what, .. } = &self.measurement;
         let renderer = &member.variant.renderer;
         let samples = &rounds.samples;
         let values = candidate.values.as_ref().map_err(Error::clone)?;
@@ -99,7 +103,7 @@ impl Head<'_> {
         let speed_up = SpeedUp { ratio: paired_ratio(&baseline, &times), baseline: self.baseline.clone() };
         let mut row = BenchRow {
             unread_axes: (!candidate.unread_axes.is_empty()).then(|| candidate.unread_axes.clone()),
-            command: Some(repeating_command(job, *what, candidate.job.technique, values)),
+            command: Some(self.repeating_command(candidate.job.technique, values)),
             group: Some(rounds.group.clone()),
             machine: Some(rounds.load),
             clock: Some(renderer.clock().name().to_owned()),
@@ -130,6 +134,25 @@ impl Head<'_> {
             Err(error) => row.reference_skipped = Some(error.message().to_owned()),
         }
         Ok(row)
+    }
+
+    /// The `render` command of a variant: every setting that is not at its default; pass times where a stage is timed.
+    fn repeating_command(&self, technique: &'static dyn Technique, values: &Values) -> Vec<String> {
+        let Measurement { job, what, .. } = &self.measurement;
+        let defaults = Job::new(&job.scene, technique).values;
+        let mut command =
+            ["quincunx", "render", &job.scene, "--technique", technique.name()].map(str::to_owned).to_vec();
+        for (key, default) in defaults.iter() {
+            if values.text(key) != default {
+                command.extend([format!("--{key}"), values.text(key).to_owned()]);
+            }
+        }
+        command.extend(self.frames.iter().flat_map(Frames::arguments));
+        command.extend(job.reference.iter().flat_map(ReferenceRequest::arguments));
+        if *what != What::Frame {
+            command.push("--profile".to_owned());
+        }
+        command
     }
 
     /// Median milliseconds of each timed pass. A frame is one submit: its passes are timed in frames of their own.
@@ -194,22 +217,6 @@ impl Head<'_> {
             Err(error) => Err(error),
         }
     }
-}
-
-/// The `render` command of a variant: every setting that is not at its default; pass times where a stage is timed.
-fn repeating_command(job: &Job, what: What, technique: &'static dyn Technique, values: &Values) -> Vec<String> {
-    let defaults = Job::new(&job.scene, technique).values;
-    let mut command = ["quincunx", "render", &job.scene, "--technique", technique.name()].map(str::to_owned).to_vec();
-    for (key, default) in defaults.iter() {
-        if values.text(key) != default {
-            command.extend([format!("--{key}"), values.text(key).to_owned()]);
-        }
-    }
-    command.extend(job.reference.iter().flat_map(ReferenceRequest::arguments));
-    if what != What::Frame {
-        command.push("--profile".to_owned());
-    }
-    command
 }
 
 /// A copy beside its identity and beside vkCmdCopyBuffer.

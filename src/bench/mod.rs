@@ -8,6 +8,7 @@ pub mod best;
 pub mod candidate;
 pub mod copy;
 pub mod faster;
+pub mod frames;
 pub mod group;
 pub mod head;
 pub mod machine;

@@ -12,6 +12,7 @@ use crate::report::errors::{Errors, ReferenceIdentity};
 use crate::report::memory::MemorySums;
 use crate::report::nullable::present;
 use crate::report::spread::Spread;
+use crate::sequence::Frames;
 use crate::settings::written::WrittenSettings;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,9 @@ pub struct BenchRow {
     /// What `errors` are against; None without `--reference`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference: Option<ReferenceIdentity>,
+    /// Frames that were measured; None without `--frames`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frames: Option<Frames>,
     /// Axes of the sweep that the row does not read; None where it reads them all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unread_axes: Option<Vec<String>>,
@@ -70,6 +74,24 @@ pub struct BenchRow {
     /// Milliseconds of whole frames; None where a stage was timed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<Spread>,
+    /// What a frame's time is made of; None without `--frames`, as the keys to `flicker_error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame_parts_ms: Option<FrameParts>,
+    /// Milliseconds a frame of compiling and allocating, which are no part of the time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub setup_ms: Option<f64>,
+    /// Frames for which the tree was built, of a sequence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trees_built: Option<u32>,
+    /// Frames for which it was refitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trees_refitted: Option<u32>,
+    /// `metrics::FlickerMeter`; None of fewer than three frames.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flicker: Option<f64>,
+    /// `metrics::ErrorFlickerMeter`; None without references.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flicker_error: Option<f64>,
     /// Milliseconds of the stage's passes; None where frames were timed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stage_ms: Option<Spread>,
@@ -152,6 +174,21 @@ pub struct BenchRow {
     pub other: Map<String, Value>,
 }
 
+/// Median milliseconds a frame of the parts of its time, mean over the frames.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameParts {
+    /// Making the scene of the frame's moment.
+    pub pose: f64,
+    /// Copying it to the device.
+    pub upload: f64,
+    /// Building or refitting the tree that rays walk.
+    pub tree: f64,
+    /// Host passes.
+    pub host: f64,
+    /// The device's passes.
+    pub device: f64,
+}
+
 /// Which scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneName {
@@ -208,6 +245,7 @@ impl BenchRow {
             self.variant,
             self.reference,
             self.fair,
+            self.frames,
             self.scene.hash,
             self.asked(),
         ])

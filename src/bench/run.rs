@@ -1,6 +1,7 @@
 //! A sweep from grid to rows: which points are possible, in which groups they are measured, what is already known.
 
 use super::candidate::{Candidate, require_readers};
+use super::frames::Sequence;
 use super::group::{Group, Measurement, is_of_memory};
 use super::head::{Head, Rounds};
 use super::machine::{Load, Ticks};
@@ -14,7 +15,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::DeviceRequest;
 use crate::interrupt;
 use crate::job::{Job, fail_on_validation};
-use crate::session::Session;
+use crate::reference::ReferenceRequest;
+use crate::sequence::Frames;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -31,6 +33,8 @@ pub struct Request<'a> {
     pub repeat: usize,
     /// All rows shade as many texels a thread: those of `--texels`, or one. What cannot is skipped.
     pub is_fair: bool,
+    /// Frames of a sequence instead of one moment: only of `What::Frame`.
+    pub frames: Option<&'a Frames>,
 }
 
 /// What came out.
@@ -71,18 +75,27 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     }
     let grid = sweep::grid(request.axes);
     let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
-    let session = job.open_session(&DeviceRequest { robust: false, ..job.device_request() }, job.load_scene()?)?;
-    let (axes, hash) = (request.axes, &session.scene.hash);
+    let scene = job.load_scene()?;
+    let (axes, hash) = (request.axes, scene.hash.clone());
+    let scene = match request.frames {
+        None => scene,
+        Some(frames) => job.at(&frames.values(job, frames.first(), None)?).load_scene()?,
+    };
+    let session = job.open_session(&DeviceRequest { robust: false, ..job.device_request() }, scene)?;
+    let sequence = request.frames.map(|frames| Sequence::new(job, frames, &session.gpu)).transpose()?.map(Rc::new);
     let candidates: Vec<Candidate> =
-        grid.iter().map(|point| Candidate::new(job, axes, point, request.is_fair, hash)).collect();
+        grid.iter().map(|point| Candidate::new(job, axes, point, request.is_fair, &hash)).collect();
     require_readers(job, axes, &candidates)?;
     if let Some(asked) = &job.reference {
+        request.frames.map_or(Ok(()), |_| ReferenceRequest::check_sequence(asked))?;
         for candidate in &candidates {
             let Ok(values) = &candidate.values else { continue };
             asked.check(values.extent("size")).map_err(|error| error.within(&candidate.label))?;
         }
     }
-    let mut sweep = Sweep::start(request, &session, candidates, named, file, observer)?;
+    let Request { what, is_fair, .. } = *request;
+    let measurement = Measurement { job, session: &session, what, is_fair, sequence: sequence.as_ref() };
+    let mut sweep = Sweep::start(request, measurement, candidates, named, file, observer)?;
     let interrupted = match sweep.measure() {
         Err(stop) if stop.kind() == ErrorKind::Interrupted => true,
         done => done.map(|()| false)?,
@@ -92,6 +105,7 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     let log = session.gpu.validation_log();
     // Closing says what was leaked: only then is the log whole.
     drop(sweep);
+    drop(sequence);
     drop(session);
     fail_on_validation(log.as_deref())?;
     Ok(Rows { rows, interrupted, gates })
@@ -122,14 +136,12 @@ impl<'a> Sweep<'a> {
     /// Finds the baseline, and the rows that are kept.
     fn start(
         request: &Request<'a>,
-        session: &'a Session,
+        measurement: Measurement<'a>,
         candidates: Vec<Candidate>,
         named: Option<usize>,
         file: Option<&'a mut RowsFile>,
         observer: &'a mut dyn Observer,
     ) -> Result<Self> {
-        let Request { job, what, repeat, is_fair, .. } = *request;
-        let measurement = Measurement { job, session, what, is_fair };
         let mut refused = Vec::new();
         let tried = named.map_or(0..candidates.len(), |index| index..index + 1);
         let found = tried.into_iter().find_map(|index| match possible(&measurement, &candidates[index]) {
@@ -150,7 +162,8 @@ impl<'a> Sweep<'a> {
             });
         };
         let (baseline, baseline_variant) = found?;
-        let head = Head { measurement, repeat, baseline: candidates[baseline].label.clone() };
+        let (repeat, frames) = (request.repeat, request.frames.cloned());
+        let head = Head { measurement, repeat, baseline: candidates[baseline].label.clone(), frames };
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
         let rows = candidates.iter().map(kept).collect();
         let references = References::default();
@@ -229,8 +242,14 @@ impl<'a> Sweep<'a> {
             let values = candidate.values.as_ref().map_err(Error::clone)?;
             let reference = self.references.of(job, session, what, values)?;
             let mut row = self.head.measured(candidate, member, picture, &rounds, &reference)?;
-            if let Some(asked) = &self.head.measurement.job.reference {
-                match asked.judge(picture, job.technique, values, session) {
+            let asked = self.head.measurement.job.reference.as_ref();
+            if let Some(sequence) = &member.variant.sequence {
+                sequence.fill(&mut row, &rounds.samples[member.probe], &sequence.flicker(asked)?);
+            }
+            if let Some(asked) = asked {
+                let first = |frames: &Frames| frames.values(&job.at(values), frames.first(), None);
+                let shown = self.head.frames.as_ref().map(first).transpose()?;
+                match asked.judge(picture, job.technique, shown.as_ref().unwrap_or(values), session) {
                     Ok(judged) => {
                         row.errors = Some(judged.errors);
                         let gates = judged.gates.map_err(|error| error.within(&candidate.label));

@@ -103,6 +103,13 @@ fn columns(what: What) -> Vec<Column> {
         Column::new("median ms", |row| row.times_ms().map(|times| fixed(times.median, 3))),
         Column::new("time ratio (95 %)", |row| row.ratio.as_ref().map(ratio)),
     ];
+    if what == What::Frame {
+        columns.extend([
+            Column::optional("tree ms", |row| row.frame_parts_ms.map(|parts| fixed(parts.tree, 3))),
+            Column::optional("flicker", |row| row.flicker.map(|flicker| fixed(flicker, 5))),
+            Column::optional("flicker of error", |row| row.flicker_error.map(|flicker| fixed(flicker, 5))),
+        ]);
+    }
     columns.extend(own_columns(what));
     columns.extend([
         Column::new("moved", moved),

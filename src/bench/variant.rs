@@ -1,5 +1,6 @@
 //! A variant made real: a renderer, and which of its passes are timed.
 
+use super::frames::VariantSequence;
 use super::rounds::Probe;
 use super::what::What;
 use crate::error::{Error, Result};
@@ -16,6 +17,8 @@ pub struct Variant {
     pub stage: Option<&'static BenchStage>,
     /// Indices of the passes that are timed, in order, at least one.
     pub passes: Vec<usize>,
+    /// What is timed instead of frames of one moment; None without `--frames`.
+    pub sequence: Option<VariantSequence>,
 }
 
 impl Variant {
@@ -33,7 +36,7 @@ impl Variant {
             Some(stage) if passes.is_empty() || stage.is_fused(values) => {
                 Err(Error::request(stage.absence(technique.name(), values)))
             }
-            _ => Ok(Self { renderer, stage, passes }),
+            _ => Ok(Self { renderer, stage, passes, sequence: None }),
         }
     }
 
@@ -75,9 +78,12 @@ impl Variant {
 }
 
 impl Probe for Variant {
-    /// Whole frames are one part. A stage has a part for each of its passes; the frame runs through the last of them,
+    /// Whole frames are one part, frames of a sequence have those of `FrameParts`. A stage has a part for each of its passes; the frame runs through the last of them,
     /// so that each finds its inputs, and the caches, as a frame leaves them.
     fn measure(&self) -> Result<Vec<f64>> {
+        if let Some(sequence) = &self.sequence {
+            return sequence.measure();
+        }
         let milliseconds = |ns: u64| ns as f64 / 1e6;
         if self.stage.is_none() {
             return Ok(vec![milliseconds(self.renderer.frame()?.figure_ns(self.renderer.clock()))]);

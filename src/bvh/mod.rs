@@ -6,8 +6,12 @@
 
 pub mod boxes;
 pub mod flat;
+mod lazy;
 pub mod nodes;
+mod refit;
 pub mod shadow;
+
+pub use lazy::{LazyBvh, TreeUse};
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::bvh::{TRIANGLE_MIRRORED, TRIANGLE_SINGLE_SIDED, TRIANGLE_TESTED};
@@ -16,7 +20,6 @@ use crate::progress::Stage;
 use crate::scene::{AlphaMode, Draw, Material, Mesh, Scene};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
-use std::sync::OnceLock;
 
 /// Its tree takes some 16 GiB.
 const MOST_TRIANGLES: u64 = 1 << 26;
@@ -29,52 +32,6 @@ pub struct Bvh {
     pub closing: Vec<BvhTriangleBlock>,
     /// Where each of `triangles` comes from.
     pub sources: Vec<Source>,
-}
-
-/// A scene's tree, built when the first ray asks for it: pictures without rays do not wait for it.
-pub struct LazyBvh {
-    built: OnceLock<Bvh>,
-    /// With BLEND surfaces, where there are any.
-    whole: OnceLock<Bvh>,
-    empty: Bvh,
-}
-
-impl Default for LazyBvh {
-    fn default() -> Self {
-        Self { built: OnceLock::new(), whole: OnceLock::new(), empty: Bvh::empty() }
-    }
-}
-
-impl LazyBvh {
-    /// The tree over `scene`, which must be the same at every call.
-    ///
-    /// Errors: as `Bvh::build`.
-    pub fn over(&self, scene: &Scene) -> Result<&Bvh> {
-        if let Some(bvh) = self.built.get() {
-            return Ok(bvh);
-        }
-        let bvh = Bvh::build(scene)?;
-        Ok(self.built.get_or_init(|| bvh))
-    }
-
-    /// The tree over all of `scene`, BLEND surfaces included, which must be the same at every call.
-    ///
-    /// Errors: as `Bvh::build`.
-    pub fn whole(&self, scene: &Scene) -> Result<&Bvh> {
-        if scene.drawn_materials().all(|material| material.alpha != AlphaMode::Blend) {
-            return self.over(scene);
-        }
-        if let Some(bvh) = self.whole.get() {
-            return Ok(bvh);
-        }
-        let bvh = Bvh::whole(scene)?;
-        Ok(self.whole.get_or_init(|| bvh))
-    }
-
-    /// The tree that no ray meets.
-    pub fn empty(&self) -> &Bvh {
-        &self.empty
-    }
 }
 
 /// Triangle `triangle` of draw `draw`.
@@ -145,12 +102,7 @@ impl Bvh {
         }
         let (nodes, order) = boxes::over(&corners, &closing);
         let order: Vec<usize> = order.into_iter().map(|index| index as usize).collect();
-        let block = |index: &usize, from: &[Triangle]| {
-            let Triangle { v0, v1, v2 } = from[*index];
-            let four = |v: glam::Vec3A, w: f32| [v.x, v.y, v.z, w];
-            let flags = f32::from_bits(flags_of(scene, &sources[*index]));
-            BvhTriangleBlock { corner: four(v0, flags), edge1: four(v1 - v0, 0.0), edge2: four(v2 - v0, 0.0) }
-        };
+        let block = |index: &usize, from: &[Triangle]| block_of(scene, &sources[*index], &from[*index]);
         let triangles = order.iter().map(|index| block(index, &corners)).collect();
         let is_moving = !closing.is_empty();
         let closing = order.iter().filter(|_| is_moving).map(|index| block(index, &closing)).collect();
@@ -240,6 +192,14 @@ fn triangle_in_world(scene: &Scene, draw: &Draw, triangle: usize) -> Triangle {
     let corners = scene.meshes[draw.mesh].triangle(triangle);
     let [v0, v1, v2] = corners.map(|corner| draw.world_from_object.transform_point3(corner).into());
     Triangle { v0, v1, v2 }
+}
+
+/// The triangle of `source` at these corners, in world space, as rays read it.
+fn block_of(scene: &Scene, source: &Source, corners: &Triangle) -> BvhTriangleBlock {
+    let Triangle { v0, v1, v2 } = *corners;
+    let four = |v: glam::Vec3A, w: f32| [v.x, v.y, v.z, w];
+    let flags = f32::from_bits(flags_of(scene, source));
+    BvhTriangleBlock { corner: four(v0, flags), edge1: four(v1 - v0, 0.0), edge2: four(v2 - v0, 0.0) }
 }
 
 /// TRIANGLE_ bits of a triangle.

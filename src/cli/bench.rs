@@ -2,7 +2,7 @@
 
 use super::listed::TechniqueSelection;
 use super::output;
-use super::{job_args, progress, rays, reference_args};
+use super::{frames_args, job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
 use crate::bench::row::BenchRow;
 use crate::bench::rows_file::{Existing, RowsFile};
@@ -58,6 +58,14 @@ fn sub_command(what: What) -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).requires("output");
     let command = Command::new(what.name()).about(what.summary());
     let command = if what.stages().len() > 1 { command.long_about(summaries(what)) } else { command };
+    let command = match what {
+        What::Frame => frames_args::with_frames_args(
+            command,
+            "Measure frames A to B, both included, of a scene that moves, and the mean of what a frame takes: its pose, its \
+             upload, its tree, host passes and the device; and how much the pictures flicker",
+        ),
+        What::Stage(_) => command,
+    };
     command
         .arg(
             Arg::new("sweep")
@@ -113,8 +121,10 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
     let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
     progress::install(quiet);
+    let frames = if what == What::Frame { frames_args::asked(matches)? } else { None };
     let request = Request {
         job: &job,
+        frames: frames.as_ref(),
         what,
         axes: &axes,
         baseline: matches.get_one::<String>("baseline").map(String::as_str),

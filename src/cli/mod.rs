@@ -4,6 +4,7 @@ pub mod bench;
 pub mod compare;
 pub mod completions;
 pub mod devices;
+mod frames_args;
 mod gate_args;
 mod job_args;
 mod listed;

@@ -1,7 +1,7 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
 use super::listed::TechniqueSelection;
-use super::{job_args, progress, reference_args};
+use super::{frames_args, job_args, progress, reference_args};
 use crate::cli::output::{print, print_text};
 use crate::continuation::Continuation;
 use crate::error::{Error, Result};
@@ -10,9 +10,6 @@ use crate::progress::say;
 use crate::sequence::Frames;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
-
-/// Frames a second of `--frames` without `--fps`.
-const DEFAULT_FPS: &str = "24";
 
 /// The verb with its arguments.
 pub fn command(listed: &TechniqueSelection) -> Command {
@@ -41,18 +38,6 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                 "Add samples to an earlier picture of path_traced, of the same scene, size and settings, up to --spp or \
                  --until-error; the result is the picture of a single run",
             ))
-            .arg(Arg::new("frames").long("frames").value_name("A..B").allow_hyphen_values(true).help(
-                "Render frames A to B, both included, into FILE.0001.png and so on; frame n is drawn n / fps seconds after \
-                     --time",
-            ))
-            .arg(
-                Arg::new("fps")
-                    .long("fps")
-                    .value_name("N")
-                    .requires("frames")
-                    .allow_negative_numbers(true)
-                    .help(format!("Frames a second of --frames [default: {DEFAULT_FPS}]")),
-            )
             .arg(
                 Arg::new("profile")
                     .long("profile")
@@ -64,7 +49,8 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                  and drivers differ in what they count: lavapipe of Mesa 22.3 counts whole blocks of 4x4 pixels",
             )),
     );
-    reference_args::with_reference_args(command)
+    let frames = "Render frames A to B, both included, into FILE.0001.png and so on";
+    reference_args::with_reference_args(frames_args::with_frames_args(command, frames))
 }
 
 /// Renders and prints.
@@ -79,8 +65,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     job.reference = reference_args::asked(matches)?;
     job.profile = matches.get_flag("profile");
     job.statistics = matches.get_flag("statistics");
-    if let Some(range) = matches.get_one::<String>("frames") {
-        let frames = Frames::parse(range, matches.get_one::<String>("fps").map_or(DEFAULT_FPS, String::as_str))?;
+    if let Some(frames) = frames_args::asked(matches)? {
         return run_sequence(&job, &frames, matches);
     }
     let outcome = job.run()?;

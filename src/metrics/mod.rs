@@ -2,8 +2,9 @@
 //!
 //! Four are of light (RMSE, relMSE, HDR-FLIP and the pixels over a threshold of it: scene-linear RGB), three of what a
 //! screen shows (PSNR, SSIM, FLIP: 8-bit sRGB at exposure 0, cut at 1), because a bound on an algorithm needs the first and
-//! a claim about looks the second.
+//! a claim about looks the second. How far pictures of a sequence are from each other is `flicker`.
 
+mod flicker;
 mod flip;
 pub mod gate;
 mod linear;
@@ -13,6 +14,7 @@ mod part;
 mod psnr;
 mod ssim;
 
+pub use flicker::{ErrorFlickerMeter, FlickerMeter};
 pub use measure::{Measure, Metrics};
 pub use part::Part;
 

@@ -170,6 +170,21 @@ impl ReferenceRequest {
         Ok(ReferenceResult { errors, gates: gate::judge(&self.gates, &metrics, "against the reference") })
     }
 
+    /// The reference of one of many pictures that `technique` made, as of `judge`: kept in the user's folder alone, because
+    /// memory does not hold those of a sequence.
+    ///
+    /// Errors: as `judge`.
+    pub fn of_frame(&self, technique: &dyn Technique, values: &Values, session: &Session) -> Result<Picture> {
+        match &self.source {
+            Source::File { picture, .. } => Ok(picture.as_ref().clone()),
+            Source::Auto { technique: truth, spp, .. } => {
+                let recipe = Recipe::judging(*truth, technique, values, session, *spp)
+                    .map_err(|error| error.within("--reference auto"))?;
+                Ok(made::reference_picture(&recipe, session, &Cache::of_user()?, self.watch.as_ref())?.picture)
+            }
+        }
+    }
+
     fn is_cut(&self) -> bool {
         matches!(&self.source, Source::File { path, .. } if image_file::is_cut(path))
     }

@@ -105,15 +105,21 @@ impl Scene {
         Ok(self)
     }
 
+    /// Whether both draw the same triangles in the same materials, wherever they are.
+    pub fn has_same_triangles(&self, other: &Scene) -> bool {
+        let is_same = |(a, b): (&Mesh, &Mesh)| {
+            (a.positions.len(), a.material, &a.indices) == (b.positions.len(), b.material, &b.indices)
+        };
+        let meshes_of = |scene: &Scene| scene.draws.iter().map(|draw| draw.mesh).collect::<Vec<_>>();
+        self.meshes.len() == other.meshes.len()
+            && meshes_of(self) == meshes_of(other)
+            && self.meshes.iter().zip(&other.meshes).all(is_same)
+    }
+
     /// Errors: `other` has other triangles, lights or cameras (exit code 2).
     fn require_same_shape(&self, other: &Scene, when: &str, instead: &str) -> Result<()> {
-        let shape = |scene: &Scene| {
-            let meshes = scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.material)).collect::<Vec<_>>();
-            let draws = scene.draws.iter().map(|draw| draw.mesh).collect::<Vec<_>>();
-            (meshes, draws, scene.lights.len(), scene.cameras.len())
-        };
-        let has_same_indices = || self.meshes.iter().zip(&other.meshes).all(|(a, b)| a.indices == b.indices);
-        if shape(self) != shape(other) || !has_same_indices() {
+        let counts = |scene: &Scene| (scene.lights.len(), scene.cameras.len());
+        if counts(self) != counts(other) || !self.has_same_triangles(other) {
             return Err(Error::request(format!(
                 "{}: its triangles, materials, lights or cameras change {when}, not only their places",
                 self.name

@@ -1,5 +1,6 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
+use super::tree::TREE_GROWTH;
 use super::{Changes, Kind, Setting, Unread};
 use crate::choice::choices;
 use crate::memory::{Strategy, alias};
@@ -146,6 +147,7 @@ pub const COMMON: &[Setting] = &[
                software drivers; the same picture",
         ..Setting::changing(Changes::Nothing)
     },
+    TREE_GROWTH,
     Setting {
         key: "memory-budget",
         kind: Kind::Bytes,

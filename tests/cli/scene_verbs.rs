@@ -286,6 +286,25 @@ fn an_exported_animation_turns_as_the_scene_does() {
     assert_eq!(scene::open(spec, 1, &AnimationChoice::One("door".to_owned())).unwrap_err().exit_code(), 2);
 }
 
+#[test]
+fn an_exported_lamp_moves_as_the_scenes_does() {
+    let spec = "cornell:motion=on";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cornell.glb");
+    std::fs::write(&path, encoded(spec)).unwrap();
+    let made = scene::open(spec, 1, &AnimationChoice::All).unwrap();
+    let read = gltf::Model::open(&path, &AnimationChoice::All).unwrap();
+    let mut places = Vec::new();
+    for time_s in [0.0, 0.7, 3.0] {
+        let [made, read] = [made.pose(time_s).unwrap(), read.pose(time_s).unwrap()];
+        let [lamp, panel] = [read.lights[0].position, read.draws[7].world_from_object.w_axis.truncate()];
+        assert_eq!(made.lights[0].position, lamp, "{time_s} s");
+        assert_eq!(made.draws[7].world_from_object.w_axis.truncate(), panel, "{time_s} s");
+        places.push(lamp);
+    }
+    assert!(places[0].distance(places[1]) > 0.5 && places[1].distance(places[2]) > 0.5, "{places:?}");
+}
+
 /// The box's camera and normals lie along the axes, where making unit length changes nothing: the same bits. The others'
 /// last bits move a normal by one of its 65535 steps here and there, or an edge into another pixel.
 #[test]

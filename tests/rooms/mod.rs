@@ -22,7 +22,8 @@ const FLOORS: &[&[&str]] = &[
     &["reference"],
     &["continuation"],
     &["job"],
-    &["bench", "selftest", "sequence", "study"],
+    &["sequence"],
+    &["bench", "selftest", "study"],
     &["cli"],
     // The crate's front pages.
     &["lib", "main"],

@@ -42,7 +42,7 @@ pub fn encode(scene: &Scene, motions: &[Motion]) -> Result<Vec<u8>> {
         })
         .collect();
     nodes.extend(scene.lights.iter().enumerate().map(|(index, light)| {
-        let mut node = placed(world_from_light(light));
+        let mut node = node(motions, Thing::Light(index), world_from_light(light));
         node.insert("name".to_owned(), json!(light.name));
         node.insert("extensions".to_owned(), json!({ LIGHTS: { "light": index } }));
         Value::Object(node)
@@ -160,6 +160,7 @@ fn animation_json(scene: &Scene, motion: &Motion, binary: &mut Binary) -> Value 
     // Draws come first, then lights, then cameras.
     let node = match motion.thing {
         Thing::Draw(index) => index,
+        Thing::Light(index) => scene.draws.len() + index,
         Thing::Camera(index) => scene.draws.len() + scene.lights.len() + index,
     };
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());

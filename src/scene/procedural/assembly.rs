@@ -102,6 +102,14 @@ impl Assembly {
         self.motions.push(motion);
     }
 
+    /// Adds a point light that goes along `translations`, which repeat after `period_s` seconds: candela per channel, metres.
+    pub fn moving_point_light(&mut self, name: &str, translations: Curve, intensity: Vec3, period_s: u32) {
+        let thing = Thing::Light(self.scene.lights.len());
+        let motion = Motion::along(name, thing, translations, None, period_s);
+        self.point_light(name.to_owned(), motion.translation_at(0.0), intensity, None);
+        self.motions.push(motion);
+    }
+
     /// Adds a point light: candela per channel, metres.
     pub fn point_light(&mut self, name: String, position: Vec3, intensity: Vec3, range: Option<f32>) {
         let direction = Vec3::NEG_Y;

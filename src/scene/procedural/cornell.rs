@@ -8,14 +8,25 @@
 //! A panel of radiance L and area A that shines as Lambert's law says gives pi * L * A of flux, all of it downward. The
 //! panel is black, so it swallows what the point light sends up; the point light's intensity is that flux spread over
 //! the lower half of the sphere: pi * L * A / (2 * pi) = L * A / 2. On the axis the panel is twice as bright.
+//!
+//! With `motion=on` both circle around the panel's place: a light that moves while the camera and all else stand, by which
+//! the flicker of a technique is seen.
 
 use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
 
 use super::assembly::Assembly;
-use super::patch::{Detail, Patch};
+use super::curves;
+use super::patch::{Detail, Patch, sin_cos_turns};
 use super::shapes::{Mapping, face};
 use crate::scene::Material;
+use crate::scene::animation::Curve;
 use crate::scene::procedural::values::Values;
+
+/// Radius of the panel's way, metres: between the walls with a hand's breadth to spare.
+const CIRCLE_M: f64 = 1.2;
+/// Stops of the spline that stands for the circle, from which it is off by less than a percent.
+const STOPS: u32 = 8;
+const PERIOD_S: u32 = 4;
 
 const WIDTH_CM: f64 = 556.0;
 const HEIGHT_CM: f64 = 548.8;
@@ -44,8 +55,18 @@ fn block(height: f64, top: [[f64; 2]; 4]) -> Vec<Patch> {
     patches
 }
 
-/// The box; it has no parameters and the seed changes nothing.
-pub fn make(_values: &Values, _seed: u64) -> Assembly {
+/// The panel's way around `middle`, metres.
+fn circle(middle: DVec3) -> Curve {
+    let stop = |index: u32| {
+        let (sine, cosine) = sin_cos_turns(f64::from(index) / f64::from(STOPS));
+        middle + CIRCLE_M * dvec3(cosine, 0.0, sine)
+    };
+    curves::circuit(&(0..STOPS).map(stop).collect::<Vec<_>>(), PERIOD_S)
+}
+
+/// The box; the seed changes nothing.
+pub fn make(values: &Values, _seed: u64) -> Assembly {
+    let moves = values.get("motion") == 1;
     let mut assembly = Assembly::default();
     let white = assembly.material(Material::diffuse("white", vec3(0.73, 0.73, 0.71)));
     let red = assembly.material(Material::diffuse("red", vec3(0.63, 0.065, 0.05)));
@@ -74,12 +95,18 @@ pub fn make(_values: &Values, _seed: u64) -> Assembly {
         ("panel", panel, vec![flat(light)]),
     ] {
         let mesh = assembly.mesh(name, material, &patches);
-        assembly.draw(mesh, Mat4::IDENTITY);
+        match name {
+            "panel" if moves => assembly.moving(name, mesh, circle(DVec3::ZERO), None, PERIOD_S),
+            _ => assembly.draw(mesh, Mat4::IDENTITY),
+        }
     }
 
     const PANEL_AREA_M2: f32 = 1.30 * 1.05;
-    let below_panel = metres(278.0, y - 5.0, 279.5).as_vec3();
-    assembly.point_light("panel".to_owned(), below_panel, PANEL_RADIANCE * (PANEL_AREA_M2 / 2.0), None);
+    let (below_panel, intensity) = (metres(278.0, y - 5.0, 279.5), PANEL_RADIANCE * (PANEL_AREA_M2 / 2.0));
+    match moves {
+        true => assembly.moving_point_light("lamp", circle(below_panel), intensity, PERIOD_S),
+        false => assembly.point_light("panel".to_owned(), below_panel.as_vec3(), intensity, None),
+    }
     // The published lens: 35 mm in front of a film of 25 mm.
     let y_fov = 0.686_43;
     assembly.camera("camera", metres(278.0, 273.0, -800.0), metres(278.0, 273.0, 0.0), y_fov);

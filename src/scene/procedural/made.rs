@@ -15,6 +15,8 @@ const REACH_PARTS: u32 = 8;
 pub enum Thing {
     /// Index into `Scene::draws`.
     Draw(usize),
+    /// Index into `Scene::lights`, of a point light: it only goes somewhere else.
+    Light(usize),
     /// Index into `Scene::cameras`.
     Camera(usize),
 }
@@ -102,6 +104,7 @@ impl ProceduralScene {
             let place = motion.place_at(time_s);
             match motion.thing {
                 Thing::Draw(index) => scene.draws[index].world_from_object = place,
+                Thing::Light(index) => scene.lights[index].position = motion.translation_at(time_s),
                 Thing::Camera(index) => scene.cameras[index].world_from_view = place,
             }
         }

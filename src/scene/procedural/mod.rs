@@ -47,7 +47,12 @@ pub enum Choice {
     Number { default: u64, range: [u64; 2] },
     /// One of these; the first by default.
     Word(&'static [&'static str]),
+    /// `off` or `on`. While it is off, a scene is called as if it had no such parameter: one that had none before stays
+    /// the same scene.
+    Switch,
 }
+
+const OFF_ON: [&str; 2] = ["off", "on"];
 
 impl Choice {
     /// The values that it may have, and its default.
@@ -55,6 +60,7 @@ impl Choice {
         match self {
             Self::Number { default, range: [least, greatest] } => format!("{least} to {greatest}, default {default}"),
             Self::Word(words) => format!("{}, default {}", words.join(" or "), words[0]),
+            Self::Switch => Self::Word(&OFF_ON).described(),
         }
     }
 
@@ -69,6 +75,7 @@ impl Choice {
                 text.parse().ok().filter(|value| (least..=greatest).contains(&value))
             }
             Self::Word(words) => words.iter().position(|word| *word == text).map(|place| place as u64),
+            Self::Switch => Self::Word(&OFF_ON).parse(text),
         }
     }
 
@@ -76,7 +83,13 @@ impl Choice {
         match self {
             Self::Number { .. } => value.to_string(),
             Self::Word(words) => words[value as usize].to_owned(),
+            Self::Switch => Self::Word(&OFF_ON).text(value),
         }
+    }
+
+    /// Whether it stands in a scene's name at `value`.
+    fn is_named(&self, value: u64) -> bool {
+        !matches!((self, value), (Self::Switch, 0))
     }
 }
 
@@ -94,7 +107,11 @@ pub const ALL: &[BuiltIn] = &[
     BuiltIn {
         name: "cornell",
         description: "the Cornell box: two blocks, a red and a green wall, a panel in the ceiling",
-        parameters: &[],
+        parameters: &[Parameter {
+            key: "motion",
+            description: "whether its panel and its lamp circle under the ceiling",
+            choice: Choice::Switch,
+        }],
         make: cornell::make,
     },
     BuiltIn {
@@ -213,11 +230,12 @@ impl BuiltIn {
         })
     }
 
-    /// What stands after the colon of a scene's name: every parameter.
+    /// What stands after the colon of a scene's name: every parameter, but for switches that are off.
     fn settings(&self, values: &Values) -> String {
         let one =
             |parameter: &Parameter| format!("{}={}", parameter.key, parameter.choice.text(values.get(parameter.key)));
-        self.parameters.iter().map(one).collect::<Vec<_>>().join(",")
+        let named = self.parameters.iter().filter(|parameter| parameter.choice.is_named(values.get(parameter.key)));
+        named.map(one).collect::<Vec<_>>().join(",")
     }
 }
 
@@ -279,6 +297,34 @@ mod tests {
         assert_eq!((scene.lights.len(), scene.cameras.len()), (1, 1));
         let bounds = scene.bounds();
         assert!((bounds.max - bounds.min).abs_diff_eq(glam::vec3(5.56, 5.488, 5.592), 1e-5), "{bounds:?}");
+    }
+
+    #[test]
+    fn the_lamp_of_cornell_circles_under_its_panel() {
+        let [plain, off] = ["cornell", "cornell:motion=off"].map(|spec| made(spec, 1));
+        assert_eq!((off.name.as_str(), &off.hash), ("cornell", &plain.hash));
+        assert_eq!(plain.hash, "d8f0204d37e017200c1454bb2b6d3750306e9c844cbf2332a90b85c52cf524b4");
+        let circling = open("cornell:motion=on", 1).expect("a name").expect("a parameter");
+        assert_eq!(circling.scene.name, "cornell:motion=on");
+        let panel = circling.scene.draws.len() - 1;
+        let home = plain.lights[0].position;
+        for step in 0..40 {
+            let pose = circling.clone().into_pose(f64::from(step) * 0.1);
+            checks::assert_scene_is_sound(&pose);
+            let lamp = pose.lights[0].position;
+            // What stands for the panel stays 5 cm below its middle.
+            let bounds = pose.draws[panel].bounds(&pose.meshes[pose.draws[panel].mesh]);
+            assert!((bounds.center() - lamp).abs_diff_eq(glam::vec3(0.0, 0.05, 0.0), 1e-4), "{step}: {lamp}");
+            assert!(((lamp - home).length() - 1.2).abs() < 0.03, "{step}: {lamp}");
+            // It stays inside: what moves is in the box of what stands.
+            let (all, still) = (pose.bounds(), plain.bounds());
+            assert!(all.min.cmpge(still.min - 1e-4).all() && all.max.cmple(still.max + 1e-4).all(), "{all:?}");
+            assert_eq!(pose.draws[..panel].len(), plain.draws.len() - 1);
+        }
+        let [start, quarter, later] = [0.0, 1.0, 4.0].map(|time_s| circling.clone().into_pose(time_s));
+        assert!(start.lights[0].position.distance(quarter.lights[0].position) > 1.5);
+        assert_eq!(start.lights[0].position, later.lights[0].position);
+        assert!(start.hash != quarter.hash && start.hash != plain.hash);
     }
 
     #[test]
@@ -439,6 +485,7 @@ mod tests {
             ("hall:80000", "'80000' is not key=value"),
             ("hall:triangles=1", "triangles=1: must be"),
             ("cornell:width=3", "no parameter 'width'"),
+            ("cornell:motion=yes", "motion=yes: must be off or on, default off"),
             ("fence:alpha=solid", "alpha=solid: must be blend or mask, default blend"),
         ] {
             let error = build(spec, 1).expect("the name is known").expect_err(spec);
