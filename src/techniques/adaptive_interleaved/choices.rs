@@ -2,7 +2,7 @@
 
 use super::components::PreparedComponent;
 use super::resources::NAME;
-use super::settings::{self, Component, LightChoice, Mode, RayOrder, Refine, Trace};
+use super::settings::{self, Component, GuidanceOf, LightChoice, Mode, RayOrder, Refine, Trace};
 use crate::bvh::Bvh;
 use crate::choice::Choice;
 use crate::error::{Error, Result};
@@ -26,6 +26,7 @@ pub struct Choices {
     pub tile_px: [u32; 2],
     pub trace: Trace,
     pub refine: Refine,
+    pub guidance_of: GuidanceOf,
     pub ray_order: RayOrder,
     /// How the virtual lights of `id` are chosen.
     pub light_choice: LightChoice,
@@ -138,6 +139,7 @@ impl Choices {
             tile_px: [tile_x, tile_y],
             trace: values.choice("trace"),
             refine: values.choice("refine"),
+            guidance_of: values.choice("guidance-of"),
             ray_order: values.choice("ray-order"),
             light_choice: values.choice("id-choice"),
             mode,
@@ -184,6 +186,17 @@ impl Choices {
     /// Whether tiles iterate on after the initial pass.
     pub fn is_guided(&self) -> bool {
         self.mode != Mode::Igi
+    }
+
+    /// Whether a tile's guidance is not its own alone.
+    pub fn spreads(&self) -> bool {
+        self.has_refinement() && self.guidance_of != GuidanceOf::Tile
+    }
+
+    /// Components whose initial passes come before the refinement of any of them, at least 1.
+    pub fn recorded_together(&self) -> usize {
+        let is_shared = self.spreads() && self.guidance_of == GuidanceOf::Components;
+        if is_shared { self.components.len().max(1) } else { 1 }
     }
 
     /// Whether tiles are refined by a dispatch of their own.

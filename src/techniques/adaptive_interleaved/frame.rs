@@ -25,6 +25,8 @@ pub struct AdaptiveFrame {
     /// Where the host estimates the components.
     pub host: Option<HostTrace>,
     pub components: Vec<ComponentSteps>,
+    /// As `Choices::recorded_together` has it.
+    pub recorded_together: usize,
     pub smoothing: Smoothing,
     pub composite: Composite,
     pub color: Image,
@@ -84,6 +86,7 @@ impl AdaptiveFrame {
             components: components
                 .map(|(choice, samples)| ComponentSteps::new(gpu, resources, choices, choice, samples))
                 .collect::<Result<_>>()?,
+            recorded_together: choices.recorded_together(),
             smoothing: Smoothing::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, choices, has_emissive, scene.has_extras)?,
             color: resources.image(COLOR),

@@ -59,6 +59,7 @@ mod sample;
 mod sampler;
 pub mod settings;
 mod smooth;
+mod spread;
 mod steps;
 
 use super::bench_stage::BenchStage;
@@ -83,6 +84,7 @@ use settings::{Component, Trace};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
+use steps::ComponentSteps;
 
 pub struct AdaptiveInterleaved;
 
@@ -237,8 +239,19 @@ impl Frame for AdaptiveFrame {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, &self.gbuffer)?;
         let mut gbuffer = self.gbuffer.from(Access::ColorWrite);
         let shared = Shared { frame, direct: &self.direct };
-        for component in &self.components {
-            gbuffer = component.record(cmd, &shared, gbuffer)?;
+        for together in self.components.chunks(self.recorded_together) {
+            for component in together {
+                gbuffer = component.record_initial(cmd, &shared, gbuffer)?;
+            }
+            for (index, component) in together.iter().enumerate() {
+                let others = together.iter().filter(|other| !std::ptr::eq(*other, component));
+                let guided = [component].into_iter().chain(others).filter_map(ComponentSteps::own_guidance);
+                let written = guided.map(|own| own.from(Access::ComputeWrite));
+                // The refinement of the first has read what all of them ask for.
+                let own_guidance: Vec<_> =
+                    written.map(|own| if index == 0 { own } else { own.after(Access::ComputeRead) }).collect();
+                gbuffer = component.record_refinement(cmd, &shared, gbuffer, &own_guidance)?;
+            }
         }
         let irradiance = self.components.iter().map(|steps| steps.buffers.irradiance.from(steps.last_write()));
         let (gbuffer, irradiance) = self.smoothing.record(cmd, frame, gbuffer, irradiance)?;

@@ -11,6 +11,9 @@ pub const FILTERED: &str = "adaptive_interleaved.filter.irradiance";
 /// An empty list of virtual point lights.
 pub const NO_VPLS: &str = "adaptive_interleaved.vpls";
 
+/// A component's buffer of what each of its tiles asks for by itself, where that is not all that guides it.
+pub const OWN_GUIDANCE: &str = "guidance.own";
+
 /// Bytes of a texel's irradiance.
 pub const IRRADIANCE_BYTES: u64 = 8;
 

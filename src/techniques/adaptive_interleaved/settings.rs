@@ -63,6 +63,18 @@ choices! {
 }
 
 choices! {
+    /// What beside a tile says how far it is refined (`--guidance-of`).
+    pub enum GuidanceOf {
+        /// Nothing: the paper's.
+        "tile" => Tile,
+        /// The eight tiles around it.
+        "neighbours" => Neighbours,
+        /// What other components ask for over the same pixels.
+        "components" => Components,
+    }
+}
+
+choices! {
     /// Which virtual lights a pixel looks at (`--id-choice`).
     pub enum LightChoice {
         /// Those of its own subset.
@@ -167,6 +179,20 @@ pub const SETTINGS: &[Setting] = &[
         help: "Relative standard error of a tile's mean at which it is refined no more, as far as its own pixels tell in \
                the initial pass; 0: tiles are refined by what their rays met, as in the paper",
         unread: |values| Unread::unless(values, "mode", &[Mode::Adaptive], "no tile is asked"),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "guidance-of",
+        kind: Kind::Choice(GuidanceOf::WORDS),
+        default: "tile",
+        paper: "Dubla 2009, 4.1",
+        help: "Whose need refines a tile: its own (tile, the paper's); the most that it and the eight tiles around it have \
+               (neighbours); or that it and the tiles of other components over the same pixels have (components)",
+        unread: |values| {
+            Unread::unless(values, "mode", &[Mode::Adaptive], "no tile is guided")
+                .or_else(|| Unread::unless(values, "refine", &[Refine::Indirect], "a tile knows no other"))
+                .or_else(|| Unread::unless(values, "trace", &[Trace::Device], "a tile knows no other"))
+        },
         ..Setting::changing(Changes::Samples)
     },
     Setting {

@@ -9,9 +9,10 @@ use super::fused::FusedPass;
 use super::guide::GuidePass;
 use super::host::upload::HostSteps;
 use super::refine::{Listed, RefinePass};
-use super::resources::of_component;
+use super::resources::{OWN_GUIDANCE, of_component};
 use super::sample::SamplePass;
 use super::settings::Trace;
+use super::spread::SpreadPass;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::gbuffer::GBuffer;
@@ -51,6 +52,8 @@ enum Steps {
 /// Guidance, compaction, and the dispatch over what is listed.
 struct Refinement {
     guide: GuidePass,
+    /// Where other tiles guide too: the pass, and what tiles ask for by themselves.
+    spread: Option<(SpreadPass, Buffer)>,
     compact: CompactPass,
     refine: RefinePass,
     guidance: Buffer,
@@ -75,8 +78,10 @@ impl ComponentSteps {
         } else {
             let (sample, estimates) = (SamplePass::new(gpu, choices, choice)?, buffer("estimates"));
             if choices.has_refinement() {
+                let spread = SpreadPass::new(gpu, choices, choice)?.filter(|_| choices.spreads());
                 let refinement = Refinement {
                     guide: GuidePass::new(gpu, choice)?,
+                    spread: spread.map(|spread| (spread, buffer(OWN_GUIDANCE))),
                     compact: CompactPass::new(gpu, choices)?,
                     refine: RefinePass::new(gpu, choices, choice)?,
                     guidance: buffer("guidance"),
@@ -121,43 +126,65 @@ impl ComponentSteps {
         }
     }
 
-    /// Records its passes. Hands the G-buffer on as it leaves it.
-    pub fn record<'a>(
+    /// What its tiles ask for by themselves; None where that is all that guides them.
+    pub fn own_guidance(&self) -> Option<&Buffer> {
+        match &self.steps {
+            Steps::Apart { refinement, .. } => refinement.spread.as_ref().map(|(_, own)| own),
+            Steps::Initial { .. } | Steps::Fused { .. } | Steps::Host(_) => None,
+        }
+    }
+
+    /// Records all that comes before its refinement. Hands the G-buffer on as it leaves it.
+    pub fn record_initial<'a>(
         &self,
         cmd: &mut Commands,
         shared: &Shared<'_>,
         gbuffer: Edge<'a, GBuffer>,
     ) -> Result<Edge<'a, GBuffer>> {
         let buffers = &self.buffers;
-        if let Steps::Host(host) = &self.steps {
-            host.record(cmd, buffers)?;
-            return Ok(gbuffer);
-        }
-        let sampled = gbuffer.after(Access::ComputeSample);
         match &self.steps {
-            Steps::Host(_) => {}
-            Steps::Initial { sample, estimates } => {
-                sample.record(cmd, buffers, shared, gbuffer, estimates)?;
+            Steps::Host(host) => {
+                host.record(cmd, buffers)?;
+                return Ok(gbuffer);
             }
+            Steps::Initial { sample, estimates } => sample.record(cmd, buffers, shared, gbuffer, estimates)?,
             Steps::Fused { fused, guidance } => fused.record(cmd, buffers, shared, gbuffer, guidance)?,
             Steps::Apart { sample, estimates, refinement } => {
-                let Refinement { guide, compact, refine, guidance, bins, tiles } = refinement;
                 sample.record(cmd, buffers, shared, gbuffer, estimates)?;
-                let written = |buffer| Buffer::from(buffer, Access::ComputeWrite);
-                guide.record(cmd, buffers, written(estimates), guidance, bins)?;
-                compact.record(cmd, buffers, written(guidance), written(bins), tiles)?;
-                let listed = Listed {
-                    // The guidance has read them, and the list was made from it.
-                    estimates: written(estimates).after(Access::ComputeRead),
-                    guidance: written(guidance).after(Access::ComputeRead),
-                    rays: written(&buffers.rays),
-                    irradiance: written(&buffers.irradiance),
-                    bins: written(bins),
-                    tiles: written(tiles),
-                };
-                refine.record(cmd, buffers, shared, sampled, &listed)?;
+                let Refinement { guide, spread, guidance, bins, .. } = refinement;
+                let guided = spread.as_ref().map_or(guidance, |(_, own)| own);
+                guide.record(cmd, buffers, estimates.from(Access::ComputeWrite), guided, bins)?;
             }
         }
-        Ok(sampled)
+        Ok(gbuffer.after(Access::ComputeSample))
+    }
+
+    /// Records its refinement, where it has one. `own_guidance`: of all components whose initial passes are recorded, this
+    /// one's first.
+    pub fn record_refinement<'a>(
+        &self,
+        cmd: &mut Commands,
+        shared: &Shared<'_>,
+        gbuffer: Edge<'a, GBuffer>,
+        own_guidance: &[Edge<'_, Buffer>],
+    ) -> Result<Edge<'a, GBuffer>> {
+        let Steps::Apart { estimates, refinement, .. } = &self.steps else { return Ok(gbuffer) };
+        let Refinement { spread, compact, refine, guidance, bins, tiles, .. } = refinement;
+        let (buffers, written) = (&self.buffers, |buffer| Buffer::from(buffer, Access::ComputeWrite));
+        if let (Some((spread, _)), [own, others @ ..]) = (spread, own_guidance) {
+            spread.record(cmd, buffers, *own, others, guidance, written(bins))?;
+        }
+        compact.record(cmd, buffers, written(guidance), written(bins), tiles)?;
+        let listed = Listed {
+            // The guidance has read them, and the list was made from it.
+            estimates: written(estimates).after(Access::ComputeRead),
+            guidance: written(guidance).after(Access::ComputeRead),
+            rays: written(&buffers.rays),
+            irradiance: written(&buffers.irradiance),
+            bins: written(bins),
+            tiles: written(tiles),
+        };
+        refine.record(cmd, buffers, shared, gbuffer, &listed)?;
+        Ok(gbuffer.after(Access::ComputeSample))
     }
 }

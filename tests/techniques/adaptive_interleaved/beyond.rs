@@ -1,4 +1,5 @@
-//! What the paper does not have: rays in another order, virtual lights drawn by contribution, refinement until an error.
+//! What the paper does not have: rays in another order, virtual lights drawn by contribution, refinement until an error,
+//! guidance by what lies around.
 
 use super::{CORNELL, EXTENT, NAME, sampler};
 use crate::support::difference::require_same;
@@ -94,4 +95,41 @@ fn tiles_are_refined_until_the_error_that_is_wanted() {
         assert!(count > 150 && between > 5 && off * 50 <= count, "{wanted}: {off} of {count}, {between}");
     }
     assert!(rays[0] < rays[1] && rays[1] < rays[2], "{rays:?}");
+}
+
+/// The most that the tiles around ask for, or those of the other component over the same pixels: by the stages of guidance
+/// that is local.
+#[test]
+fn guidance_may_see_neighbours_and_other_components() {
+    let watched = Watched::open("cornell");
+    let [width, height] = [EXTENT.width as usize, EXTENT.height as usize];
+    for scale in [1, 2] {
+        let text = scale.to_string();
+        let shared = both(&CORNELL, &[("id-scale", &text)]);
+        let iterations = |of: &str| {
+            let stages = ["guidance.id.iterations", "guidance.ss.iterations"];
+            let renderer = watched.render_stages(NAME, &both(&shared, &[("guidance-of", of)]), &stages);
+            stages.map(|stage| watched.integers(&renderer, stage))
+        };
+        let (own, around, joined) = (iterations("tile"), iterations("neighbours"), iterations("components"));
+        let mut raised = 0;
+        for (component, other) in [(0, 1), (1, 0)] {
+            let side = if component == 0 { 3 * scale } else { 3 };
+            let most = |x: std::ops::Range<usize>, y: std::ops::Range<usize>, of: &[u32]| {
+                let pixels = y.flat_map(|y| x.clone().map(move |x| y.min(height - 1) * width + x.min(width - 1)));
+                pixels.map(|pixel| of[pixel]).max().unwrap()
+            };
+            for (x, y) in (0..height).step_by(side).flat_map(|y| (0..width).step_by(side).map(move |x| (x, y))) {
+                let at = y * width + x;
+                let [left, above] = [x, y].map(|at| at.saturating_sub(side));
+                let expected =
+                    most(left..(x + 2 * side).min(width), above..(y + 2 * side).min(height), &own[component]);
+                assert_eq!(around[component][at], expected, "neighbours of {component} at {x},{y}, {scale}");
+                let expected = most(x..x + side, y..y + side, &own[other]).max(own[component][at]);
+                assert_eq!(joined[component][at], expected, "components at {x},{y} of {component}, {scale}");
+                raised += u32::from(expected > own[component][at]);
+            }
+        }
+        assert!(raised > 20, "{raised}");
+    }
 }
