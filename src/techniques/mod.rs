@@ -63,10 +63,14 @@ impl Inputs<'_> {
         emissive_lights(self.values, self.lights)
     }
 
-    /// The medium of `--medium` in its box.
-    fn medium(&self) -> Option<MediumBlock> {
-        let medium = Medium::from_values(self.values)?;
-        Some(medium.around(self.scene, self.view.eye(), self.lights.lights.iter()))
+    /// What `--medium` comes to.
+    fn medium(&self) -> Option<Medium> {
+        Medium::chosen(self.values, self.scene)
+    }
+
+    /// The same in its box.
+    fn medium_block(&self) -> Option<MediumBlock> {
+        Some(self.medium()?.around(self.scene, self.view.eye(), self.lights.lights.iter()))
     }
 
     /// The triangles of solid surfaces that are drawn.

@@ -1,3 +1,5 @@
-//! Scenes as they are read.
+//! Scenes as they are read and made.
 
+mod furnished;
 mod gltf;
+mod smoke;

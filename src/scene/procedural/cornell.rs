@@ -12,7 +12,7 @@
 //! With `motion=on` both circle around the panel's place: a light that moves while the camera and all else stand, by which
 //! the flicker of a technique is seen.
 
-use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
+use glam::{DVec3, Vec3, dvec3, vec3};
 
 use super::assembly::Assembly;
 use super::curves;
@@ -94,10 +94,11 @@ pub fn make(values: &Values, _seed: u64) -> Assembly {
         ("tall_block", white, block(330.0, tall)),
         ("panel", panel, vec![flat(light)]),
     ] {
-        let mesh = assembly.mesh(name, material, &patches);
-        match name {
-            "panel" if moves => assembly.moving(name, mesh, circle(DVec3::ZERO), None, PERIOD_S),
-            _ => assembly.draw(mesh, Mat4::IDENTITY),
+        if name == "panel" && moves {
+            let mesh = assembly.mesh(name, material, &patches);
+            assembly.moving(name, mesh, circle(DVec3::ZERO), None, PERIOD_S);
+        } else {
+            assembly.fixed(name, material, &patches);
         }
     }
 

@@ -13,6 +13,7 @@ use crate::gpu::shader::{Shader, variant};
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend;
 use crate::passes::direct::{self, DirectSettings};
+use crate::scene::Medium;
 use crate::settings::{Brdf, DirectShadow, PositionStorage};
 use crate::techniques::Inputs;
 use crate::units::Extent;
@@ -39,7 +40,9 @@ pub struct Choices {
     /// Whether the scene has BLEND surfaces.
     pub has_blend: bool,
     /// What light passes through.
-    pub medium: Option<MediumBlock>,
+    pub medium: Option<Medium>,
+    /// The same in its box.
+    pub medium_block: Option<MediumBlock>,
     /// In the order in which they are listed.
     pub components: Vec<ComponentChoice>,
     /// The scene's own lights.
@@ -77,7 +80,7 @@ impl Choices {
         let diagonal = inputs.scene.lasting_bounds().diagonal();
         let vpl_clamp_m = values.length("vpl-clamp", diagonal);
         let base = values.integer("base") as u32;
-        let medium = inputs.medium();
+        let medium_block = inputs.medium_block();
         let listed = settings::listed(values);
         let candidates = listed.clone().unwrap_or_else(|| Component::ALL.to_vec());
         let components = candidates.into_iter().map(|component| {
@@ -104,7 +107,7 @@ impl Choices {
             let count = prepared.count();
             let columns = own.width.div_ceil(tile_x);
             let mut params = AdaptiveParams {
-                medium: medium.unwrap_or_else(MediumBlock::zeroed),
+                medium: medium_block.unwrap_or_else(MediumBlock::zeroed),
                 width: own.width,
                 height: own.height,
                 scale,
@@ -147,7 +150,8 @@ impl Choices {
             vpl_clamp_m,
             is_emissive: inputs.emissive_lights(),
             has_blend: inputs.stats.has_blend,
-            medium,
+            medium: inputs.medium(),
+            medium_block,
             components,
         })
     }
