@@ -97,7 +97,7 @@ impl Recipe {
             set("lights", &format!("{scattered}:{}", values.integer("seed")))?;
         }
         set("seed", SEED)?;
-        if reads(MEDIUM.key) && medium != "none" {
+        if reads(MEDIUM.key) {
             set(MEDIUM.key, &medium)?;
         }
         for (key, text) in judged.reference_settings(values, &lights)? {

@@ -8,14 +8,16 @@ use glam::Vec3;
 pub use crate::scene::Medium;
 
 impl Medium {
-    /// The value of `--medium`: Some(None) where it is none, or one that does nothing; None at `auto`, where the scene says.
+    /// The value of `--medium`: Some(None) where it is none, or one that does nothing; None at `auto`, where the
+    /// scene says.
     pub fn asked(values: &Values) -> Option<Option<Self>> {
         let asked = values.unless_auto(MEDIUM.key, |values, key| values.numbers_or_none(key))?;
         let medium = asked.map(|[scattering, absorption, asymmetry]| Self { scattering, absorption, asymmetry });
         Some(medium.filter(|medium| medium.extinction() > 0.0))
     }
 
-    /// What `--medium` comes to in `scene`, whose own it is at `auto`; None where there is none, or one that does nothing.
+    /// What `--medium` comes to in `scene`, whose own it is at `auto`; None where there is none, or one that does
+    /// nothing.
     pub fn chosen(values: &Values, scene: &Scene) -> Option<Self> {
         Self::asked(values).unwrap_or(scene.medium)
     }

@@ -1,5 +1,5 @@
-//! The furnished rooms `office`, `desk` and `shirley`: what lights them, that nothing leaks, and that no two faces lie in one
-//! plane, where which of them is seen would be chance.
+//! The furnished rooms `office`, `desk` and `shirley`: what lights them, that nothing leaks, and that no two faces
+//! lie in one plane, where which of them is seen would be chance.
 
 use glam::{DVec2, DVec3, Vec3};
 use quincunx::bvh::Bvh;
@@ -70,7 +70,8 @@ fn furniture_is_closed_and_matt() {
     }
 }
 
-/// From where each camera is, every ray ends at the front of something: the walls let none out, and nothing is inside out.
+/// From where each camera is, every ray ends at the front of something: the walls let none out, and nothing is inside
+/// out.
 #[test]
 fn no_ray_leaves_a_furnished_room() {
     for (spec, _) in ROOMS {
@@ -137,8 +138,8 @@ impl Flat {
     }
 }
 
-/// Faces that touch end at each other or reach into each other: where two lay in one plane, rounding would choose between
-/// them, and between shadow and light.
+/// Faces that touch end at each other or reach into each other: where two lay in one plane, rounding would choose
+/// between them, and between shadow and light.
 #[test]
 fn no_two_faces_of_a_furnished_room_lie_in_one_plane() {
     // Beyond what single precision makes of one plane in a room of ten metres.

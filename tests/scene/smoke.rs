@@ -38,8 +38,8 @@ fn auto_is_the_scene_s_own_medium_and_other_values_stand_for_it() {
     }
 }
 
-/// Whoever draws the medium is judged in it, with the light that it scatters once into what is seen; whoever does not is
-/// judged without.
+/// Whoever draws the medium is judged in it, with the light that it scatters once into what is seen; whoever does not
+/// is judged without.
 #[test]
 fn references_have_the_medium_that_the_judged_picture_has() {
     let [smoky, clear] = [Some(OWN), None].map(cornell);

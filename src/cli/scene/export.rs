@@ -53,7 +53,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     write_whole(path, |out| out.write_all(&bytes))?;
     let (bytes, triangles) = (Bytes(bytes.len() as u64), scene.triangle_count());
     let mut text = format!("{}: {bytes}, {triangles} triangles\n", path.display());
-    if scene.medium.is_none() {
+    if scene.medium.is_some() {
         let medium = Medium::text(scene.medium);
         text += &format!("  note: a .glb cannot hold the scene's medium; --medium {medium} renders the file in it\n");
     }

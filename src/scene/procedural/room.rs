@@ -1,8 +1,8 @@
-//! What closed rooms share: floor, ceiling and walls that let no light through, panels below the ceiling, and things that
-//! stand on something.
+//! What closed rooms share: floor, ceiling and walls that let no light through, panels below the ceiling, and things
+//! that stand on something.
 //!
-//! x runs to the right, z from the far wall to the near one, y up; metres. Solids reach a little into what they touch, so
-//! that no two faces lie in one plane and no ray finds its way between them.
+//! x runs to the right, z from the far wall to the near one, y up; metres. Solids reach a little into what they
+//! touch, so that no two faces lie in one plane and no ray finds its way between them.
 
 use glam::{DAffine3, DVec3, Mat4, Vec3, dvec2, dvec3};
 
@@ -57,7 +57,8 @@ impl Room {
     pub fn build(&self, assembly: &mut Assembly, walls: Walls, window: Option<Window>) {
         let Self { min, max, wall_m } = *self;
         let solid = |low: DVec3, high: DVec3| cuboid(low, high, TILE_M, Detail::COARSE);
-        // Walls end inside the slabs, the side walls inside the far and the near one, and these within the sides' outer faces.
+        // Walls end inside the slabs, the side walls inside the far and the near one, and these within the sides'
+        // outer faces.
         let (butt, end) = (0.45 * wall_m, 0.9 * wall_m);
         let [foot, head] = [min.y - butt, max.y + butt];
         let out = dvec3(0.95, 0.0, 0.95) * wall_m;
@@ -65,7 +66,7 @@ impl Room {
         let (low, high) = (min.y - 0.3 * wall_m, max.y + 0.3 * wall_m);
         let along = |x: [f64; 2]| solid(dvec3(x[0], low, min.z - butt), dvec3(x[1], high, max.z + butt));
         let right = match window {
-            None => along([max.x + 2.0 * wall_m, max.x + 3.0 * wall_m]),
+            None => along([max.x, max.x + wall_m]),
             Some(Window { z_m, y_m }) => {
                 // The wall's own x is the room's z, and it faces -x.
                 let outer = [dvec2(min.z - butt, low), dvec2(max.z + butt, high)];
@@ -90,8 +91,9 @@ impl Room {
         }
     }
 
-    /// A lamp below the ceiling: a flat case of `frame`, and 2 mm below it a rectangle of `size_m` (x and z) that shines
-    /// downward with `radiance`. Nothing stands out beside the rectangle: a rim would shade the walls from what is near it.
+    /// A lamp below the ceiling: a flat case of `frame`, and 2 mm below it a rectangle of `size_m` (x and z) that
+    /// shines downward with `radiance`. Nothing stands out beside the rectangle: a rim would shade the walls from
+    /// what is near it.
     pub fn ceiling_panel(&self, assembly: &mut Assembly, name: &str, at: [f64; 2], lamp: Panel) {
         const CASE_M: f64 = 0.05;
         const RIM_M: f64 = 0.03;

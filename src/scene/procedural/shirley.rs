@@ -1,6 +1,6 @@
-//! A room of tables and boxes under one panel, in the spirit of Peter Shirley's test rooms, one of which Dubla, Debattista
-//! and Chalmers 2009 light (figure 6, Shirley 6): plain solids of many sizes and turns, alone, stacked and on tables, so that
-//! every kind of contact between shadow and surface is there.
+//! A room of tables and boxes under one panel, in the spirit of Peter Shirley's test rooms, one of which Dubla,
+//! Debattista and Chalmers 2009 light (figure 6, Shirley 6): plain solids of many sizes and turns, alone, stacked and
+//! on tables, so that every kind of contact between shadow and surface is there.
 //!
 //! The middle of the floor is the origin, y up; metres.
 
@@ -101,7 +101,8 @@ fn table() -> Vec<Patch> {
     patches
 }
 
-/// `count` boxes by colour: in cells of tables and floor, in a shuffled order, and where all are taken on top of others.
+/// `count` boxes by colour: in cells of tables and floor, in a shuffled order, and where all are taken on top of
+/// others.
 fn boxes(room: &Room, turns: [f64; 4], count: u32, random: &mut Pcg32) -> [Vec<Patch>; 6] {
     let mut cells = cells(room, turns);
     let mut patches: [Vec<Patch>; 6] = Default::default();

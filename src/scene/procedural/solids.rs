@@ -1,5 +1,5 @@
-//! Closed solids of furnished rooms, beside those of `shapes`: chamfered and open boxes, walls with a hole, the covers of
-//! books, bent wire. In metres, y up; watertight, each edge with the same bits on both sides.
+//! Closed solids of furnished rooms, beside those of `shapes`: chamfered and open boxes, walls with a hole, the
+//! covers of books, bent wire. In metres, y up; watertight, each edge with the same bits on both sides.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
@@ -100,7 +100,8 @@ pub fn pierced(outer: [DVec2; 2], hole: [DVec2; 2], depth_m: f64, tile_m: f64) -
     patches
 }
 
-/// A box of `size_m` without a lid that opens toward +z, from z = 0, centred on x = y = 0; its walls are `wall_m` thick.
+/// A box of `size_m` without a lid that opens toward +z, from z = 0, centred on x = y = 0; its walls are `wall_m`
+/// thick.
 pub fn open_box(size_m: DVec3, wall_m: f64, tile_m: f64) -> Vec<Patch> {
     let half = size_m.truncate() * 0.5;
     let (outer, inner) = (ring([-half, half]), ring([DVec2::splat(wall_m) - half, half - DVec2::splat(wall_m)]));
@@ -135,8 +136,8 @@ pub fn channel(size_m: DVec3, thickness_m: f64, tile_m: f64) -> Vec<Patch> {
     patches
 }
 
-/// Wire along `path`, which lies in a plane across the unit vector `normal` and is read a little outside of 0 to 1 too, in
-/// `segments` pieces of `around` sides. Its ends are flat.
+/// Wire along `path`, which lies in a plane across the unit vector `normal` and is read a little outside of 0 to 1
+/// too, in `segments` pieces of `around` sides. Its ends are flat.
 pub fn wire(
     path: impl Fn(f64) -> DVec3 + 'static,
     normal: DVec3,
@@ -176,7 +177,8 @@ mod tests {
             let (sine, cosine) = sin_cos_turns(0.25 * t);
             dvec3(0.3 * cosine, 0.0, 0.3 * sine)
         };
-        // A regular polygon of 64 sides for a circle, and a polyline of 64 pieces for its arc, are within half a percent.
+        // A regular polygon of 64 sides for a circle, and a polyline of 64 pieces for its arc, are within half a
+        // percent.
         let arc_m = 0.3 * std::f64::consts::FRAC_PI_2;
         for (name, patches, volume, bound) in [
             ("chamfered", chamfered(min, max, bevel, 1.0), 0.6 * 0.4 * 0.8 - edges - corners, 1e-6),

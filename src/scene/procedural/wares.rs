@@ -128,7 +128,8 @@ pub fn sheet(size_m: [f64; 2], curl_m: f64) -> Vec<Patch> {
 
 /// A paper clip that lies along x.
 pub fn clip(around: u32, segments: u32) -> Vec<Patch> {
-    // Three straight runs and three half circles, ever smaller: lengths along the wire, and half the height of each turn.
+    // Three straight runs and three half circles, ever smaller: lengths along the wire, and half the height of each
+    // turn.
     const WIRE_M: f64 = 0.00045;
     let [outer, middle, inner] = [0.0042, 0.0035, 0.0028];
     let path = move |t: f64| {

@@ -1,7 +1,7 @@
 //! The lamp: a heavy foot, two arms with a joint between, and a shade with a disc in it that shines.
 //!
-//! The disc, and no bulb, is the light: of a bulb every point of the desk sees one half, so that there would be no place
-//! that is wholly lit.
+//! The disc, and no bulb, is the light: of a bulb every point of the desk sees one half, so that there would be no
+//! place that is wholly lit.
 
 use glam::{DVec3, Vec3, dvec3, vec3};
 

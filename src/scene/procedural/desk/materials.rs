@@ -1,4 +1,5 @@
-//! What the desk and its room are made of, and how large the desk is. Nothing is metal, and nothing shines but the lamp's disc.
+//! What the desk and its room are made of, and how large the desk is. Nothing is metal, and nothing shines but the
+//! lamp's disc.
 
 use glam::{DVec3, Vec3, dvec3};
 

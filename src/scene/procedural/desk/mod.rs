@@ -1,6 +1,6 @@
-//! A desk at night, seen closely: the disc in the shade of its lamp is all the light there is. After the Deskar of Dubla,
-//! Debattista and Chalmers 2009, figure 6, made anew: many small things, each with a shadow that is sharp where it touches
-//! the desk and wide away from it, and a room that the desk lights.
+//! A desk at night, seen closely: the disc in the shade of its lamp is all the light there is. After the Deskar of
+//! Dubla, Debattista and Chalmers 2009, figure 6, made anew: many small things, each with a shadow that is sharp
+//! where it touches the desk and wide away from it, and a room that the desk lights.
 //!
 //! x runs along the desk to the right, z from the wall behind it to who sits there, y up; the desk's middle is over the
 //! origin; metres.

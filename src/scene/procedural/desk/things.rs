@@ -34,7 +34,8 @@ fn on_desk(x: f64, z: f64) -> DVec3 {
     dvec3(x, DESK_M.y, z)
 }
 
-/// A thing that lies along x turned to lie along a direction in the desk's plane, or one that stands laid down along +x.
+/// A thing that lies along x turned to lie along a direction in the desk's plane, or one that stands laid down along
+/// +x.
 fn laid() -> DAffine3 {
     DAffine3::from_mat3(DMat3::from_cols(DVec3::NEG_Y, DVec3::X, DVec3::Z))
 }
@@ -112,8 +113,8 @@ pub fn add(assembly: &mut Assembly, materials: &Materials, count: u32, random: &
     }
 }
 
-/// `count` places on the part of the desk that is seen, apart from each other and from what has its place; fewer where no
-/// more are found.
+/// `count` places on the part of the desk that is seen, apart from each other and from what has its place; fewer
+/// where no more are found.
 fn free_places(count: u32, random: &mut Pcg32) -> Vec<DVec2> {
     const APART_M: f64 = 0.045;
     let mut places: Vec<DVec2> = Vec::new();

@@ -1,5 +1,5 @@
-//! Desks with what stands on them, chairs, shelves. Each is made on y = 0 around the y axis; who sits at a desk, or on a
-//! chair, looks along -z.
+//! Desks with what stands on them, chairs, shelves. Each is made on y = 0 around the y axis; who sits at a desk, or
+//! on a chair, looks along -z.
 
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -312,8 +312,8 @@ impl Row {
     }
 }
 
-/// A case of shelves against the far wall, open toward +z: width, height and depth in `size_m`, its lower left back corner at
-/// the origin. With it the rows that can be filled.
+/// A case of shelves against the far wall, open toward +z: width, height and depth in `size_m`, its lower left back
+/// corner at the origin. With it the rows that can be filled.
 pub fn shelves(size_m: DVec3, columns: u32, rows: u32) -> (Vec<Patch>, Vec<Row>) {
     const BOARD_M: f64 = 0.022;
     /// How far boards reach into each other.

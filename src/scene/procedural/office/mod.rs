@@ -1,9 +1,10 @@
-//! An office in the evening: two panels below the ceiling are all its light. Desks face each other in fours, blinds hang
-//! before the window, shelves stand at a wall whose colour the others take up. After the Office of Dubla, Debattista and
-//! Chalmers 2009, figure 6, made anew: soft shadows narrow and wide, and corners that only other surfaces light.
+//! An office in the evening: two panels below the ceiling are all its light. Desks face each other in fours, blinds
+//! hang before the window, shelves stand at a wall whose colour the others take up. After the Office of Dubla,
+//! Debattista and Chalmers 2009, figure 6, made anew: soft shadows narrow and wide, and corners that only other
+//! surfaces light.
 //!
-//! x runs from the left wall to the window, z from the wall with door and shelves to the one behind the camera, the middle of
-//! the floor is the origin; metres.
+//! x runs from the left wall to the window, z from the wall with door and shelves to the one behind the camera, the
+//! middle of the floor is the origin; metres.
 
 mod furniture;
 mod materials;
@@ -32,11 +33,12 @@ const HEIGHT_M: f64 = 2.7;
 /// White that reflects the light of a neutral lamp, so that a desk is bright and no wall is burnt out at exposure 0.
 const PANEL_RADIANCE: Vec3 = vec3(30.0, 28.5, 26.0);
 
-/// Light that crosses the room loses a third: lamps have halos and shadows show in the air, and the far wall is seen. As
-/// small drops do, it scatters forward.
+/// Light that crosses the room loses a third: lamps have halos and shadows show in the air, and the far wall is seen.
+/// As small drops do, it scatters forward.
 const SMOKE: Medium = Medium { scattering: 0.08, absorption: 0.005, asymmetry: 0.3 };
 
-/// The scene for `desks`, blinds of `slats`, with smoke or without; the seed chooses what lies on desks and stands in shelves.
+/// The scene for `desks`, blinds of `slats`, with smoke or without; the seed chooses what lies on desks and stands in
+/// shelves.
 pub fn make(values: &Values, seed: u64) -> Assembly {
     let (desks, slats) = (values.get("desks") as u32, values.get("slats") as u32);
     let mut random = Pcg32::new(seed, 7);

@@ -20,8 +20,8 @@ fn solid(low: DVec3, high: DVec3) -> Vec<Patch> {
     cuboid(low, high, 0.6, Detail::COARSE)
 }
 
-/// The frame, the sill, the screen that closes the hole, and blinds of `slats` slats each before it, from the left one (as
-/// seen from outside the room, along z) on.
+/// The frame, the sill, the screen that closes the hole, and blinds of `slats` slats each before it, from the left
+/// one (as seen from outside the room, along z) on.
 pub fn window(assembly: &mut Assembly, materials: &Materials, room: &Room, window: Window, slats: u32) {
     let wall = room.max.x;
     let Window { z_m: [near, far], y_m: [sill, head] } = window;
