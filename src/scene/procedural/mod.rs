@@ -156,11 +156,7 @@ pub const ALL: &[BuiltIn] = &[
                 description: "number of slats of each blind",
                 choice: Choice::Number { default: 30, range: [6, 300] },
             },
-            Parameter {
-                key: "smoke",
-                description: "whether smoke fills the room",
-                choice: Choice::Switch,
-            },
+            Parameter { key: "smoke", description: "whether smoke fills the room", choice: Choice::Switch },
         ],
         make: office::make,
     },

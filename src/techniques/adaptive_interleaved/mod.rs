@@ -7,11 +7,12 @@
 //! samples that the pixel has not used. A box of the tile's size that stops at discontinuities smooths each component,
 //! and albedo comes last.
 //!
-//! Passes, in order: samples of each component (on the host); gbuffer; of each component sample, guide, compact and
-//! refine (with `--refine fused` sample does all of it, with `--mode igi` there is no other; with `--trace host` the host
-//! has hit and of each component sample in their place, and the device upload); discontinuity; of each
-//! component filter, and upsample where it is estimated at fewer pixels than the frame has; composite; blend (where the
-//! scene has BLEND surfaces).
+//! Passes, in order: samples of each component (on the host); gbuffer; of each component sample, guide, spread (where
+//! `--guidance-of` is not `tile`), compact and refine (with `--refine fused` sample does all of it, with `--mode igi` there
+//! is no other; with `--trace host` the host has hit and of each component sample in their place, and the device upload);
+//! discontinuity; of each component filter, and upsample where it is estimated at fewer pixels than the frame has;
+//! composite; blend (where the scene has BLEND surfaces). With `--guidance-of components` the guidance of all components
+//! comes before the refinement of any.
 //!
 //! Differs from the paper
 //! - a device draws what pixels see and casts the shadow rays, where the paper had eight processor cores: `--trace host`
@@ -23,8 +24,9 @@
 //! - of several lights each guides by itself: by the part that is hidden of those that some pixels of a tile meet and
 //!   others do not. Listing 3 takes the mean over all lights, by which every tile in the shadow of one of two is in a
 //!   penumbra (`--ss-guidance mean`); under one light both are the same
-//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, and guide as others do
-//!   where their range reaches
+//! - punctual lights, which the paper does not have, belong to `ss`: their shadows are hard, or soft by `--light-radius`,
+//!   and guide as others do where their range reaches
+//! - threads that lie together have one slot of neighbouring tiles, not one tile (`--ray-order`)
 //! - what the box filter averages is reached without crossing a discontinuity, found as in Segovia 2006, section 4.5
 //! - upsampling is guided by normals and by distances from the pixel's plane, where the paper has depths (section 4.1):
 //!   a floor that is seen at a slant stays one surface
@@ -37,8 +39,9 @@
 //!   not light them, and the medium dims them not
 //!
 //! Equal to others: `--mode adaptive` where every tile refines to the most is `--mode max`; `--refine fused` and
-//! `indirect` are the same bits, and `--trace host` and `device` within the rounding of floats; with `--id-max` of all the tile's pixels `--mode max` lights every texel of `id` by
-//! every virtual light, so that the box has nothing to smooth.
+//! `indirect` are the same bits, as are both of `--ray-order`, and `--trace host` and `device` within the rounding of
+//! floats; with `--id-max` of all the tile's pixels `--mode max` lights every texel of `id` by every virtual light, so that
+//! the box has nothing to smooth.
 
 mod aov;
 mod bench_stages;
