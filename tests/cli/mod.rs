@@ -276,7 +276,7 @@ fn json_is_one_document_with_the_keys_of_the_design() {
     let passes = |report: &Value| -> Vec<String> {
         report["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap().to_owned()).collect()
     };
-    let expected = ["vpls", "gbuffer", "split", "shade", "gather", "discontinuity", "filter", "composite"];
+    let expected = ["bvh", "vpls", "gbuffer", "split", "shade", "gather", "discontinuity", "filter", "composite"];
     assert_eq!(passes(&report), expected.map(|pass| format!("interleaved_deferred.{pass}")));
     // The same document as a file, with the times of each pass.
     let ran = program.run(&small(&["--profile", "--quiet", "-o", "b.png", "--report", "b.json"])).fine();
