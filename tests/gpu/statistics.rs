@@ -148,7 +148,10 @@ fn the_report_has_them_and_the_picture_stays() {
     let profile = run(&["--json", "--statistics", "--profile"]).fine().json();
     let frames = run(&["--json", "--statistics", "--quiet", "--frames", "0..1"]).fine().json();
     for report in [&profile, &frames["frames"][0], &frames["frames"][1]] {
-        for (pass, again) in passes(&counted).into_iter().zip(passes(report)) {
+        // A later frame has its tree already, and no pass that makes one.
+        let on_device = passes(&counted).into_iter().filter(|pass| pass["where"].is_null());
+        for pass in on_device {
+            let again = passes(report).into_iter().find(|again| again["name"] == pass["name"]).unwrap();
             assert_eq!(pass["statistics"], again["statistics"], "{}", pass["name"]);
         }
     }

@@ -176,8 +176,7 @@ pub fn left_wall(assembly: &mut Assembly, materials: &Materials, room: &Room, ra
     put("flower_soil", materials.soil, earth);
     put("flower", materials.leaf, stood(leaves(10, 0.3, random), 0.0, dvec3(0.52, 0.87, 0.2)).collect());
 
-    let face_m = dvec3(0.0, 0.0, 0.0);
-    let forward = DAffine3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y, dvec3(1.25, 1.95, 0.0) + face_m);
+    let forward = DAffine3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y, dvec3(1.25, 1.95, 0.0));
     let rim = Curve::lines(&[[0.0, -SUNK_M], [0.15, -SUNK_M], [0.15, 0.03], [0.138, 0.03], [0.138, 0.02], [0.0, 0.02]]);
     put("clock", materials.charcoal, placed(turned(&rim, turning(32, 1.0)), forward).collect());
     let dial = Curve::lines(&[[0.0, 0.019], [0.139, 0.019], [0.137, 0.0215], [0.0, 0.0215]]);
