@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec3, dvec3};
 
-use super::patch::{Detail, Patch, Point, around_y, bent, moved, placed, sin_cos_turns};
+use super::patch::{Detail, Patch, around_y, bent, moved, placed, sin_cos_turns};
 use super::shapes::{Curve, Turning, cuboid_of, prism, sphere, turned};
 use super::solids::{channel, wire};
 use crate::sampling::pcg::Pcg32;
@@ -164,18 +164,15 @@ pub fn clip(around: u32, segments: u32) -> Vec<Patch> {
 
 /// A leaf that rises from the y axis toward +z and bends over: half its width, its length, and how steep it begins.
 fn leaf(half_m: f64, length_m: f64, rise: f64) -> Vec<Patch> {
-    let blade = Patch::new(6, 5, move |s, t| {
-        let (sine, cosine) = sin_cos_turns(s);
-        let (along, width) = (t, 4.0 * t * (1.0 - t));
-        let taper = width.max(0.0).sqrt() * (1.0 - 0.35 * t);
-        let z = length_m * along * (1.0 - 0.25 * rise * (1.0 - along));
-        let y = length_m * (rise * along - 0.75 * along * along);
-        // Thick enough to have two sides, and keeled along its middle.
-        let keel = 0.25 * half_m * taper * cosine.abs();
-        let position = dvec3(half_m * taper * cosine, y + keel + 0.06 * half_m * taper * sine, z);
-        Point { position, uv: glam::dvec2(s, -t) }
-    });
-    vec![blade.collapsed(true, true)]
+    // Across, through and along, bent from a box of unit length, so that it has no poles.
+    let blade = cuboid_of(dvec3(-1.0, 0.0, 0.0), dvec3(1.0, 1.0, 1.0), 1.0, [2, 1, 4]);
+    let bend = move |DVec3 { x: across, y: through, z: along }: DVec3| {
+        let width = half_m * (0.15 + 3.4 * along * (1.0 - along)) * (1.0 - 0.35 * along);
+        let keel = 0.3 * width * across.abs();
+        let y = length_m * (rise * along - 0.75 * along * along) + keel + 0.08 * half_m * through;
+        dvec3(width * across, y, length_m * along * (1.0 - 0.25 * rise * (1.0 - along)))
+    };
+    bent(blade, bend).collect()
 }
 
 /// The leaves of a plant that grows from the origin, the longest `length_m`.

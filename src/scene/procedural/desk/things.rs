@@ -34,8 +34,7 @@ fn on_desk(x: f64, z: f64) -> DVec3 {
     dvec3(x, DESK_M.y, z)
 }
 
-/// A thing that lies along x turned to lie along a direction in the desk's plane, or one that stands laid down along
-/// +x.
+/// Turns what stands into what lies along +x.
 fn laid() -> DAffine3 {
     DAffine3::from_mat3(DMat3::from_cols(DVec3::NEG_Y, DVec3::X, DVec3::Z))
 }
@@ -132,7 +131,7 @@ fn free_places(count: u32, random: &mut Pcg32) -> Vec<DVec2> {
     places
 }
 
-/// A heap, and a row that leans on nothing between two blocks.
+/// A heap of books that lie, and a row of books that stand.
 fn books(colored: &mut Colored, paper: &mut Vec<Patch>, random: &mut Pcg32) {
     let mut put = |[cover, pages]: [Vec<Patch>; 2], color: usize, place: DAffine3| {
         colored[color].extend(placed(cover, place));

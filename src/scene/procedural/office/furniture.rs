@@ -74,7 +74,7 @@ impl Meshes {
         // A place on the top, by right and toward the sitter.
         let turned = around_y(turns);
         let on = move |x: f64, z: f64| at + turned.transform_vector3(dvec3(x, DESK_M.y - SUNK_M, z));
-        // Even seeds have the right-handed on odd desks, and so on: each desk tosses.
+        // Each desk tosses for the hand that its owner writes with.
         let side = if random.below(2) == 0 { -1.0 } else { 1.0 };
         let aside = between(random, -0.04, 0.04);
         self.monitor.iter().for_each(|mesh| assembly.draw(*mesh, standing(turns + 0.1 * aside, on(aside, -0.16))));

@@ -174,10 +174,9 @@ pub fn left_wall(assembly: &mut Assembly, materials: &Materials, room: &Room, ra
     );
     let earth = tube(dvec3(0.52, 0.855, 0.2), dvec3(0.52, 0.875, 0.2), 0.085, 16);
     put("flower_soil", materials.soil, earth);
-    put("flower", materials.leaf, stood(leaves(12, 0.3, random), 0.0, dvec3(0.52, 0.87, 0.2)).collect());
+    put("flower", materials.leaf, stood(leaves(10, 0.3, random), 0.0, dvec3(0.52, 0.87, 0.2)).collect());
 
-    let face_m = dvec3(0.0, 0.0, 0.0);
-    let forward = DAffine3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y, dvec3(1.25, 1.95, 0.0) + face_m);
+    let forward = DAffine3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y, dvec3(1.25, 1.95, 0.0));
     let rim = Curve::lines(&[[0.0, -SUNK_M], [0.15, -SUNK_M], [0.15, 0.03], [0.138, 0.03], [0.138, 0.02], [0.0, 0.02]]);
     put("clock", materials.charcoal, placed(turned(&rim, turning(32, 1.0)), forward).collect());
     let dial = Curve::lines(&[[0.0, 0.019], [0.139, 0.019], [0.137, 0.0215], [0.0, 0.0215]]);
@@ -210,7 +209,7 @@ pub fn on_the_floor(assembly: &mut Assembly, materials: &Materials, places: [DVe
     let patches: Vec<Patch> = stood(pot([0.15, 0.2], 0.34, 0.01, 28), 0.0, tub).collect();
     assembly.fixed("tub", materials.clay, &patches);
     assembly.fixed("soil", materials.soil, &tube(tub + DVec3::Y * 0.25, tub + DVec3::Y * 0.29, 0.183, 20));
-    let plant: Vec<Patch> = stood(leaves(18, 0.75, random), 0.1, tub + DVec3::Y * 0.28).collect();
+    let plant: Vec<Patch> = stood(leaves(16, 0.75, random), 0.1, tub + DVec3::Y * 0.28).collect();
     assembly.fixed("plant", materials.leaf, &plant);
     let [basket, balls] = basket(random);
     let mesh = assembly.mesh("basket", materials.charcoal, &basket);
