@@ -146,6 +146,7 @@ pub trait Technique: Sync {
     /// The light transport that it claims to compute, as settings of `path_traced` (`--transport` and the like) by key: what
     /// `--reference auto` judges it against. Settings that both read are carried over without being named here, those that
     /// the reference does not read are passed over. None named: the whole integral.
+    /// Instead of `--medium auto` the values have what it comes to.
     ///
     /// Errors: path tracing has no such transport (exit code 2).
     fn reference_settings(&self, _: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {

@@ -16,7 +16,7 @@ use self::furniture::{DESK_M, Loose, Meshes, shelves};
 use self::materials::Materials;
 use super::assembly::Assembly;
 use super::patch::moved;
-use super::room::{Panel, Room, Window};
+use super::room::{Panel, Room, SUNK_M, Window};
 use super::wares::between;
 use crate::sampling::pcg::Pcg32;
 use crate::scene::Medium;
@@ -91,7 +91,7 @@ pub fn make(values: &Values, seed: u64) -> Assembly {
 
 /// The shelves at the far wall, what is in them, and a picture beside them.
 fn fill_shelves(assembly: &mut Assembly, materials: &Materials, loose: &mut Loose, room: &Room, random: &mut Pcg32) {
-    let corner = dvec3(-0.85, -super::room::SUNK_M, room.min.z);
+    let corner = dvec3(-0.85, -SUNK_M, room.min.z);
     let (case, rows) = shelves(dvec3(1.7, 1.6, 0.3), 2, 4);
     assembly.fixed("shelves", materials.oak, &moved(case, corner).collect::<Vec<_>>());
     for row in rows {
