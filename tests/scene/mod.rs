@@ -1,3 +1,4 @@
-//! Scenes as they are read.
+//! Scenes as they are read and made.
 
+mod furnished;
 mod gltf;

@@ -87,6 +87,12 @@ impl Assembly {
         self.scene.draws.push(Draw { mesh, world_from_object });
     }
 
+    /// Adds a mesh that stands once, where its patches are.
+    pub fn fixed(&mut self, name: &str, material: usize, patches: &[Patch]) {
+        let mesh = self.mesh(name, material, patches);
+        self.draw(mesh, Mat4::IDENTITY);
+    }
+
     /// Puts a mesh somewhere where it turns about an axis of unit length, once in `turn_s` seconds.
     pub fn turning(&mut self, name: &str, mesh: usize, at: DVec3, axis: Vec3, turn_s: u32) {
         let thing = Thing::Draw(self.scene.draws.len());

@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Material, Mesh, Scene};
 
 /// Lengths, indices, unit normals that agree with the winding, tangents, unmirrored texture coordinates.
 pub fn assert_mesh_is_sound(mesh: &Mesh) {
@@ -41,7 +41,8 @@ pub fn assert_mesh_is_sound(mesh: &Mesh) {
 pub fn assert_scene_is_sound(scene: &Scene) {
     let Scene { name, meshes, materials, textures, images, lights, cameras, .. } = scene;
     assert_eq!(scene.hash.len(), 64, "{name}");
-    assert!(!cameras.is_empty() && !lights.is_empty() && !scene.draws.is_empty(), "{name}");
+    let is_lit = !lights.is_empty() || scene.drawn_materials().any(Material::is_emissive);
+    assert!(!cameras.is_empty() && is_lit && !scene.draws.is_empty(), "{name}");
     for mesh in meshes {
         assert_mesh_is_sound(mesh);
         let has_tangents = mesh.tangents.iter().all(|tangent| *tangent != Vec4::ZERO);

@@ -9,7 +9,7 @@
 //! panel is black, so it swallows what the point light sends up; the point light's intensity is that flux spread over
 //! the lower half of the sphere: pi * L * A / (2 * pi) = L * A / 2. On the axis the panel is twice as bright.
 
-use glam::{DVec3, Mat4, Vec3, dvec3, vec3};
+use glam::{DVec3, Vec3, dvec3, vec3};
 
 use super::assembly::Assembly;
 use super::patch::{Detail, Patch};
@@ -73,8 +73,7 @@ pub fn make(_values: &Values, _seed: u64) -> Assembly {
         ("tall_block", white, block(330.0, tall)),
         ("panel", panel, vec![flat(light)]),
     ] {
-        let mesh = assembly.mesh(name, material, &patches);
-        assembly.draw(mesh, Mat4::IDENTITY);
+        assembly.fixed(name, material, &patches);
     }
 
     const PANEL_AREA_M2: f32 = 1.30 * 1.05;

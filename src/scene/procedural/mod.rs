@@ -6,79 +6,38 @@ mod charts;
 mod chess;
 mod cornell;
 mod curves;
+mod desk;
 mod fence;
 mod hall;
 mod lamps;
 mod made;
+mod office;
 mod patch;
 mod patterns;
 mod pictures;
 mod pieces;
 mod power;
+mod room;
 mod shapes;
+mod shirley;
+mod solids;
 
 #[cfg(test)]
 mod checks;
 mod values;
+mod wares;
 
 use crate::error::{Error, Result};
-use crate::scene::procedural::values::Values;
 use crate::scene::{AnimationChoice, Scene, normal_groups};
 use assembly::Assembly;
 use rayon::prelude::*;
+use values::Values;
 
 pub use made::{Motion, ProceduralScene, Thing};
+pub use values::{Choice, Parameter};
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
-
-/// One thing that a scene can be asked for.
-#[derive(Clone, Copy, Debug)]
-pub struct Parameter {
-    pub key: &'static str,
-    pub description: &'static str,
-    pub choice: Choice,
-}
-
-/// What a parameter may be.
-#[derive(Clone, Copy, Debug)]
-pub enum Choice {
-    /// A whole number between the least and the greatest.
-    Number { default: u64, range: [u64; 2] },
-    /// One of these; the first by default.
-    Word(&'static [&'static str]),
-}
-
-impl Choice {
-    /// The values that it may have, and its default.
-    pub fn described(&self) -> String {
-        match self {
-            Self::Number { default, range: [least, greatest] } => format!("{least} to {greatest}, default {default}"),
-            Self::Word(words) => format!("{}, default {}", words.join(" or "), words[0]),
-        }
-    }
-
-    /// The number, or the place of the word.
-    fn default(&self) -> u64 {
-        if let Self::Number { default, .. } = self { *default } else { 0 }
-    }
-
-    fn parse(&self, text: &str) -> Option<u64> {
-        match self {
-            Self::Number { range: [least, greatest], .. } => {
-                text.parse().ok().filter(|value| (least..=greatest).contains(&value))
-            }
-            Self::Word(words) => words.iter().position(|word| *word == text).map(|place| place as u64),
-        }
-    }
-
-    fn text(&self, value: u64) -> String {
-        match self {
-            Self::Number { .. } => value.to_string(),
-            Self::Word(words) => words[value as usize].to_owned(),
-        }
-    }
-}
 
 /// A scene that the program can make.
 pub struct BuiltIn {
@@ -178,6 +137,43 @@ pub const ALL: &[BuiltIn] = &[
             choice: Choice::Number { default: 46_000, range: [chess::LEAST_TRIANGLES, 2_000_000] },
         }],
         make: chess::make,
+    },
+    BuiltIn {
+        name: "office",
+        description: "an office under two panels, with blinds at its window (after Dubla 2009, figure 6)",
+        parameters: &[
+            Parameter {
+                key: "desks",
+                description: "number of desks, each with a chair; the room grows with every fourth",
+                choice: Choice::Number { default: 4, range: [1, 32] },
+            },
+            Parameter {
+                key: "slats",
+                description: "number of slats of each blind",
+                choice: Choice::Number { default: 30, range: [6, 300] },
+            },
+        ],
+        make: office::make,
+    },
+    BuiltIn {
+        name: "desk",
+        description: "a desk lamp over many small things, seen closely: shadows of contact and wide penumbrae",
+        parameters: &[Parameter {
+            key: "things",
+            description: "number of the small things that lie about",
+            choice: Choice::Number { default: 26, range: [0, 60] },
+        }],
+        make: desk::make,
+    },
+    BuiltIn {
+        name: "shirley",
+        description: "boxes on tables and on the floor of a room under one panel (after Dubla 2009, figure 6)",
+        parameters: &[Parameter {
+            key: "boxes",
+            description: "number of boxes",
+            choice: Choice::Number { default: 72, range: [1, 250] },
+        }],
+        make: shirley::make,
     },
 ];
 

@@ -77,6 +77,18 @@ impl Patch {
         }
     }
 
+    /// The same patch with every place put where `bend` has it, which must neither mirror nor fold.
+    pub fn bent(self, bend: impl Fn(DVec3) -> DVec3 + 'static) -> Self {
+        let surface = self.surface;
+        Self {
+            surface: Rc::new(move |s, t| {
+                let point = surface(s, t);
+                Point { position: bend(point.position), ..point }
+            }),
+            ..self
+        }
+    }
+
     /// How many triangles it becomes.
     pub fn triangle_count(&self) -> u64 {
         let points = self.collapsed.iter().filter(|collapsed| **collapsed).count() as u64;
@@ -170,6 +182,11 @@ pub fn placed(patches: Vec<Patch>, place: DAffine3) -> impl Iterator<Item = Patc
 /// The same patches, shifted, metres.
 pub fn moved(patches: Vec<Patch>, shift: DVec3) -> impl Iterator<Item = Patch> {
     placed(patches, DAffine3::from_translation(shift))
+}
+
+/// The same patches, every place put where `bend` has it, which must neither mirror nor fold.
+pub fn bent(patches: Vec<Patch>, bend: impl Fn(DVec3) -> DVec3 + Copy + 'static) -> impl Iterator<Item = Patch> {
+    patches.into_iter().map(move |patch| patch.bent(bend))
 }
 
 /// A turn about the y axis, from +z toward +x.

@@ -41,17 +41,21 @@ pub fn face_of([a, b, c, d]: [DVec3; 4], mapping: Mapping, columns: u32, rows: u
 
 /// A closed box from corner to corner.
 pub fn cuboid(min: DVec3, max: DVec3, tile_m: f64, detail: Detail) -> Vec<Patch> {
+    cuboid_of(min, max, tile_m, (max - min).to_array().map(|side_m| detail.along(side_m, 1)))
+}
+
+/// A closed box like `cuboid`, divided into exactly so many parts along x, y and z.
+pub fn cuboid_of(min: DVec3, max: DVec3, tile_m: f64, [along_x, along_y, along_z]: [u32; 3]) -> Vec<Patch> {
     let corner = |x: usize, y: usize, z: usize| dvec3([min, max][x].x, [min, max][y].y, [min, max][z].z);
-    [
-        [corner(1, 0, 1), corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1)],
-        [corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0)],
-        [corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0), corner(0, 1, 0)],
-        [corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)],
-        [corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)],
-        [corner(1, 0, 0), corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0)],
+    let face = |corners, columns, rows| face_of(corners, Mapping::Repeat { tile_m }, columns, rows);
+    vec![
+        face([corner(1, 0, 1), corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1)], along_z, along_y),
+        face([corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0)], along_z, along_y),
+        face([corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0), corner(0, 1, 0)], along_x, along_z),
+        face([corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)], along_x, along_z),
+        face([corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)], along_x, along_y),
+        face([corner(1, 0, 0), corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0)], along_x, along_y),
     ]
-    .map(|corners| face(corners, Mapping::Repeat { tile_m }, detail))
-    .into()
 }
 
 /// A piece of a profile: a parabola from `start` to `end` that leaves and arrives in the direction of `middle`.
@@ -199,7 +203,7 @@ pub fn torus(radius_m: f64, tube_m: f64, segments: u32, tube_segments: u32) -> V
 }
 
 /// A place at `from` whose own y axis points to `to`.
-fn toward(from: DVec3, to: DVec3) -> DAffine3 {
+pub fn toward(from: DVec3, to: DVec3) -> DAffine3 {
     let along = (to - from).normalize();
     let beside = if along.y.abs() > 0.5 { DVec3::X } else { DVec3::Y };
     let z = along.cross(beside).normalize();
@@ -391,6 +395,7 @@ mod tests {
         let lobes = |turns: f64, _: usize, t: f64| 1.0 + 0.1 * sin_cos_turns(6.0 * turns).0 * t * (1.0 - t);
         let shapes = [
             ("cuboid", cuboid(dvec3(-0.5, -0.2, -0.3), dvec3(0.4, 0.5, 0.6), 1.0, FINE)),
+            ("divided cuboid", cuboid_of(dvec3(-0.5, -0.2, -0.3), dvec3(0.4, 0.5, 0.6), 1.0, [3, 1, 2])),
             ("vase", turned(&vase, turning(16))),
             ("lobed vase", turned_with(&vase, turning(24), lobes)),
             ("prism", prism(7, [0.5, 0.3], 0.9, 1.0)),
