@@ -4,7 +4,8 @@ use crate::error::Result;
 use crate::frame::View;
 use crate::lights::LightSet;
 use crate::session::Session;
-use crate::settings::{Changes, Setting, Values};
+use crate::settings::{Changes, MEDIUM, Setting, Values};
+use crate::shading::medium::Medium;
 use crate::techniques::{self, Technique, settings_of};
 use crate::units::Extent;
 use indexmap::IndexMap;
@@ -75,6 +76,14 @@ impl Recipe {
     ) -> Result<Self> {
         let view = View::new(&session.scene, values.text("camera"), values.extent("size"))?;
         let lights = LightSet::new(&session.scene, &view, values)?;
+        // What `--medium` comes to here, so that a claim can depend on it; who does not read it draws none.
+        let mut values = values.clone();
+        let mut medium = "none".to_owned();
+        if values.iter().any(|(key, _)| key == MEDIUM.key) {
+            medium = Medium::text(Medium::chosen(&values, &session.scene));
+            techniques::set(judged, &mut values, MEDIUM.key, &medium)?;
+        }
+        let values = &values;
         let mut own = techniques::defaults(technique);
         let mut set = |key: &str, text: &str| techniques::set(technique, &mut own, key, text);
         let reads = |key: &str| settings_of(technique).iter().any(|setting| setting.key == key);
@@ -88,6 +97,9 @@ impl Recipe {
             set("lights", &format!("{scattered}:{}", values.integer("seed")))?;
         }
         set("seed", SEED)?;
+        if reads(MEDIUM.key) {
+            set(MEDIUM.key, &medium)?;
+        }
         for (key, text) in judged.reference_settings(values, &lights)? {
             if reads(key) {
                 set(key, &text)?;

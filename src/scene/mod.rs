@@ -11,6 +11,7 @@ pub mod glb;
 pub mod gltf;
 pub mod light;
 pub mod material;
+pub mod medium;
 pub mod mesh;
 pub mod mipmaps;
 mod model;
@@ -30,6 +31,7 @@ pub use animation::AnimationChoice;
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightKind, LightSource};
 pub use material::{AlphaMode, Material, TextureSlot};
+pub use medium::Medium;
 pub use mesh::{Bounds, Draw, Facing, Mesh, Node};
 pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
 
@@ -60,6 +62,8 @@ pub struct Scene {
     pub texture_limit_px: u32,
     /// Punctual lights. Emissive materials are not listed here.
     pub lights: Vec<Light>,
+    /// What `--medium auto` is. None: nothing, as in every file: glTF has no word for it.
+    pub medium: Option<Medium>,
     /// Cameras in file order. May be empty: the view then frames the bounds (`crate::framing`).
     pub cameras: Vec<Camera>,
     /// The box around everything that is drawn while the animations play, sampled at a few moments; None where

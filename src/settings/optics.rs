@@ -134,10 +134,12 @@ pub const MEDIUM: Setting = Setting {
         Part { word: "A", min: 0.0, max: 1e6 },
         Part { word: "G", min: -0.99, max: 0.99 },
     ]),
-    default: "none",
+    auto: true,
+    default: "auto",
     unit: "1/m",
     paper: "Dubla 2009, 3.4",
     help: "Homogeneous medium: its coefficients of scattering (S) and absorption (A), and the mean cosine of the \
-           scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights",
+           scattering angle (G, Henyey-Greenstein); it fills the box around all that is drawn, the eye and the lights; \
+           auto: the scene's own, which of the built-in ones office:smoke=on has, else none",
     ..Setting::changing(Changes::Picture)
 };

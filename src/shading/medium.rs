@@ -2,24 +2,31 @@
 
 use crate::gpu::shader::structs::MediumBlock;
 use crate::scene::{Light, LightSource, Scene};
-use crate::settings::Values;
+use crate::settings::{MEDIUM, Values};
 use glam::Vec3;
 
-/// A homogeneous medium that does something.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Medium {
-    /// Light that a metre scatters and absorbs, each at least 0, not both 0.
-    pub scattering: f64,
-    pub absorption: f64,
-    /// Mean cosine of the angle by which light is turned.
-    pub asymmetry: f64,
-}
+pub use crate::scene::Medium;
 
 impl Medium {
-    /// The value of `--medium`; None where there is none, or one that does nothing.
-    pub fn from_values(values: &Values) -> Option<Self> {
-        let [scattering, absorption, asymmetry] = values.numbers_or_none("medium")?;
-        (scattering + absorption > 0.0).then_some(Self { scattering, absorption, asymmetry })
+    /// The value of `--medium`: Some(None) where it is none, or one that does nothing; None at `auto`, where the
+    /// scene says.
+    pub fn asked(values: &Values) -> Option<Option<Self>> {
+        let asked = values.unless_auto(MEDIUM.key, |values, key| values.numbers_or_none(key))?;
+        let medium = asked.map(|[scattering, absorption, asymmetry]| Self { scattering, absorption, asymmetry });
+        Some(medium.filter(|medium| medium.extinction() > 0.0))
+    }
+
+    /// What `--medium` comes to in `scene`, whose own it is at `auto`; None where there is none, or one that does
+    /// nothing.
+    pub fn chosen(values: &Values, scene: &Scene) -> Option<Self> {
+        Self::asked(values).unwrap_or(scene.medium)
+    }
+
+    /// As `--medium` takes it.
+    pub fn text(medium: Option<Self>) -> String {
+        medium.map_or("none".to_owned(), |Self { scattering, absorption, asymmetry }| {
+            format!("{scattering},{absorption},{asymmetry}")
+        })
     }
 
     /// What a metre takes from a ray.

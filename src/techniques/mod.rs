@@ -63,10 +63,14 @@ impl Inputs<'_> {
         emissive_lights(self.values, self.lights)
     }
 
-    /// The medium of `--medium` in its box.
-    fn medium(&self) -> Option<MediumBlock> {
-        let medium = Medium::from_values(self.values)?;
-        Some(medium.around(self.scene, self.view.eye(), self.lights.lights.iter()))
+    /// What `--medium` comes to.
+    fn medium(&self) -> Option<Medium> {
+        Medium::chosen(self.values, self.scene)
+    }
+
+    /// The same in its box.
+    fn medium_block(&self) -> Option<MediumBlock> {
+        Some(self.medium()?.around(self.scene, self.view.eye(), self.lights.lights.iter()))
     }
 
     /// The triangles of solid surfaces that are drawn.
@@ -142,6 +146,7 @@ pub trait Technique: Sync {
     /// The light transport that it claims to compute, as settings of `path_traced` (`--transport` and the like) by key: what
     /// `--reference auto` judges it against. Settings that both read are carried over without being named here, those that
     /// the reference does not read are passed over. None named: the whole integral.
+    /// Instead of `--medium auto` the values have what it comes to.
     ///
     /// Errors: path tracing has no such transport (exit code 2).
     fn reference_settings(&self, _: &Values, _: &LightSet) -> Result<Vec<(&'static str, String)>> {

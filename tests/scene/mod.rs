@@ -2,3 +2,4 @@
 
 mod furnished;
 mod gltf;
+mod smoke;

@@ -5,6 +5,7 @@ use crate::cli::output;
 use crate::error::{Error, Result};
 use crate::scene::glb;
 use crate::scene::procedural::{self, ProceduralScene};
+use crate::shading::medium::Medium;
 use crate::units::Bytes;
 use crate::whole_file::write_whole;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -51,5 +52,10 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     let bytes = glb::encode(&scene, &motions).map_err(|error| error.within(spec))?;
     write_whole(path, |out| out.write_all(&bytes))?;
     let (bytes, triangles) = (Bytes(bytes.len() as u64), scene.triangle_count());
-    output::print_text(matches, &format!("{}: {bytes}, {triangles} triangles\n", path.display()))
+    let mut text = format!("{}: {bytes}, {triangles} triangles\n", path.display());
+    if scene.medium.is_some() {
+        let medium = Medium::text(scene.medium);
+        text += &format!("  note: a .glb cannot hold the scene's medium; --medium {medium} renders the file in it\n");
+    }
+    output::print_text(matches, &text)
 }

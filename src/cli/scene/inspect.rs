@@ -5,7 +5,7 @@ use crate::cli::output;
 use crate::error::Result;
 use crate::scene::gltf::Facts;
 use crate::scene::shell::Shell;
-use crate::scene::{self, AlphaMode, Camera, Image, LightKind, Material, Projection, Scene, normal_groups};
+use crate::scene::{self, AlphaMode, Camera, Image, LightKind, Material, Medium, Projection, Scene, normal_groups};
 use crate::units::{Bytes, Extent};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rayon::prelude::*;
@@ -63,6 +63,10 @@ fn document(scene: &Scene, facts: Option<&Facts>) -> Value {
         "images": scene.images.iter().map(|image| image_document(image)).collect::<Vec<_>>(),
         "lights": Map::from_iter(light_counts(scene).map(|(name, count)| (name.to_owned(), json!(count)))),
         "emissive_materials": scene.materials.iter().filter(|material| material.is_emissive()).count(),
+        "medium": scene.medium.map(|medium| {
+            let Medium { scattering, absorption, asymmetry } = medium;
+            json!({ "scattering": scattering, "absorption": absorption, "asymmetry": asymmetry })
+        }),
         "cameras": cameras,
         "bounds": corners,
         "warnings": scene.warnings,
@@ -128,6 +132,12 @@ fn describe(text: &mut String, scene: &Scene, facts: Option<&Facts>) -> std::fmt
     writeln!(text, "   textures: {textures} of {images} images, {} at their finest", Bytes(4 * pixels))?;
     let lights = Vec::from_iter(light_counts(scene).map(|(name, count)| format!("{count} {name}")));
     writeln!(text, "   lights: {}", lights.join(", "))?;
+    if let Some(Medium { scattering, absorption, asymmetry }) = scene.medium {
+        writeln!(
+            text,
+            "   medium: a metre scatters {scattering} and absorbs {absorption} of light, mean cosine {asymmetry}"
+        )?;
+    }
     for (index, camera) in scene.cameras.iter().enumerate() {
         writeln!(text, "   camera {index}: {}, {}", camera.name, kind(camera))?;
     }

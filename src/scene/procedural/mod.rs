@@ -152,6 +152,11 @@ pub const ALL: &[BuiltIn] = &[
                 description: "number of slats of each blind",
                 choice: Choice::Number { default: 30, range: [6, 300] },
             },
+            Parameter {
+                key: "smoke",
+                description: "whether smoke fills the room",
+                choice: Choice::Word(&["off", "on"]),
+            },
         ],
         make: office::make,
     },

@@ -12,6 +12,7 @@ use crate::gpu::shader::{Shader, variant};
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend;
 use crate::passes::direct::{self, DirectSettings};
+use crate::scene::Medium;
 use crate::settings::{Brdf, DirectShadow, PositionStorage};
 use crate::techniques::Inputs;
 use crate::units::Extent;
@@ -31,7 +32,9 @@ pub struct Choices {
     pub vpl_clamp_m: f32,
     pub is_emissive: bool,
     /// What light passes through.
-    pub medium: Option<MediumBlock>,
+    pub medium: Option<Medium>,
+    /// The same in its box.
+    pub medium_block: Option<MediumBlock>,
     /// In the order in which they are listed.
     pub components: Vec<ComponentChoice>,
     /// The scene's own lights.
@@ -69,7 +72,7 @@ impl Choices {
         let diagonal = inputs.scene.lasting_bounds().diagonal();
         let vpl_clamp_m = values.length("vpl-clamp", diagonal);
         let base = values.integer("base") as u32;
-        let medium = inputs.medium();
+        let medium_block = inputs.medium_block();
         let listed = settings::listed(values);
         let candidates = listed.clone().unwrap_or_else(|| Component::ALL.to_vec());
         let components = candidates.into_iter().map(|component| {
@@ -96,7 +99,7 @@ impl Choices {
             let count = prepared.count();
             let columns = own.width.div_ceil(tile_x);
             let mut params = AdaptiveParams {
-                medium: medium.unwrap_or_else(MediumBlock::zeroed),
+                medium: medium_block.unwrap_or_else(MediumBlock::zeroed),
                 width: own.width,
                 height: own.height,
                 scale,
@@ -131,7 +134,8 @@ impl Choices {
             direct: DirectSettings::with(Brdf::Lambert, DirectShadow::Ray, inputs.lights, inputs.scene),
             vpl_clamp_m,
             is_emissive: inputs.emissive_lights(),
-            medium,
+            medium: inputs.medium(),
+            medium_block,
             components,
         })
     }

@@ -29,7 +29,7 @@ impl Composite {
         let component_count = choices.components.len();
         let place = |component| choices.components.iter().position(|choice| choice.component == component);
         let params = ComposeParams {
-            medium: choices.medium.unwrap_or_else(MediumBlock::zeroed),
+            medium: choices.medium_block.unwrap_or_else(MediumBlock::zeroed),
             texel_count: choices.extent.pixel_count() as u32,
             component_count: component_count as u32,
             airlight: place(Component::Pm).unwrap_or(component_count) as u32,

@@ -139,7 +139,7 @@ impl Technique for AdaptiveInterleaved {
             ("ambient-visibility", if has_ao { "seen" } else { "off" }.to_owned()),
             ("direct-light", on_or_off(has_ss)),
         ];
-        if Medium::from_values(values).is_some() {
+        if Medium::asked(values).flatten().is_some() {
             settings.push(("airlight", if has_pm { "seen" } else { "none" }.to_owned()));
         }
         match values.integer("vpl-bounces") {
@@ -195,6 +195,7 @@ impl Prepared for PreparedAdaptive {
         let emissive = if self.choices.is_emissive { "on" } else { "off" };
         let mut resolved =
             BTreeMap::from([("emissive", emissive.to_owned()), ("vpl-clamp", format!("{}", self.choices.vpl_clamp_m))]);
+        resolved.insert("medium", Medium::text(self.choices.medium));
         let listed: Vec<&str> = self.choices.components.iter().map(|choice| choice.component.name()).collect();
         resolved.insert("components", listed.join(","));
         let id = self.choices.components.iter().find(|choice| choice.component == Component::Id);

@@ -15,11 +15,12 @@ pub enum Air {
 }
 
 impl Air {
-    /// Errors: light that a medium has scattered is asked for without one, or virtual point lights in one (exit code 2).
+    /// Errors: light that a medium scatters is asked for without one, or virtual point lights in one (exit code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<(Self, Option<Medium>)> {
-        let (values, medium) = (inputs.values, Medium::from_values(inputs.values));
+        let (values, medium) = (inputs.values, inputs.medium());
+        let airlight = values.choice("airlight");
         let transport = values.choice("transport");
-        let is_scattered = match values.choice("airlight") {
+        let is_scattered = match airlight {
             Airlight::Path => matches!(transport, Transport::SingleScatter | Transport::Full),
             Airlight::Seen => true,
             Airlight::None => false,
@@ -28,6 +29,13 @@ impl Air {
             None if transport == Transport::SingleScatter => {
                 Err(Error::request("--transport single-scatter: there is no medium that scatters light")
                     .note("--medium 0.1,0,0 is one; without, --transport direct is the same picture"))
+            }
+            None if airlight != Airlight::Path => {
+                let word = airlight.name();
+                Err(Error::request(format!("--airlight {word}: there is no medium that scatters light")).note(format!(
+                    "--medium 0.1,0,0 is one; without, --airlight {} is the same picture",
+                    Airlight::Path.name()
+                )))
             }
             None => Ok((Self::None, None)),
             Some(_) if !values.is_on("vpl-visibility") => {

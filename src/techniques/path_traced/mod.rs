@@ -63,7 +63,7 @@ use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays, Reads};
-use crate::scene::{AlphaMode, Light, Material};
+use crate::scene::{AlphaMode, Light, Material, Medium};
 use crate::settings::written::SettingValue;
 use crate::settings::{Brdf, Setting, TREE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
@@ -246,6 +246,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         is_tested: is_tested(inputs),
         air,
         airlight_seen: airlight::is_seen(values),
+        medium,
         has_lens: lens.is_some(),
         params,
     })
@@ -279,6 +280,7 @@ impl Prepared for PreparedPaths {
         let emissive = if self.sources.emitters.is_some() { "on" } else { "off" };
         let mut resolved = BTreeMap::from([
             ("emissive", emissive.to_owned()),
+            ("medium", Medium::text(self.choices.medium)),
             ("spp", self.sample_count.to_string()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
         ]);

@@ -15,6 +15,7 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
 use crate::plan::Resources;
 use crate::progress::Stage;
 use crate::resident::traced::{Layout, TracedGpu};
+use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::AmbientVisibility;
@@ -45,6 +46,8 @@ pub struct Choices {
     pub air: Air,
     /// Its airlight is that of the ray that is seen.
     pub airlight_seen: bool,
+    /// What `--medium` comes to.
+    pub medium: Option<Medium>,
     /// The camera has a lens that is open.
     pub has_lens: bool,
     pub params: SampleParams,

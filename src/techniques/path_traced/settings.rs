@@ -102,7 +102,8 @@ pub const SETTINGS: &[Setting] = &[
         help: "Light that --medium scatters: at any place of a path, as often as --transport says (path); or once, from \
                lights straight into the ray that is seen, with any --transport (seen); or none, so that it dims alone",
         unread: |values| {
-            let is_none = Medium::from_values(values).is_none();
+            // What `auto` comes to is the scene's to say: see `Air::new`.
+            let is_none = Medium::asked(values) == Some(None);
             is_none.then(|| Unread::at(values, "medium", "--medium 0.1,0,0", "nothing scatters on the way"))
         },
         ..Setting::changing(Changes::Picture)

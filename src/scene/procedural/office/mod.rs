@@ -19,6 +19,7 @@ use super::patch::moved;
 use super::room::{Panel, Room, SUNK_M, Window};
 use super::wares::between;
 use crate::sampling::pcg::Pcg32;
+use crate::scene::Medium;
 use crate::scene::procedural::values::Values;
 
 /// Desks of a group: two by the window, two beside them.
@@ -32,13 +33,18 @@ const HEIGHT_M: f64 = 2.7;
 /// White that reflects the light of a neutral lamp, so that a desk is bright and no wall is burnt out at exposure 0.
 const PANEL_RADIANCE: Vec3 = vec3(30.0, 28.5, 26.0);
 
-/// The scene for `desks`, blinds of `slats`; the seed chooses what lies on desks and stands in
+/// Light that crosses the room loses a third: lamps have halos and shadows show in the air, and the far wall is seen.
+/// As small drops do, it scatters forward.
+const SMOKE: Medium = Medium { scattering: 0.08, absorption: 0.005, asymmetry: 0.3 };
+
+/// The scene for `desks`, blinds of `slats`, with smoke or without; the seed chooses what lies on desks and stands in
 /// shelves.
 pub fn make(values: &Values, seed: u64) -> Assembly {
     let (desks, slats) = (values.get("desks") as u32, values.get("slats") as u32);
     let mut random = Pcg32::new(seed, 7);
     let mut assembly = Assembly::default();
     let materials = Materials::add(&mut assembly, seed as u32);
+    assembly.scene.medium = (values.get("smoke") == 1).then_some(SMOKE);
     let groups = desks.div_ceil(GROUP);
     let room = Room::new(dvec3(WIDTH_M, HEIGHT_M, WAYS_M + GROUP_M * f64::from(groups)), 0.22);
     let window = Window { z_m: [room.min.z + 1.1, room.max.z - 1.7], y_m: [0.92, 2.28] };

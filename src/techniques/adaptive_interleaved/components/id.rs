@@ -61,7 +61,7 @@ impl PreparedComponent for PreparedIndirect {
             bounces: values.integer("vpl-bounces") as u32,
             emissive: inputs.emissive_lights(),
             starts: false,
-            medium: inputs.medium(),
+            medium: inputs.medium_block(),
             seed: values.integer("seed") as u32,
         };
         let found = vpl::walk(inputs.scene, inputs.bvh.over(inputs.scene)?, &inputs.lights.lights, &walk);

@@ -5,6 +5,7 @@ use super::area_samples::AreaSamples;
 use super::method::{ComponentMethod, PreparedComponent, SampleCount, Samples};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::AdaptiveParams;
+use crate::scene::Medium;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::adaptive_interleaved::resources::NAME;
@@ -24,11 +25,11 @@ impl ComponentMethod for Airlight {
         listed: bool,
     ) -> Result<Option<Box<dyn PreparedComponent>>> {
         let values = inputs.values;
-        let Some(medium) = inputs.medium().filter(|medium| medium.scattering > 0.0) else {
+        let Some(medium) = inputs.medium_block().filter(|medium| medium.scattering > 0.0) else {
             if !listed {
                 return Ok(None);
             }
-            let text = values.text("medium");
+            let text = Medium::text(inputs.medium());
             return Err(Error::request(format!("{NAME}: --components pm: --medium {text} scatters no light"))
                 .note("--medium 0.1,0,0, or --components id,ss"));
         };
