@@ -61,7 +61,7 @@ impl FlickerMeter {
         self.earlier.push_back(then);
     }
 
-    /// Root of the mean square, over pixels and inner frames, of p[t - 1] - 2 p[t] + p[t + 1], p linear luminance, in
+    /// Root of the mean square, over pixels and inner frames, of `p[t - 1] - 2 p[t] + p[t + 1]`, p linear luminance, in
     /// parts of the mean of p over all; None of fewer than three frames, or of black ones.
     pub fn value(&self) -> Option<f64> {
         self.sums.value()
@@ -89,7 +89,7 @@ impl ErrorFlickerMeter {
         self.earlier = Some(then);
     }
 
-    /// Root of the mean square, over pixels and pairs of frames one after the other, of e[t + 1] - e[t], e the error of
+    /// Root of the mean square, over pixels and pairs of frames one after the other, of `e[t + 1] - e[t]`, e the error of
     /// linear luminance, in parts of the references' mean luminance; None of one frame, or of black references.
     pub fn value(&self) -> Option<f64> {
         self.sums.value()
