@@ -310,7 +310,10 @@ pub const SETTINGS: &[Setting] = &[
         help: "Which texels threads that lie together have: those of a tile, each of which looks at other lights (tile); \
                or those of one place in neighbouring tiles, whose rays go to the same lights from near places (slot); the \
                same picture",
-        unread: |values| Unread::unless(values, "refine", &[Refine::Indirect], "a tile's threads decide together"),
+        unread: |values| {
+            Unread::unless(values, "refine", &[Refine::Indirect], "a tile's threads decide together")
+                .or_else(|| Unread::unless(values, "trace", &[Trace::Device], "a thread of the host has whole tiles"))
+        },
         ..Setting::changing(Changes::Nothing)
     },
     Setting {
