@@ -1,4 +1,5 @@
-// The list of the tiles that refine, those with most iterations first, and the dispatch over it. A tile a thread.
+// The list of the tiles that refine, those with most iterations first, and the dispatch over it. A tile a thread, a block of
+// tiles a workgroup.
 // Pass: src/techniques/adaptive_interleaved/compact.rs.
 #version 460
 #include "techniques/adaptive_interleaved/lanes.glsl"
@@ -10,9 +11,18 @@ layout(std430, set = 0, binding = 8) readonly buffer Guidance { uint guidance[];
 layout(std430, set = 0, binding = 9) buffer Bins { BinsBlock bins; };
 layout(std430, set = 0, binding = 10) writeonly buffer Tiles { uint tiles[]; };
 
+// Tiles are listed block by block of these sides, so that those that follow each other in the list are near each other: their
+// rays meet the same surfaces.
+const uint BLOCK_TILES = 8u;
+
 void main() {
-    uint tile = gl_GlobalInvocationID.x;
-    if (tile >= params.tile_count) {
+    uint block_columns = (params.tile_columns + BLOCK_TILES - 1u) / BLOCK_TILES;
+    uint block = gl_WorkGroupID.x;
+    uvec2 corner = uvec2(block % block_columns, block / block_columns) * BLOCK_TILES;
+    uint place_in_block = gl_LocalInvocationID.x;
+    uvec2 at = corner + uvec2(place_in_block % BLOCK_TILES, place_in_block / BLOCK_TILES);
+    uint tile = at.y * params.tile_columns + at.x;
+    if (at.x >= params.tile_columns || tile >= params.tile_count) {
         return;
     }
     if (tile == 0u) {

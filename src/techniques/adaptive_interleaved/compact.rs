@@ -6,7 +6,8 @@ use super::buffers::ComponentBuffers;
 use super::choices::Choices;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::techniques::adaptive_interleaved::compact::COMP;
+use crate::gpu::shader::structs::AdaptiveParams;
+use crate::gpu::shader::techniques::adaptive_interleaved::compact::{BLOCK_TILES, COMP};
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use std::sync::Arc;
 
@@ -38,7 +39,10 @@ impl CompactPass {
                 ("Bins", Bound::Buffer(bins.resource)),
                 ("Tiles", Bound::Buffer(tiles)),
             ];
-            let groups = self.pipeline.groups([buffers.params.tile_count, 1, 1]);
+            // A block of tiles each.
+            let AdaptiveParams { tile_columns, tile_count, .. } = buffers.params;
+            let blocks = [tile_columns, tile_count / tile_columns].map(|side| side.div_ceil(BLOCK_TILES));
+            let groups = [blocks[0] * blocks[1], 1, 1];
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&buffers.params), &bound, groups)
         })
     }
