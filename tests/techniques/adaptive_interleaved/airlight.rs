@@ -153,32 +153,3 @@ fn shadows_in_the_air_and_halos_are_refined() {
     let all = refined(&[("pm-distance", "100")]);
     assert!(all <= plain, "a halo over everything parts no tile: {all} {plain}");
 }
-
-/// With more marches and places the airlight comes to that of paths, as even places make it: faster than independent
-/// ones.
-#[test]
-fn airlight_converges_to_paths() {
-    let watched = Watched::open("cornell");
-    let shared = [("size", "48x36"), ("emissive", "on"), ("background", "0"), ("lights", "0"), TEXT];
-    let paths = [("transport", "direct"), ("airlight", "seen"), ("direct-light", "off"), ("brdf", "lambert")];
-    let paths = both(&both(&shared, &paths), &[("ambient-visibility", "off"), ("spp", "4096")]);
-    let reference = watched.picture("path_traced", &paths);
-    let error = |most: &str| {
-        let own = [("components", "pm"), ("mode", "max"), ("tile", "1x1"), ("pm-max", most), ("pm-steps", "4")];
-        let picture = watched.picture(NAME, &both(&shared, &own));
-        let mut squares: Vec<f32> = picture
-            .pixels
-            .iter()
-            .zip(&reference.pixels)
-            .map(|(one, other)| (0..3).map(|channel| (one[channel] - other[channel]).powi(2)).sum())
-            .collect();
-        squares.sort_by(f32::total_cmp);
-        let kept = &squares[..squares.len() * 17 / 20];
-        (kept.iter().sum::<f32>() / kept.len() as f32).sqrt()
-    };
-    let errors = ["1", "4", "16", "64"].map(error);
-    let exponent = (errors[2] / errors[0]).log2() / 4.0;
-    println!("{errors:?}: exponent {exponent}");
-    assert!(exponent < -0.5, "{errors:?}: exponent {exponent}");
-    assert!(errors[3] < 0.15 * errors[0], "{errors:?}");
-}

@@ -3,6 +3,7 @@
 
 mod airlight;
 mod beyond;
+mod convergence;
 mod host;
 mod occlusion;
 mod smoothing;
@@ -111,19 +112,9 @@ fn indirect_light_of_all_subsets_is_every_virtual_light_with_its_shadow() {
     let lights = &scene.lights;
     let walk = vpl::Walk { count: 64, bounces: 1, emissive: true, starts: false, medium: None, seed: 1 };
     let vpls = vpl::walk(scene, &bvh, lights, &walk).vpls;
-    for tile in ["2x2", "3x3", "4x2"] {
-        let own = [("components", "id"), ("mode", "max"), ("vpls", "64"), ("tile", tile)];
-        let most = (
-            "id-max",
-            if tile == "3x3" {
-                "9"
-            } else if tile == "2x2" {
-                "4"
-            } else {
-                "8"
-            },
-        );
-        let changes = both(&both(&CORNELL, &own), &[most]);
+    for (tile, most) in [("1x1", "1"), ("2x2", "4"), ("3x3", "9"), ("4x2", "8")] {
+        let own = [("components", "id"), ("mode", "max"), ("vpls", "64"), ("tile", tile), ("id-max", most)];
+        let changes = both(&CORNELL, &own);
         let renderer = watched.render_stages(NAME, &changes, &["irradiance.id"]);
         let irradiance = watched.rgb(&renderer, "irradiance.id");
         let part = agreeing_part(&irradiance, &shown, |shown| {
@@ -320,6 +311,37 @@ fn each_light_guides_by_itself() {
     assert!(off * 50 <= tile_count, "{off} of {tile_count} are others");
 }
 
+/// Guidance that asks every tile for all of its iterations gives the picture of `max`: an error that no tile has is wanted,
+/// where light varies and reaches everything.
+#[test]
+fn guidance_for_everything_is_the_most_everywhere() {
+    let watched = Watched::with_scene(airlight::shelf());
+    for component in ["ss", "id", "pm"] {
+        let own =
+            both(&CORNELL, &[("components", component), ("tile", "3x2"), ("id-max", "6"), ("medium", "0.2,0.05,0.4")]);
+        let own: Vec<_> = own.into_iter().filter(|(key, _)| *key != "id-max" || component == "id").collect();
+        let picture = |changes: &[(&str, &str)]| watched.picture(NAME, &both(&own, changes));
+        let most = picture(&[("mode", "max")]);
+        require_same(&watched.session.gpu, &picture(&[("until-error", "0.000001")]), &most, &component);
+        assert_ne!(picture(&[]).hash().unwrap(), most.hash().unwrap(), "{component}: its own guidance asks for less");
+    }
+}
+
+/// A tile of one pixel shares with nobody: its estimate is its own samples' (`soft_shadows_are_the_mean_…` and the tests
+/// like it), and what is filtered is what was estimated.
+#[test]
+fn tiles_of_one_pixel_are_not_filtered() {
+    let watched = Watched::open("cornell");
+    let own = both(&CORNELL, &[("tile", "1x1"), ("id-max", "1"), ("ss-max", "3"), ("medium", "0.2,0.05,0.4")]);
+    let stages = ["id", "ss", "pm"]
+        .map(|component| [format!("irradiance.{component}"), format!("filter.irradiance.{component}")]);
+    let named: Vec<&str> = stages.as_flattened().iter().map(String::as_str).collect();
+    let renderer = watched.render_stages(NAME, &own, &named);
+    for [before, after] in &stages {
+        assert_eq!(watched.rgb(&renderer, before), watched.rgb(&renderer, after), "{before} and {after}");
+    }
+}
+
 /// Listed and dispatched from the device, or each tile in a loop of its own.
 #[test]
 fn both_ways_to_refine_give_the_same_picture() {
@@ -339,32 +361,6 @@ fn both_ways_to_refine_give_the_same_picture() {
         };
         require_same(&watched.session.gpu, &picture("fused"), &picture("indirect"), &own);
     }
-}
-
-/// Where every tile has a pixel to itself the picture is that of its own samples; with more of them it comes to the
-/// integral, at least as fast as independent ones would.
-#[test]
-fn soft_shadows_converge_to_paths() {
-    let watched = Watched::open("cornell");
-    let shared = [("size", "64x48"), ("emissive", "on"), ("background", "0")];
-    let reference =
-        both(&shared, &[("transport", "direct"), ("brdf", "lambert"), ("ambient-visibility", "off"), ("spp", "1024")]);
-    let reference = watched.picture("path_traced", &reference);
-    // Paths spread over their pixels: where those show an edge no count of samples helps.
-    let error = |most: &str| {
-        let own = [("components", "ss"), ("mode", "max"), ("tile", "1x1"), ("ss-max", most), ("position", "float")];
-        let picture = watched.picture(NAME, &both(&shared, &own));
-        let differences = picture.pixels.iter().zip(&reference.pixels);
-        let mut squares: Vec<f32> =
-            differences.map(|(one, other)| (0..3).map(|i| (one[i] - other[i]).powi(2)).sum()).collect();
-        squares.sort_by(f32::total_cmp);
-        let kept = &squares[..squares.len() * 17 / 20];
-        (kept.iter().sum::<f32>() / kept.len() as f32).sqrt()
-    };
-    let errors = ["1", "4", "16", "64"].map(error);
-    let exponent = (errors[2] / errors[0]).log2() / 4.0;
-    assert!(exponent < -0.5, "{errors:?}: exponent {exponent}");
-    assert!(errors[3] < 0.15 * errors[0], "{errors:?}");
 }
 
 /// Fewer rays than with all of them, and than interleaved sampling at every pixel has (section 4.1), and no farther
