@@ -8,8 +8,8 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["choice", "error", "progress", "sampling", "units"],
-    &["caps", "interrupt", "whole_file"],
+    &["choice", "error", "progress", "units"],
+    &["caps", "interrupt", "sampling", "whole_file"],
     &["memory", "picture"],
     &["gpu", "metrics", "scene", "settings"],
     &["bvh", "framing", "plan", "shading"],

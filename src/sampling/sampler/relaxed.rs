@@ -1,0 +1,207 @@
+//! Blue noise that tiles, by relaxation: Keller and Heidrich 2001, section 2.2, after McCool and Fiume 1992, "Hierarchical
+//! Poisson disk sampling distributions". Darts are thrown with a radius that shrinks until all have their place, and then
+//! each place moves to the middle of what lies nearest to it, a few times: with many more it would become a lattice.
+//!
+//! Times and lenses are numbers that are well spread by themselves, exchanged until places that are near have different
+//! ones (swaps.rs).
+
+use super::jittered;
+use super::over::{Over, Points};
+use super::swaps::{self, Group};
+use super::torus::Torus;
+use crate::sampling::pcg::Pcg32;
+use crate::sampling::sobol;
+use rayon::prelude::*;
+
+/// How often every place moves to the middle of its cell. Ours: with 4 to 8 low frequencies are gone and no other one
+/// stands out.
+const RELAXATION_COUNT: u32 = 6;
+/// Darts of one radius for each place that is wanted.
+const DARTS_PER_PLACE: u32 = 24;
+
+/// Relaxed places, with the rest exchanged between them. A single one lies in the middle of the basis.
+pub fn points(over: &Over) -> Points {
+    let mut random = Pcg32::new(u64::from(over.seed), 16);
+    let places = match over.count {
+        1 => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
+        count => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random)),
+    };
+    let mut points: Points = places
+        .places()
+        .iter()
+        .map(|place| [0, 1].map(|axis| super::over::part(place[axis] / over.sides_px[axis])).to_vec())
+        .collect();
+    // A pair of the last two, as a lens has, and before it a number by itself, as time is.
+    let single = over.dimensions % 2 == 1;
+    if single {
+        let order = jittered::shuffled(over.count, &mut random);
+        for (point, index) in points.iter_mut().zip(order) {
+            point.push((f64::from(index) + f64::from(random.unit())) / f64::from(over.count));
+        }
+        swaps::exchange(&mut points, &places, Group::Single(2), &mut random);
+    }
+    let pair_count = (over.dimensions - 2) / 2;
+    for pair in 0..pair_count {
+        let first = 2 + usize::from(single) + 2 * pair;
+        let order = jittered::shuffled(over.count, &mut random);
+        let seed = sobol::pair_seed(sobol::pixel_seed([0, 0], over.seed), pair as u32);
+        for (point, index) in points.iter_mut().zip(order) {
+            point.extend(sobol::pair(index, seed).map(f64::from));
+        }
+        swaps::exchange(&mut points, &places, Group::Pair(first), &mut random);
+    }
+    points
+}
+
+/// `count` places, none nearer to another than the last radius that was tried.
+fn thrown(sides: [f64; 2], count: u32, random: &mut Pcg32) -> Vec<[f64; 2]> {
+    // The densest packing of discs has this radius between middles.
+    let mut radius = (2.0 / 3f64.sqrt() * sides[0] * sides[1] / f64::from(count)).sqrt();
+    let mut dart_board = DartBoard::new(sides, radius);
+    while dart_board.places.len() < count as usize {
+        for _ in 0..DARTS_PER_PLACE * count {
+            let place = sides.map(|side| side * f64::from(random.unit()));
+            if dart_board.places.len() < count as usize && !dart_board.has_within(place, radius) {
+                dart_board.push(place);
+            }
+        }
+        radius *= 0.9;
+    }
+    dart_board.places
+}
+
+/// Places in buckets, to which more are added.
+struct DartBoard {
+    sides: [f64; 2],
+    places: Vec<[f64; 2]>,
+    counts: [usize; 2],
+    buckets: Vec<Vec<u32>>,
+}
+
+impl DartBoard {
+    /// For looks of at most `radius`.
+    fn new(sides: [f64; 2], radius: f64) -> Self {
+        let counts = sides.map(|side| ((side / radius) as usize).max(1));
+        Self { sides, places: Vec::new(), counts, buckets: vec![Vec::new(); counts[0] * counts[1]] }
+    }
+
+    fn bucket(&self, place: [f64; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| {
+            let at = place[axis] / self.sides[axis] * self.counts[axis] as f64;
+            (at as usize).min(self.counts[axis] - 1)
+        })
+    }
+
+    fn push(&mut self, place: [f64; 2]) {
+        let [column, row] = self.bucket(place);
+        self.buckets[row * self.counts[0] + column].push(self.places.len() as u32);
+        self.places.push(place);
+    }
+
+    fn has_within(&self, place: [f64; 2], radius: f64) -> bool {
+        let [column, row] = self.bucket(place);
+        let around = |middle: usize, count: usize| {
+            let steps = if count < 3 { 0..count } else { count - 1..count + 2 };
+            steps.map(move |step| (middle + step) % count)
+        };
+        around(row, self.counts[1]).any(|row| {
+            around(column, self.counts[0]).any(|column| {
+                self.buckets[row * self.counts[0] + column].iter().any(|index| {
+                    let other = self.places[*index as usize];
+                    let squares = [0, 1].map(|axis| {
+                        let apart = (place[axis] - other[axis]).abs();
+                        apart.min(self.sides[axis] - apart).powi(2)
+                    });
+                    squares[0] + squares[1] < radius * radius
+                })
+            })
+        })
+    }
+}
+
+/// The places after some steps of Lloyd's method, by the middles of a fine raster's points.
+fn relaxed(sides: [f64; 2], places: Vec<[f64; 2]>) -> Torus {
+    let mut torus = Torus::new(sides, places);
+    let count = torus.places().len();
+    // Points along each spacing: enough that a middle is known within a hundredth of it.
+    let per_spacing = if count > 1 << 14 { 4.0 } else { 8.0 };
+    let spacing = (sides[0] * sides[1] / count as f64).sqrt();
+    let [columns, rows] = sides.map(|side| (per_spacing * side / spacing).ceil() as usize);
+    for _ in 0..RELAXATION_COUNT {
+        let point = |row: usize, column: usize| {
+            [(column as f64 + 0.5) * sides[0] / columns as f64, (row as f64 + 0.5) * sides[1] / rows as f64]
+        };
+        let owners: Vec<Vec<u32>> = (0..rows)
+            .into_par_iter()
+            .map(|row| (0..columns).map(|column| torus.nearest(point(row, column))).collect())
+            .collect();
+        // Summed in one order, whatever the threads.
+        let mut sums = vec![[0.0f64; 3]; count];
+        for (row, owners) in owners.iter().enumerate() {
+            for (column, owner) in owners.iter().enumerate() {
+                let [x, y] = torus.way(torus.places()[*owner as usize], point(row, column));
+                let sum = &mut sums[*owner as usize];
+                *sum = [sum[0] + x, sum[1] + y, sum[2] + 1.0];
+            }
+        }
+        let moved = torus.places().iter().zip(&sums).map(|(place, [x, y, own])| {
+            let step = if *own > 0.0 { [x / own, y / own] } else { [0.0; 2] };
+            [0, 1].map(|axis| super::over::part((place[axis] + step[axis]) / sides[axis]) * sides[axis])
+        });
+        torus = Torus::new(sides, moved.collect());
+    }
+    torus
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::sampling::basis::Basis;
+    use crate::sampling::pattern::Dimension;
+    use crate::sampling::periodogram::Periodogram;
+    use crate::sampling::sampler::Sampler;
+    use crate::sampling::side::Side;
+
+    fn basis(side: u32, further: &[Dimension], samples: f64) -> Basis {
+        Basis::new([Side::new(side, 1); 2], further, samples, Sampler::Relaxed, 3).unwrap()
+    }
+
+    /// Blue noise: little power below half of the mean frequency of samples, none that stands out as in a lattice.
+    #[test]
+    fn low_frequencies_are_gone_and_no_other_stands_out() {
+        let pattern = basis(8, &[], 4.0).pattern();
+        // 16 samples lie along a side of 8 px: 16 cycles a period.
+        let spectrum = Periodogram::new(&pattern, [24, 24], |_| true);
+        let all = (-24i32..=24).flat_map(|v| (-24i32..=24).map(move |u| [u, v])).filter(|at| *at != [0, 0]);
+        let powers: Vec<(f64, f32)> =
+            all.map(|[u, v]| (f64::from(u * u + v * v).sqrt(), spectrum.power([u, v]))).collect();
+        let low: Vec<f32> = powers.iter().filter(|(radius, _)| *radius < 8.0).map(|(_, power)| *power).collect();
+        let mean = low.iter().sum::<f32>() / low.len() as f32;
+        let greatest = powers.iter().map(|(_, power)| *power).fold(0.0, f32::max);
+        assert!(mean < 0.05, "{mean}");
+        // A lattice of 256 samples has 256.
+        assert!(greatest < 64.0, "{greatest}");
+        let least = pattern.least_distance_px().unwrap();
+        assert!(least > 0.3, "two samples {least} px apart, of 0.54 px that are possible");
+    }
+
+    /// The times of a pixel's samples are spread over the shutter, and its lenses over the lens.
+    #[test]
+    fn near_places_have_different_times_and_lenses() {
+        let further = [Dimension::Time, Dimension::LensU, Dimension::LensV];
+        let pattern = basis(2, &further, 16.0).pattern();
+        let (mut filled, mut quarters, mut pixels) = (0, 0, 0);
+        for pixel in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let samples = pattern.samples_of(pixel);
+            let eighths: std::collections::BTreeSet<u32> =
+                samples.iter().map(|sample| (8.0 * sample.further[0]) as u32).collect();
+            let lens: std::collections::BTreeSet<u32> = samples
+                .iter()
+                .map(|sample| (3.0 * sample.further[1]) as u32 * 3 + (3.0 * sample.further[2]) as u32)
+                .collect();
+            (filled, quarters, pixels) = (filled + eighths.len(), quarters + lens.len(), pixels + 1);
+        }
+        // Of 16 independent ones 7.05 of eight eighths have one, and 7.6 of nine ninths of a lens.
+        assert!(filled as f64 / f64::from(pixels) >= 7.5, "{filled}");
+        assert!(quarters as f64 / f64::from(pixels) >= 8.0, "{quarters}");
+    }
+}
