@@ -165,19 +165,68 @@ impl View {
 
     /// `block`, which is of this view, with the picture moved by `offset_px` to the right and down.
     pub fn moved(&self, block: FrameBlock, offset_px: Vec2) -> FrameBlock {
-        if offset_px == Vec2::ZERO {
+        // Clip space is two units wide.
+        let shift = 2.0 * offset_px / Vec2::new(self.extent.width as f32, self.extent.height as f32);
+        self.seen_from(block, LensPlace::MIDDLE, Placement { scale: Vec2::ONE, shift })
+    }
+
+    /// `block`, which is of this view, as a place of its lens sees it, the picture placed otherwise in what it is drawn into.
+    pub fn seen_from(&self, block: FrameBlock, lens: LensPlace, placement: Placement) -> FrameBlock {
+        if lens == LensPlace::MIDDLE && placement == Placement::WHOLE {
             return block;
         }
-        let [x, y] = [offset_px.x / self.extent.width as f32, offset_px.y / self.extent.height as f32];
-        // Clip space is two units wide, times w.
-        let moving = Mat4::from_translation(Vec3::new(2.0 * x, 2.0 * y, 0.0));
-        let clip_from_world = moving * self.clip_from_world();
+        let aspect = self.extent.width as f32 / self.extent.height as f32;
+        let placing =
+            Mat4::from_translation(placement.shift.extend(0.0)) * Mat4::from_scale(placement.scale.extend(1.0));
+        let view_from_world = lens.shear() * self.camera.world_from_view.inverse();
+        let clip_from_world = placing * (self.clip_from_view(aspect) * view_from_world);
         let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
+        let [right, up, back] = self.axes();
+        let aside = right * lens.at_m.x + up * lens.at_m.y;
+        let [eye_x, eye_y, eye_z, is_perspective] = block.eye_ws;
+        // Parallel rays lean towards the same place in the plane in focus.
+        let leaning = (-back - aside / lens.focus_m).normalize();
         FrameBlock {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             world_from_clip: world_from_clip.to_cols_array_2d(),
+            eye_ws: (Vec3::new(eye_x, eye_y, eye_z) + aside).extend(is_perspective).to_array(),
+            forward_ws: if is_perspective > 0.0 { block.forward_ws } else { leaning.extend(0.0).to_array() },
             ..block
         }
+    }
+}
+
+/// How a picture lies in what it is drawn into: what is at `at` of it, -1 to 1 along both axes, is at `scale * at + shift`
+/// there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    pub scale: Vec2,
+    pub shift: Vec2,
+}
+
+impl Placement {
+    /// The picture fills what it is drawn into.
+    pub const WHOLE: Self = Self { scale: Vec2::ONE, shift: Vec2::ZERO };
+}
+
+/// A place on a thin lens, and the plane that it sees as all others do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensPlace {
+    /// Metres to the camera's right and up.
+    pub at_m: Vec2,
+    /// From the lens to the plane in focus, metres.
+    pub focus_m: f32,
+}
+
+impl LensPlace {
+    /// Where the camera is.
+    pub const MIDDLE: Self = Self { at_m: Vec2::ZERO, focus_m: 1.0 };
+
+    /// View space as it is seen from this place: what lies in the plane in focus stays.
+    fn shear(self) -> Mat4 {
+        let mut shear = Mat4::from_translation(-self.at_m.extend(0.0));
+        shear.z_axis = (-self.at_m / self.focus_m).extend(1.0).extend(0.0);
+        shear
     }
 }
 
@@ -279,6 +328,35 @@ mod tests {
                 let apart = (at(&moved) - at(&plain)) * Vec3::new(100.0, 50.0, 1.0);
                 assert!((apart - Vec3::new(0.25, -0.5, 0.0)).length() < 1e-4, "{apart}");
             }
+        }
+    }
+
+    /// Through every place of the lens what lies in the plane in focus is in one place, and what lies twice as far is as far
+    /// aside as similar triangles say.
+    #[test]
+    fn a_place_on_the_lens_sees_the_plane_in_focus_where_it_is() {
+        let perspective = Projection::Perspective { y_fov: 1.0, aspect: None, z_near: 0.1, z_far: None };
+        let orthographic = Projection::Orthographic { x_mag: 4.0, y_mag: 2.0, z_near: 1.0, z_far: 20.0 };
+        for projection in [perspective, orthographic] {
+            let view = view(projection);
+            let plain = view.block(&Bounds::EMPTY, Vec3::ZERO, Vec3::ZERO, 0, 0);
+            let lens = LensPlace { at_m: Vec2::new(0.2, -0.1), focus_m: 5.0 };
+            let seen = view.seen_from(plain, lens, Placement::WHOLE);
+            let at = |block: &FrameBlock, z: f32| {
+                Mat4::from_cols_array_2d(&block.clip_from_world).project_point3(Vec3::new(0.3, 0.2, z))
+            };
+            // The eye is at 5: the plane in focus is that of 0.
+            assert!((at(&seen, 0.0) - at(&plain, 0.0)).length() < 1e-6, "{projection:?}");
+            let behind = (at(&seen, -5.0) - at(&plain, -5.0)) * Vec3::new(100.0, 50.0, 1.0);
+            // A point 5 m behind it moves by the place on the lens, seen from 10 m.
+            let clip = view.clip_from_world();
+            let moved = clip.project_point3(Vec3::new(0.3 + 0.2, 0.2 - 0.1, -5.0))
+                - clip.project_point3(Vec3::new(0.3, 0.2, -5.0));
+            assert!((behind - moved * Vec3::new(100.0, 50.0, 1.0)).length() < 1e-3, "{projection:?}: {behind}");
+            // Rays through the middle of the picture go through the lens place and the same point in focus.
+            let ray = ViewRay::through(&seen, Vec2::new(100.0, 50.0));
+            let in_focus = ray.origin + ray.direction * (ray.origin.z / -ray.direction.z);
+            assert!(in_focus.length() < 1e-4, "{projection:?}: {in_focus}");
         }
     }
 

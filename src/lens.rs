@@ -47,9 +47,8 @@ impl Lens {
     /// sees nothing, of the middle of the scene's box, and where that is not before the camera, half of the scene's diagonal.
     pub fn new(values: &Values, view: &View, scene: &Scene, bvh: &Bvh) -> Option<Self> {
         let (radius, eyes) = (0.5 * values.number("aperture") as f32, Eyes::of(values));
-        let focus =
-            || values.unless_auto("focus", Values::number).map_or_else(|| seen(view, scene, bvh), |focus| focus as f32);
-        (radius > 0.0 || eyes != Eyes::One { aside: 0.0 }).then(|| Self { radius, focus: focus(), eyes })
+        let is_open = radius > 0.0 || eyes != Eyes::One { aside: 0.0 };
+        is_open.then(|| Self { radius, focus: focus_m(values, view, scene, bvh), eyes })
     }
 
     /// The eye that the picture is of, the left one of two: metres to the camera's right.
@@ -84,6 +83,11 @@ impl Lens {
             Eyes::Two { aside } => [-aside, aside].map(|aside| aside / self.reach()).into(),
         }
     }
+}
+
+/// `--focus` in metres, `auto` as `Lens::new` has it.
+pub fn focus_m(values: &Values, view: &View, scene: &Scene, bvh: &Bvh) -> f32 {
+    values.unless_auto("focus", Values::number).map_or_else(|| seen(view, scene, bvh), |focus| focus as f32)
 }
 
 /// How far before the camera lies what the middle of the picture sees.

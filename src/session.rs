@@ -370,7 +370,7 @@ impl Renderer {
 
     /// `times` runs from `index` on.
     fn run(&self, index: u32, times: u32) -> Result<FrameTime> {
-        let numbers = self.view.moved(self.numbers, self.frame.offset_px(index));
+        let numbers = self.frame.block_of(index, self.numbers, &self.view);
         let numbers = FrameBlock { sample_index: index, ..numbers };
         // The run before has ended: the device reads the block no more.
         self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));

@@ -62,13 +62,22 @@ layout(location = 6) INTERPOLATION in vec2 in_uv_1;
 
 #define in_material in_ids.x
 #define in_front_facing gl_FrontFacing
+
+// Parts of a fragment's step, to the right and down, that levels of textures are chosen for: below 1 where the fragments drawn
+// are only some of the picture's pixels.
+layout(constant_id = 75) const float LEVEL_STEP_X = 1.0;
+layout(constant_id = 76) const float LEVEL_STEP_Y = 1.0;
+#define STEP_RIGHT(in_coordinates) (dFdx(in_coordinates) * LEVEL_STEP_X)
+#define STEP_DOWN(in_coordinates) (dFdy(in_coordinates) * LEVEL_STEP_Y)
 #ifdef VERTEX_EXTENDED
 // Changes are those of what is interpolated, which a quad's helper lanes have too. What they read of a buffer, as the placement
 // is, may be 0 (lavapipe), and changes of what is made of it nonsense along each triangle's edge.
 #define TEXEL(name, which) \
-    textureGrad(name, uv_of(which), uv_change(which, dFdx(in_uv), dFdx(in_uv_1)), uv_change(which, dFdy(in_uv), dFdy(in_uv_1)))
+    textureGrad(name, uv_of(which), uv_change(which, STEP_RIGHT(in_uv), STEP_RIGHT(in_uv_1)), \
+        uv_change(which, STEP_DOWN(in_uv), STEP_DOWN(in_uv_1)))
 #else
-#define TEXEL(name, which) texture(name, in_uv)
+#define TEXEL(name, which) \
+    (LEVEL_STEP_X == 1.0 && LEVEL_STEP_Y == 1.0 ? texture(name, in_uv) : textureGrad(name, in_uv, STEP_RIGHT(in_uv), STEP_DOWN(in_uv)))
 #endif
 
 #endif

@@ -8,6 +8,7 @@ pub mod depth_prepass;
 pub mod direct;
 pub mod encode;
 pub mod filter;
+pub mod forward;
 pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;

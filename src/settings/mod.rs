@@ -3,6 +3,7 @@
 //! A setting's key is its flag without the two leading dashes. A value is kept as the text that would repeat it, checked
 //! when it is set, so that what `Values` holds is possible.
 
+mod forward;
 mod optics;
 pub mod readers;
 mod shadow_maps;
@@ -10,6 +11,7 @@ mod tables;
 mod tree;
 pub mod written;
 
+pub use forward::{FORWARD, LightBuffer};
 pub use optics::{
     APERTURE, FOCUS, LIGHT_RADIUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes,
     earlier_s, exposure_s, light_radius_m,

@@ -39,7 +39,6 @@ use crate::scene::Scene;
 use crate::settings::{COMMON, DirectShadow, EMISSIVE, INSTRUMENT, Setting, Values};
 use crate::shading::medium::Medium;
 use bench_stage::{BenchStage, PlainForm};
-use glam::Vec2;
 use notes::Figures;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -268,9 +267,9 @@ pub trait Frame {
         Ok(Vec::new())
     }
 
-    /// Pixels to the right and down by which the picture of this run is moved, each less than half a pixel.
-    fn offset_px(&self, _run: u32) -> Vec2 {
-        Vec2::ZERO
+    /// What shaders read as the frame's block in this run: `block`, which is of `view`, with the run's own camera.
+    fn block_of(&self, _run: u32, block: FrameBlock, _view: &View) -> FrameBlock {
+        block
     }
 
     /// Sums that it keeps from run to run; None where a picture is one run.

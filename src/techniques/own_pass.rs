@@ -9,6 +9,8 @@ use super::notes::Figures;
 use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Run, Sums, Technique};
 use crate::caps::Caps;
 use crate::error::Result;
+use crate::frame::View;
+use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
 use crate::lights::LightSet;
 use crate::picture::Aov;
@@ -16,7 +18,6 @@ use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::settings::{Setting, Values};
 use crate::units::Extent;
-use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -182,8 +183,8 @@ impl Frame for FrameWithPass {
         self.frame.begin_run(run)
     }
 
-    fn offset_px(&self, run: u32) -> Vec2 {
-        self.frame.offset_px(run)
+    fn block_of(&self, run: u32, block: FrameBlock, view: &View) -> FrameBlock {
+        self.frame.block_of(run, block, view)
     }
 
     fn sums(&self) -> Option<Sums<'_>> {

@@ -1,15 +1,16 @@
 //! Material pass: every solid surface that is seen, with its whole material, under the lights of its object's list.
 //! Shaders: mesh.vert, material.frag.
-//! reads   the scene, the lights, their lists, the tree or the shadow maps, forward.depth.reversed
-//! writes  the picture, RGBA32F, all samples; without a pre-pass forward.depth.reversed
+//! reads   the scene, the lights, their lists, the tree or the shadow maps, the depth buffer
+//! writes  the picture, RGBA32F, all samples; without a pre-pass the depth buffer
 //!
 //! Draws come backwards, so that the same picture is made with and without a pre-pass (depth_prepass.rs), where pixels have
 //! one sample.
 
+use super::choices::ForwardChoices;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::shader::passes::forward::material::FRAG_VARIANTS;
 use crate::gpu::shader::structs::MaterialParams;
-use crate::gpu::shader::techniques::forward::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::lights::object_lists::ObjectLights;
@@ -17,12 +18,15 @@ use crate::passes::shadow_maps::{self, ShadowMaps};
 use crate::passes::{depth_prepass, mesh};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, DrawList, SceneGpu};
-use crate::techniques::forward::choices::Choices;
-use crate::techniques::forward::resources::NAME;
 use ash::vk;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use std::sync::Arc;
+
+/// Full name of a technique's pass.
+pub fn pass(technique: &str) -> String {
+    format!("{technique}.material")
+}
 
 pub struct Material {
     opaque: GraphicsPipeline,
@@ -34,15 +38,15 @@ pub struct Material {
 }
 
 impl Material {
-    /// `background`: radiance where no surface is.
+    /// `constants`: of light and of levels. `background`: radiance where no surface is.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
-        choices: &Choices,
-        objects: &[ObjectLights],
-        background: Vec3,
+        choices: &ForwardChoices,
+        constants: &[(&'static str, u32)],
+        (objects, background): (&[ObjectLights], Vec3),
     ) -> Result<Self> {
-        let Choices { samples, has_prepass, is_uniform, .. } = *choices;
+        let ForwardChoices { samples, has_prepass, is_uniform, .. } = *choices;
         let lights = if is_uniform { "uniform" } else { "storage" };
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let pipeline = |alpha: &str| {
@@ -52,7 +56,7 @@ impl Material {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights, shadows])),
-                    constants: &choices.light_constants(),
+                    constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
                     samples,
@@ -75,6 +79,7 @@ impl Material {
     pub fn record(
         &self,
         cmd: &mut Commands,
+        technique: &str,
         frame: &Buffer,
         scene: &SceneGpu,
         list: &DrawList,
@@ -91,7 +96,7 @@ impl Material {
         let mut bound = mesh::bound(frame, scene);
         bound.extend_from_slice(lights.bound);
         bound.extend(lights.maps.iter().flat_map(|maps| maps.resource.bound()));
-        cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
+        cmd.pass(&pass(technique), traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
             cmd.barriers(lights.maps.and_then(|maps| maps.to(Access::FragmentSample)));
             let depth = depth_prepass::attach(cmd, depth, self.has_prepass);
@@ -140,10 +145,8 @@ pub struct MaterialLights<'a> {
     pub maps: Option<Edge<'a, ShadowMaps>>,
 }
 
-/// Targets of the draws.
+/// What the draws are drawn into, of one extent and `ForwardChoices::samples`.
 pub struct Targets {
-    pub(super) depth: Image,
-    pub(super) drawn: Image,
-    /// Where pixels have several samples.
-    pub(super) resolved: Option<Image>,
+    pub depth: Image,
+    pub drawn: Image,
 }

@@ -1,5 +1,5 @@
 // The material pass: a surface with its whole material under the lights of its object's list.
-// Pass: src/techniques/forward/material.rs.
+// Pass: src/passes/forward/material.rs.
 // variants: ALPHA=opaque|mask VERTEX=plain|extended LIGHTS=uniform|storage SHADOWS=traced|mapped
 #version 460
 #include "frame.glsl"

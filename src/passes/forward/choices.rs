@@ -1,0 +1,94 @@
+//! What the settings of forward shading come to, for one scene and one device.
+
+use crate::caps::Caps;
+use crate::error::{Error, Result};
+use crate::gpu::shader::passes::forward::material::UNIFORM_LIGHT_COUNT;
+use crate::gpu::shader::structs::LightBlock;
+use crate::lights::LightSet;
+use crate::lights::object_lists::ObjectLists;
+use crate::passes::direct::{self, DirectSettings};
+use crate::passes::shadow_maps::MapLayout;
+use crate::plan::Requirements;
+use crate::resident::SceneStats;
+use crate::scene::Scene;
+use crate::settings::{LightBuffer, ListChoice, Values};
+use crate::units::Bytes;
+use std::collections::BTreeMap;
+
+/// Bytes of the lights that the material pass reads as uniforms.
+pub const UNIFORM_BYTES: u64 = UNIFORM_LIGHT_COUNT as u64 * size_of::<LightBlock>() as u64;
+
+/// The choices that the settings make.
+pub struct ForwardChoices {
+    pub direct: DirectSettings,
+    lists: ListChoice,
+    /// Lights in a uniform buffer.
+    pub is_uniform: bool,
+    pub has_prepass: bool,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// With `--direct-shadow map`, where there are lights.
+    pub maps: Option<MapLayout>,
+}
+
+impl ForwardChoices {
+    /// `samples`: of each pixel that is drawn. `technique`: whose settings these are.
+    ///
+    /// Errors: more lights than a uniform buffer holds (exit code 2); shadow maps that do not fit (`MapLayout::new`).
+    pub fn new(
+        technique: &str,
+        values: &Values,
+        (scene, stats, lights): (&Scene, &SceneStats, &LightSet),
+        (caps, requirements): (&Caps, Requirements<'_>),
+        samples: u32,
+    ) -> Result<Self> {
+        let (count, range) = (lights.lights.len(), caps.limits.max_uniform_buffer_range_bytes);
+        let asked = values.unless_auto("light-buffer", Values::choice);
+        let fits = count <= UNIFORM_LIGHT_COUNT as usize && UNIFORM_BYTES <= range;
+        if asked == Some(LightBuffer::Uniform) && !fits {
+            let (most, device) = (UNIFORM_LIGHT_COUNT, &caps.identity.name);
+            let why = format!(
+                "--light-buffer uniform: {count} lights: it holds {most}, where a device binds {} ({device} binds {})",
+                Bytes(UNIFORM_BYTES),
+                Bytes(range)
+            );
+            return Err(Error::request(why).within(technique).note("--light-buffer storage holds all of them"));
+        }
+        Ok(Self {
+            is_uniform: fits && asked != Some(LightBuffer::Storage),
+            direct: DirectSettings::new(values, lights, scene),
+            lists: values.choice("light-lists"),
+            has_prepass: values.is_on("depth-prepass"),
+            samples,
+            maps: MapLayout::new(values, lights, scene, stats, caps, requirements)
+                .map_err(|error| error.within(technique))?,
+        })
+    }
+
+    /// The lights as shaders read them, and the lists of all objects.
+    pub fn lists(
+        &self,
+        values: &Values,
+        scene: &Scene,
+        lights: &LightSet,
+        caps: &Caps,
+    ) -> Result<(Vec<LightBlock>, ObjectLists)> {
+        let lights = direct::light_blocks(lights, values);
+        let most_bytes = caps.limits.max_storage_buffer_range_bytes;
+        let lists = ObjectLists::new(scene, &lights, self.lists, most_bytes)?;
+        Ok((lights, lists))
+    }
+
+    /// The constants of all shaders that light.
+    pub(super) fn light_constants(&self) -> Vec<(&'static str, u32)> {
+        let maps = self.maps.iter().flat_map(MapLayout::constants);
+        self.direct.light_constants().into_iter().chain(maps).collect()
+    }
+
+    /// What `auto` comes to.
+    pub fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let buffer = if self.is_uniform { "uniform" } else { "storage" };
+        let maps = self.maps.as_ref().map(MapLayout::resolved);
+        [("light-buffer", buffer.to_owned())].into_iter().chain(maps).collect()
+    }
+}
