@@ -7,6 +7,7 @@
 //! - [`techniques::inferred_lighting`]: Kircher and Lawrance 2009, lights at a fraction of the pixels
 //! - [`techniques::deep_shading`]: Clarberg et al. 2014, samples of a lens and a shutter that share their triangles' shading
 //! - [`techniques::adaptive_interleaved`]: Dubla et al. 2009, soft shadows and indirect light refined tile by tile
+//! - [`techniques::interleaved_sampling`]: Keller and Heidrich 2001, pictures of regular grids that make one of irregular samples
 //! - [`techniques::deferred`]: plain deferred shading of punctual lights, the baseline
 //! - [`techniques::forward`]: forward shading with a list of lights for each object, the other baseline
 //! - [`techniques::path_traced`]: the integral that the others approximate

@@ -2,7 +2,7 @@
 
 use super::{
     Technique, adaptive_interleaved, deep_shading, deferred, forward, inferred_lighting, interleaved_deferred,
-    path_traced,
+    interleaved_sampling, path_traced,
 };
 use crate::error::{Error, Result};
 
@@ -12,6 +12,7 @@ pub const ALL: &[&dyn Technique] = &[
     &inferred_lighting::InferredLighting,
     &deep_shading::DeepShading,
     &adaptive_interleaved::AdaptiveInterleaved,
+    &interleaved_sampling::InterleavedSampling,
     &deferred::Deferred,
     &forward::Forward,
     &path_traced::PathTraced,

@@ -261,7 +261,7 @@ mod tests {
         for technique in ALL {
             let expected: &[&str] = match technique.name() {
                 "path_traced" => &[],
-                "forward" => &["the depth buffer"],
+                "forward" | "interleaved_sampling" => &["the depth buffer"],
                 "inferred_lighting" => &["the geometry pass"],
                 "deep_shading" => &["the visibility pass"],
                 _ => &["the G-buffer"],

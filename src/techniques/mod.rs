@@ -15,6 +15,7 @@ pub mod fitness;
 pub mod forward;
 pub mod inferred_lighting;
 pub mod interleaved_deferred;
+pub mod interleaved_sampling;
 pub mod notes;
 pub mod own_pass;
 pub mod path_traced;

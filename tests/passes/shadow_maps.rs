@@ -313,7 +313,7 @@ fn maps_are_counted_and_planned() {
 
 #[test]
 fn techniques_without_maps_refuse_them() {
-    let takes_maps = [FORWARD, "deep_shading"];
+    let takes_maps = [FORWARD, "interleaved_sampling", "deep_shading"];
     for technique in techniques::ALL.iter().filter(|technique| !takes_maps.contains(&technique.name())) {
         let error = Job::new("cornell", *technique).set("direct-shadow", "map").unwrap_err();
         assert_eq!(error.exit_code(), 2, "{}: {error}", technique.name());

@@ -6,5 +6,6 @@ mod deep_shading;
 mod forward;
 mod inferred_lighting;
 mod interleaved_deferred;
+mod interleaved_sampling;
 pub mod own_pass;
 mod path_traced;

@@ -14,6 +14,7 @@ mod formulas;
 mod inferred;
 mod interleaved;
 mod paths;
+mod sampled;
 
 pub use interleaved::SPLITS;
 
@@ -21,13 +22,14 @@ use super::case::{Case, Group};
 
 /// All cases in the order in which they run: those of one scene together, where that is possible.
 pub fn all() -> impl Iterator<Item = Case> {
-    let tables: [&'static [Group]; 7] = [
+    let tables: [&'static [Group]; 8] = [
         formulas::GROUPS,
         baselines::GROUPS,
         interleaved::GROUPS,
         inferred::GROUPS,
         deep::GROUPS,
         adaptive::GROUPS,
+        sampled::GROUPS,
         paths::GROUPS,
     ];
     let groups = tables.into_iter().flatten();

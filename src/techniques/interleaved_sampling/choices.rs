@@ -1,0 +1,155 @@
+//! What the settings come to.
+
+use super::members::Members;
+use crate::choice::{Choice, choices};
+use crate::error::{Error, Result};
+use crate::frame::{LensPlace, Placement};
+use crate::lens::{Eyes, Lens};
+use crate::passes::forward::ForwardChoices;
+use crate::sampling::basis::Basis;
+use crate::sampling::pattern::{Dimension, Pattern};
+use crate::sampling::side::Side;
+use crate::settings::Values;
+use crate::techniques::interleaved_sampling::resources::NAME;
+use crate::techniques::{Inputs, NamedPattern};
+use crate::units::Extent;
+use glam::Vec2;
+
+choices! {
+    /// What samples are spread over (`--effect`).
+    pub enum Effect {
+        /// Places in their pixels.
+        "aa" => Aa,
+        /// The lens.
+        "defocus" => Defocus,
+    }
+}
+
+impl Effect {
+    /// Those of `--effect`.
+    pub fn chosen(values: &Values) -> Vec<Self> {
+        values.text("effect").split(',').filter_map(Self::from_word).collect()
+    }
+}
+
+/// Members of one picture: each is a run of what draws the scene, at least some tenths of a millisecond.
+const MOST_MEMBERS: f64 = 65536.0;
+
+/// The pattern that the settings choose.
+pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
+    name: "basis",
+    summary: "Samples over a basis of pixels, each of which becomes a regular grid",
+    keys: &["basis", "samples", "sampler", "effect", "seed"],
+    make: |values| pattern(values),
+}];
+
+fn pattern(values: &Values) -> Result<Pattern> {
+    if values.text("basis") == "frame" {
+        let Extent { width, height } = values.extent("size");
+        return Err(Error::request("basis=frame: a pattern by itself has no frame")
+            .note(format!("its sides do, as in basis={width}x{height}")));
+    }
+    Ok(basis(values, values.extent("size"))?.pattern())
+}
+
+/// The sides that `--basis` names.
+///
+/// Errors: it names none, or one below 1 px (exit code 2).
+fn sides(values: &Values, frame: Extent) -> Result<[Side; 2]> {
+    let text = values.text("basis");
+    if text == "frame" {
+        return Ok([Side::new(frame.width, 1), Side::new(frame.height, 1)]);
+    }
+    let refused = |why: &str| {
+        Error::request(format!("--basis {text}: {why}"))
+            .within(NAME)
+            .note("--basis 2x2, 2.5x1.75 and frame work; 1x1 is the accumulation buffer")
+    };
+    let (x, y) = text.split_once('x').ok_or_else(|| refused("it must be NxM, or frame"))?;
+    let [x, y] = [x, y].map(Side::from_text);
+    let (Some(x), Some(y)) = (x, y) else {
+        return Err(refused("both sides must be numbers with at most two decimal places"));
+    };
+    if [x, y].iter().any(|side| side.length_px() < 1.0 || side.length_px() > 16384.0) {
+        return Err(refused("both sides must be from 1 to 16384 pixels"));
+    }
+    Ok([x, y])
+}
+
+/// The basis of the settings.
+///
+/// Errors: as of its settings; more members than can be drawn (exit code 2).
+fn basis(values: &Values, frame: Extent) -> Result<Basis> {
+    let sides = sides(values, frame)?;
+    let samples = values.number("samples");
+    let count = samples * sides[0].length_px() * sides[1].length_px();
+    if count > MOST_MEMBERS {
+        let (text, samples) = (values.text("basis"), values.text("samples"));
+        let why = format!(
+            "--basis {text} with --samples {samples}: {count:.0} members, each drawn by itself, and {MOST_MEMBERS} at most"
+        );
+        let side = (MOST_MEMBERS / values.number("samples")).sqrt().floor();
+        return Err(Error::request(why)
+            .within(NAME)
+            .note(format!("a basis of at most {side}x{side} pixels has fewer")));
+    }
+    let effects = Effect::chosen(values);
+    if !effects.contains(&Effect::Aa) && sides.iter().any(|side| side.whole_px().is_none()) {
+        let text = values.text("basis");
+        let why = format!("--basis {text} without aa among --effect: its samples lie in no middles of pixels");
+        return Err(Error::request(why).within(NAME).note("sides of whole pixels have such samples"));
+    }
+    let further: &[Dimension] =
+        if effects.contains(&Effect::Defocus) { &[Dimension::LensU, Dimension::LensV] } else { &[] };
+    let seed = values.integer("seed") as u32;
+    Basis::new(sides, further, samples, values.choice("sampler"), seed).map_err(|error| error.within(NAME))
+}
+
+/// The choices that the settings make.
+pub struct Choices {
+    pub drawing: ForwardChoices,
+    pub members: Members,
+    pub lens: Option<Lens>,
+}
+
+impl Choices {
+    /// Errors: settings that contradict each other (exit code 2); as `ForwardChoices::new`.
+    pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
+        let values = inputs.values;
+        let effects = Effect::chosen(values);
+        let lens = match effects.contains(&Effect::Defocus) {
+            false => None,
+            true if values.number("aperture") <= 0.0 => {
+                return Err(Error::request("--effect defocus with --aperture 0: through a pinhole all is sharp")
+                    .within(NAME)
+                    .note("a diameter in metres, as --aperture 0.05, makes a lens"));
+            }
+            true => Some(Lens {
+                radius: 0.5 * values.number("aperture") as f32,
+                focus: crate::lens::focus_m(values, inputs.view, inputs.scene, inputs.bvh.over(inputs.scene)?),
+                eyes: Eyes::One { aside: 0.0 },
+            }),
+        };
+        let of = (inputs.scene, inputs.stats, inputs.lights);
+        Ok(Self {
+            drawing: ForwardChoices::new(NAME, values, of, (inputs.caps, inputs.requirements), 1)?,
+            members: Members::new(
+                basis(values, inputs.view.extent)?,
+                inputs.view.extent,
+                !effects.contains(&Effect::Aa),
+            ),
+            lens,
+        })
+    }
+
+    /// How a member lies in its picture, and where on the lens it sees from.
+    pub fn sight(&self, member: u32) -> (LensPlace, Placement) {
+        let place = self.lens.map_or(LensPlace::MIDDLE, |lens| {
+            let [u, v] = [0, 1].map(|index| self.members.basis().further_of(member)[index] as f32);
+            // Evenly over the disc: radius and turn.
+            let (radius, turn) = (lens.radius * u.sqrt(), v * std::f32::consts::TAU);
+            LensPlace { at_m: radius * Vec2::new(turn.cos(), turn.sin()), focus_m: lens.focus }
+        });
+        (place, self.members.placement(member))
+    }
+}

@@ -1,0 +1,224 @@
+//! The members of a basis: its samples, each of which is a regular grid over the frame and drawn as a picture of its own
+//! (Keller and Heidrich 2001, section 2.1).
+
+use crate::frame::Placement;
+use crate::sampling::basis::Basis;
+use crate::sampling::side::Side;
+use crate::units::Extent;
+use glam::Vec2;
+use std::collections::VecDeque;
+
+/// Where the samples of members lie in a frame.
+pub struct Members {
+    basis: Basis,
+    frame: Extent,
+    /// Samples lie in the middles of their pixels (no `aa` among `--effect`).
+    is_centred: bool,
+}
+
+impl Members {
+    pub fn new(basis: Basis, frame: Extent, is_centred: bool) -> Self {
+        Self { basis, frame, is_centred }
+    }
+
+    pub fn basis(&self) -> &Basis {
+        &self.basis
+    }
+
+    pub fn count(&self) -> u32 {
+        self.basis.member_count()
+    }
+
+    /// Texels of a member's picture, one for each of its samples that a frame may have.
+    pub fn layer(&self) -> Extent {
+        // Of a side of P / B pixels, whole P's have B samples.
+        let samples =
+            |pixels: u32, side: Side| (u64::from(pixels) * u64::from(side.bases)).div_ceil(side.pixels.into());
+        let [x, y] = self.basis.sides;
+        Extent::new(samples(self.frame.width, x) as u32, samples(self.frame.height, y) as u32)
+    }
+
+    /// Pixels between neighbouring samples of a member, across and down. Where there is but one it stands as near to the next as
+    /// a pixel: drivers move corners by parts of what lies between two samples (1/256 on many, 1/16 at worst).
+    pub fn spacing_px(&self) -> [f64; 2] {
+        let layer = self.layer();
+        let [across, down] = self.basis.sides.map(Side::length_px);
+        [if layer.width == 1 { 1.0 } else { across }, if layer.height == 1 { 1.0 } else { down }]
+    }
+
+    /// Place of a member's first sample, px from the frame's upper left corner.
+    fn place_px(&self, member: u32) -> [f64; 2] {
+        let place = self.basis.place_px(member);
+        if self.is_centred { place.map(|along| along.floor() + 0.5) } else { place }
+    }
+
+    /// How the frame lies in a member's picture: its samples in the middles of the texels.
+    pub fn placement(&self, member: u32) -> Placement {
+        let (layer, place) = (self.layer(), self.place_px(member));
+        let axis = |pixels: u32, texels: u32, spacing: f64, place: f64| {
+            let (pixels, texels) = (f64::from(pixels), f64::from(texels));
+            let scale = pixels / (spacing * texels);
+            [scale, 2.0 * ((0.5 * pixels - place) / spacing + 0.5) / texels - 1.0]
+        };
+        let [across, down] = self.spacing_px();
+        let x = axis(self.frame.width, layer.width, across, place[0]);
+        let y = axis(self.frame.height, layer.height, down, place[1]);
+        Placement { scale: Vec2::new(x[0] as f32, y[0] as f32), shift: Vec2::new(x[1] as f32, y[1] as f32) }
+    }
+
+    /// The pixel that sample `index` of a member along an axis lies in: the twin of combine.comp.
+    #[cfg(test)]
+    fn pixel(&self, member: u32, axis: usize, index: u32) -> u32 {
+        let Side { pixels, bases } = self.basis.sides[axis];
+        index / bases * pixels + self.first_pixels(member, axis)[(index % bases) as usize]
+    }
+
+    /// The pixels of the samples in the first whole number of bases that lie in whole pixels.
+    fn first_pixels(&self, member: u32, axis: usize) -> Vec<u32> {
+        let (side, place) = (self.basis.sides[axis], self.place_px(member)[axis]);
+        let at = |base: u32| place + f64::from(base) * side.length_px();
+        (0..side.bases).map(|base| (at(base).floor() as u32).min(side.pixels - 1)).collect()
+    }
+
+    /// What combine.comp reads: of each member the pixels of its first samples, across and then down (`bases` of both sides a
+    /// member); behind them, from `firsts_at` on, the first member of each pixel of a period.
+    pub fn table(&self) -> Vec<u32> {
+        let of_member = |member| [0, 1].into_iter().flat_map(move |axis| self.first_pixels(member, axis));
+        (0..self.count()).flat_map(of_member).chain(self.firsts_of_pixels()).collect()
+    }
+
+    /// Where in the table the first members of pixels begin.
+    pub fn firsts_at(&self) -> u32 {
+        self.count() * (self.basis.sides[0].bases + self.basis.sides[1].bases)
+    }
+
+    /// Of each pixel of a period, row by row, the first of the members that have a sample in it; `u32::MAX` where none has.
+    fn firsts_of_pixels(&self) -> Vec<u32> {
+        let [width, height] = self.basis.sides.map(|side| side.pixels);
+        let mut firsts = vec![u32::MAX; width as usize * height as usize];
+        for member in 0..self.count() {
+            for y in self.first_pixels(member, 1) {
+                for x in self.first_pixels(member, 0) {
+                    let first = &mut firsts[(y * width + x) as usize];
+                    *first = (*first).min(member);
+                }
+            }
+        }
+        firsts
+    }
+
+    /// Where a pixel of the frame has no sample: of each pixel, in row order, the nearest one that has some, itself where it has;
+    /// None where every pixel has a sample.
+    pub fn sources(&self) -> Option<Vec<u32>> {
+        let firsts = self.firsts_of_pixels();
+        if firsts.iter().all(|first| *first != u32::MAX) {
+            return None;
+        }
+        let [period_x, period_y] = self.basis.sides.map(|side| side.pixels);
+        let (width, height) = (self.frame.width, self.frame.height);
+        let is_filled = |x: u32, y: u32| firsts[(y % period_y * period_x + x % period_x) as usize] != u32::MAX;
+        // Rings of neighbours from all filled pixels outwards.
+        let mut source = vec![u32::MAX; (width * height) as usize];
+        let mut next = VecDeque::new();
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            if is_filled(x, y) {
+                source[(y * width + x) as usize] = y * width + x;
+                next.push_back([x, y]);
+            }
+        }
+        while let Some([x, y]) = next.pop_front() {
+            let own = source[(y * width + x) as usize];
+            let around = [[x.wrapping_sub(1), y], [x + 1, y], [x, y.wrapping_sub(1)], [x, y + 1]];
+            for [x, y] in around.into_iter().filter(|[x, y]| *x < width && *y < height) {
+                if source[(y * width + x) as usize] == u32::MAX {
+                    source[(y * width + x) as usize] = own;
+                    next.push_back([x, y]);
+                }
+            }
+        }
+        // A frame that is smaller than a basis may have no sample at all: its pixels are black.
+        Some(source)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::sampler::Sampler;
+    use proptest::prelude::*;
+
+    fn members(sides: [Side; 2], samples: f64, frame: Extent) -> Members {
+        Members::new(Basis::new(sides, &[], samples, Sampler::Random, 5).unwrap(), frame, false)
+    }
+
+    proptest! {
+        /// What the placement draws into the middle of a texel is the sample's place in the frame, in the pixel that the table
+        /// says; and together members have the samples of the pattern.
+        #[test]
+        fn texels_are_samples_of_the_pattern(
+            sides in prop::array::uniform2((1u32..12, 1u32..4)), samples in 0.4f64..5.0, width in 1u32..40, height in 1u32..40,
+        ) {
+            let sides = sides.map(|(pixels, bases)| Side::new(pixels, bases));
+            let members = members(sides, samples, Extent::new(width, height));
+            let pattern = members.basis().pattern();
+            let (layer, mut found) = (members.layer(), vec![Vec::new(); (width * height) as usize]);
+            for member in 0..members.count() {
+                let Placement { scale, shift } = members.placement(member);
+                for (x, y) in (0..layer.height).flat_map(|y| (0..layer.width).map(move |x| (x, y))) {
+                    let ndc = Vec2::new(
+                        2.0 * (x as f32 + 0.5) / layer.width as f32 - 1.0,
+                        2.0 * (y as f32 + 0.5) / layer.height as f32 - 1.0,
+                    );
+                    let at = ((ndc - shift) / scale + 1.0) * 0.5 * Vec2::new(width as f32, height as f32);
+                    let pixel = [members.pixel(member, 0, x), members.pixel(member, 1, y)];
+                    let inside = at - Vec2::new(pixel[0] as f32, pixel[1] as f32);
+                    prop_assert!((-1e-3..1.001).contains(&inside.x) && (-1e-3..1.001).contains(&inside.y), "{:?}", inside);
+                    if pixel[0] < width && pixel[1] < height {
+                        found[(pixel[1] * width + pixel[0]) as usize].push((member, inside));
+                    }
+                }
+            }
+            for (index, found) in (0..).zip(&found) {
+                let of_pattern = pattern.samples_of([index % width, index / width]);
+                prop_assert_eq!(found.len(), of_pattern.len());
+                for (member, inside) in found {
+                    let is_there = |sample: &&crate::sampling::pattern::Sample| {
+                        sample.subset == *member && (Vec2::from(sample.place_px) - *inside).abs().max_element() < 1e-3
+                    };
+                    prop_assert!(of_pattern.iter().any(|sample| is_there(&sample)));
+                }
+            }
+        }
+
+        #[test]
+        fn gaps_are_filled_by_the_nearest(samples in 0.1f64..0.6, width in 3u32..20, height in 3u32..20) {
+            let members = members([Side::new(3, 1), Side::new(2, 1)], samples, Extent::new(width, height));
+            let pattern = members.basis().pattern();
+            let has = |pixel: u32| !pattern.samples_of([pixel % width, pixel / width]).is_empty();
+            let is_any_filled = (0..width * height).any(has);
+            let Some(sources) = members.sources() else {
+                prop_assert!((0..width * height).all(has));
+                return Ok(());
+            };
+            for (pixel, source) in (0..).zip(sources) {
+                let apart = |other: u32| (pixel % width).abs_diff(other % width) + (pixel / width).abs_diff(other / width);
+                let is_nearest = || (0..width * height).filter(|other| has(*other)).all(|other| apart(source) <= apart(other));
+                let is_right = if is_any_filled { has(source) && is_nearest() } else { source == u32::MAX };
+                prop_assert!(is_right, "{} from {}", pixel, source);
+            }
+        }
+    }
+
+    #[test]
+    fn without_anti_aliasing_samples_lie_in_the_middles_of_their_pixels() {
+        let frame = Extent::new(7, 5);
+        let basis = Basis::new([Side::new(2, 1); 2], &[], 2.0, Sampler::Relaxed, 5).unwrap();
+        let centred = Members::new(basis, frame, true);
+        assert!((0..centred.count()).all(|member| centred.place_px(member).iter().all(|along| along.fract() == 0.5)));
+        let alone = members([Side::new(1, 1); 2], 1.0, frame);
+        assert_eq!(alone.layer(), frame);
+        let alone =
+            Members::new(Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, 5).unwrap(), frame, false);
+        assert_eq!(alone.placement(0), Placement::WHOLE);
+    }
+}

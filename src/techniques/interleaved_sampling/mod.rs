@@ -1,0 +1,248 @@
+//! Keller and Heidrich 2001, Interleaved Sampling (Rendering Techniques 2001, Proceedings of the 12th Eurographics Workshop
+//! on Rendering, pages 269-276).
+//!
+//! A basis pattern of irregular samples repeats over the frame (section 2.1). Copies of one sample are a regular grid, a
+//! *member*, which is rasterised as a small picture of its own; a pixel is the mean of the samples that lie in it. With a
+//! basis of one pixel that is the accumulation buffer, whose samples are the same in every pixel; with a basis as large as
+//! the frame no two pixels have the same; `--basis` is the way from one to the other.
+//!
+//! A run is a member: shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces),
+//! combine, mean.
+//!
+//! Differences from the paper
+//! - a member's samples are scattered to their pixels by a compute pass (section 3.1 draws a polygon over the frame behind
+//!   a mask); the result is the same
+//! - textures are read at the level of the frame's pixels, not of a member's, whose samples lie farther apart
+//! - a pixel without a sample shows the nearest one that has some
+//! - section 3.2 and later: motion, volumes and soft shadows are not here yet
+//!
+//! Equal to others: with `--basis 1x1 --samples 1` it is `forward`. `forward --supersample N` is the accumulation buffer of a
+//! regular pattern, `path_traced` what all of them converge to.
+//!
+//! Why this way: a member differs from another in the camera alone (where its picture lies in the frame, and where on the
+//! lens it is seen from), so one recorded run serves all of them, and memory is that of one.
+
+mod bench_stages;
+mod choices;
+mod combine;
+mod mean;
+mod members;
+mod plan;
+mod resources;
+mod settings;
+
+use super::bench_stage::BenchStage;
+use super::notes::{self, Figures};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
+use crate::caps::{Ability, Caps, Need};
+use crate::error::Result;
+use crate::frame::View;
+use crate::gpu::shader::structs::{FrameBlock, LightBlock};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::lights::LightSet;
+use crate::lights::object_lists::ObjectLists;
+use crate::passes::forward::{self, Forward, ForwardScene, Targets};
+use crate::passes::{blend, shadow_maps};
+use crate::picture::{Aov, AovChannels};
+use crate::plan::{Plan, Resources};
+use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
+use crate::settings::{FORWARD, GeometryChoice, LIGHT_LISTS, SHADOW_MAPS, Setting, Values};
+use choices::Choices;
+use combine::Combine;
+use mean::Mean;
+use resources::NAME;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Samples of each pixel.
+const SAMPLES_STAGE: &str = "combine.sums.samples";
+
+pub struct InterleavedSampling;
+
+impl Technique for InterleavedSampling {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "pictures of regular grids, interleaved: from the accumulation buffer to samples that never repeat"
+    }
+
+    fn scene(&self) -> &'static str {
+        "fence"
+    }
+
+    fn settings(&self) -> &'static [&'static [Setting]] {
+        &[settings::SETTINGS, FORWARD, LIGHT_LISTS, SHADOW_MAPS]
+    }
+
+    fn aovs(&self) -> &'static [&'static str] {
+        &[SAMPLES_STAGE]
+    }
+
+    fn shorter(&self) -> &'static [(&'static str, &'static str)] {
+        &[("light-lists", "none"), ("direct-shadow", "none")]
+    }
+
+    fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        let depth = Need { of: "the depth buffer".to_owned(), ability: Ability::FloatDepth, instead: "" };
+        [depth].into_iter().chain(shadow_maps::needs(values)).chain(blend::needs(has_blend)).collect()
+    }
+
+    fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
+    /// Punctual lights, straight.
+    fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
+        Ok(vec![
+            ("transport", "direct".to_owned()),
+            ("light-visibility", light_visibility(values, lights, 0)?),
+            ("emissive", "off".to_owned()),
+            ("ambient-visibility", "off".to_owned()),
+        ])
+    }
+
+    fn bench_stages(&self) -> &'static [BenchStage] {
+        bench_stages::STAGES
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        Vec::from_iter(notes::direct_light(figures, None))
+    }
+
+    fn patterns(&self) -> &'static [NamedPattern] {
+        choices::PATTERNS
+    }
+
+    fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
+        let choices = Choices::new(inputs)?;
+        let began = Instant::now();
+        let (lights, lists) = choices.drawing.lists(inputs.values, inputs.scene, inputs.lights, inputs.caps)?;
+        let lists_ns = began.elapsed().as_nanos() as u64;
+        Ok(Box::new(PreparedInterleaved { choices, lights, lists, lists_ns }))
+    }
+}
+
+struct PreparedInterleaved {
+    choices: Choices,
+    lights: Vec<LightBlock>,
+    lists: ObjectLists,
+    lists_ns: u64,
+}
+
+impl Prepared for PreparedInterleaved {
+    fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
+        plan::plan(&self.choices, inputs, &self.lists)
+    }
+
+    fn resolved(&self) -> BTreeMap<&'static str, String> {
+        let lens = self.choices.lens.map(|lens| ("focus", lens.focus.to_string()));
+        self.choices.drawing.resolved().into_iter().chain(lens).collect()
+    }
+
+    fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
+        let members = &self.choices.members;
+        let [least, most] = members.basis().pattern().samples_per_pixel();
+        let mut counters = forward::list_counters(&self.lights, &self.lists);
+        counters.extend([
+            ("members", f64::from(members.count())),
+            ("samples_per_member", members.layer().pixel_count() as f64),
+            ("samples_per_pixel_least", f64::from(least)),
+            ("samples_per_pixel_most", f64::from(most)),
+        ]);
+        Ok(HostPart {
+            passes: vec![(format!("{NAME}.lights"), self.lists_ns)],
+            counters,
+            light_counts: [self.lights.len() as u32, 0],
+            build: Box::new(move |gpu, inputs, scene, resources| self.build(gpu, inputs, scene, resources)),
+        })
+    }
+}
+
+impl PreparedInterleaved {
+    /// The frame on the device.
+    fn build(
+        self,
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+    ) -> Result<Box<dyn Frame>> {
+        let Self { choices, lights, lists, .. } = self;
+        let raster = Raster { extent: choices.members.layer(), coverage: Coverage::Anywhere };
+        // What one place of the lens does not see another may.
+        let geometry = if choices.lens.is_some() { GeometryChoice::All } else { inputs.values.choice("geometry") };
+        let list = DrawList::new(inputs.scene, scene, inputs.view, raster, geometry);
+        let of = ForwardScene {
+            scene: inputs.scene,
+            view: inputs.view,
+            bvh: inputs.bvh,
+            lights: &lights,
+            lists: &lists,
+            list,
+            background: inputs.values.color("background"),
+            pixels_per_texel: choices.members.spacing_px().map(|spacing| spacing as f32),
+        };
+        Ok(Box::new(InterleavedFrame {
+            drawing: Forward::new(gpu, resources, NAME, &choices.drawing, of, scene)?,
+            targets: Targets { depth: resources.image(resources::DEPTH), drawn: resources.image(resources::DRAWN) },
+            combine: Combine::new(gpu, resources, &choices.members)?,
+            mean: Mean::new(gpu, resources, &choices.members)?,
+            choices,
+        }))
+    }
+}
+
+struct InterleavedFrame {
+    drawing: Forward,
+    targets: Targets,
+    combine: Combine,
+    mean: Mean,
+    choices: Choices,
+}
+
+impl Frame for InterleavedFrame {
+    fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        self.drawing.record(cmd, NAME, frame, scene, &self.targets)?;
+        self.combine.record(cmd, frame, self.targets.drawn.from(Access::ColorWrite))?;
+        self.mean.record(cmd, frame, self.combine.sums.from(Access::ComputeWrite))
+    }
+
+    fn once(&self) -> Vec<(String, u64)> {
+        self.drawing.once()
+    }
+
+    fn run_count(&self) -> u32 {
+        self.choices.members.count()
+    }
+
+    /// As the member's place on the lens sees it, its samples in the middles of its picture's texels.
+    fn block_of(&self, run: u32, block: FrameBlock, view: &View) -> FrameBlock {
+        let (lens, placement) = self.choices.sight(run);
+        view.seen_from(block, lens, placement)
+    }
+
+    fn drawn(&self) -> BTreeMap<&'static str, f64> {
+        self.drawing.drawn()
+    }
+
+    fn picture(&self) -> (&Image, Access) {
+        (&self.mean.color, Access::ComputeWrite)
+    }
+
+    fn counters(&self, _: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
+        Ok(BTreeMap::new())
+    }
+
+    fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
+        let bytes = readback::buffer(gpu, &self.combine.sums, self.combine.sums.bytes, Access::ComputeRead)?;
+        let sums: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
+        // Sums of pixels without a sample were never written.
+        let sources = self.choices.members.sources();
+        let has = |pixel: usize| sources.as_ref().is_none_or(|sources| sources[pixel] == pixel as u32);
+        let counts = sums.iter().enumerate().map(|(pixel, sum)| if has(pixel) { sum[3] as u32 } else { 0 });
+        Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(counts.collect()) })
+    }
+}

@@ -1,0 +1,19 @@
+//! The technique's name, and the names of what it holds.
+
+pub const NAME: &str = "interleaved_sampling";
+
+/// What a member is drawn with and into.
+pub const DEPTH: &str = "interleaved_sampling.depth.reversed";
+pub const DRAWN: &str = "interleaved_sampling.material.color";
+
+/// Where the samples of each member lie.
+pub const MEMBERS: &str = "interleaved_sampling.combine.members";
+
+/// Sums over the samples of each pixel so far, and their number.
+pub const SUMS: &str = "interleaved_sampling.combine.sums";
+
+/// The picture: the mean of each pixel's samples.
+pub const COLOR: &str = "interleaved_sampling.mean.color";
+
+/// Where pixels have no sample: the pixel whose mean each of them takes.
+pub const SOURCES: &str = "interleaved_sampling.mean.sources";

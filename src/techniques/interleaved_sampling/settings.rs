@@ -1,0 +1,57 @@
+//! The settings that only this technique reads.
+
+use super::choices::Effect;
+use crate::sampling::sampler::Sampler;
+use crate::settings::{APERTURE, Changes, FOCUS, Kind, Setting, Unread};
+
+pub const SETTINGS: &[Setting] = &[
+    Setting {
+        key: "effect",
+        kind: Kind::Words(Effect::WORDS),
+        default: "aa",
+        paper: "Keller 2001, 3",
+        help: "What samples are spread over, one or more with commas between: aa, places in their pixels (without it all \
+               lie in the middles); defocus, the lens of --aperture",
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "basis",
+        kind: Kind::Text("NxM|frame"),
+        default: "2x2",
+        unit: "px",
+        paper: "Keller 2001, 2.1",
+        help: "Width and height of the basis pattern that repeats over the frame, 1 or more with up to two decimal places \
+               (2.5x1.75: pixels then hold different numbers of samples); 1x1 is the accumulation buffer, the same \
+               samples in every pixel, and frame the other end, none of which repeats",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "samples",
+        kind: Kind::Number { min: 0.01, max: 256.0 },
+        default: "4",
+        paper: "Keller 2001, 2.1",
+        help: "Samples a pixel in the mean: a basis has as many as its pixels times that, rounded, each of which is a \
+               member, drawn as a small picture of its own",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "sampler",
+        kind: Kind::Choice(Sampler::WORDS),
+        default: "relaxed",
+        paper: "Keller 2001, 2.2",
+        help: "How the samples of a basis are spread: relaxed, blue noise that tiles (the paper's); sobol, one scrambled \
+               sequence; r2, the generalised golden ratio's; jittered, one in each of equal cells; random; and for whole \
+               pixels ign, turned by interleaved gradient noise; void-and-cluster, by blue noise masks; blue-errors, \
+               Sobol's with errors that differ between neighbours",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        help: "Diameter of the camera's thin lens, which blurs what is out of focus; --effect defocus wants one",
+        unread: |values| match Effect::chosen(values).contains(&Effect::Defocus) {
+            true => None,
+            false => Some(Unread::at(values, "effect", "--effect aa,defocus", "nothing is spread over the lens")),
+        },
+        ..APERTURE
+    },
+    Setting { unread: |values| Unread::without(values, APERTURE.key, "through a pinhole all is sharp"), ..FOCUS },
+];
