@@ -29,6 +29,8 @@ pub fn pass(technique: &str) -> String {
 }
 
 pub struct Material {
+    /// Its full name.
+    pass: String,
     opaque: GraphicsPipeline,
     mask: GraphicsPipeline,
     has_prepass: bool,
@@ -41,6 +43,7 @@ impl Material {
     /// `constants`: of light and of levels. `background`: radiance where no surface is.
     pub fn new(
         gpu: &Arc<Gpu>,
+        technique: &str,
         scene: &SceneGpu,
         choices: &ForwardChoices,
         constants: &[(&'static str, u32)],
@@ -73,13 +76,12 @@ impl Material {
             )
         };
         let (opaque, mask) = (pipeline("opaque")?, pipeline("mask")?);
-        Ok(Self { opaque, mask, has_prepass, objects: objects.to_vec(), background })
+        Ok(Self { pass: pass(technique), opaque, mask, has_prepass, objects: objects.to_vec(), background })
     }
 
     pub fn record(
         &self,
         cmd: &mut Commands,
-        technique: &str,
         frame: &Buffer,
         scene: &SceneGpu,
         list: &DrawList,
@@ -96,7 +98,7 @@ impl Material {
         let mut bound = mesh::bound(frame, scene);
         bound.extend_from_slice(lights.bound);
         bound.extend(lights.maps.iter().flat_map(|maps| maps.resource.bound()));
-        cmd.pass(&pass(technique), traffic, |cmd| {
+        cmd.pass(&self.pass, traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
             cmd.barriers(lights.maps.and_then(|maps| maps.to(Access::FragmentSample)));
             let depth = depth_prepass::attach(cmd, depth, self.has_prepass);

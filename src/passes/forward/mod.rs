@@ -172,7 +172,7 @@ impl Forward {
             maps,
             maps_once: maps_once.flatten(),
             depth: if choices.has_prepass { Some(DepthPrepass::new(gpu, scene, samples)?) } else { None },
-            material: Material::new(gpu, scene, choices, &constants, (&of.lists.objects, of.background))?,
+            material: Material::new(gpu, technique, scene, choices, &constants, (&of.lists.objects, of.background))?,
             blend: Blend::new(gpu, scene, of.view, blend::all_lights(0.0), &constants, &target)?,
             direct: DirectGpu::new(gpu, resources, technique, of.lights, false, tree)?,
             lists: list_buffer,
@@ -205,7 +205,7 @@ impl Forward {
         lit.push(("LightLists", Bound::Buffer(&self.lists)));
         let maps = self.maps.as_ref();
         let lights = MaterialLights { bound: &lit, maps: maps.map(|maps| maps.from(Access::DepthWrite)) };
-        self.material.record(cmd, technique, frame, scene, &self.list, &lights, targets)?;
+        self.material.record(cmd, frame, scene, &self.list, &lights, targets)?;
         if let Some(blend) = &self.blend {
             let lights = BlendLights {
                 lights: &self.direct.lights,

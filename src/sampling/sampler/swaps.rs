@@ -36,10 +36,10 @@ impl Group {
             Self::Single(index) => (index, 1),
             Self::Pair(index) => (index, 2),
         };
-        for index in first..first + count {
-            let kept = points[a][index];
-            points[a][index] = points[b][index];
-            points[b][index] = kept;
+        if a != b {
+            let (before, after) = points.split_at_mut(a.max(b));
+            let numbers = first..first + count;
+            before[a.min(b)][numbers.clone()].swap_with_slice(&mut after[0][numbers]);
         }
     }
 }
