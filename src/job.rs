@@ -229,7 +229,8 @@ impl Job {
         let (runs, all) = renderer.runs();
         // Fewer than all may also be enough, by --until-error.
         let asked_to_stop = interrupt::check();
-        let is_kept = all > 1 && unfinished == Unfinished::Kept && asked_to_stop.is_err();
+        let has_picture = all > 1 && renderer.has_early_pictures();
+        let is_kept = has_picture && unfinished == Unfinished::Kept && asked_to_stop.is_err();
         let ended_after = is_kept.then_some((runs, all));
         if ended_after.is_none() {
             asked_to_stop?;

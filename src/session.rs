@@ -404,6 +404,11 @@ impl Renderer {
         (self.runs.get(), self.frame.run_count())
     }
 
+    /// Whether the last frame left a picture where it was ended before its last run.
+    pub fn has_early_pictures(&self) -> bool {
+        self.frame.has_early_pictures()
+    }
+
     /// Makes the first `pass_count` passes of a frame that was recorded with a submit a pass. It makes no picture: that
     /// is read after a whole frame.
     ///

@@ -255,6 +255,11 @@ pub trait Frame {
         1
     }
 
+    /// Whether there is a picture after fewer runs than `run_count`, if with fewer samples.
+    fn has_early_pictures(&self) -> bool {
+        true
+    }
+
     /// Whether runs differ by the block's `sample_index` alone: then several may go at once.
     fn runs_alike(&self) -> bool {
         false

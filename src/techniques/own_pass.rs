@@ -175,6 +175,10 @@ impl Frame for FrameWithPass {
         self.frame.run_count()
     }
 
+    fn has_early_pictures(&self) -> bool {
+        self.frame.has_early_pictures()
+    }
+
     fn runs_alike(&self) -> bool {
         self.frame.runs_alike()
     }

@@ -3,6 +3,7 @@
 
 use crate::support::boxes::{panel, rectangle};
 use crate::support::difference::{require_same, rmse};
+use crate::support::program::Program;
 use crate::support::watched::{Watched, both};
 use glam::{Mat4, Vec3};
 use quincunx::choice::Choice;
@@ -10,6 +11,7 @@ use quincunx::sampling::sampler::Sampler;
 use quincunx::scene::{Camera, Projection, Scene};
 use quincunx::techniques::patterns;
 use quincunx::units::Extent;
+use std::time::{Duration, Instant};
 
 const NAME: &str = "interleaved_sampling";
 
@@ -125,9 +127,22 @@ fn it_converges_to_paths() {
     }
 }
 
+/// Between two members there is no picture: pixels of those to come have no sample.
+#[test]
+#[cfg(target_os = "linux")]
+fn ctrl_c_leaves_no_half_of_a_picture() {
+    let program = Program::new();
+    let begin =
+        ["render", "cornell", "--technique", NAME, "--size", "250x250", "--basis", "frame", "--sampler", "random"];
+    let started = Instant::now();
+    // 62,500 members take longer than this, and the first of them less.
+    let arguments = [&begin[..], &["--samples", "1", "-o", "half.png", "--report", "half.json"]].concat();
+    let (code, said) = program.interrupted(&arguments, || started.elapsed() > Duration::from_secs(5));
+    assert_eq!((code, program.files()), (Some(130), Vec::new()), "{said}");
+}
+
 #[test]
 fn what_cannot_be_is_refused_with_what_can() {
-    let watched = Watched::open("cornell");
     for (changes, words) in [
         (&[("basis", "2")][..], "--basis 2: it must be NxM, or frame"),
         (&[("basis", "2x2.125")], "at most two decimal places"),
@@ -146,5 +161,4 @@ fn what_cannot_be_is_refused_with_what_can() {
         assert_eq!(error.exit_code(), 2, "{error}");
         assert!(error.to_string().contains(words), "{changes:?}: {error}");
     }
-    drop(watched);
 }

@@ -218,6 +218,11 @@ impl Frame for InterleavedFrame {
         self.choices.members.count()
     }
 
+    /// Pixels without a sample of the first members have none to show.
+    fn has_early_pictures(&self) -> bool {
+        false
+    }
+
     /// As the member's place on the lens sees it, its samples in the middles of its picture's texels.
     fn block_of(&self, run: u32, block: FrameBlock, view: &View) -> FrameBlock {
         let (lens, placement) = self.choices.sight(run);
