@@ -204,6 +204,17 @@ pub const SHADOW_MAPS: BenchStage = BenchStage {
     },
 };
 
+/// Depth before the pass with materials.
+pub const DEPTH: BenchStage = BenchStage {
+    name: "depth",
+    summary: "Depth pre-pass, in nanoseconds a triangle",
+    passes: &["depth"],
+    work: Work::Counted(&[TRIANGLES]),
+    made_with: &[],
+    fused_by: None,
+    left_out: |values| (!values.is_on("depth-prepass")).then(|| "--depth-prepass off draws none".to_owned()),
+};
+
 /// The geometry buffer at the picture's size.
 pub const GBUFFER: BenchStage = BenchStage {
     name: "gbuffer",

@@ -357,6 +357,19 @@ fn instrumented(technique: &dyn Technique, values: &Values, choice: &str) -> Val
     changed
 }
 
+/// The transport of punctual lights that light surfaces straight, as `Technique::reference_settings` says it. `by_volumes`: as
+/// for `light_visibility`.
+///
+/// Errors: as `light_visibility`.
+fn straight_light(values: &Values, lights: &LightSet, by_volumes: usize) -> Result<Vec<(&'static str, String)>> {
+    Ok(vec![
+        ("transport", "direct".to_owned()),
+        ("light-visibility", light_visibility(values, lights, by_volumes)?),
+        ("emissive", "off".to_owned()),
+        ("ambient-visibility", "off".to_owned()),
+    ])
+}
+
 /// Whether path tracing must let the scene's own lights cast shadows to compute what `--direct-shadow` does, and
 /// `by_volumes`: how many of them, directional ones first, cast in another way.
 ///

@@ -6,6 +6,7 @@ use crate::gpu::shader::passes::forward::material::UNIFORM_LIGHT_COUNT;
 use crate::gpu::shader::structs::LightBlock;
 use crate::lights::LightSet;
 use crate::lights::object_lists::ObjectLists;
+use crate::passes::blend;
 use crate::passes::direct::{self, DirectSettings};
 use crate::passes::shadow_maps::MapLayout;
 use crate::plan::Requirements;
@@ -14,6 +15,7 @@ use crate::scene::Scene;
 use crate::settings::{LightBuffer, ListChoice, Values};
 use crate::units::Bytes;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// Bytes of the lights that the material pass reads as uniforms.
 pub const UNIFORM_BYTES: u64 = UNIFORM_LIGHT_COUNT as u64 * size_of::<LightBlock>() as u64;
@@ -65,18 +67,15 @@ impl ForwardChoices {
         })
     }
 
-    /// The lights as shaders read them, and the lists of all objects.
-    pub fn lists(
-        &self,
-        values: &Values,
-        scene: &Scene,
-        lights: &LightSet,
-        caps: &Caps,
-    ) -> Result<(Vec<LightBlock>, ObjectLists)> {
+    /// The lights and the lists of all objects.
+    ///
+    /// Errors: as `ObjectLists::new`.
+    pub fn listed(&self, values: &Values, scene: &Scene, lights: &LightSet, caps: &Caps) -> Result<ListedLights> {
+        let began = Instant::now();
         let lights = direct::light_blocks(lights, values);
         let most_bytes = caps.limits.max_storage_buffer_range_bytes;
         let lists = ObjectLists::new(scene, &lights, self.lists, most_bytes)?;
-        Ok((lights, lists))
+        Ok(ListedLights { lights, lists, took_ns: began.elapsed().as_nanos() as u64 })
     }
 
     /// The constants of all shaders that light.
@@ -90,5 +89,34 @@ impl ForwardChoices {
         let buffer = if self.is_uniform { "uniform" } else { "storage" };
         let maps = self.maps.as_ref().map(MapLayout::resolved);
         [("light-buffer", buffer.to_owned())].into_iter().chain(maps).collect()
+    }
+}
+
+/// The punctual lights, and which of them each object has.
+pub struct ListedLights {
+    /// As shaders read them.
+    pub lights: Vec<LightBlock>,
+    pub lists: ObjectLists,
+    /// Nanoseconds that listing them took on the host.
+    took_ns: u64,
+}
+
+impl ListedLights {
+    /// The host's pass, with its time in nanoseconds.
+    pub fn pass(&self, technique: &str) -> (String, u64) {
+        (format!("{technique}.lights"), self.took_ns)
+    }
+
+    /// What the host knows of them, for the report's `counters`.
+    pub fn counters(&self) -> BTreeMap<&'static str, f64> {
+        let [mean, most] = self.lists.lights_per_object();
+        let mut counters = BTreeMap::from([
+            ("lights", self.lights.len() as f64),
+            ("lights_per_object", mean),
+            ("lights_per_object_most", most),
+            ("objects", self.lists.objects.len() as f64),
+        ]);
+        counters.extend(blend::counters(&self.lists));
+        counters
     }
 }

@@ -6,24 +6,24 @@
 mod choices;
 pub mod material;
 
-pub use choices::ForwardChoices;
 use choices::UNIFORM_BYTES;
+pub use choices::{ForwardChoices, ListedLights};
 pub use material::Targets;
 
 use crate::bvh::LazyBvh;
+use crate::caps::{Ability, Need};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::shader::structs::LightBlock;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
-use crate::lights::object_lists::ObjectLists;
 use crate::memory::kinds::Use;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::direct::{self, DirectGpu};
-use crate::passes::shadow_maps::{Places, ShadowMaps};
+use crate::passes::shadow_maps::{self, Places, ShadowMaps};
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
+use crate::settings::Values;
 use ash::vk::BufferUsageFlags;
 use glam::Vec3;
 use material::{Material, MaterialLights};
@@ -44,6 +44,15 @@ fn vpls_name(technique: &str) -> String {
     format!("{technique}.vpls")
 }
 
+/// What the passes need of a device. `has_blend`: the scene has BLEND surfaces.
+pub fn needs(values: &Values, has_blend: bool) -> impl Iterator<Item = Need> {
+    let depth = Need { of: "the depth buffer".to_owned(), ability: Ability::FloatDepth, instead: "" };
+    [depth].into_iter().chain(shadow_maps::needs(values)).chain(blend::needs(has_blend))
+}
+
+/// Settings that have shorter buffers, or none (`Technique::shorter`).
+pub const SHORTER: &[(&str, &str)] = &[("light-lists", "none"), ("direct-shadow", "none")];
+
 /// Plans the lights, their lists and the tree.
 ///
 /// Errors: as of the tree.
@@ -51,13 +60,12 @@ pub fn plan(
     plan: &mut Plan,
     technique: &str,
     choices: &ForwardChoices,
-    lists: &ObjectLists,
-    light_count: usize,
+    listed: &ListedLights,
     (bvh, scene): (&LazyBvh, &Scene),
 ) -> Result<()> {
     let tree = choices.direct.tree(bvh, scene)?;
-    direct::plan(plan, technique, light_count, tree);
-    plan.buffer("lights", lists_name(technique), 4 * lists.entries.len() as u64);
+    direct::plan(plan, technique, listed.lights.len(), tree);
+    plan.buffer("lights", lists_name(technique), 4 * listed.lists.entries.len() as u64);
     plan.buffer("lights", vpls_name(technique), 0);
     if choices.is_uniform {
         let flags =
@@ -90,26 +98,12 @@ pub fn plan_passes(
     }
 }
 
-/// What the host knows of the lists, for the report's `counters`.
-pub fn list_counters(lights: &[LightBlock], lists: &ObjectLists) -> BTreeMap<&'static str, f64> {
-    let [mean, most] = lists.lights_per_object();
-    let mut counters = BTreeMap::from([
-        ("lights", lights.len() as f64),
-        ("lights_per_object", mean),
-        ("lights_per_object_most", most),
-        ("objects", lists.objects.len() as f64),
-    ]);
-    counters.extend(blend::counters(lists));
-    counters
-}
-
 /// What the draws are of, beside the scene in device memory.
 pub struct ForwardScene<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     pub bvh: &'a LazyBvh,
-    pub lights: &'a [LightBlock],
-    pub lists: &'a ObjectLists,
+    pub listed: &'a ListedLights,
     /// The solid triangles that are drawn.
     pub list: DrawList,
     /// Radiance where no surface is.
@@ -148,12 +142,12 @@ impl Forward {
     ) -> Result<Self> {
         let tree = choices.direct.tree(of.bvh, of.scene)?;
         let list_buffer = resources.buffer(&lists_name(technique));
-        upload::buffer(gpu, &list_buffer, bytemuck::cast_slice(&of.lists.entries), Access::GraphicsRead)?;
+        upload::buffer(gpu, &list_buffer, bytemuck::cast_slice(&of.listed.lists.entries), Access::GraphicsRead)?;
         let uniform_lights = match choices.is_uniform {
             false => None,
             true => {
                 let buffer = resources.buffer(&uniform_name(technique));
-                upload::buffer(gpu, &buffer, bytemuck::cast_slice(of.lights), Access::GraphicsRead)?;
+                upload::buffer(gpu, &buffer, bytemuck::cast_slice(&of.listed.lights), Access::GraphicsRead)?;
                 Some(buffer)
             }
         };
@@ -161,7 +155,7 @@ impl Forward {
         let steps = [("LEVEL_STEP_X", right), ("LEVEL_STEP_Y", down)];
         let constants: Vec<_> = choices.light_constants().into_iter().chain(steps).collect();
         let samples = choices.samples;
-        let target = BlendTarget { pieces: &of.lists.pieces, samples, has_shadow_maps: choices.maps.is_some() };
+        let target = BlendTarget { pieces: &of.listed.lists.pieces, samples, has_shadow_maps: choices.maps.is_some() };
         let maps = choices.maps.as_ref();
         let maps =
             maps.map(|layout| ShadowMaps::new(gpu, resources, technique, layout, of.scene, scene)).transpose()?;
@@ -172,9 +166,16 @@ impl Forward {
             maps,
             maps_once: maps_once.flatten(),
             depth: if choices.has_prepass { Some(DepthPrepass::new(gpu, scene, samples)?) } else { None },
-            material: Material::new(gpu, technique, scene, choices, &constants, (&of.lists.objects, of.background))?,
+            material: Material::new(
+                gpu,
+                technique,
+                scene,
+                choices,
+                &constants,
+                (&of.listed.lists.objects, of.background),
+            )?,
             blend: Blend::new(gpu, scene, of.view, blend::all_lights(0.0), &constants, &target)?,
-            direct: DirectGpu::new(gpu, resources, technique, of.lights, false, tree)?,
+            direct: DirectGpu::new(gpu, resources, technique, &of.listed.lights, false, tree)?,
             lists: list_buffer,
             uniform_lights,
             vpls: resources.buffer(&vpls_name(technique)),

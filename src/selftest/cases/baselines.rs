@@ -1,13 +1,13 @@
 //! Forward and deferred shading: culling of lights, the pre-pass, samples a pixel, shadows by map and by ray, and both
 //! against paths.
 
-use super::super::case::{Group, Place, Twin};
+use super::super::case::{Group, Place, Settings, Twin};
 use super::super::judge::Bounds;
 use crate::selftest::cases::bounds::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
 use crate::selftest::judge::Must;
 
-const LAMPS: Place = Place::Scene("lamps:objects=12,lights=12");
-const FENCE: Place = Place::Scene("fence:lights=6");
+pub const LAMPS: Place = Place::Scene("lamps:objects=12,lights=12");
+pub const FENCE: Place = Place::Scene("fence:lights=6");
 
 pub const POSITIONS: Bounds = Bounds {
     apart: 0.02,
@@ -30,7 +30,7 @@ const PREPASS: Bounds = Bounds {
     mean: 0.002,
     why: "of samples that pass the depth test a device may shade another one than without the pre-pass",
 };
-const FILTER: Bounds = Bounds {
+pub const FILTER: Bounds = Bounds {
     apart: 0.02,
     rmse: 0.005,
     flip: 0.005,
@@ -65,8 +65,20 @@ const RAYS_AND_MAPS: Bounds = Bounds {
     why: "a map of 256 texels and rays: edges of shadows differ, lit and shadowed surfaces do not",
 };
 
-const PATHS_OF_DIRECT_LIGHT: &[(&str, &str)] =
+pub const PATHS_OF_DIRECT_LIGHT: &[(&str, &str)] =
     &[("brdf", "lambert"), ("transport", "direct"), ("emissive", "off"), ("ambient-visibility", "off"), ("spp", "64")];
+
+/// The plain way to draw with whole materials (`passes::forward`), and every other one.
+pub const PLAINLY_DRAWN: Twin =
+    Twin::Method(&[("depth-prepass", "off"), ("light-lists", "none"), ("light-buffer", "storage"), EVERYTHING[0]]);
+pub const DRAWN: &[Settings] = &[
+    &[],
+    &[("depth-prepass", "off")],
+    &[("light-lists", "none")],
+    &[("light-buffer", "uniform")],
+    &[("light-buffer", "storage")],
+    EVERYTHING,
+];
 
 pub const GROUPS: &[Group] = &[
     Group {
@@ -83,20 +95,8 @@ pub const GROUPS: &[Group] = &[
         technique: "forward",
         place: LAMPS,
         common: &[],
-        twin: Twin::Method(&[
-            ("depth-prepass", "off"),
-            ("light-lists", "none"),
-            ("light-buffer", "storage"),
-            EVERYTHING[0],
-        ]),
-        methods: &[
-            &[],
-            &[("depth-prepass", "off")],
-            &[("light-lists", "none")],
-            &[("light-buffer", "uniform")],
-            &[("light-buffer", "storage")],
-            EVERYTHING,
-        ],
+        twin: PLAINLY_DRAWN,
+        methods: DRAWN,
         must: Must::Equal(ROUNDING),
     },
     Group {

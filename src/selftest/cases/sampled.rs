@@ -1,20 +1,11 @@
 //! Interleaved sampling: the ways to draw a member, one sample against forward shading, and every sampler against paths.
 
-use super::super::case::{Group, Place, Twin};
+use super::super::case::{Group, Twin};
 use super::super::judge::Bounds;
-use crate::selftest::cases::bounds::{AGAIN, CUT, EVERYTHING, ROUNDING, SAME, WHOLE};
+use crate::selftest::cases::baselines::{DRAWN, FENCE, FILTER, LAMPS, PATHS_OF_DIRECT_LIGHT, PLAINLY_DRAWN};
+use crate::selftest::cases::bounds::{AGAIN, CUT, ROUNDING, SAME, WHOLE};
 use crate::selftest::judge::Must;
 
-const LAMPS: Place = Place::Scene("lamps:objects=12,lights=12");
-const FENCE: Place = Place::Scene("fence:lights=6");
-
-const FILTER: Bounds = Bounds {
-    apart: 0.02,
-    rmse: 0.005,
-    flip: 0.005,
-    mean: 0.002,
-    why: "a device weighs the four comparisons of a filter in steps of its own",
-};
 const TRACED: Bounds = Bounds {
     apart: 0.5,
     rmse: 0.05,
@@ -38,20 +29,8 @@ pub const GROUPS: &[Group] = &[
         technique: "interleaved_sampling",
         place: LAMPS,
         common: &[("basis", "2.5x1.75")],
-        twin: Twin::Method(&[
-            ("depth-prepass", "off"),
-            ("light-lists", "none"),
-            ("light-buffer", "storage"),
-            EVERYTHING[0],
-        ]),
-        methods: &[
-            &[],
-            &[("depth-prepass", "off")],
-            &[("light-lists", "none")],
-            &[("light-buffer", "uniform")],
-            &[("light-buffer", "storage")],
-            EVERYTHING,
-        ],
+        twin: PLAINLY_DRAWN,
+        methods: DRAWN,
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -95,16 +74,7 @@ pub const GROUPS: &[Group] = &[
         technique: "interleaved_sampling",
         place: LAMPS,
         common: &[("brdf", "lambert"), ("direct-shadow", "ray"), ("samples", "16")],
-        twin: Twin::Other(
-            "path_traced",
-            &[
-                ("brdf", "lambert"),
-                ("transport", "direct"),
-                ("emissive", "off"),
-                ("ambient-visibility", "off"),
-                ("spp", "64"),
-            ],
-        ),
+        twin: Twin::Other("path_traced", PATHS_OF_DIRECT_LIGHT),
         methods: &[
             &[("sampler", "relaxed")],
             &[("sampler", "sobol")],

@@ -101,7 +101,7 @@ mod tuples;
 mod visibility;
 
 use super::bench_stage::BenchStage;
-use super::{HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, light_visibility};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, straight_light};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::lights::LightSet;
@@ -200,14 +200,8 @@ impl Technique for DeepShading {
         vec![("--tuples", format!("{}", caps.limits.max_image_layers.min(2048)))]
     }
 
-    /// Punctual lights, straight.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        Ok(vec![
-            ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights, 0)?),
-            ("emissive", "off".to_owned()),
-            ("ambient-visibility", "off".to_owned()),
-        ])
+        straight_light(values, lights, 0)
     }
 
     fn rivals(&self) -> Vec<Rival> {

@@ -8,7 +8,7 @@ pub mod shade;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, straight_light};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
@@ -67,14 +67,8 @@ impl Technique for Deferred {
         Vec::new()
     }
 
-    /// Punctual lights, straight.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        Ok(vec![
-            ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights, 0)?),
-            ("emissive", "off".to_owned()),
-            ("ambient-visibility", "off".to_owned()),
-        ])
+        straight_light(values, lights, 0)
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

@@ -1,17 +1,9 @@
 //! What a benchmark times of forward shading.
 
-use crate::techniques::bench_stage::{BenchStage, LIGHT_EVALUATIONS, SHADOW_MAPS, TRIANGLES, Work, never};
+use crate::techniques::bench_stage::{BenchStage, DEPTH, LIGHT_EVALUATIONS, SHADOW_MAPS, Work, never};
 
 pub const STAGES: &[BenchStage] = &[
-    BenchStage {
-        name: "depth",
-        summary: "Depth pre-pass, in nanoseconds a triangle",
-        passes: &["depth"],
-        work: Work::Counted(&[TRIANGLES]),
-        made_with: &[],
-        fused_by: None,
-        left_out: |values| (!values.is_on("depth-prepass")).then(|| "--depth-prepass off draws none".to_owned()),
-    },
+    DEPTH,
     BenchStage {
         name: "shade",
         summary: "Pass that draws and shades materials, in nanoseconds an evaluation",

@@ -27,17 +27,16 @@ mod settings;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, Prepared, Technique, light_visibility};
-use crate::caps::{Ability, Caps, Need};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, straight_light};
+use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::shader::structs::{FrameBlock, LightBlock};
+use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::lights::LightSet;
-use crate::lights::object_lists::ObjectLists;
 use crate::passes::accumulate::Accumulate;
-use crate::passes::forward::{self, ForwardScene, Targets};
-use crate::passes::{blend, resolve, shadow_maps};
+use crate::passes::forward::{self, ForwardScene, ListedLights, Targets};
+use crate::passes::resolve;
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
@@ -47,7 +46,6 @@ use crate::techniques::forward::resources::NAME;
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 const DEPTH_STAGE: &str = "depth.reversed";
 
@@ -75,27 +73,19 @@ impl Technique for Forward {
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
-        &[("light-lists", "none"), ("direct-shadow", "none")]
+        forward::SHORTER
     }
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        let depth = Need { of: "the depth buffer".to_owned(), ability: Ability::FloatDepth, instead: "" };
-        let chosen = resolve::needs(values).into_iter().chain(shadow_maps::needs(values));
-        [depth].into_iter().chain(chosen).chain(blend::needs(has_blend)).collect()
+        forward::needs(values, has_blend).chain(resolve::needs(values)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 
-    /// Punctual lights, straight.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        Ok(vec![
-            ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights, 0)?),
-            ("emissive", "off".to_owned()),
-            ("ambient-visibility", "off".to_owned()),
-        ])
+        straight_light(values, lights, 0)
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {
@@ -108,23 +98,19 @@ impl Technique for Forward {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
-        let began = Instant::now();
-        let (lights, lists) = choices.drawing.lists(inputs.values, inputs.scene, inputs.lights, inputs.caps)?;
-        let lists_ns = began.elapsed().as_nanos() as u64;
-        Ok(Box::new(PreparedForward { choices, lights, lists, lists_ns }))
+        let listed = choices.drawing.listed(inputs.values, inputs.scene, inputs.lights, inputs.caps)?;
+        Ok(Box::new(PreparedForward { choices, listed }))
     }
 }
 
 struct PreparedForward {
     choices: Choices,
-    lights: Vec<LightBlock>,
-    lists: ObjectLists,
-    lists_ns: u64,
+    listed: ListedLights,
 }
 
 impl Prepared for PreparedForward {
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        plan::plan(&self.choices, inputs, &self.lists)
+        plan::plan(&self.choices, inputs, &self.listed)
     }
 
     fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
@@ -139,9 +125,9 @@ impl Prepared for PreparedForward {
 
     fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
         Ok(HostPart {
-            passes: vec![(format!("{NAME}.lights"), self.lists_ns)],
-            counters: forward::list_counters(&self.lights, &self.lists),
-            light_counts: [self.lights.len() as u32, 0],
+            passes: vec![self.listed.pass(NAME)],
+            counters: self.listed.counters(),
+            light_counts: [self.listed.lights.len() as u32, 0],
             build: Box::new(move |gpu, inputs, scene, resources| self.build(gpu, inputs, scene, resources)),
         })
     }
@@ -156,15 +142,14 @@ impl PreparedForward {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        let Self { choices, lights, lists, .. } = self;
+        let Self { choices, listed } = self;
         let Choices { drawing, runs_per_side } = &choices;
         let list = inputs.draw_list(scene, choices.coverage());
         let of = ForwardScene {
             scene: inputs.scene,
             view: inputs.view,
             bvh: inputs.bvh,
-            lights: &lights,
-            lists: &lists,
+            listed: &listed,
             list,
             background: inputs.values.color("background"),
             pixels_per_texel: [1.0; 2],

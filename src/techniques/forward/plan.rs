@@ -1,7 +1,7 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
 use crate::error::Result;
-use crate::lights::object_lists::ObjectLists;
+use crate::passes::forward::ListedLights;
 use crate::passes::{accumulate, depth_prepass, forward, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan};
 use crate::techniques::Inputs;
@@ -10,13 +10,13 @@ use crate::techniques::forward::resources::{DEPTH, DRAWN, NAME, RESOLVED};
 use ash::vk::ImageUsageFlags as Usage;
 
 /// Resources and passes of a frame.
-pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Result<Plan> {
+pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Result<Plan> {
     let Choices { drawing, runs_per_side } = choices;
     let (samples, extent) = (drawing.samples, inputs.view.extent);
     let (is_resolved, is_mean) = (samples > 1, *runs_per_side > 1);
     let mut plan = Plan::default();
     let of = (inputs.bvh, inputs.scene);
-    forward::plan(&mut plan, NAME, drawing, lists, inputs.lights.lights.len(), of)?;
+    forward::plan(&mut plan, NAME, drawing, listed, of)?;
     // Images of several samples are only attached.
     let read = |usage: Usage| if is_resolved { Usage::empty() } else { usage };
     let usage = Usage::DEPTH_STENCIL_ATTACHMENT | read(Usage::TRANSFER_SRC);

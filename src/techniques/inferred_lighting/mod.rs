@@ -33,7 +33,7 @@ mod survivors;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, straight_light};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::Access;
@@ -125,15 +125,9 @@ impl Technique for InferredLighting {
         vec![("--light-size", format!("{} px a side", caps.limits.max_image_side_px))]
     }
 
-    /// Punctual lights, straight.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let by_volumes = values.integer("shadow-volumes") as usize;
-        Ok(vec![
-            ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights, by_volumes)?),
-            ("emissive", "off".to_owned()),
-            ("ambient-visibility", "off".to_owned()),
-        ])
+        straight_light(values, lights, by_volumes)
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

@@ -1,20 +1,12 @@
 //! What a benchmark times of interleaved sampling: a run is a member.
 
-use crate::techniques::bench_stage::{BenchStage, Count, SHADOW_MAPS, TRIANGLES, Unit, Work, never};
+use crate::techniques::bench_stage::{BenchStage, Count, DEPTH, SHADOW_MAPS, Unit, Work, never};
 
 /// Samples of one member.
 const SAMPLES: Count = Count { unit: Unit::Sample, of: |done| done.counter("samples_per_member") };
 
 pub const STAGES: &[BenchStage] = &[
-    BenchStage {
-        name: "depth",
-        summary: "Depth pre-pass, in nanoseconds a triangle",
-        passes: &["depth"],
-        work: Work::Counted(&[TRIANGLES]),
-        made_with: &[],
-        fused_by: None,
-        left_out: |values| (!values.is_on("depth-prepass")).then(|| "--depth-prepass off draws none".to_owned()),
-    },
+    DEPTH,
     BenchStage {
         name: "member",
         summary: "Pass that draws and shades a member, in nanoseconds a sample",

@@ -33,16 +33,14 @@ mod settings;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
-use crate::caps::{Ability, Caps, Need};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, straight_light};
+use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::shader::structs::{FrameBlock, LightBlock};
+use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::lights::LightSet;
-use crate::lights::object_lists::ObjectLists;
-use crate::passes::forward::{self, Forward, ForwardScene, Targets};
-use crate::passes::{blend, shadow_maps};
+use crate::passes::forward::{self, Forward, ForwardScene, ListedLights, Targets};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
@@ -53,7 +51,6 @@ use mean::Mean;
 use resources::NAME;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Samples of each pixel.
 const SAMPLES_STAGE: &str = "combine.sums.samples";
@@ -82,26 +79,19 @@ impl Technique for InterleavedSampling {
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
-        &[("light-lists", "none"), ("direct-shadow", "none")]
+        forward::SHORTER
     }
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        let depth = Need { of: "the depth buffer".to_owned(), ability: Ability::FloatDepth, instead: "" };
-        [depth].into_iter().chain(shadow_maps::needs(values)).chain(blend::needs(has_blend)).collect()
+        forward::needs(values, has_blend).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 
-    /// Punctual lights, straight.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        Ok(vec![
-            ("transport", "direct".to_owned()),
-            ("light-visibility", light_visibility(values, lights, 0)?),
-            ("emissive", "off".to_owned()),
-            ("ambient-visibility", "off".to_owned()),
-        ])
+        straight_light(values, lights, 0)
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {
@@ -118,23 +108,19 @@ impl Technique for InterleavedSampling {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
-        let began = Instant::now();
-        let (lights, lists) = choices.drawing.lists(inputs.values, inputs.scene, inputs.lights, inputs.caps)?;
-        let lists_ns = began.elapsed().as_nanos() as u64;
-        Ok(Box::new(PreparedInterleaved { choices, lights, lists, lists_ns }))
+        let listed = choices.drawing.listed(inputs.values, inputs.scene, inputs.lights, inputs.caps)?;
+        Ok(Box::new(PreparedInterleaved { choices, listed }))
     }
 }
 
 struct PreparedInterleaved {
     choices: Choices,
-    lights: Vec<LightBlock>,
-    lists: ObjectLists,
-    lists_ns: u64,
+    listed: ListedLights,
 }
 
 impl Prepared for PreparedInterleaved {
     fn plan(&self, inputs: &Inputs<'_>) -> Result<Plan> {
-        plan::plan(&self.choices, inputs, &self.lists)
+        plan::plan(&self.choices, inputs, &self.listed)
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
@@ -145,7 +131,7 @@ impl Prepared for PreparedInterleaved {
     fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
         let members = &self.choices.members;
         let [least, most] = members.basis().pattern().samples_per_pixel();
-        let mut counters = forward::list_counters(&self.lights, &self.lists);
+        let mut counters = self.listed.counters();
         counters.extend([
             ("members", f64::from(members.count())),
             ("samples_per_member", members.layer().pixel_count() as f64),
@@ -153,9 +139,9 @@ impl Prepared for PreparedInterleaved {
             ("samples_per_pixel_most", f64::from(most)),
         ]);
         Ok(HostPart {
-            passes: vec![(format!("{NAME}.lights"), self.lists_ns)],
+            passes: vec![self.listed.pass(NAME)],
             counters,
-            light_counts: [self.lights.len() as u32, 0],
+            light_counts: [self.listed.lights.len() as u32, 0],
             build: Box::new(move |gpu, inputs, scene, resources| self.build(gpu, inputs, scene, resources)),
         })
     }
@@ -170,7 +156,7 @@ impl PreparedInterleaved {
         scene: &SceneGpu,
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
-        let Self { choices, lights, lists, .. } = self;
+        let Self { choices, listed } = self;
         let raster = Raster { extent: choices.members.layer(), coverage: Coverage::Anywhere };
         // What one place of the lens does not see another may.
         let geometry = if choices.lens.is_some() { GeometryChoice::All } else { inputs.values.choice("geometry") };
@@ -179,8 +165,7 @@ impl PreparedInterleaved {
             scene: inputs.scene,
             view: inputs.view,
             bvh: inputs.bvh,
-            lights: &lights,
-            lists: &lists,
+            listed: &listed,
             list,
             background: inputs.values.color("background"),
             pixels_per_texel: choices.members.spacing_px().map(|spacing| spacing as f32),

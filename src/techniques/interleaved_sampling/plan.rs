@@ -3,7 +3,7 @@
 use super::choices::Choices;
 use super::{combine, mean};
 use crate::error::Result;
-use crate::lights::object_lists::ObjectLists;
+use crate::passes::forward::ListedLights;
 use crate::passes::{depth_prepass, forward};
 use crate::plan::{PICTURE_FORMAT, Plan};
 use crate::techniques::Inputs;
@@ -11,11 +11,11 @@ use crate::techniques::interleaved_sampling::resources::{DEPTH, DRAWN, NAME};
 use ash::vk::ImageUsageFlags as Usage;
 
 /// Resources and passes of a run, which is a member.
-pub fn plan(choices: &Choices, inputs: &Inputs<'_>, lists: &ObjectLists) -> Result<Plan> {
+pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Result<Plan> {
     let Choices { drawing, members, .. } = choices;
     let (frame, layer) = (inputs.view.extent, members.layer());
     let mut plan = Plan::default();
-    forward::plan(&mut plan, NAME, drawing, lists, inputs.lights.lights.len(), (inputs.bvh, inputs.scene))?;
+    forward::plan(&mut plan, NAME, drawing, listed, (inputs.bvh, inputs.scene))?;
     plan.image("depth", DEPTH, layer, depth_prepass::FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
     plan.image("color", DRAWN, layer, PICTURE_FORMAT, Usage::COLOR_ATTACHMENT | Usage::STORAGE);
     combine::plan(&mut plan, members, frame);
