@@ -8,6 +8,7 @@ use crate::bvh::Bvh;
 use crate::frame::View;
 use crate::scene::{Projection, Scene};
 use crate::settings::{StereoEyes, Values};
+use glam::Vec2;
 
 /// A lens that is open, or that is not where the camera is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +84,12 @@ impl Lens {
             Eyes::Two { aside } => [-aside, aside].map(|aside| aside / self.reach()).into(),
         }
     }
+}
+
+/// A place on the unit disc, evenly over it, of two numbers of 0 to 1.
+pub fn on_unit_disc([u, v]: [f32; 2]) -> Vec2 {
+    let (radius, turn) = (u.sqrt(), v * std::f32::consts::TAU);
+    Vec2::new(radius * turn.cos(), radius * turn.sin())
 }
 
 /// `--focus` in metres, `auto` as `Lens::new` has it.

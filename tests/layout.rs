@@ -218,7 +218,7 @@ fn levels_of_textures_are_chosen_by_inputs_alone() {
                     .filter(|(at, _)| !code[..*at].ends_with(|before: char| before.is_alphanumeric() || before == '_'));
                 calls.map(|(at, name)| &code[at + name.len()..]).collect()
             };
-            let derived = ["dFdx(", "dFdy(", "fwidth("].into_iter().flat_map(arguments);
+            let derived = ["dFdx(", "dFdy(", "fwidth(", "STEP_RIGHT(", "STEP_DOWN("].into_iter().flat_map(arguments);
             let sampled = arguments("texture(").into_iter().map(|call| call.split_once(", ").map_or("", |(_, at)| at));
             if !derived.chain(sampled).all(|argument| argument.starts_with("in_")) {
                 found.push(format!("glsl/{}:{number}: {}", file.display(), line.trim()));

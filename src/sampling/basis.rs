@@ -55,10 +55,6 @@ impl Basis {
         &self.points[member as usize][2..]
     }
 
-    pub fn further(&self) -> &[Dimension] {
-        &self.further
-    }
-
     /// The pattern that it makes: its period is the least number of whole pixels in which whole bases lie.
     pub fn pattern(&self) -> Pattern {
         let period_px = self.sides.map(|side| side.pixels);

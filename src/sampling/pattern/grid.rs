@@ -10,6 +10,12 @@ pub fn subset_of(period_px: [u32; 2], pixel_px: [u32; 2]) -> u32 {
     pixel_px[1] % period_px[1] * period_px[0] + pixel_px[0] % period_px[0]
 }
 
+/// Columns and rows of `count` cells, as square as the number allows; there are at least as many columns. `count`: at least 1.
+pub fn squarest(count: u32) -> [u32; 2] {
+    let rows = (1..=count.isqrt()).rev().find(|side| count.is_multiple_of(*side)).unwrap_or(1);
+    [count / rows, rows]
+}
+
 impl Pattern {
     /// n x m pixels with a sample in the middle of each, which is a subset of its own; subsets count row-major.
     pub fn grid(period_px: [u32; 2]) -> Self {

@@ -6,10 +6,9 @@
 //! paper exchanges scrambling keys; exchanging whole sequences of pixels is the same. A basis larger than a tile has copies
 //! of it.
 
-use super::mask;
 use super::over::{Over, PixelGrid, Points};
+use super::{mask, sobol};
 use crate::sampling::pcg::Pcg32;
-use crate::sampling::sobol;
 
 /// Half-spaces whose means are judged.
 const TEST_COUNT: usize = 96;
@@ -32,11 +31,7 @@ pub fn points(over: &Over, grid: &PixelGrid) -> Points {
 
 /// Point `sample` of the sequence of this number.
 fn point(over: &Over, set: u32, sample: u32) -> Vec<f64> {
-    let pairs = (0..over.dimensions.div_ceil(2) as u32).flat_map(|pair| {
-        let seed = sobol::pair_seed(sobol::pixel_seed([set, 1], over.seed), pair);
-        sobol::pair(sample, seed).map(f64::from)
-    });
-    pairs.take(over.dimensions).collect()
+    sobol::point(over, [set, 1], sample)
 }
 
 /// A half-space: points whose product with `normal` is at least `least`.
@@ -46,7 +41,7 @@ struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// Of a random direction, through a random point of the unit cube.
+    /// Any direction and any point of the unit cube, through which its plane goes, are as likely as others.
     fn new(dimensions: usize, random: &mut Pcg32) -> Self {
         let normal = loop {
             let normal: Vec<f64> = (0..dimensions).map(|_| 2.0 * f64::from(random.unit()) - 1.0).collect();

@@ -1,19 +1,14 @@
 //! One random place in each of equal parts of a cell; times and lenses likewise, in an order of their own.
 
 use super::over::{Over, PixelGrid, Points};
+use crate::sampling::pattern::grid::squarest;
 use crate::sampling::pcg::Pcg32;
 
-/// Columns and rows of `count` parts of a cell, as square as the number allows.
-fn parts(count: u32) -> [u32; 2] {
-    let rows = (1..=count.isqrt()).rev().find(|side| count.is_multiple_of(*side)).unwrap_or(1);
-    [count / rows, rows]
-}
-
-/// Each cell with parts of its own: `parts` of the place, and as many stretches as samples of each further dimension.
+/// Each cell with parts of its own: `squarest` of the place, and as many stretches as samples of each further dimension.
 pub fn points(over: &Over, grid: &PixelGrid) -> Points {
     let mut random = Pcg32::new(u64::from(over.seed), 2);
     let count = grid.samples;
-    let [columns, rows] = parts(count);
+    let [columns, rows] = squarest(count);
     let mut orders: Vec<Vec<u32>> = Vec::new();
     grid.points(|_, sample| {
         if sample == 0 {
@@ -42,7 +37,7 @@ mod tests {
 
     #[test]
     fn each_part_of_a_cell_has_one_place() {
-        assert_eq!([1, 2, 6, 7, 16].map(parts), [[1, 1], [2, 1], [3, 2], [7, 1], [4, 4]]);
+        assert_eq!([1, 2, 6, 7, 16].map(squarest), [[1, 1], [2, 1], [3, 2], [7, 1], [4, 4]]);
         let over = Over { sides_px: [2.0, 1.0], count: 12, dimensions: 4, seed: 3 };
         let grid = PixelGrid { sides: [2, 1], samples: 6 };
         let points: Points = super::points(&over, &grid);

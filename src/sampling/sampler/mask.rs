@@ -28,8 +28,7 @@ pub fn points(over: &Over, grid: &PixelGrid) -> Points {
     })
 }
 
-/// Sides of what is repeated over a basis, px: renderers that have such masks have 64 to 128 pixels of them, as far as the
-/// eye sees no copies.
+/// Sides of what is repeated over a basis, px. Ours: the time that a mask takes grows with the square of its pixels.
 pub fn tile(sides: [u32; 2]) -> [u32; 2] {
     sides.map(|side| side.min(64))
 }
@@ -80,7 +79,7 @@ struct Field {
     is_set: Vec<bool>,
     set_count: usize,
     energies: Vec<f64>,
-    /// Of each row, the set pixel of the greatest energy and the other one of the least.
+    /// The set pixel of the greatest energy in each row, and the other one of the least.
     tightest_of_row: Vec<Option<usize>>,
     largest_of_row: Vec<Option<usize>>,
     /// Energies by squared distance.

@@ -58,36 +58,28 @@ impl Sampler {
     /// Errors: a sampler that counts by pixels has sides that are not whole, or a count that is not the same for every
     /// pixel (exit code 2).
     pub fn points(self, sides: [Side; 2], count: u32, dimensions: usize, seed: u32) -> Result<Points> {
-        let grid = PixelGrid::of(sides, count);
         let over = Over { sides_px: sides.map(Side::length_px), count, dimensions, seed };
-        Ok(match (self, grid) {
-            (Self::Relaxed, _) => relaxed::points(&over),
-            (Self::Random, _) => random::points(&over),
-            (Self::Sobol, Some(grid)) => sobol::points(&over, &grid),
-            (Self::R2, Some(grid)) => recurrence::points(&over, &grid),
-            (Self::Jittered, Some(grid)) => jittered::points(&over, &grid),
-            (Self::Sobol | Self::R2 | Self::Jittered, None) => {
-                // The basis as one cell.
-                let whole = PixelGrid { sides: [1, 1], samples: count };
-                match self {
-                    Self::Sobol => sobol::points(&over, &whole),
-                    Self::R2 => recurrence::points(&over, &whole),
-                    _ => jittered::points(&over, &whole),
-                }
-            }
-            (Self::Ign, Some(grid)) => gradient_noise::points(&over, &grid),
-            (Self::VoidAndCluster, Some(grid)) => mask::points(&over, &grid),
-            (Self::BlueErrors, Some(grid)) => blue_noise_errors::points(&over, &grid),
-            (Self::Ign | Self::VoidAndCluster | Self::BlueErrors, None) => {
-                let [width, height] = over.sides_px;
-                let why = format!(
-                    "--sampler {}: it gives every pixel the same number of samples, and {count} over {width}x{height} pixels are no such number",
-                    self.name()
-                );
-                return Err(Error::request(why).note(
-                    "a basis of whole pixels and a whole number of samples a pixel work, as do relaxed and sobol",
-                ));
-            }
+        let pixels = PixelGrid::of(sides, count);
+        if self.counts_by_pixels() && pixels.is_none() {
+            let [width, height] = over.sides_px;
+            let why = format!(
+                "--sampler {}: it gives every pixel the same number of samples, and {count} over {width}x{height} pixels are no such number",
+                self.name()
+            );
+            return Err(Error::request(why)
+                .note("a basis of whole pixels and a whole number of samples a pixel work, as do relaxed and sobol"));
+        }
+        // The others take the basis for one cell.
+        let grid = pixels.unwrap_or(PixelGrid { sides: [1, 1], samples: count });
+        Ok(match self {
+            Self::Relaxed => relaxed::points(&over),
+            Self::Random => random::points(&over),
+            Self::Sobol => sobol::points(&over, &grid),
+            Self::R2 => recurrence::points(&over, &grid),
+            Self::Jittered => jittered::points(&over, &grid),
+            Self::Ign => gradient_noise::points(&over, &grid),
+            Self::VoidAndCluster => mask::points(&over, &grid),
+            Self::BlueErrors => blue_noise_errors::points(&over, &grid),
         })
     }
 }

@@ -6,15 +6,15 @@
 //! ones (swaps.rs).
 
 use super::jittered;
-use super::over::{Over, Points};
+use super::over::{Over, Points, part};
 use super::swaps::{self, Group};
 use super::torus::Torus;
 use crate::sampling::pcg::Pcg32;
 use crate::sampling::sobol;
 use rayon::prelude::*;
 
-/// How often every place moves to the middle of its cell. Ours: with 4 to 8 low frequencies are gone and no other one
-/// stands out.
+/// How often every place moves to the middle of its cell. Ours: low frequencies are gone then, and no other one stands out
+/// (the test below).
 const RELAXATION_COUNT: u32 = 6;
 /// Darts of one radius for each place that is wanted.
 const DARTS_PER_PLACE: u32 = 24;
@@ -24,12 +24,12 @@ pub fn points(over: &Over) -> Points {
     let mut random = Pcg32::new(u64::from(over.seed), 16);
     let places = match over.count {
         1 => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
-        count => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random)),
+        count => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random).into_places()),
     };
     let mut points: Points = places
         .places()
         .iter()
-        .map(|place| [0, 1].map(|axis| super::over::part(place[axis] / over.sides_px[axis])).to_vec())
+        .map(|place| [0, 1].map(|axis| part(place[axis] / over.sides_px[axis])).to_vec())
         .collect();
     // A pair of the last two, as a lens has, and before it a number by itself, as time is.
     let single = over.dimensions % 2 == 1;
@@ -54,69 +54,20 @@ pub fn points(over: &Over) -> Points {
 }
 
 /// `count` places, none nearer to another than the last radius that was tried.
-fn thrown(sides: [f64; 2], count: u32, random: &mut Pcg32) -> Vec<[f64; 2]> {
+fn thrown(sides: [f64; 2], count: u32, random: &mut Pcg32) -> Torus {
     // The densest packing of discs has this radius between middles.
     let mut radius = (2.0 / 3f64.sqrt() * sides[0] * sides[1] / f64::from(count)).sqrt();
-    let mut dart_board = DartBoard::new(sides, radius);
-    while dart_board.places.len() < count as usize {
+    let mut board = Torus::empty(sides, radius);
+    while board.places().len() < count as usize {
         for _ in 0..DARTS_PER_PLACE * count {
             let place = sides.map(|side| side * f64::from(random.unit()));
-            if dart_board.places.len() < count as usize && !dart_board.has_within(place, radius) {
-                dart_board.push(place);
+            if board.places().len() < count as usize && !board.has_within(place, radius) {
+                board.push(place);
             }
         }
         radius *= 0.9;
     }
-    dart_board.places
-}
-
-/// Places in buckets, to which more are added.
-struct DartBoard {
-    sides: [f64; 2],
-    places: Vec<[f64; 2]>,
-    counts: [usize; 2],
-    buckets: Vec<Vec<u32>>,
-}
-
-impl DartBoard {
-    /// For looks of at most `radius`.
-    fn new(sides: [f64; 2], radius: f64) -> Self {
-        let counts = sides.map(|side| ((side / radius) as usize).max(1));
-        Self { sides, places: Vec::new(), counts, buckets: vec![Vec::new(); counts[0] * counts[1]] }
-    }
-
-    fn bucket(&self, place: [f64; 2]) -> [usize; 2] {
-        [0, 1].map(|axis| {
-            let at = place[axis] / self.sides[axis] * self.counts[axis] as f64;
-            (at as usize).min(self.counts[axis] - 1)
-        })
-    }
-
-    fn push(&mut self, place: [f64; 2]) {
-        let [column, row] = self.bucket(place);
-        self.buckets[row * self.counts[0] + column].push(self.places.len() as u32);
-        self.places.push(place);
-    }
-
-    fn has_within(&self, place: [f64; 2], radius: f64) -> bool {
-        let [column, row] = self.bucket(place);
-        let around = |middle: usize, count: usize| {
-            let steps = if count < 3 { 0..count } else { count - 1..count + 2 };
-            steps.map(move |step| (middle + step) % count)
-        };
-        around(row, self.counts[1]).any(|row| {
-            around(column, self.counts[0]).any(|column| {
-                self.buckets[row * self.counts[0] + column].iter().any(|index| {
-                    let other = self.places[*index as usize];
-                    let squares = [0, 1].map(|axis| {
-                        let apart = (place[axis] - other[axis]).abs();
-                        apart.min(self.sides[axis] - apart).powi(2)
-                    });
-                    squares[0] + squares[1] < radius * radius
-                })
-            })
-        })
-    }
+    board
 }
 
 /// The places after some steps of Lloyd's method, by the middles of a fine raster's points.
@@ -146,7 +97,7 @@ fn relaxed(sides: [f64; 2], places: Vec<[f64; 2]>) -> Torus {
         }
         let moved = torus.places().iter().zip(&sums).map(|(place, [x, y, own])| {
             let step = if *own > 0.0 { [x / own, y / own] } else { [0.0; 2] };
-            [0, 1].map(|axis| super::over::part((place[axis] + step[axis]) / sides[axis]) * sides[axis])
+            [0, 1].map(|axis| part((place[axis] + step[axis]) / sides[axis]) * sides[axis])
         });
         torus = Torus::new(sides, moved.collect());
     }
@@ -200,7 +151,7 @@ mod tests {
                 .collect();
             (filled, quarters, pixels) = (filled + eighths.len(), quarters + lens.len(), pixels + 1);
         }
-        // Of 16 independent ones 7.05 of eight eighths have one, and 7.6 of nine ninths of a lens.
+        // Sixteen independent ones leave 7.05 of eight eighths with one, and 7.6 of nine ninths of a lens.
         assert!(filled as f64 / f64::from(pixels) >= 7.5, "{filled}");
         assert!(quarters as f64 / f64::from(pixels) >= 8.0, "{quarters}");
     }

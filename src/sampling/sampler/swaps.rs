@@ -8,7 +8,7 @@ use crate::sampling::pcg::Pcg32;
 /// Places that one looks at: those in its own pixel and around it.
 const NEIGHBOUR_COUNT: f64 = 16.0;
 const EXCHANGES_PER_POINT: usize = 100;
-/// Of all: some seconds.
+/// The most of all points together: some seconds.
 const MOST_EXCHANGES: usize = 1 << 23;
 
 /// Which numbers of a point are exchanged together.

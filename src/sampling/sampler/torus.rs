@@ -14,17 +14,30 @@ impl Torus {
     /// `places` on a rectangle of these sides, in buckets that hold about one each.
     pub fn new(sides: [f64; 2], places: Vec<[f64; 2]>) -> Self {
         let spacing = (sides[0] * sides[1] / places.len().max(1) as f64).sqrt();
-        let [columns, rows] = sides.map(|side| ((side / spacing) as usize).max(1));
-        let mut torus = Self { sides, places, columns, rows, buckets: vec![Vec::new(); columns * rows] };
-        for index in 0..torus.places.len() {
-            let [column, row] = torus.bucket(torus.places[index]);
-            torus.buckets[row * columns + column].push(index as u32);
-        }
+        let mut torus = Self::empty(sides, spacing);
+        places.into_iter().for_each(|place| torus.push(place));
         torus
+    }
+
+    /// No places yet, on a rectangle of these sides, in buckets that are `bucket_side` wide and high or more.
+    pub fn empty(sides: [f64; 2], bucket_side: f64) -> Self {
+        let [columns, rows] = sides.map(|side| ((side / bucket_side) as usize).max(1));
+        Self { sides, places: Vec::new(), columns, rows, buckets: vec![Vec::new(); columns * rows] }
+    }
+
+    /// Adds a place.
+    pub fn push(&mut self, place: [f64; 2]) {
+        let [column, row] = self.bucket(place);
+        self.buckets[row * self.columns + column].push(self.places.len() as u32);
+        self.places.push(place);
     }
 
     pub fn sides(&self) -> [f64; 2] {
         self.sides
+    }
+
+    pub fn into_places(self) -> Vec<[f64; 2]> {
+        self.places
     }
 
     pub fn places(&self) -> &[[f64; 2]] {
@@ -66,9 +79,23 @@ impl Torus {
         }
     }
 
+    /// The shorter side of a bucket.
+    fn bucket_side(&self) -> f64 {
+        (self.sides[0] / self.columns as f64).min(self.sides[1] / self.rows as f64)
+    }
+
+    /// Whether a place lies nearer to `place` than `radius`.
+    pub fn has_within(&self, place: [f64; 2], radius: f64) -> bool {
+        let mut has = false;
+        self.around(place, (radius / self.bucket_side()).ceil() as usize, |other| {
+            has |= self.squared(place, self.places[other as usize]) < radius * radius;
+        });
+        has
+    }
+
     /// The nearest place to `place`; there is one.
     pub fn nearest(&self, place: [f64; 2]) -> u32 {
-        let side = (self.sides[0] / self.columns as f64).min(self.sides[1] / self.rows as f64);
+        let side = self.bucket_side();
         let most = self.columns.max(self.rows);
         let mut best = (f64::INFINITY, u32::MAX);
         for reach in 1.. {
@@ -90,10 +117,9 @@ impl Torus {
 
     /// Places no farther than `radius` from the place of an index, but itself, each with the square of its distance.
     pub fn neighbours(&self, index: u32, radius: f64) -> Vec<(u32, f64)> {
-        let side = (self.sides[0] / self.columns as f64).min(self.sides[1] / self.rows as f64);
         let place = self.places[index as usize];
         let mut found = Vec::new();
-        self.around(place, (radius / side).ceil() as usize, |other| {
+        self.around(place, (radius / self.bucket_side()).ceil() as usize, |other| {
             let squared = self.squared(place, self.places[other as usize]);
             if other != index && squared <= radius * radius {
                 found.push((other, squared));
@@ -127,6 +153,7 @@ mod tests {
             let expected: Vec<u32> = (1..places.len() as u32).filter(|i| between(*i) <= radius * radius).collect();
             let found: Vec<u32> = torus.neighbours(0, radius).into_iter().map(|(index, _)| index).collect();
             prop_assert_eq!(found, expected);
+            prop_assert_eq!(torus.has_within(at, radius), squared(nearest) < radius * radius);
         }
     }
 }

@@ -9,6 +9,8 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::TupleBlock;
+use crate::lens::on_unit_disc;
+use crate::sampling::pattern::grid::squarest;
 use crate::sampling::pattern::{Pattern, Sample};
 use crate::settings::Values;
 use crate::techniques::NamedPattern;
@@ -51,9 +53,7 @@ impl TupleTable {
 
     /// For one eye. `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
     pub fn new(samples: u32, tuples: u32) -> Self {
-        let cells = tuples / samples;
-        let height = (1..=cells.isqrt()).rev().find(|side| cells.is_multiple_of(*side)).unwrap_or(1);
-        Self { cells: [cells / height, height], samples, eyes: 1 }
+        Self { cells: squarest(tuples / samples), samples, eyes: 1 }
     }
 
     /// Number of tuples of one eye, each a place in a pixel, on the lens and in time.
@@ -124,8 +124,7 @@ impl TupleTable {
     fn of_eye(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
         let layer = self.layer(frame);
         let block = |(cell, sample): ([u32; 2], &Sample)| {
-            let [time, radius, turn] = sample.further;
-            let (radius, turn) = (radius.sqrt(), turn * std::f32::consts::TAU);
+            let [time, u, v] = sample.further;
             let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
                 let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
                 let offset = f64::from(cell) + f64::from(place);
@@ -139,7 +138,7 @@ impl TupleTable {
             TupleBlock {
                 scale: [x[0], y[0]],
                 shift: [x[1], y[1]],
-                lens: [radius * turn.cos(), radius * turn.sin()],
+                lens: on_unit_disc([u, v]).to_array(),
                 time,
                 eye: 0.0,
             }

@@ -4,7 +4,7 @@ use super::members::Members;
 use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
 use crate::frame::{LensPlace, Placement};
-use crate::lens::{Eyes, Lens};
+use crate::lens::{Eyes, Lens, on_unit_disc};
 use crate::passes::forward::ForwardChoices;
 use crate::sampling::basis::Basis;
 use crate::sampling::pattern::{Dimension, Pattern};
@@ -13,7 +13,6 @@ use crate::settings::Values;
 use crate::techniques::interleaved_sampling::resources::NAME;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Extent;
-use glam::Vec2;
 
 choices! {
     /// What samples are spread over (`--effect`).
@@ -145,10 +144,8 @@ impl Choices {
     /// How a member lies in its picture, and where on the lens it sees from.
     pub fn sight(&self, member: u32) -> (LensPlace, Placement) {
         let place = self.lens.map_or(LensPlace::MIDDLE, |lens| {
-            let [u, v] = [0, 1].map(|index| self.members.basis().further_of(member)[index] as f32);
-            // Evenly over the disc: radius and turn.
-            let (radius, turn) = (lens.radius * u.sqrt(), v * std::f32::consts::TAU);
-            LensPlace { at_m: radius * Vec2::new(turn.cos(), turn.sin()), focus_m: lens.focus }
+            let numbers = [0, 1].map(|index| self.members.basis().further_of(member)[index] as f32);
+            LensPlace { at_m: lens.radius * on_unit_disc(numbers), focus_m: lens.focus }
         });
         (place, self.members.placement(member))
     }

@@ -43,7 +43,7 @@ impl Mean {
             None => None,
             Some(sources) => {
                 let buffer = resources.buffer(SOURCES);
-                upload::buffer(gpu, &buffer, bytemuck::cast_slice(&sources), Access::ComputeRead)?;
+                upload::buffer(gpu, &buffer, bytemuck::cast_slice(sources), Access::ComputeRead)?;
                 Some(buffer)
             }
         };

@@ -14,11 +14,17 @@ pub struct Members {
     frame: Extent,
     /// Samples lie in the middles of their pixels (no `aa` among `--effect`).
     is_centred: bool,
+    /// The first of the members that have a sample in each pixel of a period, row by row; `u32::MAX` where none has.
+    firsts: Vec<u32>,
+    sources: Option<Vec<u32>>,
 }
 
 impl Members {
     pub fn new(basis: Basis, frame: Extent, is_centred: bool) -> Self {
-        Self { basis, frame, is_centred }
+        let mut members = Self { basis, frame, is_centred, firsts: Vec::new(), sources: None };
+        members.firsts = members.firsts_of_pixels();
+        members.sources = members.nearest_sources();
+        members
     }
 
     pub fn basis(&self) -> &Basis {
@@ -31,7 +37,7 @@ impl Members {
 
     /// Texels of a member's picture, one for each of its samples that a frame may have.
     pub fn layer(&self) -> Extent {
-        // Of a side of P / B pixels, whole P's have B samples.
+        // A side of P / B pixels has B samples in every P pixels.
         let samples =
             |pixels: u32, side: Side| (u64::from(pixels) * u64::from(side.bases)).div_ceil(side.pixels.into());
         let [x, y] = self.basis.sides;
@@ -84,7 +90,7 @@ impl Members {
     /// member); behind them, from `firsts_at` on, the first member of each pixel of a period.
     pub fn table(&self) -> Vec<u32> {
         let of_member = |member| [0, 1].into_iter().flat_map(move |axis| self.first_pixels(member, axis));
-        (0..self.count()).flat_map(of_member).chain(self.firsts_of_pixels()).collect()
+        (0..self.count()).flat_map(of_member).chain(self.firsts.iter().copied()).collect()
     }
 
     /// Where in the table the first members of pixels begin.
@@ -92,7 +98,6 @@ impl Members {
         self.count() * (self.basis.sides[0].bases + self.basis.sides[1].bases)
     }
 
-    /// Of each pixel of a period, row by row, the first of the members that have a sample in it; `u32::MAX` where none has.
     fn firsts_of_pixels(&self) -> Vec<u32> {
         let [width, height] = self.basis.sides.map(|side| side.pixels);
         let mut firsts = vec![u32::MAX; width as usize * height as usize];
@@ -109,14 +114,17 @@ impl Members {
 
     /// Where a pixel of the frame has no sample: of each pixel, in row order, the nearest one that has some, itself where it has;
     /// None where every pixel has a sample.
-    pub fn sources(&self) -> Option<Vec<u32>> {
-        let firsts = self.firsts_of_pixels();
-        if firsts.iter().all(|first| *first != u32::MAX) {
+    pub fn sources(&self) -> Option<&[u32]> {
+        self.sources.as_deref()
+    }
+
+    fn nearest_sources(&self) -> Option<Vec<u32>> {
+        if self.firsts.iter().all(|first| *first != u32::MAX) {
             return None;
         }
         let [period_x, period_y] = self.basis.sides.map(|side| side.pixels);
         let (width, height) = (self.frame.width, self.frame.height);
-        let is_filled = |x: u32, y: u32| firsts[(y % period_y * period_x + x % period_x) as usize] != u32::MAX;
+        let is_filled = |x: u32, y: u32| self.firsts[(y % period_y * period_x + x % period_x) as usize] != u32::MAX;
         // Rings of neighbours from all filled pixels outwards.
         let mut source = vec![u32::MAX; (width * height) as usize];
         let mut next = VecDeque::new();
@@ -200,7 +208,7 @@ mod tests {
                 prop_assert!((0..width * height).all(has));
                 return Ok(());
             };
-            for (pixel, source) in (0..).zip(sources) {
+            for (pixel, source) in (0..).zip(sources.iter().copied()) {
                 let apart = |other: u32| (pixel % width).abs_diff(other % width) + (pixel / width).abs_diff(other / width);
                 let is_nearest = || (0..width * height).filter(|other| has(*other)).all(|other| apart(source) <= apart(other));
                 let is_right = if is_any_filled { has(source) && is_nearest() } else { source == u32::MAX };

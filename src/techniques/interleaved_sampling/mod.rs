@@ -231,7 +231,7 @@ impl Frame for InterleavedFrame {
         let sums: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
         // Sums of pixels without a sample were never written.
         let sources = self.choices.members.sources();
-        let has = |pixel: usize| sources.as_ref().is_none_or(|sources| sources[pixel] == pixel as u32);
+        let has = |pixel: usize| sources.is_none_or(|sources| sources[pixel] == pixel as u32);
         let counts = sums.iter().enumerate().map(|(pixel, sum)| if has(pixel) { sum[3] as u32 } else { 0 });
         Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(counts.collect()) })
     }
