@@ -94,6 +94,9 @@ abilities! {
         |caps| caps.conservative.is_some_and(|rules| rules.draws_degenerate_triangles);
     /// Shaders send rays through structures that the driver builds.
     RayQuery: "VK_KHR_ray_query with VK_KHR_acceleration_structure", "ray queries", |caps| caps.features.ray_query;
+    /// Corners are drawn where they are, within 1/256 pixel: depths are of the planes that shadow rays start off.
+    FineCorners:
+        "subPixelPrecisionBits of at least 8", "corners within 1/256 pixel", |caps| caps.limits.sub_pixel_bits >= 8;
     /// The device counts what the stages of a pass do.
     PipelineStatistics: "pipelineStatisticsQuery", "pipeline statistics", |caps| caps.features.pipeline_statistics;
     /// The driver says how much of a heap is left.

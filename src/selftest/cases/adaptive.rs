@@ -12,12 +12,12 @@ const EMISSIVE: (&str, &str) = ("emissive", "on");
 const ALL: (&str, &str) = ("mode", "max");
 
 const HOST: Bounds = Bounds {
-    apart: 0.01,
+    apart: 0.04,
     rmse: 0.02,
-    flip: 0.005,
-    mean: 0.004,
+    flip: 0.015,
+    mean: 0.012,
     why: "the same estimator on the host: rays that graze an edge meet it on one side and not on the other, and a pixel's \
-          middle on an edge is its neighbour's",
+          middle on an edge is its neighbour's; where corners snap to 1/16 pixel that is 2.6 % of a small picture",
 };
 
 pub const GROUPS: &[Group] = &[

@@ -72,7 +72,7 @@ use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
-use crate::passes::{blend, gbuffer};
+use crate::passes::{blend, direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
@@ -124,8 +124,8 @@ impl Technique for AdaptiveInterleaved {
         &[("components", "ss"), ("refine", "fused")]
     }
 
-    fn needs(&self, _: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect()
+    fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(direct::depth_rays(values)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {

@@ -59,8 +59,8 @@ impl Technique for Deferred {
         &[("cull", "none"), ("direct-shadow", "none")]
     }
 
-    fn needs(&self, _: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).collect()
+    fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
+        [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(direct::needs(values)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
