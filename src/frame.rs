@@ -133,24 +133,13 @@ impl View {
         light_count: u32,
         vpl_count: u32,
     ) -> FrameBlock {
-        let clip_from_world = self.clip_from_world();
-        // Double precision: the inverse is what `--position depth` reads positions back with.
-        let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
-        let perspective = matches!(self.camera.projection, Projection::Perspective { .. });
-        let [right, up, back] = self.axes();
         let (box_min, box_size) = if bounds.is_empty() {
             (Vec3::ZERO, Vec3::ONE)
         } else {
             // A flat scene still needs a box with an inside.
             (bounds.min, (bounds.max - bounds.min).max(Vec3::splat(1e-6 * bounds.diagonal().max(1e-6))))
         };
-        FrameBlock {
-            clip_from_world: clip_from_world.to_cols_array_2d(),
-            world_from_clip: world_from_clip.to_cols_array_2d(),
-            eye_ws: self.eye().extend(if perspective { 1.0 } else { 0.0 }).to_array(),
-            forward_ws: (-back).extend(0.0).to_array(),
-            right_ws: right.extend(0.0).to_array(),
-            up_ws: up.extend(0.0).to_array(),
+        self.camera_of(FrameBlock {
             box_min_ws: box_min.extend(0.0).to_array(),
             box_size_ws: box_size.extend(0.0).to_array(),
             background: background.extend(0.0).to_array(),
@@ -160,6 +149,24 @@ impl View {
             light_count,
             vpl_count,
             ..FrameBlock::zeroed()
+        })
+    }
+
+    /// `block` with this view's camera.
+    pub fn camera_of(&self, block: FrameBlock) -> FrameBlock {
+        let clip_from_world = self.clip_from_world();
+        // Double precision: the inverse is what `--position depth` reads positions back with.
+        let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
+        let perspective = matches!(self.camera.projection, Projection::Perspective { .. });
+        let [right, up, back] = self.axes();
+        FrameBlock {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            world_from_clip: world_from_clip.to_cols_array_2d(),
+            eye_ws: self.eye().extend(if perspective { 1.0 } else { 0.0 }).to_array(),
+            forward_ws: (-back).extend(0.0).to_array(),
+            right_ws: right.extend(0.0).to_array(),
+            up_ws: up.extend(0.0).to_array(),
+            ..block
         }
     }
 

@@ -5,11 +5,15 @@
 #include "passes/mesh_vertex.glsl"
 #include "passes/shadow_maps_params.glsl"
 
+// Clip space of each map, depth reversed: in a buffer, because maps of a light that moves are drawn from another place in each
+// run.
+layout(std430, set = 0, binding = 9) readonly buffer ShadowMapViews { mat4 clip_from_world[]; };
+
 void main() {
 #ifdef ALPHA_MASK
     vec4 position_ws = write_attributes();
 #else
     vec4 position_ws = draws[gl_InstanceIndex].world_from_object * vec4(position, 1.0);
 #endif
-    gl_Position = params.clip_from_world * position_ws;
+    gl_Position = clip_from_world[params.layer] * position_ws;
 }

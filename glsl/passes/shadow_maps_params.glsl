@@ -5,10 +5,11 @@
 #include "resident.glsl"
 
 struct ShadowMapsParams {
-    // Clip space of the map that is drawn, depth reversed.
-    mat4 clip_from_world;
     // The draw's; read for MASK surfaces only.
     MaterialBlock material;
+    // The map that is drawn.
+    uint layer;
+    uint _unused[3];
 };
 
 layout(push_constant) uniform Push { ShadowMapsParams params; };

@@ -7,6 +7,8 @@
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 const uint LIGHT_SPOT = 2u;
+// A patch of a larger light: it shines into the half space of its normal, or both, by the cosine to that.
+const uint LIGHT_PATCH = 3u;
 
 // A bit for each kind that is there: what a driver would do for the others, and throw away, is left out.
 layout(constant_id = 67) const uint LIGHT_KINDS = 7;
@@ -17,11 +19,13 @@ struct LightBlock {
     vec4 position_ws;
     // rgb: candela, or lux where directional; w: range in metres, 0 without range.
     vec4 intensity;
-    // xyz: unit vector in which it shines; w: radius of the sphere that shines, in metres, 0 of a point.
+    // xyz: unit vector in which it shines, a patch's normal; w: radius of the sphere that shines, in metres, 0 of a point;
+    // of a patch 1 where its back shines too.
     vec4 direction_ws;
     // The cone as clamp(cos * scale + offset, 0, 1)^2.
     float spot_scale;
     float spot_offset;
+    // LIGHT_ values.
     uint kind;
     // Its place among the lights of the picture, in whatever list it stands: which shadow maps are its own.
     uint index;
@@ -64,6 +68,10 @@ vec3 irradiance_along(LightBlock light, float distance_squared, vec3 direction_w
         precise float cone = dot(light.direction_ws.xyz, -direction_ws) * light.spot_scale + light.spot_offset;
         cone = clamp(cone, 0.0, 1.0);
         attenuation *= cone * cone;
+    }
+    if (is_kind(light, LIGHT_PATCH)) {
+        precise float cosine = -dot(light.direction_ws.xyz, direction_ws);
+        attenuation *= light.direction_ws.w != 0.0 ? abs(cosine) : max(cosine, 0.0);
     }
     return light.intensity.rgb * attenuation;
 }

@@ -27,6 +27,8 @@ struct ShiningTriangle {
 pub struct AreaLight {
     triangles: Vec<ShiningTriangle>,
     power: f64,
+    /// Of each triangle the power of all up to it, as a part of `power`.
+    cumulative: Vec<f64>,
 }
 
 /// The area lights of a scene, the most powerful first; where there are more than `most`, at least 1, all
@@ -54,15 +56,14 @@ pub fn area_lights(scene: &Scene, most: usize) -> Vec<AreaLight> {
                 .collect();
             let power: f64 = shining.iter().map(|shining| shining.power).sum();
             if power > 0.0 {
-                lights.push(AreaLight { triangles: shining, power });
+                lights.push(AreaLight::of(shining));
             }
         }
     }
     lights.sort_by(|one, other| other.power.total_cmp(&one.power));
     if lights.len() > most {
         let beyond = lights.split_off(most - 1);
-        let power = beyond.iter().map(|light| light.power).sum();
-        lights.push(AreaLight { triangles: beyond.into_iter().flat_map(|light| light.triangles).collect(), power });
+        lights.push(AreaLight::of(beyond.into_iter().flat_map(|light| light.triangles).collect()));
     }
     lights
 }
@@ -109,29 +110,33 @@ fn connected(mesh: &Mesh) -> Vec<Vec<usize>> {
 }
 
 impl AreaLight {
+    fn of(triangles: Vec<ShiningTriangle>) -> Self {
+        let power: f64 = triangles.iter().map(|shining| shining.power).sum();
+        let mut sum = 0.0;
+        let up_to = |shining: &ShiningTriangle| {
+            sum += shining.power / power;
+            sum
+        };
+        let cumulative = triangles.iter().map(up_to).collect();
+        Self { triangles, power, cumulative }
+    }
+
     /// `count` of its points, each of which stands for all of the light: the mean over them is what the light gives.
     /// `count`: at most 65,536.
     pub fn points(&self, scene: &Scene, count: u32, seed: u32) -> Vec<AreaSampleBlock> {
-        let mut sum = 0.0;
-        let cumulative: Vec<f64> = self
-            .triangles
-            .iter()
-            .map(|shining| {
-                sum += shining.power / self.power;
-                sum
-            })
-            .collect();
-        (0..count)
-            .map(|index| {
-                let [pick, v] = [0, 1].map(|dimension| f64::from(sobol_burley::sample(index, dimension, seed)));
-                let at = cumulative.partition_point(|sum| *sum <= pick).min(self.triangles.len() - 1);
-                let before = if at == 0 { 0.0 } else { cumulative[at - 1] };
-                let chance = self.triangles[at].power / self.power;
-                // What the choice left of the number is a number again.
-                let u = ((pick - before) / chance).clamp(0.0, 1.0);
-                self.point(scene, &self.triangles[at], chance, [u as f32, v as f32])
-            })
-            .collect()
+        let numbers = |index| [0, 1].map(|dimension| sobol_burley::sample(index, dimension, seed));
+        (0..count).map(|index| self.at(scene, numbers(index))).collect()
+    }
+
+    /// The point of two numbers, 0 to 1 without 1. `scene`: of which it is a light, or that one at another moment.
+    pub fn at(&self, scene: &Scene, [pick, v]: [f32; 2]) -> AreaSampleBlock {
+        let pick = f64::from(pick);
+        let at = self.cumulative.partition_point(|sum| *sum <= pick).min(self.triangles.len() - 1);
+        let before = if at == 0 { 0.0 } else { self.cumulative[at - 1] };
+        let chance = self.triangles[at].power / self.power;
+        // What the choice left of the number is a number again.
+        let u = ((pick - before) / chance).clamp(0.0, 1.0);
+        self.point(scene, &self.triangles[at], chance, [u as f32, v])
     }
 
     fn point(&self, scene: &Scene, shining: &ShiningTriangle, chance: f64, [u, v]: [f32; 2]) -> AreaSampleBlock {

@@ -73,7 +73,7 @@ impl ObjectLists {
     /// Errors: different lists together are longer than that (exit code 4).
     pub fn new(scene: &Scene, lights: &[LightBlock], choice: ListChoice, most_bytes: u64) -> Result<Self> {
         let mut maker = Maker::new(scene, lights, choice, most_bytes);
-        let boxes = scene.draws.iter().map(|draw| draw.bounds(&scene.meshes[draw.mesh]));
+        let boxes = (0..scene.draws.len()).map(|draw| scene.swept_bounds(draw));
         let objects = boxes.map(|bounds| maker.object(bounds)).collect::<Result<_>>()?;
         Ok(Self { objects, ..maker.blended()? })
     }
@@ -144,11 +144,16 @@ impl<'a> Maker<'a> {
         let scene = self.scene;
         let side_m = PIECE_SIDE * scene.lasting_bounds().diagonal();
         let mut all = Vec::with_capacity(scene.draws.len());
-        for draw in &scene.draws {
+        for (index, draw) in scene.draws.iter().enumerate() {
             let mesh = &scene.meshes[draw.mesh];
             let blends = scene.materials[mesh.material].alpha == AlphaMode::Blend;
             let found = if blends { pieces(draw, mesh, side_m) } else { Vec::new() };
-            let lit = |piece: Piece| Ok(PieceLights { triangles: piece.triangles, lights: self.object(piece.bounds)? });
+            // On its way a piece may come anywhere in its draw's box.
+            let swept = scene.closing.is_some().then(|| scene.swept_bounds(index));
+            let lit = |piece: Piece| {
+                let lights = self.object(swept.unwrap_or(piece.bounds))?;
+                Ok(PieceLights { triangles: piece.triangles, lights })
+            };
             all.push(found.into_iter().map(lit).collect::<Result<_>>()?);
         }
         Ok(ObjectLists { entries: self.entries, objects: Vec::new(), pieces: all })

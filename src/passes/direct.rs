@@ -5,6 +5,7 @@ use crate::bvh::flat::flattened;
 use crate::bvh::{Bvh, LazyBvh};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
+use crate::gpu::shader::shading::light::LIGHT_PATCH;
 use crate::gpu::shader::structs::{BvhNodeBlock, BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Barrier, Bound, Buffer, Edge, Gpu, upload};
 use crate::lights::LightSet;
@@ -77,6 +78,11 @@ impl DirectSettings {
             extras: scene.drawn_materials().any(Material::has_extras),
             kinds: light::kinds(&lights.lights),
         }
+    }
+
+    /// Some lights are patches of larger ones (LIGHT_PATCH of light.glsl).
+    pub fn add_patches(&mut self) {
+        self.kinds |= 1 << LIGHT_PATCH;
     }
 
     /// What `light_count` of the punctual lights ask of a pixel.
@@ -248,6 +254,19 @@ impl DirectGpu {
             bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
             masks: has_masks.then(|| resources.buffer(&format!("{technique}.cull.masks"))),
         })
+    }
+
+    /// Other lights, as many as before, for what is recorded next.
+    ///
+    /// Errors: memory for the upload (exit code 4), here and in `move_triangles`.
+    pub fn replace_lights(&self, gpu: &Arc<Gpu>, lights: &[LightBlock]) -> Result<()> {
+        upload::buffer(gpu, &self.lights, bytemuck::cast_slice(lights), Access::ComputeRead | Access::GraphicsRead)
+    }
+
+    /// The triangles of the tree where they have moved within its boxes.
+    pub fn move_triangles(&self, gpu: &Arc<Gpu>, triangles: &[BvhTriangleBlock]) -> Result<()> {
+        let readers = Access::ComputeRead | Access::GraphicsRead;
+        upload::buffer(gpu, &self.bvh_triangles, bytemuck::cast_slice(triangles), readers)
     }
 
     /// Counters of the last frame: pixels times punctual lights that were evaluated, and that culling left out.

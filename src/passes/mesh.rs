@@ -47,7 +47,7 @@ pub fn vertex_shader(scene: &SceneGpu) -> &'static Shader {
 
 /// Bindings of mesh.vert.
 pub fn vertex_bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> [(&'static str, Bound<'a>); 2] {
-    [("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.draws))]
+    [("Frame", Bound::Buffer(frame)), ("Draws", Bound::Buffer(&scene.pose.draws))]
 }
 
 /// Bindings of mesh.vert, and those of material.glsl in set 0.
@@ -65,13 +65,8 @@ pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a Draw
 
 /// Binds the scene's streams, inside rendering.
 pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
-    bind_streams_at(cmd, scene, &scene.positions);
-}
-
-/// The same with other positions of the same vertices.
-pub fn bind_streams_at(cmd: &Commands, scene: &SceneGpu, positions: &Buffer) {
     let device = &cmd.gpu().device;
-    let common = [positions.handle, scene.attributes.handle];
+    let common = [scene.pose.positions.handle, scene.pose.attributes.handle];
     let streams: Vec<_> =
         common.into_iter().chain(scene.extended.as_ref().map(|extended| extended.attributes.handle)).collect();
     // SAFETY: the buffer is being recorded; the scene outlives the recorded frame.

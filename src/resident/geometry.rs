@@ -4,7 +4,7 @@
 use super::clusters::{Cluster, grouped};
 use super::{DrawCall, ExtendedAttributes, VertexAttributes};
 use crate::scene::{AlphaMode, Bounds, Mesh, Scene};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use std::ops::Range;
 
 /// All meshes one after the other.
@@ -35,14 +35,8 @@ impl Geometry {
         };
         for mesh in &scene.meshes {
             let (vertex, index, cluster) = (all.positions.len(), all.indices.len(), all.clusters.len() as u32);
-            for vertex in 0..mesh.positions.len() {
-                all.positions.push(mesh.positions[vertex].to_array());
-                all.attributes.push(VertexAttributes {
-                    normal: mesh.normals[vertex].to_array(),
-                    tangent: tangent(mesh, vertex),
-                    uv: mesh.uvs.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
-                });
-            }
+            all.positions.extend(mesh.positions.iter().map(Vec3::to_array));
+            all.attributes.extend(attributes_of(mesh));
             groups_of(scene, mesh).iter().for_each(|group| all.push(mesh, group));
             all.starts.push(Start { vertex, index, clusters: cluster..all.clusters.len() as u32 });
         }
@@ -91,6 +85,24 @@ impl Geometry {
         };
         scene.draws.iter().enumerate().map(call).collect()
     }
+}
+
+/// Places of all vertices, mesh by mesh, as `Geometry` has them.
+pub fn positions(scene: &Scene) -> Vec<[f32; 3]> {
+    scene.meshes.iter().flat_map(|mesh| mesh.positions.iter().map(Vec3::to_array)).collect()
+}
+
+/// The same of the second stream.
+pub fn attributes(scene: &Scene) -> Vec<VertexAttributes> {
+    scene.meshes.iter().flat_map(attributes_of).collect()
+}
+
+fn attributes_of(mesh: &Mesh) -> impl Iterator<Item = VertexAttributes> {
+    (0..mesh.positions.len()).map(|vertex| VertexAttributes {
+        normal: mesh.normals[vertex].to_array(),
+        tangent: tangent(mesh, vertex),
+        uv: mesh.uvs.get(vertex).map_or([0.0; 2], |uv| uv.to_array()),
+    })
 }
 
 /// The triangles of a mesh in the order in which they are resident, as their places in its list, cluster by cluster.

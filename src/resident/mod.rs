@@ -9,7 +9,7 @@
 
 mod clusters;
 mod draw_call;
-mod geometry;
+pub mod geometry;
 mod material_blocks;
 mod raster;
 mod relief;
@@ -41,22 +41,32 @@ use std::sync::Arc;
 use textures::MaterialSets;
 
 /// What the EXTENDED variants of shaders read.
+#[derive(Clone)]
 pub struct Extended {
     /// The third vertex stream.
-    pub attributes: Buffer,
+    pub attributes: Arc<Buffer>,
     /// Placements of each material's textures.
-    pub placements: Buffer,
+    pub placements: Arc<Buffer>,
 }
 
-/// The scene in device memory.
+/// Where the scene stands at a moment.
+#[derive(Clone)]
+pub struct Pose {
+    /// Three floats a vertex, object space.
+    pub positions: Arc<Buffer>,
+    /// The second vertex stream.
+    pub attributes: Arc<Buffer>,
+    /// A block a draw.
+    pub draws: Arc<Buffer>,
+}
+
+/// The scene in device memory. Clones share it.
+#[derive(Clone)]
 pub struct SceneGpu {
-    gpu: Arc<Gpu>,
-    pub positions: Buffer,
-    pub attributes: Buffer,
+    pub pose: Pose,
     pub extended: Option<Extended>,
-    pub indices: Buffer,
-    pub draws: Buffer,
-    pub materials: Buffer,
+    pub indices: Arc<Buffer>,
+    pub materials: Arc<Buffer>,
     /// What `materials` holds.
     pub material_blocks: Vec<MaterialBlock>,
     /// Sorted so that state changes least; BLEND draws last.
@@ -71,8 +81,14 @@ pub struct SceneGpu {
     pub material_layout: vk::DescriptorSetLayout,
     /// Set 1 of each material.
     pub material_sets: Vec<vk::DescriptorSet>,
-    material_pool: vk::DescriptorPool,
-    // Alive as long as the sets that name them.
+    owner: Arc<SetOwner>,
+}
+
+/// What sets of materials are made of: alive as long as they are.
+struct SetOwner {
+    gpu: Arc<Gpu>,
+    layout: vk::DescriptorSetLayout,
+    pool: vk::DescriptorPool,
     textures: Arc<Textures>,
     _samplers: Vec<Sampler>,
 }
@@ -100,41 +116,39 @@ impl SceneGpu {
         let mut resources = Resources::make(gpu, "scene", &stats.geometry_plan(), &Sharing::default())?;
         let textures = kept.map_or_else(|| Textures::new(gpu, scene, &stats).map(Arc::new), Ok)?;
         let geometry = Geometry::of(scene);
-        let send = |buffer: &Buffer, bytes: &[u8], accesses: AccessSet| upload::buffer(gpu, buffer, bytes, accesses);
         // Vertex inputs, and what shaders fetch for themselves.
         let vertices = Access::VertexRead | Access::GraphicsRead;
         let shaders = AccessSet::from(Access::GraphicsRead);
-        let positions = resources.buffer("scene.positions");
-        send(&positions, bytemuck::cast_slice(&geometry.positions), vertices)?;
-        let attributes = resources.buffer("scene.attributes");
-        send(&attributes, bytemuck::cast_slice(&geometry.attributes), vertices)?;
+        let mut sent = |name: &str, bytes: &[u8], accesses: AccessSet| -> Result<Arc<Buffer>> {
+            let buffer = resources.buffer(name);
+            upload::buffer(gpu, &buffer, bytes, accesses)?;
+            Ok(Arc::new(buffer))
+        };
+        let positions = sent("scene.positions", bytemuck::cast_slice(&geometry.positions), vertices)?;
+        let attributes = sent("scene.attributes", bytemuck::cast_slice(&geometry.attributes), vertices)?;
         let extended = match stats.has_extended {
             false => None,
-            true => {
-                let attributes = resources.buffer("scene.extended");
-                send(&attributes, bytemuck::cast_slice(&geometry::extended(scene)), vertices)?;
-                let placements = resources.buffer("scene.placements");
-                send(&placements, bytemuck::cast_slice(&material_blocks::placements(scene)), shaders)?;
-                Some(Extended { attributes, placements })
-            }
+            true => Some(Extended {
+                attributes: sent("scene.extended", bytemuck::cast_slice(&geometry::extended(scene)), vertices)?,
+                placements: sent(
+                    "scene.placements",
+                    bytemuck::cast_slice(&material_blocks::placements(scene)),
+                    shaders,
+                )?,
+            }),
         };
-        let indices = resources.buffer("scene.indices");
-        send(&indices, bytemuck::cast_slice(&geometry.indices), vertices)?;
-        let draws = resources.buffer("scene.draws");
-        send(&draws, bytemuck::cast_slice(&draw_blocks(scene)), shaders)?;
-        let materials = resources.buffer("scene.materials");
+        let indices = sent("scene.indices", bytemuck::cast_slice(&geometry.indices), vertices)?;
+        let draws = sent("scene.draws", bytemuck::cast_slice(&draw_blocks(scene)), shaders)?;
         let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_blocks::block).collect();
-        send(&materials, bytemuck::cast_slice(&blocks), shaders)?;
+        let materials = sent("scene.materials", bytemuck::cast_slice(&blocks), shaders)?;
         let MaterialSets { samplers, layout, pool, sets } = MaterialSets::new(gpu, scene, &textures)?;
         let mut calls = geometry.calls(scene);
         sort(&mut calls);
+        let owner = SetOwner { gpu: gpu.clone(), layout, pool, textures, _samplers: samplers };
         Ok(Self {
-            gpu: gpu.clone(),
-            positions,
-            attributes,
+            pose: Pose { positions, attributes, draws },
             extended,
             indices,
-            draws,
             materials,
             material_blocks: blocks,
             calls,
@@ -143,24 +157,27 @@ impl SceneGpu {
             has_extras: scene.drawn_materials().any(Material::has_extras),
             material_layout: layout,
             material_sets: sets,
-            material_pool: pool,
-            textures,
-            _samplers: samplers,
+            owner: Arc::new(owner),
         })
+    }
+
+    /// The same scene where it stands at another moment.
+    pub fn posed(&self, pose: Pose) -> Self {
+        Self { pose, ..self.clone() }
     }
 
     /// The textures, for a scene that shows the same pictures.
     pub fn textures(&self) -> Arc<Textures> {
-        self.textures.clone()
+        self.owner.textures.clone()
     }
 }
 
-impl Drop for SceneGpu {
+impl Drop for SetOwner {
     fn drop(&mut self) {
         // SAFETY: renderers are dropped before the scene, after their fences.
         unsafe {
-            self.gpu.device.destroy_descriptor_pool(self.material_pool, None);
-            self.gpu.device.destroy_descriptor_set_layout(self.material_layout, None);
+            self.gpu.device.destroy_descriptor_pool(self.pool, None);
+            self.gpu.device.destroy_descriptor_set_layout(self.layout, None);
         }
     }
 }

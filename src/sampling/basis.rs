@@ -50,8 +50,14 @@ impl Basis {
         [0, 1].map(|axis| point[axis] * self.sides[axis].length_px())
     }
 
+    /// The number of 0 to 1 without 1 that a member has in `dimension`; None: it is none of the basis's.
+    pub fn number(&self, member: u32, dimension: Dimension) -> Option<f32> {
+        let index = self.further.iter().position(|further| *further == dimension)?;
+        Some(below_one(self.further_of(member)[index]))
+    }
+
     /// A number of 0 to 1 without 1 for each further dimension.
-    pub fn further_of(&self, member: u32) -> &[f64] {
+    fn further_of(&self, member: u32) -> &[f64] {
         &self.points[member as usize][2..]
     }
 

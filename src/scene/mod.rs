@@ -164,6 +164,17 @@ impl Scene {
         bounds
     }
 
+    /// The box around a draw, while a shutter is open too, in world space. On the way from opening to closing a vertex is a mix of
+    /// its places under both matrices with both positions.
+    pub fn swept_bounds(&self, draw: usize) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        let moments = || [Some(self), self.closing.as_deref()].into_iter().flatten();
+        for (at, of) in moments().flat_map(|at| moments().map(move |of| (at, of))) {
+            at.draws[draw].extend(&of.meshes[of.draws[draw].mesh], &mut bounds);
+        }
+        bounds
+    }
+
     /// The box that a camera made up frames, that scattered lights fill, and whose diagonal lengths are a part of: the same
     /// at all times, `bounds` where nothing moves.
     pub fn lasting_bounds(&self) -> Bounds {

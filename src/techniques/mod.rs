@@ -11,6 +11,7 @@ pub mod bench_stage;
 pub mod bindable;
 pub mod deep_shading;
 pub mod deferred;
+mod exposure;
 pub mod fitness;
 pub mod forward;
 pub mod inferred_lighting;

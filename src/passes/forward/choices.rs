@@ -67,6 +67,12 @@ impl ForwardChoices {
         })
     }
 
+    /// For runs in which things, or lights, are elsewhere: each object has all lights, each map all casters.
+    pub fn hold_at_any_moment(&mut self) {
+        self.lists = ListChoice::None;
+        self.maps.iter_mut().for_each(MapLayout::hold_all_casters);
+    }
+
     /// The lights and the lists of all objects.
     ///
     /// Errors: as `ObjectLists::new`.

@@ -14,12 +14,13 @@ use crate::bvh::LazyBvh;
 use crate::caps::{Ability, Need};
 use crate::error::Result;
 use crate::frame::View;
+use crate::gpu::shader::structs::{BvhTriangleBlock, LightBlock};
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
 use crate::memory::kinds::Use;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::depth_prepass::{self, DepthPrepass};
 use crate::passes::direct::{self, DirectGpu};
-use crate::passes::shadow_maps::{self, Places, ShadowMaps};
+use crate::passes::shadow_maps::{self, MapLayout, ShadowMaps};
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
@@ -113,6 +114,16 @@ pub struct ForwardScene<'a> {
     pub pixels_per_texel: [f32; 2],
 }
 
+/// What changes from moment to moment (`ForwardChoices::hold_at_any_moment`).
+pub struct ForwardMoment<'a> {
+    /// As many as those of `ListedLights`.
+    pub lights: &'a [LightBlock],
+    /// Those of the tree in its order; None: none has moved.
+    pub triangles: Option<&'a [BvhTriangleBlock]>,
+    /// Of these lights and triangles; None without shadow maps.
+    pub maps: Option<&'a MapLayout>,
+}
+
 /// The passes on the device.
 pub struct Forward {
     list: DrawList,
@@ -159,8 +170,7 @@ impl Forward {
         let maps = choices.maps.as_ref();
         let maps =
             maps.map(|layout| ShadowMaps::new(gpu, resources, technique, layout, of.scene, scene)).transpose()?;
-        let maps_once =
-            maps.as_ref().map(|maps| maps.draw_once(gpu, technique, scene, Places::of(scene))).transpose()?;
+        let maps_once = maps.as_ref().map(|maps| maps.draw_once(gpu, technique, scene)).transpose()?;
         Ok(Self {
             list: of.list,
             maps,
@@ -193,7 +203,7 @@ impl Forward {
     ) -> Result<()> {
         let Targets { depth, drawn } = targets;
         if let Some(maps) = &self.maps {
-            maps.record(cmd, technique, scene, Places::of(scene))?;
+            maps.record(cmd, technique, scene)?;
         }
         if let Some(prepass) = &self.depth {
             prepass.record(cmd, technique, frame, scene, &self.list, depth)?;
@@ -222,6 +232,23 @@ impl Forward {
             blend.record(cmd, technique, frame, scene, &lights, solid)?;
         }
         Ok(())
+    }
+
+    /// What the next run is drawn under where it is another moment.
+    ///
+    /// Errors: memory for the uploads (exit code 4).
+    pub fn renew(&self, gpu: &Arc<Gpu>, moment: &ForwardMoment<'_>) -> Result<()> {
+        self.direct.replace_lights(gpu, moment.lights)?;
+        if let Some(uniform) = &self.uniform_lights {
+            upload::buffer(gpu, uniform, bytemuck::cast_slice(moment.lights), Access::GraphicsRead)?;
+        }
+        if let Some(triangles) = moment.triangles {
+            self.direct.move_triangles(gpu, triangles)?;
+        }
+        match self.maps.as_ref().zip(moment.maps) {
+            Some((maps, layout)) => maps.see_from(gpu, layout),
+            None => Ok(()),
+        }
     }
 
     /// How `record` touches the depth buffer last.

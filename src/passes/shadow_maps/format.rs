@@ -24,3 +24,8 @@ pub fn depth_name(technique: &str) -> String {
 pub fn blocks_name(technique: &str) -> String {
     format!("{}.blocks", pass(technique))
 }
+
+/// Where each map is drawn from.
+pub fn views_name(technique: &str) -> String {
+    format!("{}.views", pass(technique))
+}

@@ -7,7 +7,7 @@ use crate::frame::View;
 use crate::gpu::shader::structs::ShadowMapBlock;
 use crate::gpu::{Access, ImageDescription};
 use crate::lights::LightSet;
-use crate::passes::shadow_maps::format::{FORMAT, blocks_name, depth_name, filter, pass};
+use crate::passes::shadow_maps::format::{FORMAT, blocks_name, depth_name, filter, pass, views_name};
 use crate::plan::{Plan, Requirements, Shape};
 use crate::resident::SceneStats;
 use crate::scene::{Bounds, Camera, Light, LightSource, Projection, Scene};
@@ -33,6 +33,7 @@ const SLACK: f32 = 1e-3;
 const LEAST_SIZE_PX: u32 = 16;
 
 /// The shadow maps of a picture.
+#[derive(Clone)]
 pub struct MapLayout {
     /// One for each light.
     pub(super) blocks: Vec<ShadowMapBlock>,
@@ -46,6 +47,7 @@ pub struct MapLayout {
     pub(super) is_once: bool,
     size_px: u32,
     bias_m: f32,
+    cutoff_lux: f32,
 }
 
 impl MapLayout {
@@ -65,28 +67,39 @@ impl MapLayout {
             return Ok(None);
         }
         let size_px = values.integer("shadow-map-size") as u32;
-        let cutoff_lux = values.number("light-cutoff") as f32;
         let layer_count: u32 = lights.lights.iter().map(|light| LightMaps::of(light).layer_count()).sum();
         let asked = MapDemand { size_px, layer_count, light_count: lights.lights.len() };
         asked.require_fitting(values, stats, caps, requirements)?;
         let mut layout = Self {
-            blocks: Vec::with_capacity(lights.lights.len()),
-            views: Vec::with_capacity(layer_count as usize),
+            blocks: Vec::new(),
+            views: Vec::new(),
             filter: filter(values, caps),
             slope_bias_px: values.number("shadow-slope-bias") as f32,
             casters: values.choice("shadow-casters"),
             is_once: values.is("shadow-maps", MapDrawing::Once),
             size_px,
             bias_m: values.length("shadow-bias", scene.lasting_bounds().diagonal().max(1e-6)),
+            cutoff_lux: values.number("light-cutoff") as f32,
         };
+        layout.see(lights, scene);
+        Ok(Some(layout))
+    }
+
+    /// For maps that move from run to run: any triangle may come into one.
+    pub fn hold_all_casters(&mut self) {
+        self.casters = GeometryChoice::All;
+    }
+
+    /// The same maps of `lights` and `scene` at another moment: as many lights of the same kinds.
+    pub fn see(&mut self, lights: &LightSet, scene: &Scene) {
+        (self.blocks, self.views) = (Vec::new(), Vec::new());
         let bounds = match scene.bounds() {
             bounds if bounds.is_empty() => Bounds { min: Vec3::ZERO, max: Vec3::ZERO },
             bounds => bounds,
         };
         for light in &lights.lights {
-            layout.add(light, light::block(light, cutoff_lux).intensity[3], &bounds);
+            self.add(light, light::block(light, self.cutoff_lux).intensity[3], &bounds);
         }
-        Ok(Some(layout))
     }
 
     /// `range`: metres, 0 where the light does not end.
@@ -139,6 +152,7 @@ impl MapLayout {
         let description = description(self.size_px, self.views.len() as u32);
         plan.push(GROUP, depth_name(technique), Shape::Image(description));
         plan.buffer(GROUP, blocks_name(technique), size_of_val(self.blocks.as_slice()) as u64);
+        plan.buffer(GROUP, views_name(technique), (self.views.len() * size_of::<Mat4>()) as u64);
         if !self.is_once {
             plan.pass(pass(technique), [(depth_name(technique), Access::DepthWrite)]);
         }
@@ -152,6 +166,11 @@ impl MapLayout {
     /// The same for a pass that reads them by `access`.
     pub fn read_by(&self, technique: &str, access: Access) -> Option<(String, Access)> {
         (!self.is_once).then(|| (depth_name(technique), access))
+    }
+
+    /// Clip space of each layer, column by column.
+    pub(super) fn clips(&self) -> Vec<[[f32; 4]; 4]> {
+        self.views.iter().map(|view| view.clip_from_world().to_cols_array_2d()).collect()
     }
 
     /// SHADOW_BIAS and SHADOW_FILTER.
@@ -364,6 +383,7 @@ mod tests {
             is_once: false,
             size_px: 16,
             bias_m: 0.0,
+            cutoff_lux: 0.0,
         };
         layout.add(light, range, &ROOM);
         layout

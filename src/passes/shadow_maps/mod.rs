@@ -42,8 +42,8 @@ use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
 use crate::settings::{MapFilter, Values};
 use ash::vk;
-use format::{FORMAT, blocks_name, depth_name, pass};
-use glam::Mat4;
+use bytemuck::Zeroable;
+use format::{FORMAT, blocks_name, depth_name, pass, views_name};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -63,34 +63,14 @@ pub fn needs(values: &Values) -> Option<Need> {
     })
 }
 
-/// Where the scene's draws stand, and their vertices: those of the scene, or of another moment of it.
-#[derive(Clone, Copy)]
-pub struct Places<'a> {
-    /// Blocks of the draws, as `SceneGpu::draws`.
-    pub draws: &'a Buffer,
-    /// Three floats a vertex, as `SceneGpu::positions`.
-    pub positions: &'a Buffer,
-}
-
-impl<'a> Places<'a> {
-    /// The places of the scene itself.
-    pub fn of(scene: &'a SceneGpu) -> Self {
-        Self { draws: &scene.draws, positions: &scene.positions }
-    }
-}
-
-/// One layer: how it is drawn, and what is drawn into it.
-struct Layer {
-    clip_from_world: Mat4,
-    casters: DrawList,
-}
-
 pub struct ShadowMaps {
     opaque: GraphicsPipeline,
     mask: GraphicsPipeline,
-    layers: Vec<Layer>,
+    /// What is drawn into each layer.
+    casters: Vec<DrawList>,
     depth: Image,
     blocks: Buffer,
+    views: Buffer,
     sampler: Sampler,
     /// Whether they are drawn once, and not in frames.
     is_once: bool,
@@ -133,71 +113,73 @@ impl ShadowMaps {
             )
         };
         let mask = variant(FRAG_VARIANTS, &[vertex_name]);
-        let blocks = resources.buffer(&blocks_name(technique));
-        upload::buffer(gpu, &blocks, bytemuck::cast_slice(&layout.blocks), Access::ComputeRead | Access::GraphicsRead)?;
-        let layers = layout.views.iter().map(|view| Layer {
-            clip_from_world: view.clip_from_world(),
-            casters: DrawList::of_casters(posed, scene, view, layout.casters),
-        });
-        Ok(Self {
+        let casters = layout.views.iter().map(|view| DrawList::of_casters(posed, scene, view, layout.casters));
+        let maps = Self {
             opaque: pipeline("opaque", None)?,
             mask: pipeline("mask", Some(mask))?,
-            layers: layers.collect(),
+            casters: casters.collect(),
             depth: resources.image(&depth_name(technique)),
-            blocks,
+            blocks: resources.buffer(&blocks_name(technique)),
+            views: resources.buffer(&views_name(technique)),
             sampler: sampler(gpu, layout.filter)?,
             is_once: layout.is_once,
-        })
+        };
+        maps.see_from(gpu, layout)?;
+        Ok(maps)
     }
 
-    /// Draws all maps anew, where every frame does.
-    pub fn record(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu, places: Places<'_>) -> Result<()> {
-        if self.is_once { Ok(()) } else { self.record_all(cmd, technique, scene, places) }
+    /// Has the maps drawn next seen as `layout` has them, which is of as many lights of the same kinds.
+    ///
+    /// Errors: memory for the upload (exit code 4).
+    pub fn see_from(&self, gpu: &Arc<Gpu>, layout: &MapLayout) -> Result<()> {
+        let readers = Access::ComputeRead | Access::GraphicsRead;
+        upload::buffer(gpu, &self.blocks, bytemuck::cast_slice(&layout.blocks), readers)?;
+        upload::buffer(gpu, &self.views, bytemuck::cast_slice(&layout.clips()), Access::GraphicsRead)
+    }
+
+    /// Draws all maps anew, where every frame does. `scene`: as it stands in them, here and in `draw_once`.
+    pub fn record(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu) -> Result<()> {
+        if self.is_once { Ok(()) } else { self.record_all(cmd, technique, scene) }
     }
 
     /// Draws all maps before the first frame, and leaves them to fragments and compute shaders, where frames do not; the pass, and
     /// how long it took, nanoseconds.
     ///
     /// Errors: the device is lost or out of memory (exit code 4).
-    pub fn draw_once(
-        &self,
-        gpu: &Arc<Gpu>,
-        technique: &str,
-        scene: &SceneGpu,
-        places: Places<'_>,
-    ) -> Result<Option<(String, u64)>> {
+    pub fn draw_once(&self, gpu: &Arc<Gpu>, technique: &str, scene: &SceneGpu) -> Result<Option<(String, u64)>> {
         if !self.is_once {
             return Ok(None);
         }
         let mut cmd = Commands::begin(gpu, &pass(technique), Submits::One)?;
-        self.record_all(&mut cmd, technique, scene, places)?;
+        self.record_all(&mut cmd, technique, scene)?;
         cmd.barriers([self.depth.from(Access::DepthWrite).to(Access::FragmentSample)]);
         cmd.barriers([self.depth.from(Access::FragmentSample).to(Access::ComputeSample)]);
         let recorded = cmd.finish()?;
         Ok(Some((pass(technique), recorded.run()?.figure_ns(recorded.clock()))))
     }
 
-    fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu, places: Places<'_>) -> Result<()> {
+    fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: self.layers.iter().map(|layer| mesh::read_bytes(scene, layer.casters.calls())).sum(),
+            read_bytes: self.casters.iter().map(|casters| mesh::read_bytes(scene, casters.calls())).sum(),
             written_bytes: self.depth.description.bytes(),
             invocations: None,
         };
         cmd.pass(&pass(technique), traffic, |cmd| {
             cmd.barriers([self.depth.discard(Access::DepthWrite)]);
-            let draws = [("Draws", Bound::Buffer(places.draws))];
+            let draws = [("Draws", Bound::Buffer(&scene.pose.draws)), ("ShadowMapViews", Bound::Buffer(&self.views))];
             let placements =
                 scene.extended.as_ref().map(|extended| ("Placements", Bound::Buffer(&extended.placements)));
             let cut: Vec<_> = draws.into_iter().chain(placements).collect();
             let (opaque, mask) = (cmd.set_for(&self.opaque, &draws)?, cmd.set_for(&self.mask, &cut)?);
-            for (index, Layer { clip_from_world, casters }) in self.layers.iter().enumerate() {
+            for (layer, casters) in (0u32..).zip(&self.casters) {
                 let params = |material: u32| ShadowMapsParams {
-                    clip_from_world: clip_from_world.to_cols_array_2d(),
                     material: scene.material_blocks[material as usize],
+                    layer,
+                    ..ShadowMapsParams::zeroed()
                 };
                 let target = (&self.depth, Some(0.0), Access::DepthWrite);
-                cmd.begin_layers(self.depth.description.extent, Layers::One(index as u32), &[], Some(target));
-                mesh::bind_streams_at(cmd, scene, places.positions);
+                cmd.begin_layers(self.depth.description.extent, Layers::One(layer), &[], Some(target));
+                mesh::bind_streams(cmd, scene);
                 if let Some(first) = casters.opaque.first() {
                     cmd.bind_with_set(&self.opaque, bytemuck::bytes_of(&params(first.material)), opaque);
                     mesh::draw_with(cmd, &self.opaque, scene, &casters.opaque, |_| ());
@@ -226,8 +208,8 @@ impl ShadowMaps {
 
     /// Numbers for the report's `counters`: maps, and triangles that are drawn into all of them together.
     pub fn counters(&self) -> BTreeMap<&'static str, f64> {
-        let triangles: u64 = self.layers.iter().map(|layer| layer.casters.triangles_drawn()).sum();
-        BTreeMap::from([("shadow_maps", self.layers.len() as f64), ("shadow_map_triangles_drawn", triangles as f64)])
+        let triangles: u64 = self.casters.iter().map(DrawList::triangles_drawn).sum();
+        BTreeMap::from([("shadow_maps", self.casters.len() as f64), ("shadow_map_triangles_drawn", triangles as f64)])
     }
 }
 

@@ -19,6 +19,12 @@ pub enum Dimension {
     LensU,
     /// The second of them.
     LensV,
+    /// The first of three numbers that become a place of each light.
+    LightU,
+    /// The second of them.
+    LightV,
+    /// The third of them.
+    LightW,
 }
 
 impl Dimension {
@@ -28,12 +34,15 @@ impl Dimension {
             Self::Time => "time",
             Self::LensU => "lens_u",
             Self::LensV => "lens_v",
+            Self::LightU => "light_u",
+            Self::LightV => "light_v",
+            Self::LightW => "light_w",
         }
     }
 }
 
 /// Dimensions that a sample can have beside the two of its place.
-pub const MOST_FURTHER: usize = 3;
+pub const MOST_FURTHER: usize = 6;
 
 /// One sample of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,7 +166,9 @@ mod tests {
             let samples: Vec<_> = (0..)
                 .zip(places)
                 .map(|(subset, ((x, y), (u, v), time))| {
-                    ([x, y], Sample { place_px: [u, v], further: [time, 0.0, 0.0], subset })
+                    let mut further = [0.0; MOST_FURTHER];
+                    further[0] = time;
+                    ([x, y], Sample { place_px: [u, v], further, subset })
                 })
                 .collect();
             (samples.clone(), Pattern::new([width, height], &[Dimension::Time], samples))

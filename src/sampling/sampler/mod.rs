@@ -94,7 +94,7 @@ mod tests {
         /// Whatever spreads them: as many points as asked for, each number in its range.
         #[test]
         fn points_are_as_many_as_asked_for(
-            index in 0..Sampler::ALL.len(), sides in (1u32..5, 1u32..5), samples in 1u32..7, dimensions in 2usize..6,
+            index in 0..Sampler::ALL.len(), sides in (1u32..5, 1u32..5), samples in 1u32..7, dimensions in 2usize..9,
             seed in any::<u32>(),
         ) {
             let (sampler, sides) = (Sampler::ALL[index], [sides.0, sides.1].map(|side| Side::new(side, 1)));

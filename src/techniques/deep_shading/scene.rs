@@ -5,9 +5,9 @@ use super::choices::Choices;
 use crate::error::Result;
 use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Edge, Gpu, upload};
 use crate::passes::direct::{self, DirectGpu};
-use crate::passes::shadow_maps::{Places, ShadowMaps};
+use crate::passes::shadow_maps::ShadowMaps;
 use crate::plan::Resources;
-use crate::resident::{Geometry, SceneGpu, draw_blocks};
+use crate::resident::{Geometry, Pose, SceneGpu, draw_blocks};
 use crate::scene::Scene;
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::eyes::seen_from;
@@ -24,8 +24,8 @@ pub struct DeepScene {
     close_attributes: Buffer,
     close_draws: Buffer,
     maps: Option<ShadowMaps>,
-    /// Draws and positions in the middle of the exposure, where shadow maps are drawn and something moves.
-    casters: Option<[Buffer; 2]>,
+    /// The scene in the middle of the exposure, where shadow maps are drawn and something moves.
+    casters: Option<SceneGpu>,
 }
 
 /// A moment of the scene as buffers hold it; empty where there is no such moment.
@@ -87,8 +87,9 @@ impl DeepScene {
             None => None,
             Some(moved) => {
                 let MomentBytes { positions, draws, .. } = MomentBytes::of(&moved.scene);
-                let positions = sent("middle.positions", &positions, Access::VertexRead.into())?;
-                Some([sent("middle.draws", &draws, Access::GraphicsRead.into())?, positions])
+                let positions = Arc::new(sent("middle.positions", &positions, Access::VertexRead.into())?);
+                let draws = Arc::new(sent("middle.draws", &draws, Access::GraphicsRead.into())?);
+                Some(scene.posed(Pose { positions, draws, attributes: scene.pose.attributes.clone() }))
             }
         };
         let mut filled = |what: &str, bytes: &[u8]| sent(what, bytes, Access::ComputeRead | Access::GraphicsRead);
@@ -107,19 +108,18 @@ impl DeepScene {
 
     /// Draws the shadow maps, where lights have some that every frame draws.
     pub fn record_maps(&self, cmd: &mut Commands, scene: &SceneGpu) -> Result<()> {
-        self.maps.as_ref().map_or(Ok(()), |maps| maps.record(cmd, NAME, scene, self.casters_of(scene)))
+        self.maps.as_ref().map_or(Ok(()), |maps| maps.record(cmd, NAME, self.casters_of(scene)))
     }
 
     /// Draws those that are drawn once: the pass, and how long it took, nanoseconds.
     ///
     /// Errors: the device is lost or out of memory (exit code 4).
     pub fn draw_maps_once(&self, gpu: &Arc<Gpu>, scene: &SceneGpu) -> Result<Option<(String, u64)>> {
-        self.maps.as_ref().map_or(Ok(None), |maps| maps.draw_once(gpu, NAME, scene, self.casters_of(scene)))
+        self.maps.as_ref().map_or(Ok(None), |maps| maps.draw_once(gpu, NAME, self.casters_of(scene)))
     }
 
-    fn casters_of<'a>(&'a self, scene: &'a SceneGpu) -> Places<'a> {
-        let moved = self.casters.as_ref().map(|[draws, positions]| Places { draws, positions });
-        moved.unwrap_or_else(|| Places::of(scene))
+    fn casters_of<'a>(&'a self, scene: &'a SceneGpu) -> &'a SceneGpu {
+        self.casters.as_ref().unwrap_or(scene)
     }
 
     /// The shadow maps, and the access that touched them last.
@@ -132,12 +132,12 @@ impl DeepScene {
         let mut bound = vec![
             ("Frame", Bound::Buffer(frame)),
             ("Middle", Bound::Buffer(&self.middle)),
-            ("Draws", Bound::Buffer(&scene.draws)),
+            ("Draws", Bound::Buffer(&scene.pose.draws)),
             ("Deep", Bound::Buffer(&self.space)),
             ("Tuples", Bound::Buffer(&self.tuples)),
             ("Indices", Bound::Buffer(&scene.indices)),
-            ("Positions", Bound::Buffer(&scene.positions)),
-            ("Attributes", Bound::Buffer(&scene.attributes)),
+            ("Positions", Bound::Buffer(&scene.pose.positions)),
+            ("Attributes", Bound::Buffer(&scene.pose.attributes)),
             ("ClosePositions", Bound::Buffer(&self.close_positions)),
             ("CloseAttributes", Bound::Buffer(&self.close_attributes)),
             ("CloseDraws", Bound::Buffer(&self.close_draws)),

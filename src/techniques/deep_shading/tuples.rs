@@ -124,7 +124,7 @@ impl TupleTable {
     fn of_eye(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
         let layer = self.layer(frame);
         let block = |(cell, sample): ([u32; 2], &Sample)| {
-            let [time, u, v] = sample.further;
+            let [time, u, v, ..] = sample.further;
             let axis = |pixels: u32, side: u32, cells: u32, cell: u32, place: f32| {
                 let (pixels, side, cells) = (f64::from(pixels), f64::from(side), f64::from(cells));
                 let offset = f64::from(cell) + f64::from(place);

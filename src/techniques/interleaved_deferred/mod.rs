@@ -99,7 +99,8 @@ impl Technique for InterleavedDeferred {
     }
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
-        let mut needs: Vec<Need> = [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(direct::needs(values)).collect();
+        let mut needs: Vec<Need> =
+            [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(direct::needs(values)).collect();
         if let Ok(split) = SplitMethod::new(values, caps) {
             needs.extend(split.needs(values));
             let filter: Filter = values.choice("filter");

@@ -5,12 +5,15 @@ use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
 use crate::frame::{LensPlace, Placement};
 use crate::lens::{Eyes, Lens, on_unit_disc};
+use crate::lights::LightSet;
 use crate::passes::forward::ForwardChoices;
 use crate::sampling::basis::Basis;
 use crate::sampling::pattern::{Dimension, Pattern};
 use crate::sampling::side::Side;
-use crate::settings::Values;
+use crate::settings::{MapDrawing, Values};
+use crate::techniques::exposure::Exposure;
 use crate::techniques::interleaved_sampling::resources::NAME;
+use crate::techniques::interleaved_sampling::soft::SoftLights;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Extent;
 
@@ -19,8 +22,12 @@ choices! {
     pub enum Effect {
         /// Places in their pixels.
         "aa" => Aa,
+        /// The time that the shutter is open.
+        "motion" => Motion,
         /// The lens.
         "defocus" => Defocus,
+        /// Each light.
+        "soft-shadow" => SoftShadow,
     }
 }
 
@@ -28,6 +35,21 @@ impl Effect {
     /// Those of `--effect`.
     pub fn chosen(values: &Values) -> Vec<Self> {
         values.text("effect").split(',').filter_map(Self::from_word).collect()
+    }
+
+    /// Whether it is one of them.
+    pub fn is_chosen(self, values: &Values) -> bool {
+        Self::chosen(values).contains(&self)
+    }
+
+    /// What a sample has beside its place in its pixel.
+    fn dimensions(self) -> &'static [Dimension] {
+        match self {
+            Self::Aa => &[],
+            Self::Motion => &[Dimension::Time],
+            Self::Defocus => &[Dimension::LensU, Dimension::LensV],
+            Self::SoftShadow => &[Dimension::LightU, Dimension::LightV, Dimension::LightW],
+        }
     }
 }
 
@@ -98,10 +120,10 @@ fn basis(values: &Values, frame: Extent) -> Result<Basis> {
         let why = format!("--basis {text} without aa among --effect: its samples lie in no middles of pixels");
         return Err(Error::request(why).within(NAME).note("sides of whole pixels have such samples"));
     }
-    let further: &[Dimension] =
-        if effects.contains(&Effect::Defocus) { &[Dimension::LensU, Dimension::LensV] } else { &[] };
+    let chosen = Effect::ALL.iter().filter(|effect| effects.contains(effect));
+    let further: Vec<Dimension> = chosen.flat_map(|effect| effect.dimensions().iter().copied()).collect();
     let seed = values.integer("seed") as u32;
-    Basis::new(sides, further, samples, values.choice("sampler"), seed).map_err(|error| error.within(NAME))
+    Basis::new(sides, &further, samples, values.choice("sampler"), seed).map_err(|error| error.within(NAME))
 }
 
 /// The choices that the settings make.
@@ -109,14 +131,16 @@ pub struct Choices {
     pub drawing: ForwardChoices,
     pub members: Members,
     pub lens: Option<Lens>,
+    /// With `--effect motion`, where something moves.
+    pub exposure: Option<Exposure>,
+    pub soft: Option<SoftLights>,
 }
 
 impl Choices {
     /// Errors: settings that contradict each other (exit code 2); as `ForwardChoices::new`.
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
-        let effects = Effect::chosen(values);
-        let lens = match effects.contains(&Effect::Defocus) {
+        let lens = match Effect::Defocus.is_chosen(values) {
             false => None,
             true if values.number("aperture") <= 0.0 => {
                 return Err(Error::request("--effect defocus with --aperture 0: through a pinhole all is sharp")
@@ -129,22 +153,68 @@ impl Choices {
                 eyes: Eyes::One { aside: 0.0 },
             }),
         };
-        let of = (inputs.scene, inputs.stats, inputs.lights);
-        Ok(Self {
-            drawing: ForwardChoices::new(NAME, values, of, (inputs.caps, inputs.requirements), 1)?,
+        let exposure = match Effect::Motion.is_chosen(values) {
+            false => None,
+            true if values.text("shutter") == "none" => {
+                return Err(Error::request("--effect motion with --shutter none: a single moment has no motion")
+                    .within(NAME)
+                    .note("--shutter 0,0.02 is open for a fiftieth of a second"));
+            }
+            true => Exposure::new(inputs)?,
+        };
+        let soft =
+            if Effect::SoftShadow.is_chosen(values) { Some(SoftLights::new(inputs, exposure.as_ref())?) } else { None };
+        let mut choices = Self {
             members: Members::new(
                 basis(values, inputs.view.extent)?,
                 inputs.view.extent,
-                !effects.contains(&Effect::Aa),
+                !Effect::Aa.is_chosen(values),
             ),
             lens,
-        })
+            drawing: ForwardChoices::new(
+                NAME,
+                values,
+                (inputs.scene, inputs.stats, soft.as_ref().map_or(inputs.lights, SoftLights::typical)),
+                (inputs.caps, inputs.requirements),
+                1,
+            )?,
+            exposure,
+            soft,
+        };
+        if choices.changes() {
+            if choices.drawing.maps.is_some() && values.is("shadow-maps", MapDrawing::Once) {
+                return Err(Error::request("--shadow-maps once: each member has another moment, or lights elsewhere")
+                    .within(NAME)
+                    .note("--shadow-maps frame draws the maps anew for each"));
+            }
+            choices.drawing.hold_at_any_moment();
+        }
+        if choices.soft.is_some() {
+            choices.drawing.direct.add_patches();
+        }
+        Ok(choices)
+    }
+
+    /// Whether members see the scene or its lights otherwise, and not only from elsewhere.
+    pub fn changes(&self) -> bool {
+        self.exposure.is_some() || self.soft.is_some()
+    }
+
+    /// Lights of a member.
+    pub fn light_set<'a>(&'a self, inputs: &Inputs<'a>) -> &'a LightSet {
+        self.soft.as_ref().map_or(inputs.lights, SoftLights::typical)
+    }
+
+    /// The part of the exposure at which a member sees the scene.
+    pub fn part(&self, member: u32) -> f32 {
+        self.members.basis().number(member, Dimension::Time).unwrap_or_default()
     }
 
     /// How a member lies in its picture, and where on the lens it sees from.
     pub fn sight(&self, member: u32) -> (LensPlace, Placement) {
         let place = self.lens.map_or(LensPlace::MIDDLE, |lens| {
-            let numbers = [0, 1].map(|index| self.members.basis().further_of(member)[index] as f32);
+            let number = |dimension| self.members.basis().number(member, dimension).unwrap_or_default();
+            let numbers = [Dimension::LensU, Dimension::LensV].map(number);
             LensPlace { at_m: lens.radius * on_unit_disc(numbers), focus_m: lens.focus }
         });
         (place, self.members.placement(member))

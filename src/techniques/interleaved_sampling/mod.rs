@@ -6,7 +6,7 @@
 //! basis of one pixel that is the accumulation buffer, whose samples are the same in every pixel; with a basis as large as
 //! the frame no two pixels have the same; `--basis` is the way from one to the other.
 //!
-//! A run is a member: shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces),
+//! A run is a member: moment (on the host, where members differ in more than their place), shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces),
 //! combine, mean.
 //!
 //! Differences from the paper
@@ -14,26 +14,30 @@
 //!   a mask); the result is the same
 //! - textures are read at the level of the frame's pixels, not of a member's, whose samples lie farther apart
 //! - a pixel without a sample shows the nearest one that has some
-//! - section 3.2 and later: motion, volumes and soft shadows are not here yet
+//! - what moves does so along straight lines from where it is when the shutter opens (section 3.2 leaves it to the application)
+//! - section 3.3: volumes are not here yet
 //!
 //! Equal to others: with `--basis 1x1 --samples 1` it is `forward`. `forward --supersample N` is the accumulation buffer of a
 //! regular pattern, `path_traced` what all of them converge to.
 //!
-//! Why this way: a member differs from another in the camera alone (where its picture lies in the frame, and where on the
-//! lens it is seen from), so one recorded run serves all of them, and memory is that of one.
+//! Why this way: a member differs from another in what buffers hold (where its picture lies in the frame, where on the lens it is
+//! seen from, at which moment, under which places of its lights), so one recorded run serves all of them, and memory is that of
+//! one.
 
 mod bench_stages;
 mod choices;
 mod combine;
 mod mean;
 mod members;
+mod moment;
 mod plan;
 mod resources;
 mod settings;
+mod soft;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, straight_light};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, emissive_lights, straight_light};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
@@ -45,9 +49,10 @@ use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
 use crate::settings::{FORWARD, GeometryChoice, LIGHT_LISTS, SHADOW_MAPS, Setting, Values};
-use choices::Choices;
+use choices::{Choices, Effect};
 use combine::Combine;
 use mean::Mean;
+use moment::Moment;
 use resources::NAME;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -91,7 +96,14 @@ impl Technique for InterleavedSampling {
     }
 
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
-        straight_light(values, lights, 0)
+        let mut settings = straight_light(values, lights, 0)?;
+        if Effect::SoftShadow.is_chosen(values) {
+            let is_lit = emissive_lights(values, lights);
+            settings.retain(|(key, _)| !["emissive", "light-visibility"].contains(key));
+            settings.push(("emissive", if is_lit { "on" } else { "off" }.to_owned()));
+            settings.push(("light-visibility", "on".to_owned()));
+        }
+        Ok(settings)
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {
@@ -108,7 +120,7 @@ impl Technique for InterleavedSampling {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let choices = Choices::new(inputs)?;
-        let listed = choices.drawing.listed(inputs.values, inputs.scene, inputs.lights, inputs.caps)?;
+        let listed = choices.drawing.listed(inputs.values, inputs.scene, choices.light_set(inputs), inputs.caps)?;
         Ok(Box::new(PreparedInterleaved { choices, listed }))
     }
 }
@@ -158,8 +170,9 @@ impl PreparedInterleaved {
     ) -> Result<Box<dyn Frame>> {
         let Self { choices, listed } = self;
         let raster = Raster { extent: choices.members.layer(), coverage: Coverage::Anywhere };
-        // What one place of the lens does not see another may.
-        let geometry = if choices.lens.is_some() { GeometryChoice::All } else { inputs.values.choice("geometry") };
+        // What one place of the lens, or one moment, does not see another may.
+        let is_other = choices.lens.is_some() || choices.exposure.is_some();
+        let geometry = if is_other { GeometryChoice::All } else { inputs.values.choice("geometry") };
         let list = DrawList::new(inputs.scene, scene, inputs.view, raster, geometry);
         let of = ForwardScene {
             scene: inputs.scene,
@@ -175,6 +188,7 @@ impl PreparedInterleaved {
             targets: Targets { depth: resources.image(resources::DEPTH), drawn: resources.image(resources::DRAWN) },
             combine: Combine::new(gpu, resources, &choices.members)?,
             mean: Mean::new(gpu, resources, &choices.members)?,
+            moment: Moment::new(gpu, inputs, scene, resources, &choices),
             choices,
         }))
     }
@@ -185,11 +199,14 @@ struct InterleavedFrame {
     targets: Targets,
     combine: Combine,
     mean: Mean,
+    /// What members see where it is not the same for all.
+    moment: Option<Moment>,
     choices: Choices,
 }
 
 impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
+        let scene = self.moment.as_ref().and_then(Moment::scene).unwrap_or(scene);
         self.drawing.record(cmd, NAME, frame, scene, &self.targets)?;
         self.combine.record(cmd, frame, self.targets.drawn.from(Access::ColorWrite))?;
         self.mean.record(cmd, frame, self.combine.sums.from(Access::ComputeWrite))
@@ -208,9 +225,18 @@ impl Frame for InterleavedFrame {
         false
     }
 
-    /// As the member's place on the lens sees it, its samples in the middles of its picture's texels.
+    fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
+        let begun = self.moment.as_ref().map(|moment| moment.begin(run, &self.choices, &self.drawing));
+        Ok(begun.transpose()?.into_iter().collect())
+    }
+
+    /// As the member's place on the lens sees it at its moment, its samples in the middles of its picture's texels.
     fn block_of(&self, run: u32, block: FrameBlock, view: &View) -> FrameBlock {
         let (lens, placement) = self.choices.sight(run);
+        let Some(exposure) = &self.choices.exposure else { return view.seen_from(block, lens, placement) };
+        let part = self.choices.part(run);
+        let (view, ambient) = (exposure.view_at(part), exposure.lights_at(part).ambient);
+        let block = FrameBlock { ambient: ambient.extend(0.0).to_array(), ..view.camera_of(block) };
         view.seen_from(block, lens, placement)
     }
 

@@ -1,7 +1,7 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
 use super::choices::Choices;
-use super::{combine, mean};
+use super::{combine, mean, moment};
 use crate::error::Result;
 use crate::passes::forward::ListedLights;
 use crate::passes::{depth_prepass, forward};
@@ -18,6 +18,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Re
     forward::plan(&mut plan, NAME, drawing, listed, (inputs.bvh, inputs.scene))?;
     plan.image("depth", DEPTH, layer, depth_prepass::FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
     plan.image("color", DRAWN, layer, PICTURE_FORMAT, Usage::COLOR_ATTACHMENT | Usage::STORAGE);
+    moment::plan(&mut plan, choices, inputs);
     combine::plan(&mut plan, members, frame);
     forward::plan_passes(&mut plan, NAME, drawing, inputs.stats.has_blend, [DEPTH, DRAWN]);
     combine::plan_pass(&mut plan);

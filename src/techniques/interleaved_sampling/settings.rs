@@ -2,7 +2,7 @@
 
 use super::choices::Effect;
 use crate::sampling::sampler::Sampler;
-use crate::settings::{APERTURE, Changes, FOCUS, Kind, Setting, Unread};
+use crate::settings::{APERTURE, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, SHUTTER, Setting, Unread, Values};
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
@@ -11,7 +11,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "aa",
         paper: "Keller 2001, 3",
         help: "What samples are spread over, one or more with commas between: aa, places in their pixels (without it all \
-               lie in the middles); defocus, the lens of --aperture",
+               lie in the middles); motion, the time of --shutter; defocus, the lens of --aperture; soft-shadow, the \
+               surfaces of lights (--light-radius, --emissive), by --direct-shadow ray or map",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -47,11 +48,29 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         help: "Diameter of the camera's thin lens, which blurs what is out of focus; --effect defocus wants one",
-        unread: |values| match Effect::chosen(values).contains(&Effect::Defocus) {
-            true => None,
-            false => Some(Unread::at(values, "effect", "--effect aa,defocus", "nothing is spread over the lens")),
-        },
+        unread: |values| unless(values, Effect::Defocus, "--effect aa,defocus", "nothing is spread over the lens"),
         ..APERTURE
     },
     Setting { unread: |values| Unread::without(values, APERTURE.key, "through a pinhole all is sharp"), ..FOCUS },
+    Setting {
+        unread: |values| unless(values, Effect::Motion, "--effect aa,motion", "all samples are of one moment"),
+        ..SHUTTER
+    },
+    Setting {
+        unread: |values| unless(values, Effect::SoftShadow, "--effect aa,soft-shadow", "lights are points"),
+        ..LIGHT_RADIUS
+    },
+    Setting {
+        help: "Whether emissive surfaces light others, as many hard lights with soft shadows (--effect soft-shadow); \
+               auto: where the scene has no punctual light",
+        unread: |values| {
+            unless(values, Effect::SoftShadow, "--effect aa,soft-shadow", "emissive surfaces light nothing")
+        },
+        ..EMISSIVE
+    },
 ];
+
+/// Why a setting is not read where `effect` is not among `--effect`.
+fn unless(values: &Values, effect: Effect, instead: &'static str, why: &'static str) -> Option<Unread> {
+    (!effect.is_chosen(values)).then(|| Unread::at(values, "effect", instead, why))
+}

@@ -13,6 +13,8 @@ use quincunx::techniques::patterns;
 use quincunx::units::Extent;
 use std::time::{Duration, Instant};
 
+mod effects;
+
 const NAME: &str = "interleaved_sampling";
 
 /// One sample in the middle of every pixel is what forward shading draws: to the bit, with textures, holes, glass and lists
@@ -152,6 +154,18 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("sampler", "blue-errors"), ("samples", "0.5")], "--sampler blue-errors"),
         (&[("effect", "defocus")], "--effect defocus with --aperture 0"),
         (&[("effect", "defocus"), ("aperture", "0.1"), ("basis", "2.5x2")], "without aa among --effect"),
+        (&[("effect", "motion")], "--effect motion with --shutter none"),
+        (&[("shutter", "0,1")], "all samples are of one moment"),
+        (&[("effect", "soft-shadow")], "--effect soft-shadow with --direct-shadow sun"),
+        (
+            &[("effect", "soft-shadow"), ("direct-shadow", "ray"), ("emissive", "off")],
+            "every light of the scene is a point",
+        ),
+        (&[("light-radius", "0.1")], "--light-radius 0.1 with --effect aa: lights are points"),
+        (
+            &[("effect", "soft-shadow"), ("direct-shadow", "map"), ("shadow-maps", "once"), ("light-radius", "0.1")],
+            "--shadow-maps once: each member",
+        ),
         (&[("aperture", "0.1")], "--aperture 0.1 with --effect aa: nothing is spread over the lens"),
     ] {
         let mut job = quincunx::job::Job::new("cornell", quincunx::techniques::find(NAME).unwrap());
