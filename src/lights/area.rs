@@ -27,7 +27,7 @@ struct ShiningTriangle {
 pub struct AreaLight {
     triangles: Vec<ShiningTriangle>,
     power: f64,
-    /// Of each triangle the power of all up to it, as a part of `power`.
+    /// Power of each triangle and all before it, as a part of `power`.
     cumulative: Vec<f64>,
 }
 

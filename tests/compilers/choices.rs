@@ -8,7 +8,7 @@ use quincunx::techniques::{self, Technique, settings_of};
 type Change = (&'static str, &'static str);
 
 /// Values of settings that are no choices, but without which some choices are not read.
-const OTHERS: [Change; 8] = [
+const OTHERS: [Change; 9] = [
     ("aperture", "0.1"),
     ("spp", "4"),
     ("shutter", "0,0.04"),
@@ -17,6 +17,7 @@ const OTHERS: [Change; 8] = [
     ("shadow-volumes", "4"),
     ("accumulate", "2"),
     ("pattern", "2x2"),
+    ("effect", "aa,soft-shadow"),
 ];
 
 /// Whether something reads each of these changes of the defaults.

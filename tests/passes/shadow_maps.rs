@@ -299,7 +299,8 @@ fn maps_are_counted_and_planned() {
     let of_maps = renderer.plan.resources.iter().filter(|planned| planned.group == "shadow_maps");
     let bytes: Vec<(String, u64)> = of_maps.map(|planned| (planned.name.clone(), planned.bytes())).collect();
     assert_eq!(bytes[0], ("forward.shadow_maps.depth".to_owned(), 102 * 64 * 64 * 4));
-    assert_eq!((&*bytes[1].0, bytes.len()), ("forward.shadow_maps.blocks", 2));
+    assert_eq!((&*bytes[1].0, bytes.len()), ("forward.shadow_maps.blocks", 3));
+    assert_eq!(bytes[2], ("forward.shadow_maps.views".to_owned(), 102 * 64));
     let held = watched.session.gpu.memory.snapshot();
     for (name, planned) in &bytes {
         let entry = held.resources.iter().find(|entry| entry.name == *name).unwrap();

@@ -120,7 +120,7 @@ pub struct ForwardMoment<'a> {
     pub lights: &'a [LightBlock],
     /// Those of the tree in its order; None: none has moved.
     pub triangles: Option<&'a [BvhTriangleBlock]>,
-    /// Of these lights and triangles; None without shadow maps.
+    /// Maps of these lights and triangles; None without shadow maps.
     pub maps: Option<&'a MapLayout>,
 }
 

@@ -111,7 +111,11 @@ impl Technique for InterleavedSampling {
     }
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
-        Vec::from_iter(notes::direct_light(figures, None))
+        let is_hard = figures.counter("soft_lights") == Some(0.0);
+        let hard = is_hard.then(|| {
+            "  note: every light is a point or far away: --light-radius 0.1 makes spheres of lamps".to_owned()
+        });
+        notes::direct_light(figures, None).into_iter().chain(hard).collect()
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {
@@ -150,6 +154,7 @@ impl Prepared for PreparedInterleaved {
             ("samples_per_pixel_least", f64::from(least)),
             ("samples_per_pixel_most", f64::from(most)),
         ]);
+        counters.extend(self.choices.soft.as_ref().map(|soft| ("soft_lights", soft.count as f64)));
         Ok(HostPart {
             passes: vec![self.listed.pass(NAME)],
             counters,

@@ -65,6 +65,7 @@ pub const SETTINGS: &[Setting] = &[
                auto: where the scene has no punctual light",
         unread: |values| {
             unless(values, Effect::SoftShadow, "--effect aa,soft-shadow", "emissive surfaces light nothing")
+                .or_else(|| Unread::unless(values, "direct-shadow", &["ray", "map"], "lamps cast no shadows"))
         },
         ..EMISSIVE
     },

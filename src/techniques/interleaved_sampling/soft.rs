@@ -35,6 +35,8 @@ const ENDLESS_M: f32 = 1e18;
 pub struct SoftLights {
     areas: Vec<AreaLight>,
     typical: LightSet,
+    /// Lights that have a size.
+    pub count: usize,
 }
 
 /// The lights of a member: each at one place.
@@ -45,23 +47,19 @@ pub struct MemberLights {
 }
 
 impl SoftLights {
-    /// Errors: no light is larger than a point; none casts shadows (exit code 2).
+    /// Errors: lamps cast no shadows (exit code 2).
     pub fn new(inputs: &Inputs<'_>, exposure: Option<&Exposure>) -> Result<Self> {
         let values = inputs.values;
-        let refused = |why: String| Error::request(why).within(NAME);
-        if !matches!(values.choice("direct-shadow"), DirectShadow::Ray | DirectShadow::Map) {
-            let word = values.text("direct-shadow");
-            return Err(refused(format!("--effect soft-shadow with --direct-shadow {word}: lamps cast no shadows"))
-                .note("--direct-shadow ray and map let every light cast one"));
+        let shadow: DirectShadow = values.choice("direct-shadow");
+        if !matches!(shadow, DirectShadow::Ray | DirectShadow::Map) {
+            let word = shadow.name();
+            let why = format!("--effect soft-shadow with --direct-shadow {word}: lamps cast no shadows");
+            return Err(Error::request(why).within(NAME).note("--direct-shadow ray and map let every light cast one"));
         }
         let areas = if inputs.emissive_lights() { area_lights(inputs.scene, MOST_AREA_LIGHTS) } else { Vec::new() };
-        let is_soft = |light: &Light| light.radius > 0.0 && !light.kind.is_directional();
-        if areas.is_empty() && !inputs.lights.lights.iter().any(is_soft) {
-            return Err(refused("--effect soft-shadow: every light of the scene is a point, or far away".to_owned())
-                .note("--light-radius 0.1 makes spheres of point and spot lights")
-                .note("--emissive on lets the scene's emissive surfaces light others, where it has some"));
-        }
-        let mut soft = Self { areas, typical: inputs.lights.clone() };
+        let is_soft = |light: &&Light| light.radius > 0.0 && !light.kind.is_directional();
+        let count = areas.len() + inputs.lights.lights.iter().filter(is_soft).count();
+        let mut soft = Self { areas, typical: inputs.lights.clone(), count };
         let lights = exposure.map_or_else(|| inputs.lights.clone(), |exposure| exposure.lights_at(0.0));
         soft.typical = soft.at(lights, inputs.scene, [0.5; 3]).set;
         Ok(soft)

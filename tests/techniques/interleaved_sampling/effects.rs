@@ -143,7 +143,7 @@ fn effects_converge_to_paths() {
     }
 }
 
-/// Of light up to white: the panel itself, thirty times as bright, would drown all else.
+/// Light up to white: the panel itself, thirty times as bright, would drown all else.
 fn cut(mut picture: Picture) -> Picture {
     picture.pixels.iter_mut().flatten().for_each(|channel| *channel = channel.min(1.0));
     picture

@@ -157,10 +157,6 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("effect", "motion")], "--effect motion with --shutter none"),
         (&[("shutter", "0,1")], "all samples are of one moment"),
         (&[("effect", "soft-shadow")], "--effect soft-shadow with --direct-shadow sun"),
-        (
-            &[("effect", "soft-shadow"), ("direct-shadow", "ray"), ("emissive", "off")],
-            "every light of the scene is a point",
-        ),
         (&[("light-radius", "0.1")], "--light-radius 0.1 with --effect aa: lights are points"),
         (
             &[("effect", "soft-shadow"), ("direct-shadow", "map"), ("shadow-maps", "once"), ("light-radius", "0.1")],
