@@ -7,6 +7,7 @@
 pub mod boxes;
 pub mod flat;
 mod lazy;
+mod moving;
 pub mod nodes;
 mod refit;
 pub mod shadow;

@@ -5,10 +5,10 @@
 //! stands still. Triangles of the tree move within boxes that hold both ends of their way, so that no box changes.
 
 use super::choices::Choices;
-use super::resources::{DRAWS, NAME, POSED_ATTRIBUTES, POSED_POSITIONS};
+use super::resources::{NAME, POSED_ATTRIBUTES, POSED_DRAWS, POSED_POSITIONS};
 use super::soft::MemberLights;
 use crate::error::Result;
-use crate::gpu::shader::structs::{BvhTriangleBlock, DrawBlock};
+use crate::gpu::shader::structs::DrawBlock;
 use crate::gpu::{Access, Gpu, upload};
 use crate::lights::LightSet;
 use crate::memory::kinds::Use;
@@ -37,7 +37,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
         vertices(POSED_POSITIONS, size_of::<[f32; 3]>());
         vertices(POSED_ATTRIBUTES, size_of::<VertexAttributes>());
     }
-    plan.buffer("scene.geometry", DRAWS, bytes(inputs.stats.draw_count, size_of::<DrawBlock>()));
+    plan.buffer("scene.geometry", POSED_DRAWS, bytes(inputs.stats.draw_count, size_of::<DrawBlock>()));
 }
 
 /// What is made anew for each member.
@@ -59,7 +59,7 @@ impl Moment {
         choices: &Choices,
     ) -> Option<Self> {
         let posed = choices.exposure.as_ref().map(|exposure| {
-            let draws = Arc::new(resources.buffer(DRAWS));
+            let draws = Arc::new(resources.buffer(POSED_DRAWS));
             let pose = match exposure.changes_meshes() {
                 false => Pose { draws, ..scene.pose.clone() },
                 true => Pose {
@@ -95,9 +95,8 @@ impl Moment {
             exposure.pose(&mut scene, part);
             self.send(&scene, &posed.pose, exposure.changes_meshes())?;
         }
-        let still = || run.scene;
         let posed = self.posed.as_ref().map(|(scene, _)| scene.borrow());
-        let scene = posed.as_deref().unwrap_or_else(still);
+        let scene = posed.as_deref().unwrap_or(run.scene);
         let lights = exposure.map_or_else(|| self.lights.clone(), |exposure| exposure.lights_at(part));
         let number = |dimension| choices.members.basis().number(run.index, dimension).unwrap_or_default();
         let lights = match &choices.soft {
@@ -105,10 +104,7 @@ impl Moment {
             None => MemberLights::from(lights),
         };
         let tree = choices.drawing.direct.tree(run.bvh, run.scene)?;
-        let triangles = (!tree.closing.is_empty()).then(|| {
-            let ends = tree.triangles.iter().zip(&tree.closing);
-            ends.map(|(open, close)| between(open, close, part)).collect::<Vec<_>>()
-        });
+        let triangles = exposure.and_then(|_| tree.triangles_at(part));
         let mut maps = choices.drawing.maps.clone();
         maps.iter_mut().for_each(|maps| maps.see(&lights.set, scene));
         let moment = ForwardMoment {
@@ -127,18 +123,5 @@ impl Moment {
             upload::buffer(&self.gpu, &pose.attributes, bytemuck::cast_slice(&attributes), Access::VertexRead)?;
         }
         upload::buffer(&self.gpu, &pose.draws, bytemuck::cast_slice(&draw_blocks(scene)), Access::GraphicsRead)
-    }
-}
-
-/// Its corners on their way.
-fn between(open: &BvhTriangleBlock, close: &BvhTriangleBlock, part: f32) -> BvhTriangleBlock {
-    let mix = |from: [f32; 4], to: [f32; 4]| {
-        let [x, y, z] = [0, 1, 2].map(|axis| from[axis] * (1.0 - part) + to[axis] * part);
-        [x, y, z, from[3]]
-    };
-    BvhTriangleBlock {
-        corner: mix(open.corner, close.corner),
-        edge1: mix(open.edge1, close.edge1),
-        edge2: mix(open.edge2, close.edge2),
     }
 }

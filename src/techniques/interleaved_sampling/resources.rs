@@ -7,7 +7,7 @@ pub const DEPTH: &str = "interleaved_sampling.depth.reversed";
 pub const DRAWN: &str = "interleaved_sampling.material.color";
 
 /// The scene at the moment of a member, with `--effect motion`.
-pub const DRAWS: &str = "interleaved_sampling.posed.draws";
+pub const POSED_DRAWS: &str = "interleaved_sampling.posed.draws";
 pub const POSED_POSITIONS: &str = "interleaved_sampling.posed.positions";
 pub const POSED_ATTRIBUTES: &str = "interleaved_sampling.posed.attributes";
 
