@@ -75,10 +75,7 @@ impl Basis {
                     (pixel, below_one(at - f64::from(pixel)))
                 };
                 let [(x, u), (y, v)] = [along(0), along(1)];
-                let mut further = [0.0; MOST_FURTHER];
-                for (number, exact) in further.iter_mut().zip(self.further_of(member)) {
-                    *number = below_one(*exact);
-                }
+                let further = Sample::further(self.further_of(member).iter().copied().map(below_one));
                 ([x, y], Sample { place_px: [u, v], further, subset: member })
             })
         });
@@ -87,7 +84,7 @@ impl Basis {
 }
 
 /// The nearest float that is below 1.
-fn below_one(number: f64) -> f32 {
+pub fn below_one(number: f64) -> f32 {
     (number as f32).clamp(0.0, 1.0 - f32::EPSILON / 2.0)
 }
 

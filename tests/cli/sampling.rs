@@ -102,7 +102,7 @@ fn exported_samples_are_the_pattern() {
         let sample = Sample {
             place_px: [cells[2] as f32, cells[3] as f32],
             subset: cells[4] as u32,
-            further: [cells[5] as f32, cells[6] as f32, cells[7] as f32, 0.0, 0.0, 0.0],
+            further: Sample::further(cells[5..8].iter().map(|cell| *cell as f32)),
         };
         ([cells[0] as u32, cells[1] as u32], sample)
     };

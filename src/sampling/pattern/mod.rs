@@ -60,6 +60,13 @@ impl Sample {
     pub fn middle(subset: u32) -> Self {
         Self { place_px: [0.5; 2], further: [0.0; MOST_FURTHER], subset }
     }
+
+    /// What `further` holds of these numbers, at most `MOST_FURTHER`.
+    pub fn further(numbers: impl IntoIterator<Item = f32>) -> [f32; MOST_FURTHER] {
+        let mut further = [0.0; MOST_FURTHER];
+        further.iter_mut().zip(numbers).for_each(|(into, number)| *into = number);
+        further
+    }
 }
 
 /// Samples over the pixels of one period.
@@ -166,9 +173,7 @@ mod tests {
             let samples: Vec<_> = (0..)
                 .zip(places)
                 .map(|(subset, ((x, y), (u, v), time))| {
-                    let mut further = [0.0; MOST_FURTHER];
-                    further[0] = time;
-                    ([x, y], Sample { place_px: [u, v], further, subset })
+                    ([x, y], Sample { place_px: [u, v], further: Sample::further([time]), subset })
                 })
                 .collect();
             (samples.clone(), Pattern::new([width, height], &[Dimension::Time], samples))

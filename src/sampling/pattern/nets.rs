@@ -22,10 +22,8 @@ impl Pattern {
             let [lens_u, lens_v] = pair(subset, 1);
             let [time, _] = pair(subset, 2);
             let cell = subset / samples;
-            (
-                [cell % period_px[0], cell / period_px[0]],
-                Sample { place_px, further: [time, lens_u, lens_v, 0.0, 0.0, 0.0], subset },
-            )
+            let further = Sample::further([time, lens_u, lens_v]);
+            ([cell % period_px[0], cell / period_px[0]], Sample { place_px, further, subset })
         };
         Self::new(period_px, &[Dimension::Time, Dimension::LensU, Dimension::LensV], (0..count).map(sample).collect())
     }
