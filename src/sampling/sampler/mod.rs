@@ -13,7 +13,7 @@ mod jittered;
 mod mask;
 mod over;
 mod random;
-mod recurrence;
+pub mod recurrence;
 mod relaxed;
 mod sobol;
 mod swaps;

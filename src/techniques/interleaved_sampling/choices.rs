@@ -162,8 +162,7 @@ impl Choices {
             }
             true => Exposure::new(inputs)?,
         };
-        let soft =
-            if Effect::SoftShadow.is_chosen(values) { Some(SoftLights::new(inputs, exposure.as_ref())?) } else { None };
+        let soft = if Effect::SoftShadow.is_chosen(values) { Some(SoftLights::new(inputs)?) } else { None };
         let mut choices = Self {
             members: Members::new(
                 basis(values, inputs.view.extent)?,
