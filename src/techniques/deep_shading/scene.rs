@@ -7,7 +7,7 @@ use crate::gpu::{Access, AccessSet, Bound, Buffer, Commands, Edge, Gpu, upload};
 use crate::passes::direct::{self, DirectGpu};
 use crate::passes::shadow_maps::ShadowMaps;
 use crate::plan::Resources;
-use crate::resident::{Geometry, Pose, SceneGpu, draw_blocks};
+use crate::resident::{Pose, SceneGpu, draw_blocks, geometry};
 use crate::scene::Scene;
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::eyes::seen_from;
@@ -38,10 +38,9 @@ struct MomentBytes {
 
 impl MomentBytes {
     fn of(scene: &Scene) -> Self {
-        let geometry = Geometry::of(scene);
         Self {
-            positions: bytemuck::cast_slice(&geometry.positions).to_vec(),
-            attributes: bytemuck::cast_slice(&geometry.attributes).to_vec(),
+            positions: bytemuck::cast_slice(&geometry::positions(scene)).to_vec(),
+            attributes: bytemuck::cast_slice(&geometry::attributes(scene)).to_vec(),
             draws: bytemuck::cast_slice(&draw_blocks(scene)).to_vec(),
         }
     }
