@@ -1,6 +1,8 @@
 //! Punctual and virtual point lights on the host: the twin of glsl/shading/light.glsl and light_start.glsl.
 
-use crate::gpu::shader::shading::light::{LEAST_DISTANCE_SQUARED, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT};
+use crate::gpu::shader::shading::light::{
+    LEAST_DISTANCE_SQUARED, LIGHT_DIRECTIONAL, LIGHT_PATCH, LIGHT_POINT, LIGHT_SPOT,
+};
 use crate::gpu::shader::structs::{LightBlock, VplBlock};
 use crate::scene::{Light, LightKind};
 use bytemuck::Zeroable;
@@ -68,6 +70,10 @@ fn irradiance_along(light: &LightBlock, distance_squared: f32, towards: Vec3) ->
     if light.kind == LIGHT_SPOT {
         let cone = (direction.dot(-towards) * light.spot_scale + light.spot_offset).clamp(0.0, 1.0);
         attenuation *= cone * cone;
+    }
+    if light.kind == LIGHT_PATCH {
+        let cosine = -direction.dot(towards);
+        attenuation *= if light.direction_ws[3] != 0.0 { cosine.abs() } else { cosine.max(0.0) };
     }
     intensity * attenuation
 }
@@ -188,6 +194,22 @@ mod tests {
             range: None,
             radius: 0.0,
         }
+    }
+
+    /// What a patch gives is what a virtual light does, which is a patch too; its back is dark but where both sides shine.
+    #[test]
+    fn a_patch_shines_by_its_cosine_on_the_sides_that_it_has() {
+        let patch = LightBlock { kind: LIGHT_PATCH, ..block(&light(LightKind::Point), 0.0) };
+        let vpl =
+            VplBlock { position_ws: patch.position_ws, normal_ws: patch.direction_ws, intensity: patch.intensity };
+        for at in [Vec3::ZERO, Vec3::new(1.0, 0.5, -0.5)] {
+            let (towards, _, irradiance) = incident_from(&patch, at);
+            let expected = vpl_irradiance(&vpl, at, towards, 0.0);
+            assert!(expected.x > 0.0 && irradiance.distance(expected) < 1e-6 * expected.length(), "{irradiance}");
+        }
+        let (_, _, behind) = incident_from(&patch, Vec3::new(0.0, 4.0, 0.0));
+        let both = LightBlock { direction_ws: [0.0, -1.0, 0.0, 1.0], ..patch };
+        assert_eq!((behind, incident_from(&both, Vec3::new(0.0, 4.0, 0.0)).2), (Vec3::ZERO, Vec3::splat(2.0)));
     }
 
     #[test]
