@@ -6,8 +6,8 @@
 //! basis of one pixel that is the accumulation buffer, whose samples are the same in every pixel; with a basis as large as
 //! the frame no two pixels have the same; `--basis` is the way from one to the other.
 //!
-//! A run is a member: moment (on the host, where members differ in more than their place), shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces),
-//! combine, mean.
+//! A run is a member: moment (on the host, where members differ in more than their place), shadow_maps (with `--direct-shadow
+//! map`), depth, material, blend (where the scene has BLEND surfaces), combine, mean.
 //!
 //! Differences from the paper
 //! - a member's samples are scattered to their pixels by a compute pass (section 3.1 draws a polygon over the frame behind
