@@ -34,7 +34,7 @@ vec3 to_eye(FrameBlock frame, vec3 position_ws) {
     return frame.eye_ws.w > 0.0 ? normalize(frame.eye_ws.xyz - position_ws) : -frame.forward_ws.xyz;
 }
 
-// What is seen through a place of the picture, from the near plane to the far one. Twin: src/frame.rs.
+// What is seen through a place, from the near plane to the far one. Twin: src/frame.rs.
 struct ViewRay {
     vec3 origin;
     vec3 direction;
@@ -48,8 +48,8 @@ struct ViewRay {
 // Where a ray ends that nothing does.
 const float FAR = 1e30;
 
-ViewRay view_ray(FrameBlock frame, vec2 at_px) {
-    vec2 ndc = at_px / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0;
+// Through a place of what is drawn into, -1 to 1 along both axes.
+ViewRay clip_ray(FrameBlock frame, vec2 ndc) {
     vec4 near = frame.world_from_clip * vec4(ndc, 1.0, 1.0);
     vec4 far = frame.world_from_clip * vec4(ndc, 0.0, 1.0);
     bool is_perspective = frame.eye_ws.w > 0.0;
@@ -62,6 +62,10 @@ ViewRay view_ray(FrameBlock frame, vec2 at_px) {
     float limit = far.w > 0.0 ? min(distance(far.xyz / far.w, origin), FAR) : FAR;
     float near_m = dot(start - frame.eye_ws.xyz, frame.forward_ws.xyz);
     return ViewRay(origin, direction, limit, behind, near_m);
+}
+
+ViewRay view_ray(FrameBlock frame, vec2 at_px) {
+    return clip_ray(frame, at_px / vec2(frame.width_px, frame.height_px) * 2.0 - 1.0);
 }
 
 #endif

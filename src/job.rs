@@ -20,11 +20,13 @@ use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene};
 use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::written::{SettingValue, WrittenSettings, written};
-use crate::settings::{Values, earlier_s, exposure_s, readers};
+use crate::settings::{Values, earlier_s, exposure_s, raw_volume_size, readers, volume_name};
 use crate::techniques::{self, Technique, settings_of, stages, timed};
+use crate::volume::{self, Volume, VolumeRequest};
 use crate::whole_file::write_whole;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A request for one picture, every part of it checked.
 pub struct Job {
@@ -291,10 +293,14 @@ impl Job {
 
     /// What the request's scene is at any time.
     ///
-    /// Errors: no such scene or animation, or a broken file (exit code 2).
+    /// Errors: no such scene, animation or volume, or a broken file (exit code 2).
     pub fn open_model(&self) -> Result<Model> {
         let choice = AnimationChoice::parse(self.values.text("animation"));
-        scene::open(&self.scene, self.values.integer("seed"), &choice)
+        let model = scene::open(&self.scene, self.values.integer("seed"), &choice)?;
+        Ok(match open_volume(&self.values)? {
+            None => model,
+            Some(volume) => Model::Holding(Box::new(model), Arc::new(volume)),
+        })
     }
 
     /// The scene that the request names, at its time, or while its shutter is open.
@@ -434,6 +440,15 @@ pub(crate) fn scene_of(model: &Model, values: &Values) -> Result<Scene> {
         Some(earlier_s) => scene.moved_from(model.pose(earlier_s)?),
         None => Ok(scene),
     }
+}
+
+/// The volume of the settings; None: they ask for none, or the technique draws none.
+///
+/// Errors: there is no such volume, or its file is broken (exit code 2); memory (4).
+fn open_volume(values: &Values) -> Result<Option<Volume>> {
+    let Some(spec) = volume_name(values) else { return Ok(None) };
+    let request = VolumeRequest { spec, raw_size: raw_volume_size(values)?, seed: values.integer("seed") };
+    volume::open(&request).map(Some)
 }
 
 /// As reports and rows have them: with what `auto` and percentages came to.

@@ -80,6 +80,7 @@ pub mod shading;
 pub mod study;
 pub mod techniques;
 pub mod units;
+pub mod volume;
 pub mod whole_file;
 
 pub use error::{Error, ErrorKind, Result};

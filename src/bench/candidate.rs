@@ -171,10 +171,11 @@ fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
             )));
         }
     }
-    let moved: Vec<String> = ["seed", "time", "animation"]
+    let moved: Vec<String> = ["seed", "time", "animation", "volume", "volume-size"]
         .iter()
-        .filter(|key| values.text(key) != job.values.text(key))
-        .map(|key| format!("--{key} {}", values.text(key)))
+        .filter_map(|key| values.get(key).map(|text| (key, text)))
+        .filter(|(key, text)| job.values.get(key) != Some(text))
+        .map(|(key, text)| format!("--{key} {text}"))
         .collect();
     if !moved.is_empty() && job.at(values).load_scene()?.hash != scene_hash {
         return Err(Error::request(format!(

@@ -85,6 +85,7 @@ mod tests {
             "max_viewport_px",
             "max_framebuffer_px",
             "max_image_layers",
+            "max_volume_side_px",
             "max_uniform_buffer_range_bytes",
             "max_shared_memory_bytes",
             "max_storage_buffers_per_stage",

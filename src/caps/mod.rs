@@ -184,6 +184,9 @@ pub struct Limits {
     /// Data from before it was looked up gets the least that Vulkan promises.
     #[serde(default = "least_image_layers")]
     pub max_image_layers: u32,
+    /// A side of a three-dimensional image; the same.
+    #[serde(default = "least_volume_side_px")]
+    pub max_volume_side_px: u32,
     pub max_storage_buffer_range_bytes: u64,
     /// Data from before it was looked up gets the least that Vulkan promises.
     #[serde(default = "least_uniform_buffer_range_bytes")]
@@ -245,6 +248,10 @@ fn one_sample() -> Vec<u32> {
 
 fn least_drawn_px() -> [u32; 2] {
     [4096; 2]
+}
+
+fn least_volume_side_px() -> u32 {
+    256
 }
 
 fn least_storage_buffers_per_stage() -> u32 {

@@ -105,7 +105,7 @@ pub fn flag(setting: &'static Setting) -> Arg {
     let argument = Arg::new(setting.key).long(setting.key).value_name(value_name(setting)).help(help);
     match setting.kind {
         // A list that begins with a minus is no negative number, and is not to be taken for a flag.
-        Kind::PartsOrNone(_) => argument.allow_hyphen_values(true),
+        Kind::Parts(_) | Kind::PartsOrNone(_) => argument.allow_hyphen_values(true),
         _ => argument.allow_negative_numbers(true),
     }
 }
@@ -121,6 +121,7 @@ fn value_name(setting: &Setting) -> &'static str {
         Kind::Length => "LENGTH",
         Kind::Bytes => "BYTES",
         Kind::Color => "COLOR",
+        Kind::Parts(_) => "auto|N,N",
         Kind::PartsOrNone(_) => "N,N|none",
         Kind::Words(_) if setting.auto => "auto|NAME,...",
         Kind::Words(_) => "NAME,...",

@@ -11,7 +11,7 @@ use ash::vk;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
-/// A two-dimensional image, or an array of them.
+/// A two-dimensional image, an array of them, or a three-dimensional one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageDescription {
     pub extent: Extent,
@@ -21,6 +21,8 @@ pub struct ImageDescription {
     pub level_count: u32,
     /// None: a plain image. Some: an array of so many layers, whose views are arrays, of one layer too.
     pub layer_count: Option<u32>,
+    /// None: a flat image. Some: a three-dimensional one, so many texels deep, of one level, one layer and one sample.
+    pub depth: Option<u32>,
     /// Samples a pixel: 1, or another power of two where the image has one level and is only drawn into, resolved, and fetched.
     pub samples: u32,
     pub usage: vk::ImageUsageFlags,
@@ -29,7 +31,7 @@ pub struct ImageDescription {
 impl ImageDescription {
     /// An image of one level and one layer, sampled as it is.
     pub fn plain(extent: Extent, format: vk::Format, samples: u32, usage: vk::ImageUsageFlags) -> Self {
-        Self { extent, format, sampled_as: None, level_count: 1, layer_count: None, samples, usage }
+        Self { extent, format, sampled_as: None, level_count: 1, layer_count: None, depth: None, samples, usage }
     }
 
     /// Layers, of a plain image one.
@@ -37,7 +39,12 @@ impl ImageDescription {
         self.layer_count.unwrap_or(1)
     }
 
-    /// Bytes by arithmetic, all levels, layers and samples; what the driver requires may be more.
+    /// Texels from front to back, of a flat image one.
+    pub fn slices(&self) -> u32 {
+        self.depth.unwrap_or(1)
+    }
+
+    /// Bytes by arithmetic, all levels, layers, slices and samples; what the driver requires may be more.
     pub fn bytes(&self) -> u64 {
         let layer_bytes: u64 = (0..self.level_count)
             .map(|level| {
@@ -46,7 +53,7 @@ impl ImageDescription {
                 width * height * u64::from(texel_bytes(self.format))
             })
             .sum();
-        layer_bytes * u64::from(self.layers()) * u64::from(self.samples)
+        layer_bytes * u64::from(self.layers()) * u64::from(self.slices()) * u64::from(self.samples)
     }
 
     fn create_info(&self) -> vk::ImageCreateInfo<'static> {
@@ -55,9 +62,9 @@ impl ImageDescription {
         let reinterpreted = is_stored_otherwise || self.sampled_as.is_some();
         vk::ImageCreateInfo::default()
             .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
-            .image_type(vk::ImageType::TYPE_2D)
+            .image_type(if self.depth.is_some() { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })
             .format(format)
-            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: 1 })
+            .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: self.slices() })
             .mip_levels(level_count)
             .array_layers(self.layers())
             .samples(vk::SampleCountFlags::from_raw(samples))
@@ -71,6 +78,14 @@ impl ImageDescription {
         let is_drawn = self.usage.intersects(drawn);
         let [width, height] = if is_drawn { limits.most_drawn_px() } else { [limits.max_image_side_px; 2] };
         let (extent, layers, most_layers) = (self.extent, self.layers(), limits.max_image_layers);
+        if let Some(depth) = self.depth {
+            let most = limits.max_volume_side_px;
+            if extent.width.max(extent.height).max(depth) > most {
+                return Err(Error::request(format!(
+                    "{name}: {extent}x{depth} texels: this device allows {most} a side of a three-dimensional image"
+                )));
+            }
+        }
         if extent.width > width || extent.height > height {
             return Err(Error::request(format!("{name}: {extent} pixels: this device allows {width} x {height}")));
         }
@@ -101,9 +116,11 @@ impl ImageDescription {
 /// Bytes of a texel of the formats that this program uses.
 pub fn texel_bytes(format: vk::Format) -> u32 {
     match format {
+        vk::Format::R8_UINT => 1,
+        vk::Format::R16_UINT => 2,
         vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => 4,
         vk::Format::R16G16_UINT | vk::Format::R16G16_UNORM => 4,
-        vk::Format::R32_UINT | vk::Format::D32_SFLOAT => 4,
+        vk::Format::R32_UINT | vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT => 4,
         // Some drivers hold depth and stencil in 8: that is theirs to say.
         vk::Format::D32_SFLOAT_S8_UINT => 5,
         vk::Format::R32G32_UINT | vk::Format::R16G16B16A16_SFLOAT | vk::Format::R16G16B16A16_UNORM => 8,
@@ -220,10 +237,10 @@ impl Image {
             .aspect_mask(aspect_of(description.format))
             .level_count(description.level_count)
             .layer_count(description.layers());
-        let view_type = if description.layer_count.is_some() {
-            vk::ImageViewType::TYPE_2D_ARRAY
-        } else {
-            vk::ImageViewType::TYPE_2D
+        let view_type = match description {
+            ImageDescription { depth: Some(_), .. } => vk::ImageViewType::TYPE_3D,
+            ImageDescription { layer_count: Some(_), .. } => vk::ImageViewType::TYPE_2D_ARRAY,
+            _ => vk::ImageViewType::TYPE_2D,
         };
         let view_as = |format, usage, range| {
             let mut usage = vk::ImageViewUsageCreateInfo::default().usage(usage);

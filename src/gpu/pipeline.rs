@@ -173,6 +173,8 @@ pub enum Blending {
     Replace,
     /// Source over destination by alpha (premultiplied); the destination's own alpha stays.
     Over,
+    /// The same, and the destination's alpha becomes what both let through: layers that are laid over something later.
+    Layer,
     /// Sums, in the order of the draws.
     Add,
     /// Nothing is written.
@@ -183,17 +185,17 @@ impl Blending {
     fn state(self) -> vk::PipelineColorBlendAttachmentState {
         use vk::ColorComponentFlags as Components;
         let target = match self {
-            Self::Replace | Self::Over | Self::Keep => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+            Self::Replace | Self::Over | Self::Layer | Self::Keep => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
             Self::Add => vk::BlendFactor::ONE,
         };
         let written = match self {
-            Self::Replace | Self::Add => Components::RGBA,
+            Self::Replace | Self::Layer | Self::Add => Components::RGBA,
             Self::Over => Components::R | Components::G | Components::B,
             Self::Keep => Components::empty(),
         };
         vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(written)
-            .blend_enable(matches!(self, Self::Over | Self::Add))
+            .blend_enable(matches!(self, Self::Over | Self::Layer | Self::Add))
             .src_color_blend_factor(vk::BlendFactor::ONE)
             .dst_color_blend_factor(target)
             .src_alpha_blend_factor(vk::BlendFactor::ONE)

@@ -153,6 +153,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             max_viewport_px: limits.max_viewport_dimensions,
             max_framebuffer_px: [limits.max_framebuffer_width, limits.max_framebuffer_height],
             max_image_layers: limits.max_image_array_layers,
+            max_volume_side_px: limits.max_image_dimension3_d,
             max_storage_buffer_range_bytes: u64::from(limits.max_storage_buffer_range),
             max_uniform_buffer_range_bytes: u64::from(limits.max_uniform_buffer_range),
             max_push_constant_bytes: limits.max_push_constants_size,

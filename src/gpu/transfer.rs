@@ -35,8 +35,11 @@ impl Commands {
                 let region = vk::BufferImageCopy::default()
                     .buffer_offset(offset)
                     .image_subresource(target.whole_level(level))
-                    .image_extent(vk::Extent3D { width, height, depth: 1 });
-                offset += u64::from(width) * u64::from(height) * u64::from(description.layers()) * texel_bytes;
+                    .image_extent(vk::Extent3D { width, height, depth: description.slices() });
+                offset += u64::from(width)
+                    * u64::from(height)
+                    * u64::from(description.layers() * description.slices())
+                    * texel_bytes;
                 region
             })
             .collect();

@@ -316,6 +316,9 @@ fn kind(shape: &Shape) -> String {
         Shape::Image(ImageDescription { extent, format, layer_count: Some(layers), .. }) => {
             format!("{format:?} {extent}, {layers} layers")
         }
+        Shape::Image(ImageDescription { extent, format, depth: Some(depth), .. }) => {
+            format!("{format:?} {extent}x{depth}")
+        }
         Shape::Image(ImageDescription { extent, format, samples, .. }) if *samples > 1 => {
             format!("{format:?} {extent}, {samples} samples")
         }
@@ -392,7 +395,10 @@ fn row(
         first_pass: lifetime.as_ref().map(|lifetime| pass_name(lifetime.first)),
         last_pass: lifetime.as_ref().map(|lifetime| pass_name(lifetime.last)),
         format: image.map(|image| format!("{:?}", image.format)),
-        extent: image.map(|image| image.extent.to_string()),
+        extent: image.map(|image| match image.depth {
+            None => image.extent.to_string(),
+            Some(depth) => format!("{}x{depth}", image.extent),
+        }),
         layers: image.and_then(|image| image.layer_count),
         samples: image.map(|image| image.samples).filter(|samples| *samples > 1),
         touched_bytes: None,

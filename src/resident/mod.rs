@@ -18,6 +18,7 @@ pub mod structure;
 mod textures;
 pub mod traced;
 mod visible;
+pub mod volume;
 
 pub use clusters::Cluster;
 pub use geometry::{Geometry, groups_of};

@@ -135,6 +135,7 @@ pub fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
         sampled_as: None,
         level_count: mipmaps::level_count(extent.width, extent.height),
         layer_count: None,
+        depth: None,
         samples: 1,
         usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
     })

@@ -32,10 +32,33 @@ impl Basis {
         sampler: Sampler,
         seed: u32,
     ) -> Result<Self> {
+        Self::made(sides, further, samples_per_px, (sampler, seed), false)
+    }
+
+    /// The same with samples in the middles of their pixels alone, as many in each where their number allows it.
+    ///
+    /// Errors: as `new`.
+    pub fn in_middles(
+        sides: [Side; 2],
+        further: &[Dimension],
+        samples_per_px: f64,
+        sampler: Sampler,
+        seed: u32,
+    ) -> Result<Self> {
+        Self::made(sides, further, samples_per_px, (sampler, seed), true)
+    }
+
+    fn made(
+        sides: [Side; 2],
+        further: &[Dimension],
+        samples_per_px: f64,
+        (sampler, seed): (Sampler, u32),
+        in_middles: bool,
+    ) -> Result<Self> {
         assert!(further.len() <= MOST_FURTHER && samples_per_px > 0.0, "{further:?}, {samples_per_px}");
         let area_px = sides[0].length_px() * sides[1].length_px();
         let count = (samples_per_px * area_px).round().max(1.0) as u32;
-        let points = sampler.points(sides, count, 2 + further.len(), seed)?;
+        let points = sampler.points(sides, count, 2 + further.len(), seed, in_middles)?;
         Ok(Self { sides, further: further.to_vec(), points })
     }
 
@@ -128,6 +151,25 @@ mod tests {
             // Five rows of five cells lie evenly over pixels: those of `jittered` stay in theirs.
             let [least, most] = pattern.samples_per_pixel();
             assert!(least < most || *sampler == Sampler::Jittered, "{}: 4 a pixel in the mean", sampler.name());
+        }
+    }
+
+    /// In the middles of pixels every sampler gives each as many, and those of a pixel and its neighbours are spread over what
+    /// they have beside: the mean of a block of pixels is near that of all.
+    #[test]
+    fn in_middles_pixels_have_as_many_samples() {
+        for sampler in Sampler::ALL {
+            for (side, samples) in [(1, 4), (2, 1), (4, 1), (4, 2)] {
+                let basis =
+                    Basis::in_middles([Side::new(side, 1); 2], &[Dimension::Slice], f64::from(samples), *sampler, 5);
+                let pattern = basis.unwrap().pattern();
+                assert_eq!(pattern.samples_per_pixel(), [samples; 2], "{} {side}", sampler.name());
+                assert!(pattern.samples().iter().all(|sample| sample.place_px == [0.5; 2]), "{}", sampler.name());
+                let mut slices: Vec<f32> = pattern.samples().iter().map(|sample| sample.further[0]).collect();
+                slices.sort_by(f32::total_cmp);
+                slices.dedup();
+                assert_eq!(slices.len() as u32, side * side * samples, "{}: {slices:?}", sampler.name());
+            }
         }
     }
 

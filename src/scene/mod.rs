@@ -24,6 +24,7 @@ pub mod shell;
 pub mod texture;
 
 use crate::error::{Error, Result};
+use crate::volume::Volume;
 pub use model::{Model, inspect, load, open};
 use std::sync::Arc;
 
@@ -64,6 +65,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// What `--medium auto` is. None: nothing, as in every file: glTF has no word for it.
     pub medium: Option<Medium>,
+    /// Values on a grid that emit and absorb light (`--volume`). None: no file has one.
+    pub volume: Option<Arc<Volume>>,
     /// Cameras in file order. May be empty: the view then frames the bounds (`crate::framing`).
     pub cameras: Vec<Camera>,
     /// The box around everything that is drawn while the animations play, sampled at a few moments; None where
@@ -107,6 +110,14 @@ impl Scene {
         earlier.images = Vec::new();
         self.earlier = Some(Box::new(earlier));
         Ok(self)
+    }
+
+    /// This scene with a volume in it.
+    pub fn holding(mut self, volume: &Arc<Volume>) -> Self {
+        let both = format!("{} {}", self.hash, volume.hash);
+        self.hash = blake3::hash(both.as_bytes()).to_hex().to_string();
+        self.volume = Some(volume.clone());
+        self
     }
 
     /// Whether both draw the same triangles in the same materials, wherever they are.

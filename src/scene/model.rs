@@ -3,13 +3,17 @@
 use crate::error::{Error, Result};
 use crate::progress::Stage;
 use crate::scene::{AnimationChoice, Scene, gltf, procedural};
+use crate::volume::Volume;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The scene of a name or a path, read once, from which the scene at any time is made.
 #[derive(Debug)]
 pub enum Model {
     BuiltIn(Box<procedural::ProceduralScene>),
     File(Box<gltf::Model>),
+    /// One of the two, with a volume in it.
+    Holding(Box<Model>, Arc<Volume>),
 }
 
 /// The scene of a name or a path: a built-in scene, with parameters after a colon, or a .gltf or .glb file.
@@ -62,6 +66,7 @@ impl Model {
         match self {
             Self::BuiltIn(made) => Ok(made.as_ref().clone().into_pose(time_s)),
             Self::File(model) => model.pose(time_s),
+            Self::Holding(model, volume) => Ok(model.pose(time_s)?.holding(volume)),
         }
     }
 
@@ -80,6 +85,7 @@ impl Model {
         match self {
             Self::BuiltIn(made) => Ok(made.into_pose(time_s)),
             Self::File(model) => model.into_pose(time_s),
+            Self::Holding(model, volume) => Ok(model.into_pose(time_s)?.holding(&volume)),
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod readers;
 mod shadow_maps;
 mod tables;
 mod tree;
+mod volume;
 pub mod written;
 
 pub use forward::{FORWARD, LightBuffer};
@@ -23,6 +24,7 @@ pub use tables::{
     POSITION_THRESHOLD, PositionStorage, Rig, SHADING, TEXELS, VPL_CLAMP, WORKGROUP,
 };
 pub use tree::{NodeOrder, StackPlace, TREE};
+pub use volume::{VOLUME, VOLUME_PLACE, raw_volume_size, volume_name};
 
 use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
@@ -61,7 +63,9 @@ pub enum Kind {
     Bytes,
     /// Three numbers `R,G,B` of at least 0, or one for all three.
     Color,
-    /// One number for each part, with commas between, or `none`.
+    /// One number for each part, with commas between.
+    Parts(&'static [Part]),
+    /// The same, or `none`.
     PartsOrNone(&'static [Part]),
     /// One or more of these words, with commas between, none of them twice.
     Words(&'static [&'static str]),
@@ -166,11 +170,8 @@ impl Setting {
                 "512MiB, 2GiB and the like (B, KiB, MiB, GiB, TiB; without a unit: bytes), or none".to_owned()
             }
             Kind::Color => "R,G,B or one number, each at least 0".to_owned(),
-            Kind::PartsOrNone(parts) => {
-                let words: Vec<&str> = parts.iter().map(|part| part.word).collect();
-                let ranges = parts.iter().map(|part| format!(", {} {} to {}", part.word, part.min, part.max));
-                format!("{}{}, or none", words.join(","), ranges.collect::<String>())
-            }
+            Kind::Parts(parts) => range_of_parts(parts),
+            Kind::PartsOrNone(parts) => format!("{}, or none", range_of_parts(parts)),
             Kind::Words(words) => format!("one or more of {}, with commas between, each once", words.join(", ")),
             Kind::Text(word) => word.to_owned(),
         }
@@ -193,12 +194,9 @@ impl Setting {
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Bytes => parse_bytes(text).is_some(),
             Kind::Color => parse_color(text).is_some(),
-            Kind::PartsOrNone(parts) => parse_numbers_or_none(text).is_some_and(|numbers| {
-                numbers.is_none_or(|numbers| {
-                    let mut pairs = numbers.iter().zip(parts);
-                    numbers.len() == parts.len() && pairs.all(|(number, part)| (part.min..=part.max).contains(number))
-                })
-            }),
+            Kind::Parts(parts) => parse_numbers(text).is_some_and(|numbers| are_parts(&numbers, parts)),
+            Kind::PartsOrNone(parts) => parse_numbers_or_none(text)
+                .is_some_and(|numbers| numbers.is_none_or(|numbers| are_parts(&numbers, parts))),
             Kind::Words(words) => {
                 let listed: Vec<&str> = text.split(',').collect();
                 let is_once = |word: &&str| listed.iter().filter(|other| other == &word).count() == 1;
@@ -213,6 +211,17 @@ impl Setting {
         Err(Error::request(format!("--{} {text}: it must be {}{paper}", self.key, self.range()))
             .note(format!("the default is --{} {}", self.key, self.default)))
     }
+}
+
+fn range_of_parts(parts: &[Part]) -> String {
+    let words: Vec<&str> = parts.iter().map(|part| part.word).collect();
+    let ranges = parts.iter().map(|part| format!(", {} {} to {}", part.word, part.min, part.max));
+    format!("{}{}", words.join(","), ranges.collect::<String>())
+}
+
+fn are_parts(numbers: &[f64], parts: &[Part]) -> bool {
+    let mut pairs = numbers.iter().zip(parts);
+    numbers.len() == parts.len() && pairs.all(|(number, part)| (part.min..=part.max).contains(number))
 }
 
 fn parse_pair(text: &str) -> Option<[u32; 2]> {
@@ -243,11 +252,15 @@ fn parse_bytes(text: &str) -> Option<Option<u64>> {
     }
 }
 
+fn parse_numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|number| number.parse().ok()).collect()
+}
+
 /// Some(None) is `none`; else any count of numbers.
 fn parse_numbers_or_none(text: &str) -> Option<Option<Vec<f64>>> {
     match text {
         "none" => Some(None),
-        text => text.split(',').map(|number| number.parse().ok()).collect::<Option<_>>().map(Some),
+        text => parse_numbers(text).map(Some),
     }
 }
 
@@ -286,6 +299,11 @@ impl Values {
     /// In order of their keys.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.entries.iter().map(|(key, value)| (*key, value.as_str()))
+    }
+
+    /// The text of a setting; None: the table has no such row.
+    pub fn get(&self, key: &str) -> Option<&str> {
+        self.entries.get(key).map(String::as_str)
     }
 
     /// The text of a setting that the table has. Asking for another key is a programmer's mistake.
@@ -333,6 +351,12 @@ impl Values {
     /// None: `none`.
     pub fn bytes(&self, key: &str) -> Option<u64> {
         self.parsed(key, parse_bytes)
+    }
+
+    /// Numbers of a `Kind::Parts` setting, one for each part.
+    pub fn numbers<const COUNT: usize>(&self, key: &str) -> [f64; COUNT] {
+        let numbers = self.parsed(key, parse_numbers);
+        numbers.try_into().unwrap_or_else(|_| panic!("--{key} was checked and does not have {COUNT} parts"))
     }
 
     /// Numbers of a `Kind::PartsOrNone` setting, one for each part; None: `none`.

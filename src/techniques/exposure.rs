@@ -93,12 +93,18 @@ impl Exposure {
     }
 }
 
-/// Half of the one and half of the other where `part` is 0.5, to the bit their mean.
-fn mix<T: Mul<f32, Output = T> + Add<Output = T>>(from: T, to: T, part: f32) -> T {
-    from * (1.0 - part) + to * part
+/// Half of the one and half of the other where `part` is 0.5, to the bit their mean; what does not change stays as it is to the
+/// bit.
+fn mix<T: PartialEq + Mul<f32, Output = T> + Add<Output = T>>(from: T, to: T, part: f32) -> T {
+    if from == to { from } else { from * (1.0 - part) + to * part }
 }
 
-fn mix_all<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(into: &mut [T], from: &[T], to: &[T], part: f32) {
+fn mix_all<T: Copy + PartialEq + Mul<f32, Output = T> + Add<Output = T>>(
+    into: &mut [T],
+    from: &[T],
+    to: &[T],
+    part: f32,
+) {
     let ends = from.iter().zip(to);
     into.iter_mut().zip(ends).for_each(|(into, (from, to))| *into = mix(*from, *to, part));
 }

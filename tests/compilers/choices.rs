@@ -8,7 +8,7 @@ use quincunx::techniques::{self, Technique, settings_of};
 type Change = (&'static str, &'static str);
 
 /// Values of settings that are no choices, but without which some choices are not read.
-const OTHERS: [Change; 9] = [
+const OTHERS: [Change; 11] = [
     ("aperture", "0.1"),
     ("spp", "4"),
     ("shutter", "0,0.04"),
@@ -18,6 +18,8 @@ const OTHERS: [Change; 9] = [
     ("accumulate", "2"),
     ("pattern", "2x2"),
     ("effect", "aa,soft-shadow"),
+    ("effect", "volume"),
+    ("volume", "marschner-lobb"),
 ];
 
 /// Whether something reads each of these changes of the defaults.

@@ -10,7 +10,7 @@ use std::path::Path;
 const FLOORS: &[&[&str]] = &[
     &["choice", "error", "progress", "units"],
     &["caps", "interrupt", "sampling", "whole_file"],
-    &["memory", "picture"],
+    &["memory", "picture", "volume"],
     &["gpu", "metrics", "scene", "settings"],
     &["bvh", "framing", "plan", "shading"],
     &["frame"],

@@ -63,6 +63,8 @@ struct SampleParams {
     uint emitter_count;
     uint punctual_count;
     uint seed;
+    // Steps of a ray for each voxel of the volume that it passes.
+    float volume_steps;
 };
 
 // Something that light starts on, in a list sorted by the sum of chances.

@@ -1,5 +1,5 @@
 // One path a pixel, added to those before it. Pass: src/techniques/path_traced/sample.rs.
-// variants: ALPHA=opaque|tested RAYS=two|four|query
+// variants: ALPHA=opaque|tested RAYS=two|four|query VOLUME=none|seen
 #version 460
 #ifdef RAYS_FOUR
 #define NODES_FOUR
@@ -10,6 +10,12 @@
 #include "techniques/path_traced/path.glsl"
 #include "techniques/path_traced/airlight.glsl"
 #include "techniques/path_traced/light_walk.glsl"
+#ifdef VOLUME_SEEN
+#include "shading/volume_march.glsl"
+#endif
+
+// Rays leave through the middles of pixels; else from anywhere in them.
+layout(constant_id = 16) const uint IN_MIDDLES = 0u;
 
 // Paths end by chance from this surface on.
 const uint ROULETTE_FROM = 3u;
@@ -223,6 +229,13 @@ vec3 radiance_along(vec2 at_px) {
         if (!path.goes_on) {
             break;
         }
+#ifdef VOLUME_SEEN
+        if (path.bounce == 0u) {
+            vec4 passed = march(path.origin, path.direction, hit.distance, params.volume_steps);
+            radiance += path.throughput * passed.rgb;
+            path.throughput *= passed.w;
+        }
+#endif
         bool is_in_medium = false;
         float place = 0.0;
         if (MEDIUM != MEDIUM_NONE) {
@@ -291,7 +304,8 @@ void main() {
     }
     numbers_seed = pixel_seed(pixel, params.seed);
     numbers_pair = 0u;
-    vec3 radiance = nan_if_cut(radiance_along(vec2(pixel) + sobol_pair(frame.sample_index, pair_seed(numbers_seed, 0u))));
+    vec2 inside = IN_MIDDLES != 0u ? vec2(0.5) : sobol_pair(frame.sample_index, pair_seed(numbers_seed, 0u));
+    vec3 radiance = nan_if_cut(radiance_along(vec2(pixel) + inside));
     uint at = pixel.y * frame.width_px + pixel.x;
     vec4 sum = frame.sample_index == 0u ? vec4(0.0) : sums[at];
     sum += vec4(radiance, dot(radiance, radiance));

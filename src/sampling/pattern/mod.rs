@@ -25,6 +25,8 @@ pub enum Dimension {
     LightV,
     /// The third of them.
     LightW,
+    /// Part of the step between two planes of a volume.
+    Slice,
 }
 
 impl Dimension {
@@ -37,12 +39,13 @@ impl Dimension {
             Self::LightU => "light_u",
             Self::LightV => "light_v",
             Self::LightW => "light_w",
+            Self::Slice => "slice",
         }
     }
 }
 
 /// Dimensions that a sample can have beside the two of its place.
-pub const MOST_FURTHER: usize = 6;
+pub const MOST_FURTHER: usize = 7;
 
 /// One sample of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]

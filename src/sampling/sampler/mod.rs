@@ -23,7 +23,7 @@ use super::side::Side;
 use crate::choice::choices;
 use crate::error::{Error, Result};
 pub use over::Points;
-use over::{Over, PixelGrid};
+use over::{Over, PixelGrid, part};
 
 choices! {
     /// How the samples of a basis pattern are spread (`--sampler`).
@@ -53,11 +53,19 @@ impl Sampler {
         matches!(self, Self::Ign | Self::VoidAndCluster | Self::BlueErrors)
     }
 
-    /// `count` points of `dimensions` numbers, at least 2, over a basis of these sides.
+    /// `count` points of `dimensions` numbers, at least 2, over a basis of these sides. `in_middles`: their places are the
+    /// middles of pixels, as many in each where the sides are whole and `count` allows it.
     ///
     /// Errors: a sampler that counts by pixels has sides that are not whole, or a count that is not the same for every
     /// pixel (exit code 2).
-    pub fn points(self, sides: [Side; 2], count: u32, dimensions: usize, seed: u32) -> Result<Points> {
+    pub fn points(
+        self,
+        sides: [Side; 2],
+        count: u32,
+        dimensions: usize,
+        seed: u32,
+        in_middles: bool,
+    ) -> Result<Points> {
         let over = Over { sides_px: sides.map(Side::length_px), count, dimensions, seed };
         let pixels = PixelGrid::of(sides, count);
         if self.counts_by_pixels() && pixels.is_none() {
@@ -69,18 +77,28 @@ impl Sampler {
             return Err(Error::request(why)
                 .note("a basis of whole pixels and a whole number of samples a pixel work, as do relaxed and sobol"));
         }
+        let middles = pixels.as_ref().filter(|_| in_middles);
         // The others take the basis for one cell.
-        let grid = pixels.unwrap_or(PixelGrid { sides: [1, 1], samples: count });
-        Ok(match self {
-            Self::Relaxed => relaxed::points(&over),
-            Self::Random => random::points(&over),
+        let whole = PixelGrid { sides: [1, 1], samples: count };
+        let grid = *pixels.as_ref().unwrap_or(&whole);
+        let mut points = match self {
+            Self::Relaxed => relaxed::points(&over, middles),
+            Self::Random => random::points(&over, middles),
             Self::Sobol => sobol::points(&over, &grid),
             Self::R2 => recurrence::points(&over, &grid),
             Self::Jittered => jittered::points(&over, &grid),
             Self::Ign => gradient_noise::points(&over, &grid),
             Self::VoidAndCluster => mask::points(&over, &grid),
             Self::BlueErrors => blue_noise_errors::points(&over, &grid),
-        })
+        };
+        if in_middles {
+            for point in &mut points {
+                for (along, side_px) in point.iter_mut().zip(over.sides_px) {
+                    *along = part(((*along * side_px).floor() + 0.5) / side_px);
+                }
+            }
+        }
+        Ok(points)
     }
 }
 
@@ -99,7 +117,7 @@ mod tests {
         ) {
             let (sampler, sides) = (Sampler::ALL[index], [sides.0, sides.1].map(|side| Side::new(side, 1)));
             let count = samples * sides[0].pixels * sides[1].pixels;
-            let points = sampler.points(sides, count, dimensions, seed).unwrap();
+            let points = sampler.points(sides, count, dimensions, seed, false).unwrap();
             prop_assert_eq!(points.len(), count as usize);
             for point in &points {
                 prop_assert_eq!(point.len(), dimensions);
@@ -121,7 +139,7 @@ mod tests {
     fn what_counts_by_pixels_refuses_other_counts() {
         for sampler in Sampler::ALL {
             for (sides, count) in [([Side::new(5, 2), Side::new(2, 1)], 20), ([Side::new(2, 1); 2], 7)] {
-                match sampler.points(sides, count, 2, 1) {
+                match sampler.points(sides, count, 2, 1, false) {
                     Ok(points) => assert!(!sampler.counts_by_pixels() && points.len() == count as usize),
                     Err(error) => {
                         assert!(sampler.counts_by_pixels());
@@ -137,7 +155,7 @@ mod tests {
     fn all_but_random_ones_are_spread_in_every_dimension() {
         let rms = |sampler: Sampler, axis: usize| {
             let error = |seed: u32| {
-                let points = sampler.points([Side::new(2, 1); 2], 64, 3, seed).unwrap();
+                let points = sampler.points([Side::new(2, 1); 2], 64, 3, seed, false).unwrap();
                 let below = points.iter().filter(|point| point[axis] < 0.37).count();
                 (below as f64 / 64.0 - 0.37).powi(2)
             };

@@ -14,6 +14,7 @@ pub struct Over {
 }
 
 /// Equal cells of a basis, with the same number of points in each: its pixels, or the whole of it.
+#[derive(Clone, Copy)]
 pub struct PixelGrid {
     pub sides: [u32; 2],
     /// Points of a cell.

@@ -6,7 +6,7 @@
 //! ones (swaps.rs).
 
 use super::jittered;
-use super::over::{Over, Points, part};
+use super::over::{Over, PixelGrid, Points, part};
 use super::swaps::{self, Group};
 use super::torus::Torus;
 use crate::sampling::pcg::Pcg32;
@@ -19,12 +19,18 @@ const RELAXATION_COUNT: u32 = 6;
 /// Darts of one radius for each place that is wanted.
 const DARTS_PER_PLACE: u32 = 24;
 
-/// Relaxed places, with the rest exchanged between them. A single one lies in the middle of the basis.
-pub fn points(over: &Over) -> Points {
+/// Relaxed places, or the middles of pixels, with the rest exchanged between them. A single one lies in the middle of the
+/// basis.
+pub fn points(over: &Over, middles: Option<&PixelGrid>) -> Points {
     let mut random = Pcg32::new(u64::from(over.seed), 16);
+    let in_px = |point: &Vec<f64>| [0, 1].map(|axis| point[axis] * over.sides_px[axis]);
+    let middles = middles.map(|grid| grid.points(|_, _| vec![0.5; 2]).iter().map(in_px).collect());
     let places = match over.count {
         1 => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
-        count => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random).into_places()),
+        count => match middles {
+            Some(middles) => Torus::new(over.sides_px, middles),
+            None => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random).into_places()),
+        },
     };
     let mut points: Points = places
         .places()

@@ -21,6 +21,7 @@ mod room;
 mod shapes;
 mod shirley;
 mod solids;
+mod specimen;
 
 #[cfg(test)]
 mod checks;
@@ -179,6 +180,16 @@ pub const ALL: &[BuiltIn] = &[
             choice: Choice::Number { default: 72, range: [1, 250] },
         }],
         make: shirley::make,
+    },
+    BuiltIn {
+        name: "specimen",
+        description: "a frame of bars around a cube of a metre, for a volume in it (--volume)",
+        parameters: &[Parameter {
+            key: "rod",
+            description: "whether a rod goes through the middle, a surface within the volume",
+            choice: Choice::Switch,
+        }],
+        make: specimen::make,
     },
 ];
 

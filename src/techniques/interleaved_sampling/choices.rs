@@ -13,6 +13,7 @@ use crate::sampling::side::Side;
 use crate::settings::{MapDrawing, Values};
 use crate::techniques::exposure::Exposure;
 use crate::techniques::interleaved_sampling::resources::NAME;
+use crate::techniques::interleaved_sampling::slices::SliceChoices;
 use crate::techniques::interleaved_sampling::soft::SoftLights;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Extent;
@@ -28,6 +29,8 @@ choices! {
         "defocus" => Defocus,
         /// Each light.
         "soft-shadow" => SoftShadow,
+        /// Places between the planes of a volume.
+        "volume" => Volume,
     }
 }
 
@@ -49,6 +52,7 @@ impl Effect {
             Self::Motion => &[Dimension::Time],
             Self::Defocus => &[Dimension::LensU, Dimension::LensV],
             Self::SoftShadow => &[Dimension::LightU, Dimension::LightV, Dimension::LightW],
+            Self::Volume => &[Dimension::Slice],
         }
     }
 }
@@ -123,7 +127,8 @@ fn basis(values: &Values, frame: Extent) -> Result<Basis> {
     let chosen = Effect::ALL.iter().filter(|effect| effects.contains(effect));
     let further: Vec<Dimension> = chosen.flat_map(|effect| effect.dimensions().iter().copied()).collect();
     let seed = values.integer("seed") as u32;
-    Basis::new(sides, &further, samples, values.choice("sampler"), seed).map_err(|error| error.within(NAME))
+    let made = if effects.contains(&Effect::Aa) { Basis::new } else { Basis::in_middles };
+    made(sides, &further, samples, values.choice("sampler"), seed).map_err(|error| error.within(NAME))
 }
 
 /// The choices that the settings make.
@@ -134,6 +139,8 @@ pub struct Choices {
     /// With `--effect motion`, where something moves.
     pub exposure: Option<Exposure>,
     pub soft: Option<SoftLights>,
+    /// With `--effect volume`.
+    pub slices: Option<SliceChoices>,
 }
 
 impl Choices {
@@ -164,11 +171,7 @@ impl Choices {
         };
         let soft = if Effect::SoftShadow.is_chosen(values) { Some(SoftLights::new(inputs)?) } else { None };
         let mut choices = Self {
-            members: Members::new(
-                basis(values, inputs.view.extent)?,
-                inputs.view.extent,
-                !Effect::Aa.is_chosen(values),
-            ),
+            members: Members::new(basis(values, inputs.view.extent)?, inputs.view.extent),
             lens,
             drawing: ForwardChoices::new(
                 NAME,
@@ -179,6 +182,7 @@ impl Choices {
             )?,
             exposure,
             soft,
+            slices: Effect::Volume.is_chosen(values).then(|| SliceChoices::new(inputs)).transpose()?,
         };
         if choices.changes() {
             if choices.drawing.maps.is_some() && values.is("shadow-maps", MapDrawing::Once) {

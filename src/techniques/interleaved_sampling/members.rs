@@ -12,16 +12,14 @@ use std::collections::VecDeque;
 pub struct Members {
     basis: Basis,
     frame: Extent,
-    /// Samples lie in the middles of their pixels (no `aa` among `--effect`).
-    is_centred: bool,
     /// The first of the members that have a sample in each pixel of a period, row by row; `u32::MAX` where none has.
     firsts: Vec<u32>,
     sources: Option<Vec<u32>>,
 }
 
 impl Members {
-    pub fn new(basis: Basis, frame: Extent, is_centred: bool) -> Self {
-        let mut members = Self { basis, frame, is_centred, firsts: Vec::new(), sources: None };
+    pub fn new(basis: Basis, frame: Extent) -> Self {
+        let mut members = Self { basis, frame, firsts: Vec::new(), sources: None };
         members.firsts = members.firsts_of_pixels();
         members.sources = members.nearest_sources();
         members
@@ -52,15 +50,9 @@ impl Members {
         [if layer.width == 1 { 1.0 } else { across }, if layer.height == 1 { 1.0 } else { down }]
     }
 
-    /// Place of a member's first sample, px from the frame's upper left corner.
-    fn place_px(&self, member: u32) -> [f64; 2] {
-        let place = self.basis.place_px(member);
-        if self.is_centred { place.map(|along| along.floor() + 0.5) } else { place }
-    }
-
     /// How the frame lies in a member's picture: its samples in the middles of the texels.
     pub fn placement(&self, member: u32) -> Placement {
-        let (layer, place) = (self.layer(), self.place_px(member));
+        let (layer, place) = (self.layer(), self.basis.place_px(member));
         let axis = |pixels: u32, texels: u32, spacing: f64, place: f64| {
             let (pixels, texels) = (f64::from(pixels), f64::from(texels));
             let scale = pixels / (spacing * texels);
@@ -81,7 +73,7 @@ impl Members {
 
     /// The pixels of the samples in the first whole number of bases that lie in whole pixels.
     fn first_pixels(&self, member: u32, axis: usize) -> Vec<u32> {
-        let (side, place) = (self.basis.sides[axis], self.place_px(member)[axis]);
+        let (side, place) = (self.basis.sides[axis], self.basis.place_px(member)[axis]);
         let at = |base: u32| place + f64::from(base) * side.length_px();
         (0..side.bases).map(|base| (at(base).floor() as u32).min(side.pixels - 1)).collect()
     }
@@ -156,7 +148,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn members(sides: [Side; 2], samples: f64, frame: Extent) -> Members {
-        Members::new(Basis::new(sides, &[], samples, Sampler::Random, 5).unwrap(), frame, false)
+        Members::new(Basis::new(sides, &[], samples, Sampler::Random, 5).unwrap(), frame)
     }
 
     proptest! {
@@ -218,15 +210,11 @@ mod tests {
     }
 
     #[test]
-    fn without_anti_aliasing_samples_lie_in_the_middles_of_their_pixels() {
+    fn a_single_member_is_drawn_as_any_picture() {
         let frame = Extent::new(7, 5);
-        let basis = Basis::new([Side::new(2, 1); 2], &[], 2.0, Sampler::Relaxed, 5).unwrap();
-        let centred = Members::new(basis, frame, true);
-        assert!((0..centred.count()).all(|member| centred.place_px(member).iter().all(|along| along.fract() == 0.5)));
         let alone = members([Side::new(1, 1); 2], 1.0, frame);
         assert_eq!(alone.layer(), frame);
-        let alone =
-            Members::new(Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, 5).unwrap(), frame, false);
+        let alone = Members::new(Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, 5).unwrap(), frame);
         assert_eq!(alone.placement(0), Placement::WHOLE);
     }
 }

@@ -7,7 +7,7 @@
 //! the frame no two pixels have the same; `--basis` is the way from one to the other.
 //!
 //! A run is a member: moment (on the host, where members differ in more than their place), shadow_maps (with `--direct-shadow
-//! map`), depth, material, blend (where the scene has BLEND surfaces), combine, mean.
+//! map`), depth, material, blend (where the scene has BLEND surfaces), slices (with `--effect volume`), combine, mean.
 //!
 //! Differences from the paper
 //! - a member's samples are scattered to their pixels by a compute pass (section 3.1 draws a polygon over the frame behind
@@ -15,7 +15,7 @@
 //! - textures are read at the level of the frame's pixels, not of a member's, whose samples lie farther apart
 //! - a pixel without a sample shows the nearest one that has some
 //! - what moves does so along straight lines from where it is when the shutter opens (section 3.2 leaves it to the application)
-//! - section 3.3: volumes are not here yet
+//! - a volume shines and absorbs, as in section 3.3, but casts no shadow on surfaces and is not lit by lights
 //!
 //! Equal to others: with `--basis 1x1 --samples 1` it is `forward`. `forward --supersample N` is the accumulation buffer of a
 //! regular pattern, `path_traced` what all of them converge to.
@@ -33,12 +33,13 @@ mod moment;
 mod plan;
 mod resources;
 mod settings;
+mod slices;
 mod soft;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
 use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, emissive_lights, straight_light};
-use crate::caps::{Caps, Need};
+use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::shader::structs::FrameBlock;
@@ -48,12 +49,13 @@ use crate::passes::forward::{self, Forward, ForwardScene, ListedLights, Targets}
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
-use crate::settings::{FORWARD, GeometryChoice, LIGHT_LISTS, SHADOW_MAPS, Setting, Values};
+use crate::settings::{FORWARD, GeometryChoice, LIGHT_LISTS, SHADOW_MAPS, Setting, VOLUME_PLACE, Values};
 use choices::{Choices, Effect};
 use combine::Combine;
 use mean::Mean;
 use moment::Moment;
 use resources::NAME;
+use slices::Slices;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -76,7 +78,7 @@ impl Technique for InterleavedSampling {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, FORWARD, LIGHT_LISTS, SHADOW_MAPS]
+        &[settings::SETTINGS, VOLUME_PLACE, FORWARD, LIGHT_LISTS, SHADOW_MAPS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -88,7 +90,12 @@ impl Technique for InterleavedSampling {
     }
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        forward::needs(values, has_blend).collect()
+        let volume = Effect::Volume.is_chosen(values).then(|| Need {
+            of: "--effect volume".to_owned(),
+            ability: Ability::BlendFloats,
+            instead: "the other effects work without",
+        });
+        forward::needs(values, has_blend).chain(volume).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -102,6 +109,9 @@ impl Technique for InterleavedSampling {
             settings.retain(|(key, _)| !["emissive", "light-visibility"].contains(key));
             settings.push(("emissive", if is_lit { "on" } else { "off" }.to_owned()));
             settings.push(("light-visibility", "on".to_owned()));
+        }
+        if !Effect::Aa.is_chosen(values) {
+            settings.push(("pixel", "middle".to_owned()));
         }
         Ok(settings)
     }
@@ -155,6 +165,8 @@ impl Prepared for PreparedInterleaved {
             ("samples_per_pixel_most", f64::from(most)),
         ]);
         counters.extend(self.choices.soft.as_ref().map(|soft| ("soft_lights", soft.count as f64)));
+        let slices = self.choices.slices.as_ref();
+        counters.extend(slices.map(|slices| ("volume_voxels", slices.voxel_count())));
         Ok(HostPart {
             passes: vec![self.listed.pass(NAME)],
             counters,
@@ -188,12 +200,14 @@ impl PreparedInterleaved {
             background: inputs.values.color("background"),
             pixels_per_texel: choices.members.spacing_px().map(|spacing| spacing as f32),
         };
+        let slices = choices.slices.as_ref();
         Ok(Box::new(InterleavedFrame {
             drawing: Forward::new(gpu, resources, NAME, &choices.drawing, of, scene)?,
             targets: Targets { depth: resources.image(resources::DEPTH), drawn: resources.image(resources::DRAWN) },
             combine: Combine::new(gpu, resources, &choices.members)?,
             mean: Mean::new(gpu, resources, &choices.members)?,
             moment: Moment::new(gpu, inputs, scene, resources, &choices),
+            slices: slices.map(|slices| Slices::new(gpu, resources, slices, &choices.members)).transpose()?,
             choices,
         }))
     }
@@ -206,6 +220,7 @@ struct InterleavedFrame {
     mean: Mean,
     /// What members see where it is not the same for all.
     moment: Option<Moment>,
+    slices: Option<Slices>,
     choices: Choices,
 }
 
@@ -213,6 +228,10 @@ impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let scene = self.moment.as_ref().and_then(Moment::scene).unwrap_or(scene);
         self.drawing.record(cmd, NAME, frame, scene, &self.targets)?;
+        if let Some(slices) = &self.slices {
+            let Targets { depth, drawn } = &self.targets;
+            slices.record(cmd, frame, depth.from(self.drawing.depth_access()), drawn.from(Access::ColorWrite))?;
+        }
         self.combine.record(cmd, frame, self.targets.drawn.from(Access::ColorWrite))?;
         self.mean.record(cmd, frame, self.combine.sums.from(Access::ComputeWrite))
     }

@@ -11,6 +11,15 @@ pub const POSED_DRAWS: &str = "interleaved_sampling.posed.draws";
 pub const POSED_POSITIONS: &str = "interleaved_sampling.posed.positions";
 pub const POSED_ATTRIBUTES: &str = "interleaved_sampling.posed.attributes";
 
+/// With `--effect volume`: how far behind the beginning of its step each member's planes lie.
+pub const OFFSETS: &str = "interleaved_sampling.slices.offsets";
+
+/// What the planes of a volume add up to, light and how much of what lies behind it hides.
+pub const LAYER: &str = "interleaved_sampling.slices.layer";
+
+/// What some of them do, with `--summation hierarchical`.
+pub const GROUP: &str = "interleaved_sampling.slices.group";
+
 /// Where the samples of each member lie.
 pub const MEMBERS: &str = "interleaved_sampling.combine.members";
 

@@ -1,8 +1,11 @@
 //! The settings that only this technique reads.
 
 use super::choices::Effect;
+use super::slices::{PictureDepth, Summation};
 use crate::sampling::sampler::Sampler;
-use crate::settings::{APERTURE, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, SHUTTER, Setting, Unread, Values};
+use crate::settings::{
+    APERTURE, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, SHUTTER, Setting, Unread, VOLUME, Values, volume_name,
+};
 
 pub const SETTINGS: &[Setting] = &[
     Setting {
@@ -12,7 +15,8 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Keller 2001, 3",
         help: "What samples are spread over, one or more with commas between: aa, places in their pixels (without it all \
                lie in the middles); motion, the time of --shutter; defocus, the lens of --aperture; soft-shadow, the \
-               surfaces of lights (--light-radius, --emissive), by --direct-shadow ray or map",
+               surfaces of lights (--light-radius, --emissive), by --direct-shadow ray or map; volume, the space between two of \
+               the --planes that slice --volume",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -46,6 +50,34 @@ pub const SETTINGS: &[Setting] = &[
                Sobol's with errors that differ between neighbours",
         ..Setting::changing(Changes::Samples)
     },
+    Setting { unread: |values| unless(values, Effect::Volume, "--effect volume", "volumes are not drawn"), ..VOLUME },
+    Setting {
+        key: "planes",
+        kind: Kind::Integer { min: 1, max: 4096 },
+        default: "60",
+        paper: "Keller 2001, 3.3",
+        help: "Planes of each member that slice --volume, between its nearest and its farthest place before the camera",
+        ..OF_SLICES
+    },
+    Setting {
+        key: "depth",
+        kind: Kind::Choice(PictureDepth::WORDS),
+        default: "float",
+        unit: "bits a channel",
+        paper: "Keller 2001, 3.3",
+        help: "What planes add up in: 8 (the paper's frame buffer, which rounds light, 0 to 1, to 255 steps at every \
+               plane), half (floats of 16 bits, as the device rounds them) or float (of 32)",
+        ..OF_SLICES
+    },
+    Setting {
+        key: "summation",
+        kind: Kind::Choice(Summation::WORDS),
+        default: "plain",
+        paper: "Keller 2001, 3.3",
+        help: "How planes add up: plain, each over all that lie behind it; hierarchical, in groups of about the root of \
+               their number, which are laid over one another",
+        ..OF_SLICES
+    },
     Setting {
         help: "Diameter of the camera's thin lens, which blurs what is out of focus; --effect defocus wants one",
         unread: |values| unless(values, Effect::Defocus, "--effect aa,defocus", "nothing is spread over the lens"),
@@ -70,6 +102,16 @@ pub const SETTINGS: &[Setting] = &[
         ..EMISSIVE
     },
 ];
+
+/// What rows of the slices have in common.
+const OF_SLICES: Setting = Setting {
+    unread: |values| {
+        let without_volume = || Unread::at(values, VOLUME.key, "--volume head", "there is none to slice");
+        unless(values, Effect::Volume, "--effect volume", "no volume is sliced")
+            .or_else(|| volume_name(values).is_none().then(without_volume))
+    },
+    ..Setting::changing(Changes::Picture)
+};
 
 /// Why a setting is not read where `effect` is not among `--effect`.
 fn unless(values: &Values, effect: Effect, instead: &'static str, why: &'static str) -> Option<Unread> {

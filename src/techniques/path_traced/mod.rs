@@ -3,7 +3,7 @@
 //!
 //! Passes: sample, once for each path of a pixel (`--spp`).
 //!
-//! Paths start at the camera, anywhere in their pixel (box filter). At each surface one punctual light is chosen as strongly
+//! Paths start at the camera, anywhere in their pixel (box filter; `--pixel middle` in its middle). At each surface one punctual light is chosen as strongly
 //! as each would light it, and one point of an emitter by power; both send a shadow ray, and a direction is drawn by the
 //! BRDF. Points of emitters that either way finds are weighed by the power heuristic. Numbers are a Sobol sequence,
 //! Owen-scrambled for each pixel (src/sampling/sobol.rs).
@@ -31,6 +31,8 @@
 //! - `--stereo`: that lens to the camera's left, or to its right (`--stereo-eyes right`)
 //! - `--shutter`: corners, normals, tangents, camera and lights on straight lines between their places when it opens and
 //!   when it closes, one moment a path; chances of emitters are those of the opening
+//! - `--volume`: values on a grid that emit and absorb along the ray that the camera sees, up to the first surface; other rays
+//!   pass it unseen. The ray is walked in steps of parts of a voxel (`--volume-steps`)
 //! - `--medium`: a homogeneous medium in the box around all that is drawn, the eye and the lights. On each stretch of a path
 //!   one light, chosen by power, is looked for at one place, drawn by the angle under which the light sees the stretch or as
 //!   transmittance falls (Kulla and Fajardo 2012); emitters by the phase function too, weighed as at surfaces. With
@@ -52,7 +54,7 @@ use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique, emissive_lights}
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
 use crate::caps::{Ability, Caps, Need};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::shader::structs::{FrameBlock, LightBlock, SampleParams, SourceBlock};
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lens::Lens;
@@ -63,11 +65,13 @@ use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays, Reads};
+use crate::resident::volume::PlacedVolume;
 use crate::scene::{AlphaMode, Light, Material, Medium};
 use crate::settings::written::SettingValue;
-use crate::settings::{Brdf, Setting, TREE, Values};
+use crate::settings::{Brdf, Setting, TREE, VOLUME_PLACE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
-use crate::techniques::path_traced::settings::{AmbientVisibility, RaySource, Transport};
+use crate::techniques::path_traced::settings::{AmbientVisibility, PixelPlace, RaySource, Transport};
+use crate::volume::Volume;
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -94,7 +98,7 @@ impl Technique for PathTraced {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, TREE]
+        &[settings::SETTINGS, VOLUME_PLACE, TREE]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -220,6 +224,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         emitter_count: sources.emitter_count() as u32,
         punctual_count: sources.punctual.len() as u32,
         seed: values.integer("seed") as u32,
+        volume_steps: values.number("volume-steps") as f32,
         ..SampleParams::zeroed()
     };
     [params.cone_width, params.cone_spread] = inputs.view.pixel_cone();
@@ -248,9 +253,25 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         airlight_seen: airlight::is_seen(values),
         medium,
         has_lens: lens.is_some(),
+        in_middles: values.is("pixel", PixelPlace::Middle),
         has_spheres: sources.all_lights().any(|light| light.radius > 0.0),
+        volume: volume(inputs, medium)?,
         params,
     })
+}
+
+/// The volume of the scene, and where it stands.
+///
+/// Errors: a medium is there too (exit code 2); as `PlacedVolume::new`.
+fn volume(inputs: &Inputs<'_>, medium: Option<Medium>) -> Result<Option<(Arc<Volume>, PlacedVolume)>> {
+    let Some(volume) = &inputs.scene.volume else { return Ok(None) };
+    if medium.is_some() {
+        let text = Medium::text(medium);
+        return Err(Error::request(format!("--volume in --medium {text}: a ray is dimmed by the one or by the other"))
+            .within(NAME)
+            .note("--medium none leaves the volume, --volume none the medium"));
+    }
+    Ok(Some((volume.clone(), PlacedVolume::new(volume, inputs.values, inputs.scene)?)))
 }
 
 struct PreparedPaths {
@@ -271,6 +292,9 @@ impl Prepared for PreparedPaths {
         plan.buffer("lights", format!("{NAME}.sources"), of(sources.all().len(), size_of::<SourceBlock>()));
         let frame_count = usize::from(sources.closing.is_some());
         plan.buffer("frame", format!("{NAME}.frame.closing"), of(frame_count, size_of::<FrameBlock>()));
+        if let Some((volume, placed)) = &self.choices.volume {
+            placed.plan(&mut plan, NAME, volume);
+        }
         plan.buffer("accumulation", SUMS, inputs.view.extent.pixel_count() * SUM_BYTES);
         plan.picture(COLOR, inputs.view.extent);
         plan.pass(format!("{NAME}.sample"), [(COLOR.to_owned(), Access::ComputeWrite)]);

@@ -15,10 +15,13 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
 use crate::plan::Resources;
 use crate::progress::Stage;
 use crate::resident::traced::{Layout, TracedGpu};
+use crate::resident::volume::PlacedVolume;
+use crate::resident::volume::VolumeGpu;
 use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::AmbientVisibility;
+use crate::volume::Volume;
 use bytemuck::bytes_of;
 use std::sync::Arc;
 
@@ -50,8 +53,12 @@ pub struct Choices {
     pub medium: Option<Medium>,
     /// The camera has a lens that is open.
     pub has_lens: bool,
+    /// Rays leave through the middles of pixels.
+    pub in_middles: bool,
     /// Some of the lights are spheres.
     pub has_spheres: bool,
+    /// What emits and absorbs on the ray that is seen, and where it stands.
+    pub volume: Option<(Arc<Volume>, PlacedVolume)>,
     pub params: SampleParams,
 }
 
@@ -74,6 +81,7 @@ pub struct Sample {
     pipeline: ComputePipeline,
     params: SampleParams,
     traced: TracedGpu,
+    volume: Option<VolumeGpu>,
     lights: Buffer,
     sources: Buffer,
     /// Frame when the shutter closes.
@@ -117,21 +125,30 @@ impl Sample {
             ("AIRLIGHT_SEEN", u32::from(choices.airlight_seen)),
             ("HAS_LENS", u32::from(choices.has_lens)),
             ("HAS_SPHERES", u32::from(choices.has_spheres)),
+            ("IN_MIDDLES", u32::from(choices.in_middles)),
         ];
         let mut constants = [&own[..], &layout.constants()].concat();
         constants.extend(layout.nodes().into_iter().flat_map(Nodes::constants));
         let stage = Stage::begin("uploading what rays meet");
         let traced = TracedGpu::new(gpu, resources, NAME, inputs.scene, bvh, layout, density_of)?;
         drop(stage);
+        let read = [Access::ComputeRead, Access::ComputeSample];
+        let volume = choices.volume.as_ref();
+        let volume = volume.map(|(volume, placed)| placed.upload(gpu, resources, NAME, volume, read)).transpose()?;
         let mut filled = |what: &str, bytes: &[u8]| {
             let buffer = resources.buffer(&format!("{NAME}.{what}"));
             upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;
             Result::Ok(buffer)
         };
         Ok(Self {
-            pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[alpha, layout.variant()]), &constants)?,
+            pipeline: ComputePipeline::new(
+                gpu,
+                variant(COMP_VARIANTS, &[alpha, layout.variant(), if volume.is_some() { "seen" } else { "none" }]),
+                &constants,
+            )?,
             params: choices.params,
             traced,
+            volume,
             lights: filled("lights", bytemuck::cast_slice(lights.blocks))?,
             sources: filled("sources", bytemuck::cast_slice(lights.sources))?,
             closing: filled("frame.closing", bytemuck::cast_slice(lights.closing))?,
@@ -161,6 +178,7 @@ impl Sample {
                 ("Sums", Bound::Buffer(&self.sums)),
                 ("color", Bound::Storage(&self.color)),
             ]);
+            bound.extend(self.volume.iter().flat_map(VolumeGpu::bound));
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);
             cmd.dispatch(&self.pipeline, bytes_of(&self.params), &bound, groups)
         })

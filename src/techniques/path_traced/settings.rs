@@ -4,7 +4,7 @@ use crate::choice::choices;
 use crate::resident::traced::TexelLevels;
 use crate::settings::{
     APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting,
-    Unread, VPL_CLAMP, Values, WORKGROUP,
+    Unread, VOLUME, VPL_CLAMP, Values, WORKGROUP, volume_name,
 };
 use crate::shading::medium::Medium;
 
@@ -65,6 +65,14 @@ choices! {
     }
 }
 
+choices! {
+    /// Where in a pixel rays from the camera leave (`--pixel`).
+    pub enum PixelPlace {
+        "box" => Box,
+        "middle" => Middle,
+    }
+}
+
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
     Setting {
@@ -83,6 +91,14 @@ pub const SETTINGS: &[Setting] = &[
         help: "Estimated relative standard error of the pixels (root of the mean square) at which rendering stops, if \
                --spp is not reached before; 0: never, all of --spp is used",
         ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "pixel",
+        kind: Kind::Choice(PixelPlace::WORDS),
+        default: "box",
+        help: "Where in a pixel rays from the camera leave: box, anywhere in it, so that edges are smooth; middle, in its \
+               middle, so that they are as jagged as without anti-aliasing",
+        ..Setting::changing(Changes::Picture)
     },
     Setting {
         key: "transport",
@@ -184,6 +200,19 @@ pub const SETTINGS: &[Setting] = &[
                and takes a third more memory",
         ..Setting::changing(Changes::Picture)
     },
+    Setting {
+        key: "volume-steps",
+        kind: Kind::Number { min: 0.1, max: 64.0 },
+        default: "4",
+        paper: "Keller 2001, 3.3",
+        help: "Steps of a ray for each voxel of --volume that it passes; the volume is seen by rays from the camera alone, \
+               and casts no shadow",
+        unread: |values| {
+            volume_name(values).is_none().then(|| Unread::at(values, VOLUME.key, "--volume head", "there is no volume"))
+        },
+        ..Setting::changing(Changes::Picture)
+    },
+    VOLUME,
     APERTURE,
     FOCUS,
     STEREO,

@@ -41,6 +41,8 @@ fn read_back(values: &Values, setting: &Setting) {
         Kind::Bytes => assert!(values.bytes(key).is_none_or(|bytes| bytes > 0)),
         Kind::Color => assert!(values.color(key).is_finite()),
         Kind::Words(words) => assert!(values.text(key).split(',').all(|word| words.contains(&word))),
+        Kind::Parts(parts) if parts.len() == 2 => drop(values.numbers::<2>(key)),
+        Kind::Parts(_) => drop(values.numbers::<3>(key)),
         Kind::PartsOrNone(parts) if parts.len() == 2 => drop(values.numbers_or_none::<2>(key)),
         Kind::PartsOrNone(_) => drop(values.numbers_or_none::<3>(key)),
         _ => {}

@@ -32,13 +32,16 @@ fn bending() -> Scene {
 fn standing(scene: &Scene, part: f32) -> Scene {
     let close = scene.closing.as_deref().unwrap();
     let mut still = Scene { closing: None, hash: format!("at {part}"), ..scene.clone() };
-    let mix = |a: Vec3, b: Vec3| a * (1.0 - part) + b * part;
+    // What does not move stays where it is to the bit.
+    let mix = |a: Vec3, b: Vec3| if a == b { a } else { a * (1.0 - part) + b * part };
     for (mesh, end) in still.meshes.iter_mut().zip(&close.meshes) {
         mesh.positions.iter_mut().zip(&end.positions).for_each(|(a, b)| *a = mix(*a, *b));
         mesh.normals.iter_mut().zip(&end.normals).for_each(|(a, b)| *a = mix(*a, *b));
     }
     for (draw, end) in still.draws.iter_mut().zip(&close.draws) {
-        draw.world_from_object = draw.world_from_object * (1.0 - part) + end.world_from_object * part;
+        if draw.world_from_object != end.world_from_object {
+            draw.world_from_object = draw.world_from_object * (1.0 - part) + end.world_from_object * part;
+        }
     }
     for (light, end) in still.lights.iter_mut().zip(&close.lights) {
         light.position = mix(light.position, end.position);
@@ -56,14 +59,14 @@ fn standing(scene: &Scene, part: f32) -> Scene {
 #[test]
 fn motion_is_the_mean_of_pictures_that_stand_still() {
     let scene = bending();
-    let spec = "basis:basis=1x1,samples=5,sampler=random,effect=motion";
+    let spec = "basis:basis=1x1,samples=4,sampler=random,effect=motion";
     let pattern = patterns::open(spec).unwrap().pattern;
     let times: Vec<f32> = pattern.samples_of([0, 0]).iter().map(|sample| sample.further[0]).collect();
-    assert!(times.len() == 5 && times.iter().any(|time| *time < 0.4) && times.iter().any(|time| *time > 0.6));
+    assert!(times.len() == 4 && times.iter().any(|time| *time < 0.4) && times.iter().any(|time| *time > 0.6));
     for shadow in ["none", "map", "ray"] {
         let shared = [("size", "61x47"), ("direct-shadow", shadow)];
         let own =
-            [("effect", "motion"), ("basis", "1x1"), ("samples", "5"), ("sampler", "random"), ("shutter", "0,0.6")];
+            [("effect", "motion"), ("basis", "1x1"), ("samples", "4"), ("sampler", "random"), ("shutter", "0,0.6")];
         let mut watched = Watched::with_scene(scene.clone());
         let moved = watched.picture(NAME, &both(&shared, &own));
         let mut sums = vec![Vec3::ZERO; moved.pixels.len()];

@@ -14,6 +14,7 @@ use quincunx::units::Extent;
 use std::time::{Duration, Instant};
 
 mod effects;
+mod volume;
 
 const NAME: &str = "interleaved_sampling";
 
