@@ -157,12 +157,12 @@ impl Bed {
         self.showing(place, &job.values, technique)?.renderer(job.technique, &job.values, &[], Submits::PerPass)
     }
 
-    /// The place as the settings have it: while a shutter is open, too.
+    /// The place as the settings have it: while a shutter is open and with a volume in it, too.
     fn showing(&mut self, place: Place, values: &Values, technique: &str) -> Result<&Session> {
         let strategy = values.choice("allocation");
         let gpu = self.gpu(strategy)?;
-        let shutter = values.iter().find(|(key, _)| *key == "shutter").map_or("none", |(_, text)| text);
-        let key = (place, shutter.to_owned());
+        let of_scene = ["shutter", "volume"].map(|key| values.get(key).unwrap_or("none"));
+        let key = (place, of_scene.join(" "));
         if self.session.as_ref().is_none_or(|(of, _)| *of != key) {
             self.session = None;
             let scene = match place {

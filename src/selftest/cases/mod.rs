@@ -73,8 +73,9 @@ mod tests {
     #[test]
     fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_METHODS: [&str; 27] = [
+        const NO_METHODS: [&str; 28] = [
             "mode",
+            "pixel",
             "ss-guidance",
             "direct-light",
             "rig",

@@ -1,10 +1,13 @@
 //! Interleaved sampling: the ways to draw a member, one sample against forward shading, and every sampler against paths.
 
-use super::super::case::{Group, Twin};
+use super::super::case::{Group, Place, Twin};
 use super::super::judge::Bounds;
 use crate::selftest::cases::baselines::{DRAWN, FENCE, FILTER, LAMPS, PATHS_OF_DIRECT_LIGHT, PLAINLY_DRAWN};
 use crate::selftest::cases::bounds::{AGAIN, CUT, ROUNDING, SAME, WHOLE};
 use crate::selftest::judge::Must;
+
+/// Bars around a volume, and a rod within it.
+const SPECIMEN: Place = Place::Scene("specimen:rod=on");
 
 const TRACED: Bounds = Bounds {
     apart: 0.5,
@@ -12,6 +15,14 @@ const TRACED: Bounds = Bounds {
     flip: 0.1,
     mean: 0.02,
     why: "64 paths a pixel and 16 samples a pixel, both noise along edges and in no mean",
+};
+
+const MARCHED: Bounds = Bounds {
+    apart: 0.5,
+    rmse: 0.04,
+    flip: 0.05,
+    mean: 0.02,
+    why: "120 planes and a fine march, and 8 bits that round at each of them",
 };
 
 pub const GROUPS: &[Group] = &[
@@ -87,5 +98,32 @@ pub const GROUPS: &[Group] = &[
             &[("direct-shadow", "map"), ("shadow-map-size", "256"), ("shadow-filter", "nearest")],
         ],
         must: Must::Near(TRACED),
+    },
+    Group {
+        name: "volume",
+        technique: "interleaved_sampling",
+        place: SPECIMEN,
+        common: &[
+            ("effect", "volume"),
+            ("volume", "marschner-lobb:size=16"),
+            ("transfer", "heat"),
+            ("planes", "120"),
+            ("samples", "1"),
+            ("direct-shadow", "ray"),
+            ("brdf", "lambert"),
+        ],
+        twin: Twin::Other(
+            "path_traced",
+            &[
+                ("brdf", "lambert"),
+                ("transport", "direct"),
+                ("emissive", "off"),
+                ("ambient-visibility", "off"),
+                ("pixel", "middle"),
+                ("spp", "1"),
+            ],
+        ),
+        methods: &[&[], &[("depth", "half")], &[("depth", "8")], &[("summation", "hierarchical")]],
+        must: Must::Near(MARCHED),
     },
 ];
