@@ -8,9 +8,10 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::json;
 
 use super::gate_args;
+use super::spectrum::{self, Spectrum};
 use crate::error::{Error, Result};
 use crate::metrics::gate::{self, Gate};
-use crate::metrics::{self, Comparison, Measure, Metrics, Part};
+use crate::metrics::{self, Comparison, ErrorSpectrum, Measure, Metrics, Part};
 use crate::picture::image_file;
 use crate::units::Extent;
 
@@ -31,6 +32,7 @@ pub fn command() -> Command {
         .arg(path_arg("b", "B").required(true).help("Reference picture"))
         .arg(path_arg("diff", "FILE.png").long("diff").help("File to write FLIP's error map to, in the magma colours"))
         .arg(path_arg("hdr-diff", "FILE.png").long("hdr-diff").help("File to write HDR-FLIP's error map to, in the same colours"))
+        .arg(spectrum::argument("the error (A minus B, scene-linear luminance)", "its variance"))
         .arg(Arg::new("where").long("where").value_name("CHANNEL=FILE.exr[,FILE.exr]").help(
             "Also measure, apart from the other pixels, those in which this channel differs between two EXR files, such as \
              geometry.dsf.id.Y=low.exr,high.exr, or in which it is not 0 if one file is given",
@@ -83,6 +85,7 @@ fn outcome(matches: &ArgMatches) -> Result<Outcome> {
     let (gates, threshold) = (gate_args::gates(matches)?, gate_args::threshold(matches)?);
     let place = matches.get_one::<String>("where").map(|argument| Where::parse(argument)).transpose()?;
     [diff, hdr_diff].into_iter().flatten().try_for_each(image_file::require_png)?;
+    let spectrum_files = spectrum::files(matches)?;
     let (actual, reference) = (image_file::read(a)?, image_file::read(b)?);
     let context = format!("comparing {} with {}", a.display(), b.display());
     let comparison =
@@ -91,6 +94,12 @@ fn outcome(matches: &ArgMatches) -> Result<Outcome> {
         if let Some(path) = path {
             image_file::write_srgb8(path, &draw(&comparison))?;
         }
+    }
+    let error_spectrum = (!spectrum_files.is_empty()).then(|| ErrorSpectrum::new(&actual, &reference));
+    if let Some(found) = &error_spectrum {
+        let title = format!("{} - {}", a.display(), b.display());
+        let of = Spectrum { periodogram: &found.periodogram, grey_power: found.variance, title: &title };
+        spectrum_files.iter().try_for_each(|file| file.write(&of, vec![("error".to_owned(), title.clone())]))?;
     }
     let parts = match place {
         None => Vec::new(),
@@ -101,7 +110,8 @@ fn outcome(matches: &ArgMatches) -> Result<Outcome> {
             vec![("where", part(&chosen)), ("elsewhere", part(&others))]
         }
     };
-    let seen = Seen { a, b, comparison: &comparison, parts: &parts, threshold, gates: &gates };
+    let spectrum = error_spectrum.as_ref();
+    let seen = Seen { a, b, comparison: &comparison, parts: &parts, spectrum, threshold, gates: &gates };
     let text = if matches.get_flag("json") { seen.json() } else { seen.table() };
     Ok(Outcome { text, gates: gate::judge(&gates, &comparison.metrics, context) })
 }
@@ -147,6 +157,8 @@ struct Seen<'a> {
     comparison: &'a Comparison,
     /// What `--where` chooses, and the rest.
     parts: &'a [(&'static str, Part)],
+    /// With `--spectrum` alone.
+    spectrum: Option<&'a ErrorSpectrum>,
     threshold: f64,
     gates: &'a [Gate],
 }
@@ -172,6 +184,10 @@ impl Seen<'_> {
                 writeln!(text, "{line}").expect("a string takes any text");
             }
         }
+        if let Some(ErrorSpectrum { mean, variance, .. }) = self.spectrum {
+            writeln!(text, "spectrum of A - B: mean {mean:.3e}, kept apart; variance {variance:.3e}")
+                .expect("a string takes any text");
+        }
         for gate in self.gates {
             writeln!(text, "  {}", gate.text(&comparison.metrics)).expect("a string takes any text");
         }
@@ -194,6 +210,10 @@ impl Seen<'_> {
         });
         for (name, part) in self.parts {
             document[name] = json!(part);
+        }
+        if let Some(ErrorSpectrum { mean, variance, periodogram }) = self.spectrum {
+            let rings = spectrum::rings(periodogram);
+            document["spectrum"] = json!({ "mean": mean, "variance": variance, "rings": rings });
         }
         format!("{document}\n")
     }
@@ -343,6 +363,67 @@ mod tests {
         let [diff, hdr] = [diff, hdr].map(|path| image_file::read(&path).unwrap());
         assert_eq!((diff.extent, hdr.extent), (Extent::new(16, 12), Extent::new(16, 12)));
         assert_ne!(diff, hdr);
+    }
+
+    /// A wave of luminance, as an error of its own picture: two peaks in one ring, and a mean that stays apart.
+    #[test]
+    fn the_spectrum_of_the_error_is_drawn_written_plotted_and_told() {
+        let folder = folder();
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        let extent = Extent::new(15, 12);
+        let wave = |index: u32| 0.5 + 0.1 * (std::f64::consts::TAU * f64::from(index / 15) / 4.0).cos() as f32;
+        let pixels = (0..15 * 12).map(|index| [wave(index); 3]).collect();
+        image_file::write(&folder.path().join("wave.exr"), &Picture { extent, pixels }, &WriteOptions::default())
+            .unwrap();
+        let flat = Picture::filled(extent, [0.25; 3]);
+        image_file::write(&folder.path().join("flat.exr"), &flat, &WriteOptions::default()).unwrap();
+        let [drawn, powers, plot] = ["s.png", "s.exr", "s.svg"].map(path);
+        let more = ["--json", "--spectrum", &drawn, "--spectrum", &powers, "--spectrum", &plot];
+        let text = compare(folder.path(), "wave.exr", "flat.exr", &more).unwrap().text;
+        let spectrum = &serde_json::from_str::<serde_json::Value>(&text).unwrap()["spectrum"];
+        assert!((spectrum["mean"].as_f64().unwrap() - 0.25).abs() < 1e-6, "{spectrum}");
+        assert!((spectrum["variance"].as_f64().unwrap() - 0.005).abs() < 1e-6, "{spectrum}");
+        let rings = spectrum["rings"].as_array().unwrap();
+        let loud: Vec<_> = rings.iter().filter(|ring| ring["power"].as_f64().unwrap() > 1e-6).collect();
+        assert_eq!((loud.len(), &loud[0]["cycles_per_px"]), (1, &json!(0.25)), "{spectrum}");
+        let sum = loud[0]["power"].as_f64().unwrap() * loud[0]["frequencies"].as_f64().unwrap();
+        assert!((sum - 0.005 * 180.0).abs() < 1e-5 && loud[0]["anisotropy"].as_f64().unwrap() > 1.0, "{spectrum}");
+
+        let powers = image_file::read(Path::new(&powers)).unwrap();
+        // Frequency 0 is in the middle, the wave's three cycles are above and below it.
+        let at = |x: usize, y: usize| f64::from(powers.pixels[y * 15 + x][1]);
+        assert!((at(7, 6) - 0.0625 * 180.0).abs() < 1e-4 && (at(7, 3) - 0.45).abs() < 1e-5 && at(8, 3) < 1e-9);
+        // Either of the two powers is 90 times the variance.
+        let drawn = image_file::read(Path::new(&drawn)).unwrap();
+        assert_eq!(drawn.extent, Extent::new(15 * 34, 12 * 34));
+        let code = |x: usize, y: usize| drawn.pixels[(34 * y + 17) * 510 + 34 * x + 17][0];
+        assert!(code(7, 3) == code(7, 9) && code(7, 3) > 0.95 && code(8, 3) == 0.0);
+        assert!(std::fs::read_to_string(plot).unwrap().contains("wave.exr - "));
+        let text = compare(folder.path(), "wave.exr", "flat.exr", &["--spectrum", &path("s.png")]).unwrap().text;
+        assert!(text.contains("spectrum of A - B: mean 2.500e-1, kept apart; variance 5.000e-3\n"), "{text}");
+        assert!(compare(folder.path(), "a.exr", "a.exr", &["--spectrum", &path("same.png")]).is_ok());
+    }
+
+    #[test]
+    fn a_spectrum_that_cannot_be_written_is_refused_before_a_picture_is_read() {
+        for (name, cause) in
+            [("s.jpg", ".svg (a plot"), ("s", ".exr (its powers)"), ("missing/s.png", "does not exist")]
+        {
+            let error = compare(Path::new("/nowhere"), "a.exr", "b.exr", &["--spectrum", name]).err().unwrap();
+            assert!(error.exit_code() == 2 && error.message().contains(cause), "{error}");
+            assert!(error.message().contains(name), "{error}");
+        }
+        let folder = folder();
+        image_file::write(
+            &folder.path().join("small.exr"),
+            &Picture::filled(Extent::new(3, 3), [0.5; 3]),
+            &WriteOptions::default(),
+        )
+        .unwrap();
+        let drawn = folder.path().join("s.png");
+        let more = ["--spectrum", drawn.to_str().unwrap()];
+        let error = compare(folder.path(), "small.exr", "b.exr", &more).err().unwrap();
+        assert!(error.exit_code() == 2 && error.message().contains("3x3") && !drawn.exists(), "{error}");
     }
 
     #[test]

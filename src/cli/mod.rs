@@ -19,6 +19,7 @@ pub mod sampling;
 pub mod scene;
 mod self_test;
 pub mod settings;
+mod spectrum;
 
 use crate::error::Result;
 use clap::Command;

@@ -2,7 +2,8 @@
 //!
 //! Four are of light (RMSE, relMSE, HDR-FLIP and the pixels over a threshold of it: scene-linear RGB), three of what a
 //! screen shows (PSNR, SSIM, FLIP: 8-bit sRGB at exposure 0, cut at 1), because a bound on an algorithm needs the first and
-//! a claim about looks the second. How far pictures of a sequence are from each other is `flicker`.
+//! a claim about looks the second. How far pictures of a sequence are from each other is `flicker`; which frequencies an
+//! error has is `spectrum`.
 
 mod flicker;
 mod flip;
@@ -12,11 +13,13 @@ mod measure;
 pub mod noise;
 mod part;
 mod psnr;
+mod spectrum;
 mod ssim;
 
 pub use flicker::{ErrorFlickerMeter, FlickerMeter};
 pub use measure::{Measure, Metrics};
 pub use part::Part;
+pub use spectrum::ErrorSpectrum;
 
 use crate::error::{Error, Result};
 use crate::picture::Picture;

@@ -74,13 +74,22 @@ fn inspect_says_what_a_pattern_holds() {
         assert!(text.contains(words), "{words}: {text}");
     }
     // The page names each key, and no other.
+    let tuples = ["sampling", "inspect", "tuples", "--json", "--spectrum", "tuples.png"];
+    let tuples = program.run(&tuples).fine().json();
     let told = first_cells("Numbers");
     let mut written = BTreeSet::new();
     for (key, value) in tuples.as_object().unwrap() {
         match value {
             Value::Array(_) => _ = written.insert(format!("{key}[]")),
             Value::Object(_) if key == "settings" => _ = written.insert("settings.*".to_owned()),
-            Value::Object(own) => written.extend(own.keys().map(|own| format!("{key}.{own}"))),
+            Value::Object(own) => {
+                for (own, value) in own {
+                    match value.pointer("/0").and_then(Value::as_object) {
+                        Some(entry) => written.extend(entry.keys().map(|inner| format!("{key}.{own}[].{inner}"))),
+                        None => _ = written.insert(format!("{key}.{own}")),
+                    }
+                }
+            }
             _ => _ = written.insert(key.clone()),
         }
     }
@@ -131,6 +140,20 @@ fn the_spectrum_is_written_as_it_is_and_drawn() {
     assert_eq!([picture.extent.width, picture.extent.height], expected.size());
     assert_eq!(picture.pixels, expected.powers().iter().map(|power| [*power; 3]).collect::<Vec<_>>());
     assert_eq!((texts["pattern"].as_str(), texts["reach_cycles_per_px"].as_str()), ("grid:pattern=3x2", "2"));
+    let same =
+        ["sampling", "inspect", "grid:pattern=3x2", "--reach", "2", "--spectrum", "b.exr", "--spectrum", "b.svg"];
+    let document = program.run(&[&same[..], &["--json"]].concat()).fine().json();
+    assert_eq!(image_file::read_exr_with_texts(Path::new(&program.path("b.exr"))).unwrap(), (picture, texts));
+    let told = document["spectrum"]["rings"].as_array().unwrap();
+    assert_eq!(told.len(), expected.rings().len());
+    for (told, ring) in told.iter().zip(expected.rings()) {
+        assert_eq!(
+            (&told["cycles_per_px"], &told["frequencies"]),
+            (&json!(ring.cycles_per_px), &json!(ring.frequency_count))
+        );
+        assert!((told["power"].as_f64().unwrap() - ring.power).abs() < 1e-12 * ring.power, "{told}");
+    }
+    assert!(std::fs::read_to_string(program.path("b.svg")).unwrap().contains("grid:pattern=3x2"));
     let both = ["sampling", "inspect", "grid", "-o", "a.png", "--spectrum", "b.png", "--reach", "1", "--quiet"];
     assert_eq!(program.run(&both).fine().out, "");
     let read = |name: &str| image_file::read(Path::new(&program.path(name))).unwrap();
@@ -152,6 +175,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&["inspect", "tuples:spp=3,tuples=4"], &["--tuples 4", "--tuples 6 works"]),
         (&["inspect", "grid", "--subset", "16"], &["--subset 16", "0 to 15"]),
         (&["inspect", "grid", "-o", "a.exr"], &["a.exr", ".png"]),
+        (&["inspect", "grid", "--spectrum", "a.txt"], &["a.txt", ".png", ".exr", ".svg"]),
         (&["inspect", "grid", "-o", "a.png", "--spectrum", "nowhere/b.png"], &["nowhere/b.png", "does not exist"]),
         (&["inspect", "grid", "-o", "a.png", "--spectrum", "a.png"], &["a.png", "its own file"]),
         (

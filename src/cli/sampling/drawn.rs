@@ -1,13 +1,11 @@
-//! Pictures of a pattern: its samples over the pixels of the period, and its spectrum.
+//! The picture of a pattern: its samples over the pixels of the period.
 
 use crate::picture::tonemap::Srgb8;
 use crate::sampling::pattern::Pattern;
-use crate::sampling::periodogram::Periodogram;
 use crate::units::Extent;
 
-/// Sides that pictures grow to by whole steps, px.
-const SAMPLES_SIDE_PX: u32 = 1024;
-const SPECTRUM_SIDE_PX: u32 = 512;
+/// Side that the picture grows to by whole steps, px.
+const SIDE_PX: u32 = 1024;
 /// Side of a pattern's pixel in the picture at most, px.
 const MOST_PIXEL_PX: u32 = 64;
 /// From this side on pixels have an edge, and samples are discs, px.
@@ -15,11 +13,6 @@ const LEAST_DRAWN_PX: u32 = 8;
 
 const PAPER: [u8; 3] = [255; 3];
 const EDGE: [u8; 3] = [208; 3];
-
-/// How often `side_px` fits into `most_px`, at least once.
-fn scale(side_px: u32, most_px: u32) -> u32 {
-    (most_px / side_px).max(1)
-}
 
 /// Colour of a subset: hues turn by the golden ratio, so that neighbours in number differ.
 fn color(subset: u32) -> [u8; 3] {
@@ -35,7 +28,7 @@ fn color(subset: u32) -> [u8; 3] {
 /// samples.
 pub fn samples(pattern: &Pattern, subset: Option<u32>) -> Srgb8 {
     let [width, height] = pattern.period_px();
-    let side = scale(width.max(height), SAMPLES_SIDE_PX).min(MOST_PIXEL_PX);
+    let side = (SIDE_PX / width.max(height)).clamp(1, MOST_PIXEL_PX);
     let extent = Extent::new(width * side, height * side);
     let mut pixels = vec![PAPER; extent.pixel_count() as usize];
     if side >= LEAST_DRAWN_PX {
@@ -66,19 +59,6 @@ pub fn samples(pattern: &Pattern, subset: Option<u32>) -> Srgb8 {
     Srgb8 { extent, pixels }
 }
 
-/// Powers as grey, frequency 0 in the middle: 0 is black, 1 half way, and what is far above 1 white.
-pub fn spectrum(spectrum: &Periodogram) -> Srgb8 {
-    let [width, height] = spectrum.size();
-    let side = scale(width.max(height), SPECTRUM_SIDE_PX);
-    let extent = Extent::new(width * side, height * side);
-    let grey = |power: f32| [(255.0 * power / (power + 1.0)).round() as u8; 3];
-    let row = |powers: &[f32]| -> Vec<[u8; 3]> {
-        powers.iter().flat_map(|power| std::iter::repeat_n(grey(*power), side as usize)).collect()
-    };
-    let rows = spectrum.powers().chunks(width as usize).map(row);
-    Srgb8 { extent, pixels: rows.flat_map(|row| std::iter::repeat_n(row, side as usize)).flatten().collect() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,15 +85,5 @@ mod tests {
         let picture = samples(&Pattern::grid([700, 3]), None);
         assert_eq!(picture.extent, Extent::new(700, 3));
         assert!((0..2100).all(|index| picture.pixels[index as usize] == color(index)));
-    }
-
-    #[test]
-    fn powers_are_grey() {
-        let grid = Pattern::grid([2, 2]);
-        let picture = spectrum(&Periodogram::new(&grid, [2, 2], |_| true));
-        // Five frequencies a side, 102 px each.
-        assert_eq!(picture.extent, Extent::new(510, 510));
-        let at = |u: u32, v: u32| picture.pixels[((102 * v + 51) * 510 + 102 * u + 51) as usize];
-        assert_eq!((at(2, 2), at(0, 4), at(1, 2), at(3, 0)), ([204; 3], [204; 3], [0; 3], [0; 3]));
     }
 }

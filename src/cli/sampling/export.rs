@@ -2,15 +2,12 @@
 //! the columns.
 
 use super::arguments::{chosen, pattern_argument, subset, subset_argument};
-use super::spectrum;
-use crate::cli::output;
+use super::reach;
+use crate::cli::{output, spectrum};
 use crate::error::{Error, Result};
 use crate::job::require_folder;
-use crate::picture::Picture;
-use crate::picture::image_file::{self, WriteOptions};
 use crate::sampling::pattern::{Dimension, Sample};
 use crate::techniques::patterns::ChosenPattern;
-use crate::units::Extent;
 use crate::whole_file::write_whole;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use serde_json::{Map, Value, json};
@@ -31,7 +28,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("File to write, whole or not at all: samples as .csv or .json, the spectrum as .exr"),
         )
-        .arg(spectrum::reach_argument())
+        .arg(reach::reach_argument())
         .arg(subset_argument())
         .arg(output::quiet_flag())
 }
@@ -71,15 +68,9 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     require_folder(path)?;
     let held = match format {
         Format::Exr => {
-            let spectrum = spectrum::spectrum(matches, &chosen, subset)?;
-            let [width, height] = spectrum.size();
-            let pixels = spectrum.powers().iter().map(|power| [*power; 3]).collect();
-            let cycles = |axis: usize| spectrum.reach[axis] / chosen.pattern.period_px()[axis];
-            let mut attributes =
-                vec![("pattern".to_owned(), chosen.spec()), ("reach_cycles_per_px".to_owned(), cycles(0).to_string())];
-            attributes.extend(subset.map(|subset| ("subset".to_owned(), subset.to_string())));
-            let options = WriteOptions { attributes, ..WriteOptions::default() };
-            image_file::write(path, &Picture { extent: Extent::new(width, height), pixels }, &options)?;
+            let powers = reach::spectrum(matches, &chosen, subset)?;
+            spectrum::write_powers(path, &powers, reach::attributes(&chosen, subset, &powers))?;
+            let [width, height] = powers.size();
             format!("{width}x{height} frequencies")
         }
         Format::Csv => {

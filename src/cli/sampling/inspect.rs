@@ -1,8 +1,9 @@
 //! `quincunx sampling inspect`: what a pattern holds, as numbers, as a picture of its samples and of its spectrum.
 
 use super::arguments::{chosen, pattern_argument, subset, subset_argument};
-use super::{drawn, spectrum};
+use super::{drawn, reach};
 use crate::cli::output;
+use crate::cli::spectrum::{self, Spectrum};
 use crate::error::{Error, Result};
 use crate::job::require_folder;
 use crate::picture::image_file;
@@ -14,20 +15,21 @@ use std::path::PathBuf;
 
 /// The sub-verb with its arguments.
 pub fn command() -> Command {
-    let file = |name: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name("FILE.png").value_parser(value_parser!(PathBuf)).help(help)
-    };
     Command::new("inspect")
         .about(
             "Print a pattern's period, samples, dimensions, subsets and distances; draw its samples and its spectrum",
         )
         .arg(pattern_argument())
         .arg(
-            file("output", "File for a picture of the samples over the pixels of the period, coloured by subset")
-                .short('o'),
+            Arg::new("output")
+                .short('o')
+                .long("output")
+                .value_name("FILE.png")
+                .value_parser(value_parser!(PathBuf))
+                .help("File for a picture of the samples over the pixels of the period, coloured by subset"),
         )
-        .arg(file("spectrum", "File for a picture of the spectrum: 0 in the middle, power 0 black, 1 grey, more white"))
-        .arg(spectrum::reach_argument().requires("spectrum"))
+        .arg(spectrum::argument("the pattern", "1"))
+        .arg(reach::reach_argument().requires("spectrum"))
         .arg(subset_argument())
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document"))
         .arg(output::quiet_flag())
@@ -35,27 +37,34 @@ pub fn command() -> Command {
 
 /// Prints the numbers and writes the pictures.
 ///
-/// Errors: no such pattern or subset, a spectrum that is too large, a file that cannot be written (exit code 2).
+/// Errors: no such pattern or subset, a spectrum that is too large, a file of another kind or that cannot be written (exit code 2).
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let chosen = chosen(matches)?;
     let subset = subset(matches, &chosen)?;
-    let [output, spectrum_file] = ["output", "spectrum"].map(|name| matches.get_one::<PathBuf>(name));
+    let output = matches.get_one::<PathBuf>("output");
     // Before anything is computed or written.
-    for path in [output, spectrum_file].into_iter().flatten() {
+    if let Some(path) = output {
         image_file::require_png(path)?;
         require_folder(path)?;
     }
-    if let (Some(path), true) = (output, output == spectrum_file) {
+    let files = spectrum::files(matches)?;
+    if let Some(path) = output.filter(|output| files.iter().any(|file| file.path == output.as_path())) {
         return Err(Error::request(format!("-o and --spectrum both name {}: give each its own file", path.display())));
     }
-    if let Some(path) = spectrum_file {
-        image_file::write_srgb8(path, &drawn::spectrum(&spectrum::spectrum(matches, &chosen, subset)?))?;
+    let powers = if files.is_empty() { None } else { Some(reach::spectrum(matches, &chosen, subset)?) };
+    if let Some(powers) = &powers {
+        let of = Spectrum { periodogram: powers, grey_power: 1.0, title: &chosen.spec() };
+        files.iter().try_for_each(|file| file.write(&of, reach::attributes(&chosen, subset, powers)))?;
     }
     if let Some(path) = output {
         image_file::write_srgb8(path, &drawn::samples(&chosen.pattern, subset))?;
     }
     if matches.get_flag("json") {
-        return output::print(&format!("{:#}\n", document(&chosen)));
+        let mut document = document(&chosen);
+        if let Some(powers) = &powers {
+            document["spectrum"] = json!({ "rings": spectrum::rings(powers) });
+        }
+        return output::print(&format!("{document:#}\n"));
     }
     let mut text = String::new();
     describe(&mut text, &chosen).expect("writing to a string");

@@ -5,7 +5,7 @@ mod drawn;
 mod export;
 mod inspect;
 mod list;
-mod spectrum;
+mod reach;
 
 use crate::error::Result;
 use clap::{ArgMatches, Command};

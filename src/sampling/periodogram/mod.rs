@@ -1,4 +1,5 @@
-//! Periodograms: how much of each frequency a pattern has (Keller and Heidrich 2001, figure 1, shows theirs).
+//! Periodograms: how much of each frequency a pattern has (Keller and Heidrich 2001, figure 1, shows theirs), or the
+//! values of a raster.
 //!
 //! P(f) = |sum over samples of exp(-2 pi i f p)|^2 / N for N samples at places p of one period: 1 on average for
 //! independent samples, N at the multiples of 1 / spacing and 0 elsewhere for a regular grid. The frequencies of what
@@ -7,6 +8,11 @@
 //! Why this way: samples lie anywhere in their pixels, so a fast transform would need them moved onto a raster; the sum
 //! itself is exact, and a period has few enough samples for it.
 
+mod raster;
+mod rings;
+
+pub use rings::Ring;
+
 use super::pattern::{Pattern, Sample};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -14,9 +20,13 @@ use std::f64::consts::TAU;
 /// Powers at all whole frequencies around 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Periodogram {
-    /// The highest frequency along x and y, cycles a period.
+    /// Width and height of what repeats, px: of a pattern's period, or of a raster.
+    pub period_px: [u32; 2],
+    /// The lowest frequency along x and y is -reach, cycles a period.
     pub reach: [u32; 2],
-    /// Row by row from frequency -reach to reach of both axes.
+    /// Numbers of frequencies along x and y.
+    size: [u32; 2],
+    /// Row by row from frequency -reach of both axes on.
     powers: Vec<f32>,
 }
 
@@ -75,12 +85,12 @@ impl Periodogram {
         let lower: Vec<Vec<f32>> = (0..=down).into_par_iter().map(row).collect();
         let upper = lower[1..].iter().rev().map(|row| row.iter().rev().copied().collect::<Vec<f32>>());
         let powers = upper.chain(lower.iter().cloned()).flatten().collect();
-        Self { reach, powers }
+        Self { period_px, reach, size: reach.map(|reach| 2 * reach + 1), powers }
     }
 
-    /// Number of frequencies along x and y: twice the reach and 1.
+    /// Numbers of frequencies along x and y: twice the reach and 1 for a pattern, the sides in px for a raster.
     pub fn size(&self) -> [u32; 2] {
-        self.reach.map(|reach| 2 * reach + 1)
+        self.size
     }
 
     /// Row by row from the lowest frequency of both axes on; 0 is in the middle.
@@ -89,14 +99,14 @@ impl Periodogram {
     }
 
     /// The power at a frequency in cycles a period, each within the reach.
-    pub fn power(&self, [u, v]: [i32; 2]) -> f32 {
-        let [width, _] = self.size().map(|size| size as usize);
-        let index = |cycles: i32, reach: u32| {
+    pub fn power(&self, frequency: [i32; 2]) -> f32 {
+        let [column, row] = [0, 1].map(|axis| {
+            let (cycles, reach) = (frequency[axis], self.reach[axis]);
             let index = i64::from(cycles) + i64::from(reach);
-            assert!((0..=2 * i64::from(reach)).contains(&index), "{cycles} cycles of a reach of {reach}");
+            assert!((0..i64::from(self.size[axis])).contains(&index), "{cycles} cycles of a reach of {reach}");
             index as usize
-        };
-        self.powers[index(v, self.reach[1]) * width + index(u, self.reach[0])]
+        });
+        self.powers[row * self.size[0] as usize + column]
     }
 }
 

@@ -48,3 +48,11 @@ pub fn spectrum(matches: &ArgMatches, chosen: &ChosenPattern, subset: Option<u32
     }
     Ok(Periodogram::new(pattern, reach(period_px, asked), |sample| is_meant(sample.subset)))
 }
+
+/// What a file of powers says of them in its header.
+pub fn attributes(chosen: &ChosenPattern, subset: Option<u32>, spectrum: &Periodogram) -> Vec<(String, String)> {
+    let cycles_per_px = spectrum.reach[0] / spectrum.period_px[0];
+    let always = [("pattern", chosen.spec()), ("reach_cycles_per_px", cycles_per_px.to_string())];
+    let subset = subset.map(|subset| ("subset", subset.to_string()));
+    always.into_iter().chain(subset).map(|(name, text)| (name.to_owned(), text)).collect()
+}
