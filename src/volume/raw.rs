@@ -1,8 +1,8 @@
 //! Voxels without a header: bytes, 16-bit words or 32-bit floats, little-endian, told apart by how long the file is.
 
 use super::axes::{self, LPS};
+use super::field::{Volume, require_sides};
 use super::voxels::{Voxels, room};
-use super::{Volume, require_sides};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::Read;

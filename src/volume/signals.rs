@@ -1,6 +1,6 @@
 //! Built-in volumes: a test signal and a phantom of a head.
 
-use super::Volume;
+use super::field::Volume;
 use super::voxels::{Voxels, room};
 use crate::error::{Error, Result};
 use crate::sampling::pcg::Pcg32;

@@ -6,7 +6,9 @@ mod checks;
 mod header;
 
 use super::axes::{self, LPS, Way};
-use super::{Volume, raw, require_sides};
+use super::field::{Volume, require_sides};
+use super::raw;
+use super::voxels::Voxels;
 use crate::error::{Error, Result};
 use flate2::read::MultiGzDecoder;
 use header::{Encoding, Header};
@@ -52,7 +54,7 @@ fn beside(header: &Path, name: &str) -> Result<PathBuf> {
 }
 
 /// The voxels that stand from here on in a file.
-fn voxels(file: &mut BufReader<File>, header: &Header) -> Result<super::Voxels> {
+fn voxels(file: &mut BufReader<File>, header: &Header) -> Result<Voxels> {
     let count: u64 = header.size.iter().product();
     let bytes = count * header.kind.bytes();
     skip_lines(file, header.line_skip)?;
@@ -75,7 +77,7 @@ fn voxels(file: &mut BufReader<File>, header: &Header) -> Result<super::Voxels> 
         }
         Encoding::Gzip => {
             let mut stream = MultiGzDecoder::new(file);
-            // Of what is unpacked, as the format has it.
+            // Bytes to skip are counted in what is unpacked, as the format has it.
             let skip = header.byte_skip.unwrap_or_default();
             let skipped = std::io::copy(&mut (&mut stream).take(skip), &mut std::io::sink()).map_err(broken)?;
             if skipped < skip {
