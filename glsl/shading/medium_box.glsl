@@ -2,6 +2,8 @@
 #ifndef SHADING_MEDIUM_BOX_GLSL
 #define SHADING_MEDIUM_BOX_GLSL
 
+#include "shading/box.glsl"
+
 struct MediumBlock {
     // The box that it fills; all 0 where there is no medium.
     vec4 min_ws;
@@ -16,14 +18,7 @@ struct MediumBlock {
 
 // Where the medium's box begins and ends on a ray between two places of it, in metres.
 vec2 in_medium(MediumBlock medium, vec3 origin, vec3 direction, float from, float to) {
-    vec3 inverse = 1.0 / mix(direction, vec3(1e-20), equal(direction, vec3(0.0)));
-    vec3 near = (medium.min_ws.xyz - origin) * inverse;
-    vec3 far = (medium.max_ws.xyz - origin) * inverse;
-    vec3 low = min(near, far);
-    vec3 high = max(near, far);
-    float begin = max(max(low.x, low.y), max(low.z, from));
-    float end = min(min(high.x, high.y), min(high.z, to));
-    return vec2(begin, max(begin, end));
+    return in_box(medium.min_ws.xyz, medium.max_ws.xyz, origin, direction, from, to);
 }
 
 // Part of the light that passes a stretch of a ray.

@@ -1,5 +1,5 @@
 // A scalar field on a grid as light: a transfer function says what it emits and how much it stops. Keller and Heidrich
-// 2001, section 3.3. Twin: src/resident/volume.rs.
+// 2001, section 3.3. Filled by src/resident/volume.rs.
 //
 // Voxels are words, and the eight around a place are weighed here: samplers weigh by 256ths on many devices, which shows as
 // bands under a steep transfer function.

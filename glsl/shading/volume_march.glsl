@@ -4,6 +4,7 @@
 #define SHADING_VOLUME_MARCH_GLSL
 
 #include "loops.glsl"
+#include "shading/box.glsl"
 #include "shading/volume.glsl"
 
 // rgb: radiance that reaches the ray's origin from its first `limit` metres; w: part of the light from behind them that does.
@@ -11,22 +12,16 @@
 vec4 march(vec3 origin, vec3 direction, float limit, float steps) {
     vec3 from = (volume.voxels_from_world * vec4(origin, 1.0)).xyz;
     vec3 a_metre = mat3(volume.voxels_from_world) * direction;
-    vec3 inverse = 1.0 / mix(a_metre, vec3(1e-20), equal(a_metre, vec3(0.0)));
-    vec3 near = -from * inverse;
-    vec3 far = (volume.last.xyz - from) * inverse;
-    vec3 low = min(near, far);
-    vec3 high = max(near, far);
-    float begin = max(max(low.x, low.y), max(low.z, 0.0));
-    float end = min(min(high.x, high.y), min(high.z, limit));
+    vec2 ends = in_box(vec3(0.0), volume.last.xyz, from, a_metre, 0.0, limit);
     vec4 passed = vec4(0.0, 0.0, 0.0, 1.0);
-    if (!(begin < end)) {
+    if (!(ends.x < ends.y)) {
         return passed;
     }
-    uint count = uint(ceil((end - begin) * length(a_metre) * steps));
-    float step_m = (end - begin) / float(count);
+    uint count = uint(ceil((ends.y - ends.x) * length(a_metre) * steps));
+    float step_m = (ends.y - ends.x) / float(count);
     uint index = 0u;
     for (; index < count; index++) {
-        vec4 seen = medium_at(from + a_metre * (begin + (float(index) + 0.5) * step_m));
+        vec4 seen = medium_at(from + a_metre * (ends.x + (float(index) + 0.5) * step_m));
         float stopped = opacity(seen.w, step_m);
         passed.rgb += passed.w * stopped * seen.rgb;
         passed.w *= 1.0 - stopped;
