@@ -6,7 +6,7 @@
 //! a subset.
 
 use super::pattern::{Dimension, MOST_FURTHER, Pattern, Sample};
-use super::sampler::{Points, Sampler};
+use super::sampler::{Places, Points, Sampler};
 use super::side::Side;
 use crate::error::Result;
 
@@ -30,35 +30,13 @@ impl Basis {
         further: &[Dimension],
         samples_per_px: f64,
         sampler: Sampler,
+        places: Places,
         seed: u32,
-    ) -> Result<Self> {
-        Self::made(sides, further, samples_per_px, (sampler, seed), false)
-    }
-
-    /// The same with samples in the middles of their pixels alone, as many in each where their number allows it.
-    ///
-    /// Errors: as `new`.
-    pub fn in_middles(
-        sides: [Side; 2],
-        further: &[Dimension],
-        samples_per_px: f64,
-        sampler: Sampler,
-        seed: u32,
-    ) -> Result<Self> {
-        Self::made(sides, further, samples_per_px, (sampler, seed), true)
-    }
-
-    fn made(
-        sides: [Side; 2],
-        further: &[Dimension],
-        samples_per_px: f64,
-        (sampler, seed): (Sampler, u32),
-        in_middles: bool,
     ) -> Result<Self> {
         assert!(further.len() <= MOST_FURTHER && samples_per_px > 0.0, "{further:?}, {samples_per_px}");
         let area_px = sides[0].length_px() * sides[1].length_px();
         let count = (samples_per_px * area_px).round().max(1.0) as u32;
-        let points = sampler.points(sides, count, 2 + further.len(), seed, in_middles)?;
+        let points = sampler.points(sides, count, 2 + further.len(), seed, places)?;
         Ok(Self { sides, further: further.to_vec(), points })
     }
 
@@ -125,13 +103,13 @@ mod tests {
     #[test]
     fn members_are_regular_grids() {
         for sampler in Sampler::ALL {
-            let basis = Basis::new(square("3"), &[Dimension::Time], 4.0, *sampler, 5).unwrap();
+            let basis = Basis::new(square("3"), &[Dimension::Time], 4.0, *sampler, Places::Spread, 5).unwrap();
             let pattern = basis.pattern();
             assert_eq!((pattern.subset_count(), pattern.samples().len()), (36, 36), "{}", sampler.name());
             assert_eq!(pattern.period_px(), [3, 3]);
         }
         for sampler in Sampler::ALL.iter().filter(|sampler| !sampler.counts_by_pixels()) {
-            let basis = Basis::new(square("2.5"), &[], 4.0, *sampler, 5).unwrap();
+            let basis = Basis::new(square("2.5"), &[], 4.0, *sampler, Places::Spread, 5).unwrap();
             let pattern = basis.pattern();
             assert_eq!((pattern.subset_count(), pattern.samples().len()), (25, 100), "{}", sampler.name());
             assert_eq!(pattern.period_px(), [5, 5]);
@@ -154,14 +132,19 @@ mod tests {
         }
     }
 
-    /// In the middles of pixels every sampler gives each as many, and those of a pixel and its neighbours are spread over what
-    /// they have beside: the mean of a block of pixels is near that of all.
+    /// In the middles of pixels every sampler gives each as many, and no two samples of a basis have the same number beside.
     #[test]
     fn in_middles_pixels_have_as_many_samples() {
         for sampler in Sampler::ALL {
             for (side, samples) in [(1, 4), (2, 1), (4, 1), (4, 2)] {
-                let basis =
-                    Basis::in_middles([Side::new(side, 1); 2], &[Dimension::Slice], f64::from(samples), *sampler, 5);
+                let basis = Basis::new(
+                    [Side::new(side, 1); 2],
+                    &[Dimension::Slice],
+                    f64::from(samples),
+                    *sampler,
+                    Places::Middles,
+                    5,
+                );
                 let pattern = basis.unwrap().pattern();
                 assert_eq!(pattern.samples_per_pixel(), [samples; 2], "{} {side}", sampler.name());
                 assert!(pattern.samples().iter().all(|sample| sample.place_px == [0.5; 2]), "{}", sampler.name());
@@ -175,19 +158,21 @@ mod tests {
 
     #[test]
     fn both_ends_of_the_scale_are_patterns() {
-        let one = Basis::new(square("1"), &[], 1.0, Sampler::Relaxed, 1).unwrap();
+        let one = Basis::new(square("1"), &[], 1.0, Sampler::Relaxed, Places::Spread, 1).unwrap();
         assert_eq!((one.member_count(), one.pattern().samples_per_pixel()), (1, [1, 1]));
-        let frame = Basis::new([Side::new(13, 1), Side::new(7, 1)], &[], 2.0, Sampler::Random, 1).unwrap();
+        let frame =
+            Basis::new([Side::new(13, 1), Side::new(7, 1)], &[], 2.0, Sampler::Random, Places::Spread, 1).unwrap();
         assert_eq!((frame.member_count(), frame.pattern().period_px()), (182, [13, 7]));
         // A sample for two pixels: half of them have none.
-        let sparse = Basis::new([Side::new(2, 1), Side::new(1, 1)], &[], 0.5, Sampler::Relaxed, 1).unwrap();
+        let sparse =
+            Basis::new([Side::new(2, 1), Side::new(1, 1)], &[], 0.5, Sampler::Relaxed, Places::Spread, 1).unwrap();
         assert_eq!((sparse.member_count(), sparse.pattern().samples_per_pixel()), (1, [0, 1]));
     }
 
     proptest! {
         #[test]
         fn a_seed_names_one_pattern(seed in any::<u32>(), index in 0..Sampler::ALL.len()) {
-            let make = |seed| Basis::new(square("2"), &[Dimension::LensU, Dimension::LensV], 3.0, Sampler::ALL[index], seed);
+            let make = |seed| Basis::new(square("2"), &[Dimension::LensU, Dimension::LensV], 3.0, Sampler::ALL[index], Places::Spread, seed);
             let pattern = make(seed).unwrap().pattern();
             prop_assert_eq!(&pattern, &make(seed).unwrap().pattern());
             prop_assert_eq!(pattern.dimension_count(), 4);

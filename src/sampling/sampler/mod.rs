@@ -47,25 +47,26 @@ choices! {
     }
 }
 
+/// Where in a basis the places of points are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Places {
+    /// Where the sampler spreads them.
+    Spread,
+    /// In the middles of pixels, as many in each where the sides are whole and the number of points allows it.
+    Middles,
+}
+
 impl Sampler {
     /// Whether each pixel of a basis has the same number of samples, so that the basis has whole sides.
     pub fn counts_by_pixels(self) -> bool {
         matches!(self, Self::Ign | Self::VoidAndCluster | Self::BlueErrors)
     }
 
-    /// `count` points of `dimensions` numbers, at least 2, over a basis of these sides. `in_middles`: their places are the
-    /// middles of pixels, as many in each where the sides are whole and `count` allows it.
+    /// `count` points of `dimensions` numbers, at least 2, over a basis of these sides.
     ///
     /// Errors: a sampler that counts by pixels has sides that are not whole, or a count that is not the same for every
     /// pixel (exit code 2).
-    pub fn points(
-        self,
-        sides: [Side; 2],
-        count: u32,
-        dimensions: usize,
-        seed: u32,
-        in_middles: bool,
-    ) -> Result<Points> {
+    pub fn points(self, sides: [Side; 2], count: u32, dimensions: usize, seed: u32, places: Places) -> Result<Points> {
         let over = Over { sides_px: sides.map(Side::length_px), count, dimensions, seed };
         let pixels = PixelGrid::of(sides, count);
         if self.counts_by_pixels() && pixels.is_none() {
@@ -77,10 +78,9 @@ impl Sampler {
             return Err(Error::request(why)
                 .note("a basis of whole pixels and a whole number of samples a pixel work, as do relaxed and sobol"));
         }
-        let middles = pixels.as_ref().filter(|_| in_middles);
+        let middles = pixels.filter(|_| places == Places::Middles);
         // The others take the basis for one cell.
-        let whole = PixelGrid { sides: [1, 1], samples: count };
-        let grid = *pixels.as_ref().unwrap_or(&whole);
+        let grid = pixels.unwrap_or(PixelGrid { sides: [1, 1], samples: count });
         let mut points = match self {
             Self::Relaxed => relaxed::points(&over, middles),
             Self::Random => random::points(&over, middles),
@@ -91,7 +91,7 @@ impl Sampler {
             Self::VoidAndCluster => mask::points(&over, &grid),
             Self::BlueErrors => blue_noise_errors::points(&over, &grid),
         };
-        if in_middles {
+        if places == Places::Middles {
             for point in &mut points {
                 for (along, side_px) in point.iter_mut().zip(over.sides_px) {
                     *along = part(((*along * side_px).floor() + 0.5) / side_px);
@@ -117,7 +117,7 @@ mod tests {
         ) {
             let (sampler, sides) = (Sampler::ALL[index], [sides.0, sides.1].map(|side| Side::new(side, 1)));
             let count = samples * sides[0].pixels * sides[1].pixels;
-            let points = sampler.points(sides, count, dimensions, seed, false).unwrap();
+            let points = sampler.points(sides, count, dimensions, seed, Places::Spread).unwrap();
             prop_assert_eq!(points.len(), count as usize);
             for point in &points {
                 prop_assert_eq!(point.len(), dimensions);
@@ -139,7 +139,7 @@ mod tests {
     fn what_counts_by_pixels_refuses_other_counts() {
         for sampler in Sampler::ALL {
             for (sides, count) in [([Side::new(5, 2), Side::new(2, 1)], 20), ([Side::new(2, 1); 2], 7)] {
-                match sampler.points(sides, count, 2, 1, false) {
+                match sampler.points(sides, count, 2, 1, Places::Spread) {
                     Ok(points) => assert!(!sampler.counts_by_pixels() && points.len() == count as usize),
                     Err(error) => {
                         assert!(sampler.counts_by_pixels());
@@ -155,7 +155,7 @@ mod tests {
     fn all_but_random_ones_are_spread_in_every_dimension() {
         let rms = |sampler: Sampler, axis: usize| {
             let error = |seed: u32| {
-                let points = sampler.points([Side::new(2, 1); 2], 64, 3, seed, false).unwrap();
+                let points = sampler.points([Side::new(2, 1); 2], 64, 3, seed, Places::Spread).unwrap();
                 let below = points.iter().filter(|point| point[axis] < 0.37).count();
                 (below as f64 / 64.0 - 0.37).powi(2)
             };

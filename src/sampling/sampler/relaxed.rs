@@ -21,16 +21,13 @@ const DARTS_PER_PLACE: u32 = 24;
 
 /// Relaxed places, or the middles of pixels, with the rest exchanged between them. A single one lies in the middle of the
 /// basis.
-pub fn points(over: &Over, middles: Option<&PixelGrid>) -> Points {
+pub fn points(over: &Over, middles: Option<PixelGrid>) -> Points {
     let mut random = Pcg32::new(u64::from(over.seed), 16);
     let in_px = |point: &Vec<f64>| [0, 1].map(|axis| point[axis] * over.sides_px[axis]);
-    let middles = middles.map(|grid| grid.points(|_, _| vec![0.5; 2]).iter().map(in_px).collect());
-    let places = match over.count {
-        1 => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
-        count => match middles {
-            Some(middles) => Torus::new(over.sides_px, middles),
-            None => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random).into_places()),
-        },
+    let places = match (middles, over.count) {
+        (Some(grid), _) => Torus::new(over.sides_px, grid.points(|_, _| vec![0.5; 2]).iter().map(in_px).collect()),
+        (None, 1) => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
+        (None, count) => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random).into_places()),
     };
     let mut points: Points = places
         .places()
@@ -115,11 +112,11 @@ mod tests {
     use crate::sampling::basis::Basis;
     use crate::sampling::pattern::Dimension;
     use crate::sampling::periodogram::Periodogram;
-    use crate::sampling::sampler::Sampler;
+    use crate::sampling::sampler::{Places, Sampler};
     use crate::sampling::side::Side;
 
     fn basis(side: u32, further: &[Dimension], samples: f64) -> Basis {
-        Basis::new([Side::new(side, 1); 2], further, samples, Sampler::Relaxed, 3).unwrap()
+        Basis::new([Side::new(side, 1); 2], further, samples, Sampler::Relaxed, Places::Spread, 3).unwrap()
     }
 
     /// Blue noise: little power below half of the mean frequency of samples, none that stands out as in a lattice.

@@ -9,6 +9,7 @@ use crate::lights::LightSet;
 use crate::passes::forward::ForwardChoices;
 use crate::sampling::basis::Basis;
 use crate::sampling::pattern::{Dimension, Pattern};
+use crate::sampling::sampler::Places;
 use crate::sampling::side::Side;
 use crate::settings::{MapDrawing, Values};
 use crate::techniques::exposure::Exposure;
@@ -127,8 +128,9 @@ fn basis(values: &Values, frame: Extent) -> Result<Basis> {
     let chosen = Effect::ALL.iter().filter(|effect| effects.contains(effect));
     let further: Vec<Dimension> = chosen.flat_map(|effect| effect.dimensions().iter().copied()).collect();
     let seed = values.integer("seed") as u32;
-    let made = if effects.contains(&Effect::Aa) { Basis::new } else { Basis::in_middles };
-    made(sides, &further, samples, values.choice("sampler"), seed).map_err(|error| error.within(NAME))
+    let places = if effects.contains(&Effect::Aa) { Places::Spread } else { Places::Middles };
+    let made = Basis::new(sides, &further, samples, values.choice("sampler"), places, seed);
+    made.map_err(|error| error.within(NAME))
 }
 
 /// The choices that the settings make.

@@ -144,11 +144,11 @@ impl Members {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::sampler::Sampler;
+    use crate::sampling::sampler::{Places, Sampler};
     use proptest::prelude::*;
 
     fn members(sides: [Side; 2], samples: f64, frame: Extent) -> Members {
-        Members::new(Basis::new(sides, &[], samples, Sampler::Random, 5).unwrap(), frame)
+        Members::new(Basis::new(sides, &[], samples, Sampler::Random, Places::Spread, 5).unwrap(), frame)
     }
 
     proptest! {
@@ -214,7 +214,10 @@ mod tests {
         let frame = Extent::new(7, 5);
         let alone = members([Side::new(1, 1); 2], 1.0, frame);
         assert_eq!(alone.layer(), frame);
-        let alone = Members::new(Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, 5).unwrap(), frame);
+        let alone = Members::new(
+            Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, Places::Spread, 5).unwrap(),
+            frame,
+        );
         assert_eq!(alone.placement(0), Placement::WHOLE);
     }
 }
