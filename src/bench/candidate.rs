@@ -125,7 +125,7 @@ pub fn without_unread(technique: &dyn Technique, values: &Values) -> Values {
 ///
 /// Errors: how many pixels a thread shades is no choice of the technique (exit code 2).
 fn share_texels(job: &mut Job) -> Result<()> {
-    let text = job.values.iter().find(|(key, _)| *key == "texels").map(|(_, text)| text.to_owned());
+    let text = job.values.get("texels").map(str::to_owned);
     match text {
         None => Err(Error::request(format!("--fair: {} has no --texels to share", job.technique.name()))),
         Some(text) if text == "auto" => job.set("texels", FAIR_TEXELS),
@@ -139,7 +139,7 @@ fn share_texels(job: &mut Job) -> Result<()> {
 fn with_technique(job: &Job, technique: &'static dyn Technique) -> Result<Job> {
     let mut other = Job::new(&job.scene, technique);
     for setting in settings_of(technique) {
-        if let Some((_, text)) = job.values.iter().find(|(key, _)| *key == setting.key) {
+        if let Some(text) = job.values.get(setting.key) {
             other.set(setting.key, text)?;
         }
     }

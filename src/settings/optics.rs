@@ -104,7 +104,7 @@ pub const MOTION_INTERVAL: Setting = Setting {
 /// The moment at which motion vectors begin, seconds, at least 0; None where none are asked for, or the technique reads
 /// no such setting.
 pub fn earlier_s(values: &Values) -> Option<f64> {
-    let is_asked = values.iter().any(|(key, text)| key == MOTION_VECTORS.key && text == "on");
+    let is_asked = values.get(MOTION_VECTORS.key) == Some("on");
     is_asked.then(|| (values.number("time") - values.number("motion-interval")).max(0.0))
 }
 
@@ -114,8 +114,8 @@ pub fn earlier_s(values: &Values) -> Option<f64> {
 /// Errors: it closes before it opens (exit code 2).
 pub fn exposure_s(values: &Values) -> Result<[f64; 2]> {
     let time_s = values.number("time");
-    let has_shutter = values.iter().any(|(key, _)| key == SHUTTER.key);
-    let Some([open_s, close_s]) = has_shutter.then(|| values.numbers_or_none("shutter")).flatten() else {
+    let shutter = values.get(SHUTTER.key).and_then(|_| values.numbers_or_none(SHUTTER.key));
+    let Some([open_s, close_s]) = shutter else {
         return Ok([time_s; 2]);
     };
     if open_s > close_s {
@@ -140,8 +140,7 @@ pub const LIGHT_RADIUS: Setting = Setting {
 
 /// `--light-radius` in metres; 0 where the technique reads no such setting.
 pub fn light_radius_m(values: &Values) -> f32 {
-    let is_read = values.iter().any(|(key, _)| key == LIGHT_RADIUS.key);
-    if is_read { values.number(LIGHT_RADIUS.key) as f32 } else { 0.0 }
+    values.get(LIGHT_RADIUS.key).map_or(0.0, |_| values.number(LIGHT_RADIUS.key) as f32)
 }
 
 /// A homogeneous medium that fills the scene.
