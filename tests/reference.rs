@@ -11,10 +11,12 @@ use quincunx::reference::made::{MadeReference, Watch, reference_picture};
 use quincunx::reference::recipe::Recipe;
 use quincunx::techniques::settings_of;
 use quincunx::units::Extent;
-use quincunx::{metrics, techniques};
+use quincunx::volume::{self, VolumeRequest};
+use quincunx::{metrics, scene, techniques};
 use serde_json::Value;
 use std::cell::RefCell;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 const SMALL: [&str; 6] = ["render", "cornell", "--size", "32x18", "--vpls", "16"];
@@ -142,6 +144,24 @@ fn a_key_is_of_all_that_the_picture_hangs_on_and_of_nothing_else() {
     assert_eq!(key("deferred", &[("lights", "3:7")]), key("deferred", &[("lights", "3:7"), ("seed", "2")]));
     let hall = Watched::open("lamps:objects=3,lights=3");
     assert_ne!(recipe(&watched, TINY).key(), recipe(&hall, TINY).key());
+}
+
+/// A reference of a volume hangs on what the file of its transfer function says, not on its name alone.
+#[test]
+fn a_changed_transfer_file_makes_another_reference() {
+    let volume = volume::open(&VolumeRequest { spec: "marschner-lobb:size=8", raw_size: None, seed: 1 }).unwrap();
+    let watched = Watched::with_scene(scene::load("specimen", 1).unwrap().holding(&Arc::new(volume)));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("transfer.txt");
+    let key = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        let values = values("path_traced", &[("transfer", path.to_str().unwrap())]);
+        let technique = techniques::find("path_traced").unwrap();
+        Recipe::new(technique, values, &watched.session).unwrap().key().to_owned()
+    };
+    let first = key("0 0 0 0 0\n1 1 1 1 4\n");
+    assert_eq!(first, key("0 0 0 0 0\n1 1 1 1 4.0 # the same\n"));
+    assert_ne!(first, key("0 0 0 0 0\n1 1 1 1 5\n"));
 }
 
 #[test]

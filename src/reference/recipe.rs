@@ -8,6 +8,7 @@ use crate::settings::{Changes, MEDIUM, Setting, Values};
 use crate::shading::medium::Medium;
 use crate::techniques::{self, Technique, settings_of};
 use crate::units::Extent;
+use crate::volume::Transfer;
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
@@ -39,7 +40,7 @@ pub struct Recipe {
 impl Recipe {
     /// `technique` with `values`, of what `session` shows.
     ///
-    /// Errors: no such camera or lights (exit code 2).
+    /// Errors: no such camera, lights or transfer function (exit code 2).
     pub fn new(technique: &'static dyn Technique, values: Values, session: &Session) -> Result<Self> {
         let scene = &session.scene;
         let view = View::new(scene, values.text("camera"), values.extent("size"))?;
@@ -47,7 +48,7 @@ impl Recipe {
         let camera = &view.camera;
         let settings: Map<String, Value> = values.iter().map(|(key, text)| (key.to_owned(), json!(text))).collect();
         // Floats are printed with as many digits as tell them apart.
-        let identity = json!({
+        let mut identity = json!({
             "format": FORMAT,
             "technique": technique.name(),
             "estimator": technique.estimator_version(),
@@ -59,6 +60,12 @@ impl Recipe {
             "ambient": lights.ambient.to_array(),
             "settings": settings,
         });
+        if scene.volume.is_some()
+            && let Some(transfer) = values.get("transfer")
+        {
+            // What a file says may change while its name stays.
+            identity["transfer"] = json!(format!("{:?}", Transfer::open(transfer)?));
+        }
         let key = blake3::hash(identity.to_string().as_bytes()).to_hex().to_string();
         Ok(Self { technique, values, key, identity })
     }
@@ -79,7 +86,7 @@ impl Recipe {
         // What `--medium` comes to here, so that a claim can depend on it; who does not read it draws none.
         let mut values = values.clone();
         let mut medium = "none".to_owned();
-        if values.iter().any(|(key, _)| key == MEDIUM.key) {
+        if values.get(MEDIUM.key).is_some() {
             medium = Medium::text(Medium::chosen(&values, &session.scene));
             techniques::set(judged, &mut values, MEDIUM.key, &medium)?;
         }
