@@ -13,7 +13,6 @@ pub mod fullscreen;
 pub mod gbuffer;
 pub mod mesh;
 pub mod next_run;
-pub mod over;
 pub mod resolve;
 pub mod shadow_maps;
 pub mod texels;

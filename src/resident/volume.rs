@@ -30,13 +30,16 @@ fn name(technique: &str, what: &str) -> String {
 
 /// A volume as the settings have it: where it stands, and how values become light.
 pub struct PlacedVolume {
+    volume: Arc<Volume>,
     block: VolumeBlock,
     transfer: Vec<[f32; 4]>,
 }
 
 impl PlacedVolume {
+    /// `volume`: of `scene`.
+    ///
     /// Errors: no such transfer function, or a broken one; a window that is empty (exit code 2).
-    pub fn new(volume: &Volume, values: &Values, scene: &Scene) -> Result<Self> {
+    pub fn new(volume: &Arc<Volume>, values: &Values, scene: &Scene) -> Result<Self> {
         let window =
             values.unless_auto("volume-window", Values::numbers::<2>).map(|window| window.map(|end| end as f32));
         if let Some([least, most]) = window
@@ -64,15 +67,20 @@ impl PlacedVolume {
             is_float: u32::from(matches!(volume.voxels, Voxels::F32(_))),
             ..VolumeBlock::zeroed()
         };
-        Ok(Self { block, transfer })
+        Ok(Self { volume: volume.clone(), block, transfer })
+    }
+
+    /// Number of its voxels.
+    pub fn voxel_count(&self) -> f64 {
+        self.volume.size.map(f64::from).iter().product()
     }
 
     /// Plans it as a resource of `technique`.
-    pub fn plan(&self, plan: &mut Plan, technique: &str, volume: &Volume) {
+    pub fn plan(&self, plan: &mut Plan, technique: &str) {
         plan.buffer(GROUP, name(technique, "block"), size_of::<VolumeBlock>() as u64);
         plan.buffer(GROUP, name(technique, "transfer"), size_of_val(&self.transfer[..]) as u64);
-        let [width, height, depth] = volume.size;
-        let format = match volume.voxels {
+        let [width, height, depth] = self.volume.size;
+        let format = match self.volume.voxels {
             Voxels::U8(_) => vk::Format::R8_UINT,
             Voxels::U16(_) => vk::Format::R16_UINT,
             Voxels::F32(_) => vk::Format::R32_UINT,
@@ -91,7 +99,6 @@ impl PlacedVolume {
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
         technique: &str,
-        volume: &Volume,
         [read, sampled]: [Access; 2],
     ) -> Result<VolumeGpu> {
         let mut filled = |what: &str, bytes: &[u8]| {
@@ -102,7 +109,7 @@ impl PlacedVolume {
         let block = filled("block", bytemuck::bytes_of(&self.block))?;
         let transfer = filled("transfer", bytemuck::cast_slice(&self.transfer))?;
         let voxels = resources.image(&name(technique, "voxels"));
-        upload::image(gpu, &voxels, sampled, |staging| staging.copy_from_slice(volume.voxels.bytes()))?;
+        upload::image(gpu, &voxels, sampled, |staging| staging.copy_from_slice(self.volume.voxels.bytes()))?;
         let sampler = Sampler::clamped(gpu, vk::Filter::NEAREST)?;
         Ok(VolumeGpu { block, transfer, voxels, sampler, sampled })
     }
@@ -116,7 +123,9 @@ fn world_from_box(volume: &Volume, values: &Values, scene: &Scene) -> Mat4 {
         let room = bounds.max - bounds.min;
         // A scene without room along an axis leaves the others to say it.
         let ratios = (0..3).map(|axis| room[axis] / sides[axis]).filter(|ratio| *ratio > 0.0);
-        sides.max_element() * ratios.fold(f32::INFINITY, f32::min)
+        let ratio = ratios.reduce(f32::min);
+        // One without any is a point, and a metre is as good as another length.
+        ratio.map_or(1.0, |ratio| sides.max_element() * ratio)
     };
     let asked = values.unless_auto("volume-length", Values::number);
     let longest = asked.map_or_else(fitting, |length| length as f32);

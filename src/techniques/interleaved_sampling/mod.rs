@@ -30,6 +30,7 @@ mod combine;
 mod mean;
 mod members;
 mod moment;
+mod over;
 mod plan;
 mod resources;
 mod settings;

@@ -1,11 +1,11 @@
 //! Over: a layer, light of its own and how much it hides, over an image of the same extent, by fixed-function blending. Shader:
-//! over.frag. Part of the pass that drew the layer.
+//! over.frag. Part of the pass `slices`.
 //! reads  a layer, premultiplied      writes  what it is laid over
 
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
-use crate::gpu::shader::passes::over::FRAG;
+use crate::gpu::shader::techniques::interleaved_sampling::over::FRAG;
 use crate::gpu::{Access, Bound, ColorTarget, Commands, Gpu, Image};
 use crate::passes::fullscreen;
 use ash::vk;

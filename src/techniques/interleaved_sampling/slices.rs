@@ -18,7 +18,6 @@ use crate::gpu::shader::structs::SlicesParams;
 use crate::gpu::shader::techniques::interleaved_sampling::slices;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, upload};
 use crate::passes::fullscreen;
-use crate::passes::over::{NOTHING, Over};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::volume::{PlacedVolume, VolumeGpu};
 use crate::sampling::pattern::Dimension;
@@ -26,8 +25,8 @@ use crate::scene::Scene;
 use crate::settings::Values;
 use crate::techniques::Inputs;
 use crate::techniques::interleaved_sampling::members::Members;
+use crate::techniques::interleaved_sampling::over::{NOTHING, Over};
 use crate::techniques::interleaved_sampling::resources::{DEPTH, DRAWN, GROUP, LAYER, NAME, OFFSETS};
-use crate::volume::Volume;
 use ash::vk;
 use std::sync::Arc;
 
@@ -67,7 +66,6 @@ pub struct SliceChoices {
     depth: PictureDepth,
     summation: Summation,
     placed: PlacedVolume,
-    volume: Arc<Volume>,
 }
 
 impl SliceChoices {
@@ -90,7 +88,6 @@ impl SliceChoices {
             depth: values.choice("depth"),
             summation: values.choice("summation"),
             placed: PlacedVolume::new(volume, values, scene)?,
-            volume: volume.clone(),
         })
     }
 
@@ -113,13 +110,13 @@ impl SliceChoices {
 
     /// Voxels of the volume, for the report.
     pub fn voxel_count(&self) -> f64 {
-        self.volume.size.map(f64::from).iter().product()
+        self.placed.voxel_count()
     }
 
     /// Plans what the pass reads and writes.
     pub fn plan(&self, plan: &mut Plan, members: &Members) {
         use vk::ImageUsageFlags as Usage;
-        self.placed.plan(plan, NAME, &self.volume);
+        self.placed.plan(plan, NAME);
         plan.buffer("combine", OFFSETS, 4 * u64::from(members.count()));
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED;
         plan.image("color", LAYER, members.layer(), self.depth.format(), usage);
@@ -172,7 +169,7 @@ impl Slices {
             ..fullscreen::description(&slices::FRAG, &format)
         };
         Ok(Self {
-            volume: choices.placed.upload(gpu, resources, NAME, &choices.volume, read)?,
+            volume: choices.placed.upload(gpu, resources, NAME, read)?,
             offsets,
             layer: resources.image(LAYER),
             over_layer: group.is_some().then(|| Over::new(gpu, format[0], Blending::Layer)).transpose()?,

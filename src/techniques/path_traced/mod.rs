@@ -71,7 +71,6 @@ use crate::settings::written::SettingValue;
 use crate::settings::{Brdf, Setting, TREE, VOLUME_PLACE, Values};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::{AmbientVisibility, PixelPlace, RaySource, Transport};
-use crate::volume::Volume;
 use airlight::Air;
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -263,7 +262,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
 /// The volume of the scene, and where it stands.
 ///
 /// Errors: a medium is there too (exit code 2); as `PlacedVolume::new`.
-fn volume(inputs: &Inputs<'_>, medium: Option<Medium>) -> Result<Option<(Arc<Volume>, PlacedVolume)>> {
+fn volume(inputs: &Inputs<'_>, medium: Option<Medium>) -> Result<Option<PlacedVolume>> {
     let Some(volume) = &inputs.scene.volume else { return Ok(None) };
     if medium.is_some() {
         let text = Medium::text(medium);
@@ -271,7 +270,7 @@ fn volume(inputs: &Inputs<'_>, medium: Option<Medium>) -> Result<Option<(Arc<Vol
             .within(NAME)
             .note("--medium none leaves the volume, --volume none the medium"));
     }
-    Ok(Some((volume.clone(), PlacedVolume::new(volume, inputs.values, inputs.scene)?)))
+    PlacedVolume::new(volume, inputs.values, inputs.scene).map(Some)
 }
 
 struct PreparedPaths {
@@ -292,8 +291,8 @@ impl Prepared for PreparedPaths {
         plan.buffer("lights", format!("{NAME}.sources"), of(sources.all().len(), size_of::<SourceBlock>()));
         let frame_count = usize::from(sources.closing.is_some());
         plan.buffer("frame", format!("{NAME}.frame.closing"), of(frame_count, size_of::<FrameBlock>()));
-        if let Some((volume, placed)) = &self.choices.volume {
-            placed.plan(&mut plan, NAME, volume);
+        if let Some(volume) = &self.choices.volume {
+            volume.plan(&mut plan, NAME);
         }
         plan.buffer("accumulation", SUMS, inputs.view.extent.pixel_count() * SUM_BYTES);
         plan.picture(COLOR, inputs.view.extent);

@@ -15,13 +15,11 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic, upload};
 use crate::plan::Resources;
 use crate::progress::Stage;
 use crate::resident::traced::{Layout, TracedGpu};
-use crate::resident::volume::PlacedVolume;
-use crate::resident::volume::VolumeGpu;
+use crate::resident::volume::{PlacedVolume, VolumeGpu};
 use crate::shading::medium::Medium;
 use crate::techniques::Inputs;
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::AmbientVisibility;
-use crate::volume::Volume;
 use bytemuck::bytes_of;
 use std::sync::Arc;
 
@@ -58,7 +56,7 @@ pub struct Choices {
     /// Some of the lights are spheres.
     pub has_spheres: bool,
     /// What emits and absorbs on the ray that is seen, and where it stands.
-    pub volume: Option<(Arc<Volume>, PlacedVolume)>,
+    pub volume: Option<PlacedVolume>,
     pub params: SampleParams,
 }
 
@@ -134,7 +132,7 @@ impl Sample {
         drop(stage);
         let read = [Access::ComputeRead, Access::ComputeSample];
         let volume = choices.volume.as_ref();
-        let volume = volume.map(|(volume, placed)| placed.upload(gpu, resources, NAME, volume, read)).transpose()?;
+        let volume = volume.map(|volume| volume.upload(gpu, resources, NAME, read)).transpose()?;
         let mut filled = |what: &str, bytes: &[u8]| {
             let buffer = resources.buffer(&format!("{NAME}.{what}"));
             upload::buffer(gpu, &buffer, bytes, Access::ComputeRead)?;
