@@ -394,7 +394,7 @@ impl Commands {
     fn bind_compute(&mut self, pipeline: &ComputePipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
         let point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
-        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle) };
+        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle()) };
         self.bind_set(point, &pipeline.interface, set);
         self.push(&pipeline.interface, params);
     }
@@ -417,7 +417,7 @@ impl Commands {
     ) -> Result<()> {
         // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
         unsafe {
-            self.gpu.device.cmd_bind_pipeline(self.buffer(), vk::PipelineBindPoint::GRAPHICS, pipeline.handle);
+            self.gpu.device.cmd_bind_pipeline(self.buffer(), vk::PipelineBindPoint::GRAPHICS, pipeline.handle());
         }
         self.bind(vk::PipelineBindPoint::GRAPHICS, &pipeline.interface, bound)?;
         self.push(&pipeline.interface, params);
@@ -439,7 +439,7 @@ impl Commands {
     pub fn bind_with_set(&mut self, pipeline: &GraphicsPipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
         let point = vk::PipelineBindPoint::GRAPHICS;
         // SAFETY: the buffer is being recorded; the pipeline outlives the recorded frame.
-        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle) };
+        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle()) };
         self.bind_set(point, &pipeline.interface, set);
         self.push(&pipeline.interface, params);
     }

@@ -1,6 +1,7 @@
 //! Instance, choice of device, queue, enabled features; and what every other file of this room needs of them.
 
 use super::calibration::Calibration;
+use super::pipeline_store::PipelineStore;
 use super::{probe, validation};
 use crate::caps::{Caps, Identity};
 use crate::error::{Error, Result};
@@ -45,8 +46,8 @@ pub struct Gpu {
     /// `DeviceRequest::robust`.
     pub is_robust: bool,
     pub memory: Arc<Memory>,
-    /// Pipelines that were made before: a second renderer of the same settings compiles nothing on drivers that keep them.
-    pub(super) pipelines: vk::PipelineCache,
+    /// Pipelines that were made before: a second renderer of the same settings compiles nothing.
+    pub(super) pipelines: PipelineStore,
     names: Option<ash::ext::debug_utils::Device>,
     /// None: the device has no ray queries.
     structures: Option<ash::khr::acceleration_structure::Device>,
@@ -339,9 +340,6 @@ impl Gpu {
         }
         // SAFETY: the family and index were asked for above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
-        // SAFETY: the device is alive. Without one, pipelines are only made more slowly: no reason to fail.
-        let pipelines = unsafe { device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None) };
-        let pipelines = pipelines.unwrap_or_default();
         let names = has_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device));
         let structures = caps.features.ray_query;
         let structures = structures.then(|| ash::khr::acceleration_structure::Device::new(&instance, &device));
@@ -356,7 +354,7 @@ impl Gpu {
             queue_family,
             is_robust: request.robust,
             memory,
-            pipelines,
+            pipelines: PipelineStore::default(),
             names,
             structures,
             calibration,
@@ -433,7 +431,7 @@ impl Drop for Gpu {
             // A lost device cannot be waited for, and need not be.
             let _ = self.device.device_wait_idle();
             self.memory.close();
-            self.device.destroy_pipeline_cache(self.pipelines, None);
+            self.pipelines.close(&self.device);
             self.device.destroy_device(None);
             drop(self.validation.take());
             self.instance.destroy_instance(None);

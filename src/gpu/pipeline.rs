@@ -1,15 +1,15 @@
 //! Compute and graphics pipelines from the table's entries: their layouts come from the shaders and are not written by
 //! hand.
 
+pub use super::description::{Blending, Constants, GraphicsDescription, StencilUse, VertexBuffer};
+
 use super::Gpu;
 use super::interface::Interface;
+use super::pipeline_store::{Recipe, StoredPipeline};
 use super::shader::{Shader, Side};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
-
-/// Specialization constants by name, values as bits.
-pub type Constants<'a> = &'a [(&'a str, u32)];
 
 /// A SPIR-V module that lives while a pipeline is made of it.
 struct Module<'a> {
@@ -75,9 +75,8 @@ fn assert_constants_exist(shaders: &[&Shader], constants: Constants<'_>) {
 
 /// A compute shader with its constants fixed.
 pub struct ComputePipeline {
-    gpu: Arc<Gpu>,
+    stored: Arc<StoredPipeline>,
     pub interface: Interface,
-    pub handle: vk::Pipeline,
     /// Invocations of a workgroup, after specialization.
     pub workgroup: [u32; 3],
 }
@@ -104,6 +103,12 @@ impl ComputePipeline {
             shader.label()
         );
         let interface = Interface::new(gpu, &[shader], &[])?;
+        let make = || Self::make(gpu, shader, constants, interface.layout);
+        let stored = gpu.pipelines.get(&gpu.device, Recipe::compute(shader, constants), make)?;
+        Ok(Self { stored, interface, workgroup })
+    }
+
+    fn make(gpu: &Gpu, shader: &Shader, constants: Constants<'_>, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
         let module = Module::new(gpu, shader)?;
         let specialization = Specialization::new(shader, constants);
         let specialization_info = specialization.info();
@@ -114,15 +119,19 @@ impl ComputePipeline {
             .specialization_info(&specialization_info);
         let info = vk::ComputePipelineCreateInfo::default()
             .stage(stage)
-            .layout(interface.layout)
+            .layout(layout)
             // Dispatches may go in bands.
             .flags(vk::PipelineCreateFlags::DISPATCH_BASE);
         // SAFETY: every handle is alive and every pointer outlives the call.
-        let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipelines, &[info], None) };
+        let made = unsafe { gpu.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
         let handle =
             made.map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", shader.label())))?[0];
         gpu.name(handle, &shader.label());
-        Ok(Self { gpu: gpu.clone(), interface, handle, workgroup })
+        Ok(handle)
+    }
+
+    pub fn handle(&self) -> vk::Pipeline {
+        self.stored.handle
     }
 
     /// Workgroups that cover `size` invocations.
@@ -131,126 +140,10 @@ impl ComputePipeline {
     }
 }
 
-impl Drop for ComputePipeline {
-    fn drop(&mut self) {
-        // SAFETY: the fence of the last frame that used it was waited for.
-        unsafe { self.gpu.device.destroy_pipeline(self.handle, None) };
-    }
-}
-
-/// What a graphics pipeline draws with.
-pub struct GraphicsDescription<'a> {
-    pub vertex: &'a Shader,
-    pub geometry: Option<&'a Shader>,
-    /// None: depth only.
-    pub fragment: Option<&'a Shader>,
-    pub constants: Constants<'a>,
-    /// One vertex buffer each: its stride and its attributes (location, format, offset).
-    pub vertex_buffers: &'a [VertexBuffer],
-    pub color_formats: &'a [vk::Format],
-    /// Samples a pixel of every attachment.
-    pub samples: u32,
-    pub blending: Blending,
-    pub depth_format: Option<vk::Format>,
-    pub depth_write: bool,
-    pub depth_compare: vk::CompareOp,
-    /// Depth is clamped: what lies before the near plane or beyond the far one is drawn on it instead of being clipped.
-    pub depth_clamp: bool,
-    /// Slope-scaled depth bias: added to depth, in multiples of its greatest change from a pixel to the next.
-    pub depth_slope_bias: f32,
-    /// Every pixel is drawn that a triangle touches whose edges lie this much farther out, pixels
-    /// (VK_EXT_conservative_rasterization). None: every pixel whose middle it covers.
-    pub conservative_margin_px: Option<f32>,
-    /// None: no stencil test. Reference and write mask are set by commands.
-    pub stencil: Option<StencilUse>,
-    /// Layouts of set 1 and above.
-    pub foreign_sets: &'a [vk::DescriptorSetLayout],
-}
-
-/// How fragments meet what is in the colour attachments, all of them alike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Blending {
-    Replace,
-    /// Source over destination by alpha (premultiplied); the destination's own alpha stays.
-    Over,
-    /// The same, and the destination's alpha becomes what both let through: layers that are laid over something later.
-    Layer,
-    /// Sums, in the order of the draws.
-    Add,
-    /// Nothing is written.
-    Keep,
-}
-
-impl Blending {
-    fn state(self) -> vk::PipelineColorBlendAttachmentState {
-        use vk::ColorComponentFlags as Components;
-        let target = match self {
-            Self::Replace | Self::Over | Self::Layer | Self::Keep => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-            Self::Add => vk::BlendFactor::ONE,
-        };
-        let written = match self {
-            Self::Replace | Self::Layer | Self::Add => Components::RGBA,
-            Self::Over => Components::R | Components::G | Components::B,
-            Self::Keep => Components::empty(),
-        };
-        vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(written)
-            .blend_enable(matches!(self, Self::Over | Self::Layer | Self::Add))
-            .src_color_blend_factor(vk::BlendFactor::ONE)
-            .dst_color_blend_factor(target)
-            .src_alpha_blend_factor(vk::BlendFactor::ONE)
-            .dst_alpha_blend_factor(target)
-    }
-}
-
-/// What draws do with the stencil, all eight bits of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StencilUse {
-    /// Write the reference where the draw covers.
-    Replace,
-    /// Draw only where the stencil holds the reference.
-    RequireEqual,
-    /// Count closed surfaces' faces behind what was drawn, wrapping: backs up, fronts down. Where none of their inside is,
-    /// as many of both are behind (the depth-fail test).
-    CountBehind,
-    /// Draw only where the stencil differs from the reference, and set it to 0 there.
-    TakeUnequal,
-    /// Draw only where the stencil holds the reference, and set it to 0 everywhere else.
-    LeaveUnequal,
-}
-
-impl StencilUse {
-    /// Stencil states of front faces and of back faces.
-    fn states(self) -> [vk::StencilOpState; 2] {
-        let (compare_op, pass_op) = match self {
-            Self::Replace => (vk::CompareOp::ALWAYS, vk::StencilOp::REPLACE),
-            Self::RequireEqual | Self::LeaveUnequal => (vk::CompareOp::EQUAL, vk::StencilOp::KEEP),
-            Self::CountBehind => (vk::CompareOp::ALWAYS, vk::StencilOp::KEEP),
-            Self::TakeUnequal => (vk::CompareOp::NOT_EQUAL, vk::StencilOp::ZERO),
-        };
-        let state = vk::StencilOpState { compare_op, pass_op, compare_mask: 0xff, ..vk::StencilOpState::default() };
-        let counting = |depth_fail_op| vk::StencilOpState { depth_fail_op, ..state };
-        match self {
-            Self::CountBehind => {
-                [counting(vk::StencilOp::DECREMENT_AND_WRAP), counting(vk::StencilOp::INCREMENT_AND_WRAP)]
-            }
-            Self::LeaveUnequal => [vk::StencilOpState { fail_op: vk::StencilOp::ZERO, ..state }; 2],
-            Self::Replace | Self::RequireEqual | Self::TakeUnequal => [state; 2],
-        }
-    }
-}
-
-/// Layout of one vertex buffer.
-pub struct VertexBuffer {
-    pub stride_bytes: u32,
-    pub attributes: &'static [(u32, vk::Format, u32)],
-}
-
 /// Vertex and fragment shader with their fixed state. Viewport, scissor, cull mode and front face are set by commands.
 pub struct GraphicsPipeline {
-    gpu: Arc<Gpu>,
+    stored: Arc<StoredPipeline>,
     pub interface: Interface,
-    pub handle: vk::Pipeline,
 }
 
 impl GraphicsPipeline {
@@ -260,6 +153,21 @@ impl GraphicsPipeline {
             std::iter::once(description.vertex).chain(description.geometry).chain(description.fragment).collect();
         assert_constants_exist(&shaders, description.constants);
         let interface = Interface::new(gpu, &shaders, description.foreign_sets)?;
+        let make = || Self::make(gpu, description, &shaders, &interface);
+        let stored = gpu.pipelines.get(&gpu.device, Recipe::graphics(description), make)?;
+        Ok(Self { stored, interface })
+    }
+
+    pub fn handle(&self) -> vk::Pipeline {
+        self.stored.handle
+    }
+
+    fn make(
+        gpu: &Gpu,
+        description: &GraphicsDescription<'_>,
+        shaders: &[&Shader],
+        interface: &Interface,
+    ) -> Result<vk::Pipeline> {
         let modules: Vec<Module<'_>> = shaders.iter().map(|shader| Module::new(gpu, shader)).collect::<Result<_>>()?;
         let specializations: Vec<Specialization> =
             shaders.iter().map(|shader| Specialization::new(shader, description.constants)).collect();
@@ -353,17 +261,10 @@ impl GraphicsPipeline {
             .layout(interface.layout)
             .push_next(&mut rendering);
         // SAFETY: every handle is alive and every pointer outlives the call.
-        let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipelines, &[info], None) };
+        let made = unsafe { gpu.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
         let handle =
             made.map_err(|(_, result)| Error::device(format!("creating pipeline {}: {result}", interface.label)))?[0];
         gpu.name(handle, &interface.label);
-        Ok(Self { gpu: gpu.clone(), interface, handle })
-    }
-}
-
-impl Drop for GraphicsPipeline {
-    fn drop(&mut self) {
-        // SAFETY: the fence of the last frame that used it was waited for.
-        unsafe { self.gpu.device.destroy_pipeline(self.handle, None) };
+        Ok(handle)
     }
 }
