@@ -11,7 +11,7 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::depth_prepass::FRAG_VARIANTS;
 use crate::gpu::shader::structs::DepthPrepassParams;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image, Traffic};
+use crate::gpu::{Access, Barrier, Buffer, Commands, Gpu, Image, Traffic};
 use crate::resident::{DrawList, SceneGpu};
 use ash::vk;
 use std::sync::Arc;
@@ -31,13 +31,40 @@ pub fn access(has_prepass: bool) -> Access {
     if has_prepass { Access::DepthTest } else { Access::DepthWrite }
 }
 
+/// What a depth buffer holds before the first of the passes.
+#[derive(Clone, Copy)]
+pub enum DepthBegins {
+    /// The far plane, everywhere.
+    Far,
+    /// What an earlier pass wrote as `Access::DepthWrite`: nothing is drawn where it is nearer.
+    Written,
+}
+
+impl DepthBegins {
+    fn barrier(self, depth: &Image) -> Barrier {
+        match self {
+            Self::Far => depth.discard(Access::DepthWrite),
+            Self::Written => depth.from(Access::DepthWrite).to(Access::DepthWrite),
+        }
+    }
+
+    fn clear(self) -> Option<f32> {
+        matches!(self, Self::Far).then_some(0.0)
+    }
+}
+
 /// The depth buffer as that pass attaches it, behind its barrier.
-pub fn attach<'a>(cmd: &mut Commands, depth: &'a Image, has_prepass: bool) -> (&'a Image, Option<f32>, Access) {
+pub fn attach<'a>(
+    cmd: &mut Commands,
+    depth: &'a Image,
+    begins: DepthBegins,
+    has_prepass: bool,
+) -> (&'a Image, Option<f32>, Access) {
     cmd.barriers([match has_prepass {
         true => depth.from(Access::DepthWrite).to(Access::DepthTest),
-        false => depth.discard(Access::DepthWrite),
+        false => begins.barrier(depth),
     }]);
-    (depth, (!has_prepass).then_some(0.0), access(has_prepass))
+    (depth, if has_prepass { None } else { begins.clear() }, access(has_prepass))
 }
 
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
@@ -83,7 +110,7 @@ impl DepthPrepass {
         frame: &Buffer,
         scene: &SceneGpu,
         list: &DrawList,
-        depth: &Image,
+        (depth, begins): (&Image, DepthBegins),
     ) -> Result<()> {
         let traffic = Traffic {
             read_bytes: mesh::read_bytes(scene, list.calls()),
@@ -91,8 +118,8 @@ impl DepthPrepass {
             invocations: None,
         };
         cmd.pass(&pass(technique), traffic, |cmd| {
-            cmd.barriers([depth.discard(Access::DepthWrite)]);
-            cmd.begin_rendering(depth.description.extent, &[], Some((depth, Some(0.0), Access::DepthWrite)));
+            cmd.barriers([begins.barrier(depth)]);
+            cmd.begin_rendering(depth.description.extent, &[], Some((depth, begins.clear(), Access::DepthWrite)));
             mesh::bind_streams(cmd, scene);
             if !list.opaque.is_empty() {
                 cmd.bind_graphics(&self.opaque, &[], &mesh::vertex_bound(frame, scene))?;

@@ -14,8 +14,9 @@ use crate::gpu::shader::structs::MaterialParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::lights::object_lists::ObjectLights;
+use crate::passes::depth_prepass::{self, DepthBegins};
+use crate::passes::mesh;
 use crate::passes::shadow_maps::{self, ShadowMaps};
-use crate::passes::{depth_prepass, mesh};
 use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, DrawList, SceneGpu};
 use ash::vk;
@@ -101,7 +102,7 @@ impl Material {
         cmd.pass(&self.pass, traffic, |cmd| {
             cmd.barriers([color.discard(Access::ColorWrite)]);
             cmd.barriers(lights.maps.and_then(|maps| maps.to(Access::FragmentSample)));
-            let depth = depth_prepass::attach(cmd, depth, self.has_prepass);
+            let depth = depth_prepass::attach(cmd, depth, targets.begins, self.has_prepass);
             let clear = vk::ClearColorValue { float32: self.background.extend(0.0).to_array() };
             cmd.begin_rendering(color.description.extent, &[ColorTarget::new(color, Some(clear))], Some(depth));
             mesh::bind_streams(cmd, scene);
@@ -150,5 +151,6 @@ pub struct MaterialLights<'a> {
 /// What the draws are drawn into, of one extent and `ForwardChoices::samples`.
 pub struct Targets {
     pub depth: Image,
+    pub begins: DepthBegins,
     pub drawn: Image,
 }

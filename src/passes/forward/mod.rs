@@ -201,12 +201,12 @@ impl Forward {
         scene: &SceneGpu,
         targets: &Targets,
     ) -> Result<()> {
-        let Targets { depth, drawn } = targets;
+        let Targets { depth, begins, drawn } = targets;
         if let Some(maps) = &self.maps {
             maps.record(cmd, technique, scene)?;
         }
         if let Some(prepass) = &self.depth {
-            prepass.record(cmd, technique, frame, scene, &self.list, depth)?;
+            prepass.record(cmd, technique, frame, scene, &self.list, (depth, *begins))?;
         }
         let mut lit = self.direct.bound();
         if let Some(uniform) = &self.uniform_lights {

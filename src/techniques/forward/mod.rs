@@ -35,6 +35,7 @@ use crate::gpu::shader::structs::FrameBlock;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
 use crate::lights::LightSet;
 use crate::passes::accumulate::Accumulate;
+use crate::passes::depth_prepass::DepthBegins;
 use crate::passes::forward::{self, ForwardScene, ListedLights, Targets};
 use crate::passes::resolve;
 use crate::picture::{Aov, AovChannels};
@@ -157,7 +158,11 @@ impl PreparedForward {
         Ok(Box::new(ForwardFrame {
             drawing: forward::Forward::new(gpu, resources, NAME, drawing, of, scene)?,
             accumulate: if *runs_per_side > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
-            targets: Targets { depth: resources.image(resources::DEPTH), drawn: resources.image(resources::DRAWN) },
+            targets: Targets {
+                depth: resources.image(resources::DEPTH),
+                begins: DepthBegins::Far,
+                drawn: resources.image(resources::DRAWN),
+            },
             resolved: (drawing.samples > 1).then(|| resources.image(resources::RESOLVED)),
             runs_per_side: *runs_per_side,
         }))

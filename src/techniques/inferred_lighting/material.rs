@@ -15,7 +15,7 @@ use crate::gpu::shader::structs::InferredMaterialParams;
 use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback};
-use crate::passes::depth_prepass::{self, DepthPrepass};
+use crate::passes::depth_prepass::{self, DepthBegins, DepthPrepass};
 use crate::passes::{mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
@@ -213,7 +213,7 @@ impl Material {
             invocations: None,
         };
         if let Some(prepass) = &self.prepass {
-            prepass.record(cmd, NAME, frame, scene, &self.solid, &self.depth)?;
+            prepass.record(cmd, NAME, frame, scene, &self.solid, (&self.depth, DepthBegins::Far))?;
         }
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
             cmd.barriers([self.rejections.discard(Access::TransferWrite)]);
@@ -224,7 +224,7 @@ impl Material {
                 guides.dsf.to(Access::FragmentSample),
                 drawn.discard(Access::ColorWrite),
             ]);
-            let depth = depth_prepass::attach(cmd, &self.depth, self.prepass.is_some());
+            let depth = depth_prepass::attach(cmd, &self.depth, DepthBegins::Far, self.prepass.is_some());
             if self.filter.kind.reads_normals() {
                 cmd.barriers([guides.normals.to(Access::FragmentSample)]);
             }

@@ -1,6 +1,6 @@
 //! What the settings come to.
 
-use super::members::Members;
+use super::members::{Drawing, Members};
 use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
 use crate::frame::{LensPlace, Placement};
@@ -133,6 +133,22 @@ fn basis(values: &Values, frame: Extent) -> Result<Basis> {
     made.map_err(|error| error.within(NAME))
 }
 
+/// The members of the settings.
+///
+/// Errors: as of `basis`; a way to draw them that the basis has not (exit code 2).
+fn members(values: &Values, frame: Extent) -> Result<Members> {
+    let (basis, drawing) = (basis(values, frame)?, values.choice("members"));
+    if drawing == Drawing::Tuples && basis.sides.iter().any(|side| side.whole_px().is_none()) {
+        let text = values.text("basis");
+        let why =
+            format!("--members tuples with --basis {text}: a member's samples lie elsewhere in pixel after pixel");
+        return Err(Error::request(why)
+            .within(NAME)
+            .note("sides of whole pixels have each in one place, and --members layers and stipple draw any"));
+    }
+    Ok(Members::new(basis, frame, drawing))
+}
+
 /// The choices that the settings make.
 pub struct Choices {
     pub drawing: ForwardChoices,
@@ -173,7 +189,7 @@ impl Choices {
         };
         let soft = if Effect::SoftShadow.is_chosen(values) { Some(SoftLights::new(inputs)?) } else { None };
         let mut choices = Self {
-            members: Members::new(basis(values, inputs.view.extent)?, inputs.view.extent),
+            members: members(values, inputs.view.extent)?,
             lens,
             drawing: ForwardChoices::new(
                 NAME,

@@ -1,84 +1,130 @@
-//! Combine: the samples of a member into the pixels that they lie in (section 3.1). Shader: combine.comp.
+//! Combine: the samples of a member into the pixels that they lie in (section 3.1). Shaders: combine.comp, and with `--members
+//! stipple` combine.frag.
 //! reads   the member's picture      writes  combine.sums  buffer, 16 B a pixel, kept from member to member
 //!
-//! Why this way: the paper draws a polygon over the whole frame for each member, behind a mask of its pixels. A thread for
-//! each sample touches those pixels alone, in the same order; and no two samples of a member lie in one pixel, unless a side
-//! of the basis is shorter than a pixel, which is refused.
+//! Why two ways: the paper draws a polygon over the whole frame for each member, behind a mask of its pixels. A thread for each
+//! sample touches those pixels alone, in the same order. No two samples of a member lie in one pixel, unless a side of the basis
+//! is shorter than a pixel, which is refused.
 
+use super::members::{Drawing, Members};
+use super::resources::{DRAWN, NAME, SUMS};
+use super::table::Table;
 use crate::error::Result;
-use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::shader::structs::CombineParams;
-use crate::gpu::shader::techniques::interleaved_sampling::combine::COMP;
-use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic, upload};
+use crate::gpu::pipeline::{ComputePipeline, GraphicsPipeline};
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::techniques::interleaved_sampling::combine::{COMP_VARIANTS, FRAG};
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
+use crate::passes::fullscreen;
 use crate::plan::{Plan, Resources};
-use crate::techniques::interleaved_sampling::members::Members;
-use crate::techniques::interleaved_sampling::resources::{DRAWN, MEMBERS, NAME, SUMS};
 use crate::units::Extent;
+use ash::vk;
 use std::sync::Arc;
 
 /// Four floats.
 const SUM_BYTES: u64 = 16;
 const TEXEL_BYTES: u64 = 16;
 
-/// Plans what it reads and writes.
-pub fn plan(plan: &mut Plan, members: &Members, frame: Extent) {
-    plan.buffer("combine", MEMBERS, 4 * members.table().len() as u64);
+/// Plans what it writes.
+pub fn plan(plan: &mut Plan, frame: Extent) {
     plan.buffer("combine", SUMS, frame.pixel_count() * SUM_BYTES);
 }
 
 /// The pass, after those that draw a member.
-pub fn plan_pass(plan: &mut Plan) {
-    plan.pass(format!("{NAME}.combine"), [(DRAWN.to_owned(), Access::ComputeRead)]);
+pub fn plan_pass(plan: &mut Plan, drawing: Drawing) {
+    plan.pass(format!("{NAME}.combine"), [(DRAWN.to_owned(), reads(drawing))]);
+}
+
+/// How the pass reads a member's picture.
+pub fn reads(drawing: Drawing) -> Access {
+    match drawing {
+        Drawing::Layers | Drawing::Tuples => Access::ComputeRead,
+        Drawing::Stipple => Access::FragmentSample,
+    }
+}
+
+/// How a member's picture is used.
+pub fn usage(drawing: Drawing) -> vk::ImageUsageFlags {
+    match drawing {
+        Drawing::Layers | Drawing::Tuples => vk::ImageUsageFlags::STORAGE,
+        Drawing::Stipple => vk::ImageUsageFlags::SAMPLED,
+    }
+}
+
+enum Way {
+    Scattered(ComputePipeline),
+    Stippled { polygon: GraphicsPipeline, sampler: Sampler },
 }
 
 pub struct Combine {
-    pipeline: ComputePipeline,
-    params: CombineParams,
-    members: Buffer,
-    pub sums: Buffer,
+    way: Way,
+    frame: Extent,
+    sums: Buffer,
 }
 
 impl Combine {
-    /// Fills the planned table.
-    ///
-    /// Errors: the driver refuses, memory for the upload (exit code 4).
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, members: &Members) -> Result<Self> {
-        let table = resources.buffer(MEMBERS);
-        upload::buffer(gpu, &table, bytemuck::cast_slice(&members.table()), Access::ComputeRead)?;
-        let (layer, [x, y]) = (members.layer(), members.basis().sides);
-        let params = CombineParams {
-            period_x_px: x.pixels,
-            period_y_px: y.pixels,
-            bases_x: x.bases,
-            bases_y: y.bases,
-            layer_width: layer.width,
-            layer_height: layer.height,
-            firsts_at: members.firsts_at(),
+    /// Errors: the driver refuses (exit code 4).
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, members: &Members, frame: Extent) -> Result<Self> {
+        let scattered = |picture| -> Result<Way> {
+            Ok(Way::Scattered(ComputePipeline::new(gpu, variant(COMP_VARIANTS, &[picture]), &[])?))
         };
-        let sums = resources.buffer(SUMS);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, &COMP, &[])?, params, members: table, sums })
+        let way = match members.drawing() {
+            Drawing::Layers => scattered("grid")?,
+            Drawing::Tuples => scattered("frame")?,
+            Drawing::Stipple => Way::Stippled {
+                polygon: GraphicsPipeline::new(gpu, &fullscreen::description(&FRAG, &[]))?,
+                sampler: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            },
+        };
+        Ok(Self { way, frame, sums: resources.buffer(SUMS) })
     }
 
-    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, drawn: Edge<'_, Image>) -> Result<()> {
-        let CombineParams { layer_width, layer_height, .. } = self.params;
-        let samples = u64::from(layer_width) * u64::from(layer_height);
+    /// The sums as the pass leaves them.
+    pub fn sums(&self) -> Edge<'_, Buffer> {
+        self.sums.from(match self.way {
+            Way::Scattered(_) => Access::ComputeWrite,
+            Way::Stippled { .. } => Access::FragmentWrite,
+        })
+    }
+
+    /// Errors: the driver has no more room for sets (exit code 4).
+    pub fn record(&self, cmd: &mut Commands, frame: &Buffer, table: &Table, drawn: Edge<'_, Image>) -> Result<()> {
+        let [across, down] = [table.params.grid_width, table.params.grid_height];
+        let samples = u64::from(across) * u64::from(down);
+        let invocations = match self.way {
+            Way::Scattered(_) => samples,
+            Way::Stippled { .. } => self.frame.pixel_count(),
+        };
         let traffic = Traffic {
             read_bytes: samples * (TEXEL_BYTES + SUM_BYTES),
             written_bytes: samples * SUM_BYTES,
-            invocations: Some(samples),
+            invocations: Some(invocations),
         };
-        cmd.pass(&format!("{NAME}.combine"), traffic, |cmd| {
-            // The run before ended with its fence: nothing of this one has touched the sums.
-            cmd.barriers([drawn.to(Access::ComputeRead)]);
-            cmd.barriers([self.sums.from(Access::ComputeRead).to(Access::ComputeWrite)]);
-            let bound = [
-                ("Frame", Bound::Buffer(frame)),
-                ("Members", Bound::Buffer(&self.members)),
-                ("Sums", Bound::Buffer(&self.sums)),
-                ("drawn", Bound::Storage(drawn.resource)),
-            ];
-            let groups = self.pipeline.groups([layer_width, layer_height, 1]);
-            cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&self.params), &bound, groups)
+        let params = bytemuck::bytes_of(&table.params);
+        let shared = [
+            ("Frame", Bound::Buffer(frame)),
+            ("Members", Bound::Buffer(&table.buffer)),
+            ("Sums", Bound::Buffer(&self.sums)),
+        ];
+        cmd.pass(&format!("{NAME}.combine"), traffic, |cmd| match &self.way {
+            Way::Scattered(pipeline) => {
+                // The run before ended with a read: nothing of this one has touched the sums.
+                cmd.barriers([drawn.to(Access::ComputeRead)]);
+                cmd.barriers([self.sums.from(Access::ComputeRead).to(Access::ComputeWrite)]);
+                let bound = [&shared[..], &[("drawn", Bound::Storage(drawn.resource))]].concat();
+                cmd.dispatch(pipeline, params, &bound, pipeline.groups([across, down, 1]))
+            }
+            Way::Stippled { polygon, sampler } => {
+                cmd.barriers([drawn.to(Access::FragmentSample)]);
+                cmd.barriers([self.sums.from(Access::ComputeRead).to(Access::FragmentWrite)]);
+                cmd.begin_rendering(self.frame, &[], None);
+                let sampled = Bound::Sampled(drawn.resource, sampler.handle, Access::FragmentSample);
+                let bound = [&shared[..], &[("drawn", sampled)]].concat();
+                cmd.bind_graphics(polygon, params, &bound)?;
+                fullscreen::draw(cmd, 0);
+                cmd.end_rendering();
+                Ok(())
+            }
         })
     }
 }

@@ -1,6 +1,7 @@
 //! The members of a basis: its samples, each of which is a regular grid over the frame and drawn as a picture of its own
 //! (Keller and Heidrich 2001, section 2.1).
 
+use crate::choice::choices;
 use crate::frame::Placement;
 use crate::sampling::basis::Basis;
 use crate::sampling::side::Side;
@@ -8,18 +9,31 @@ use crate::units::Extent;
 use glam::Vec2;
 use std::collections::VecDeque;
 
-/// Where the samples of members lie in a frame.
+choices! {
+    /// How members are drawn and come to their pixels (`--members`).
+    pub enum Drawing {
+        /// Each as a small picture, whose samples are scattered.
+        "layers" => Layers,
+        /// Each as a small picture, a texture of a polygon over the frame, which a stipple pattern masks (section 3.1).
+        "stipple" => Stipple,
+        /// Each over the whole frame, whose other pixels are masked: rasterised once a member, as deep shading is once a tuple.
+        "tuples" => Tuples,
+    }
+}
+
+/// Where the samples of members lie in a frame, and in the pictures that members are drawn into.
 pub struct Members {
     basis: Basis,
     frame: Extent,
+    drawing: Drawing,
     /// The first of the members that have a sample in each pixel of a period, row by row; `u32::MAX` where none has.
     firsts: Vec<u32>,
     sources: Option<Vec<u32>>,
 }
 
 impl Members {
-    pub fn new(basis: Basis, frame: Extent) -> Self {
-        let mut members = Self { basis, frame, firsts: Vec::new(), sources: None };
+    pub fn new(basis: Basis, frame: Extent, drawing: Drawing) -> Self {
+        let mut members = Self { basis, frame, drawing, firsts: Vec::new(), sources: None };
         members.firsts = members.firsts_of_pixels();
         members.sources = members.nearest_sources();
         members
@@ -33,8 +47,24 @@ impl Members {
         self.basis.member_count()
     }
 
-    /// Texels of a member's picture, one for each of its samples that a frame may have.
-    pub fn layer(&self) -> Extent {
+    pub fn frame(&self) -> Extent {
+        self.frame
+    }
+
+    pub fn drawing(&self) -> Drawing {
+        self.drawing
+    }
+
+    /// Texels of what a member is drawn into.
+    pub fn picture(&self) -> Extent {
+        match self.drawing {
+            Drawing::Layers | Drawing::Stipple => self.grid(),
+            Drawing::Tuples => self.frame,
+        }
+    }
+
+    /// A member's samples across and down, as many as a frame may have.
+    pub fn grid(&self) -> Extent {
         // A side of P / B pixels has B samples in every P pixels.
         let samples =
             |pixels: u32, side: Side| (u64::from(pixels) * u64::from(side.bases)).div_ceil(side.pixels.into());
@@ -42,31 +72,34 @@ impl Members {
         Extent::new(samples(self.frame.width, x) as u32, samples(self.frame.height, y) as u32)
     }
 
-    /// Pixels between neighbouring samples of a member, across and down. Where there is but one it stands as near to the next as
-    /// a pixel: drivers move corners by parts of what lies between two samples (1/256 on many, 1/16 at worst).
+    /// Pixels between neighbouring texels of a member's picture, across and down. Where there is but one it stands as near to
+    /// the next as a pixel: drivers move corners by parts of what lies between two texels (1/256 on many, 1/16 at worst).
     pub fn spacing_px(&self) -> [f64; 2] {
-        let layer = self.layer();
+        let grid = self.grid();
         let [across, down] = self.basis.sides.map(Side::length_px);
-        [if layer.width == 1 { 1.0 } else { across }, if layer.height == 1 { 1.0 } else { down }]
+        let is_whole = self.drawing == Drawing::Tuples;
+        let spacing = |samples: u32, apart: f64| if is_whole || samples == 1 { 1.0 } else { apart };
+        [spacing(grid.width, across), spacing(grid.height, down)]
     }
 
-    /// How the frame lies in a member's picture: its samples in the middles of the texels.
+    /// How the frame lies in a member's picture: its samples in the middles of texels.
     pub fn placement(&self, member: u32) -> Placement {
-        let (layer, place) = (self.layer(), self.basis.place_px(member));
+        let (picture, place) = (self.picture(), self.basis.place_px(member));
+        // Over the whole frame a texel is a pixel, the first of which has a place as its pixel's has.
+        let place = if self.drawing == Drawing::Tuples { place.map(f64::fract) } else { place };
         let axis = |pixels: u32, texels: u32, spacing: f64, place: f64| {
             let (pixels, texels) = (f64::from(pixels), f64::from(texels));
             let scale = pixels / (spacing * texels);
             [scale, 2.0 * ((0.5 * pixels - place) / spacing + 0.5) / texels - 1.0]
         };
         let [across, down] = self.spacing_px();
-        let x = axis(self.frame.width, layer.width, across, place[0]);
-        let y = axis(self.frame.height, layer.height, down, place[1]);
+        let x = axis(self.frame.width, picture.width, across, place[0]);
+        let y = axis(self.frame.height, picture.height, down, place[1]);
         Placement { scale: Vec2::new(x[0] as f32, y[0] as f32), shift: Vec2::new(x[1] as f32, y[1] as f32) }
     }
 
-    /// The pixel that sample `index` of a member along an axis lies in: the twin of combine.comp.
-    #[cfg(test)]
-    fn pixel(&self, member: u32, axis: usize, index: u32) -> u32 {
+    /// The pixel that sample `index` of a member along an axis lies in: the twin of members.glsl.
+    pub fn pixel(&self, member: u32, axis: usize, index: u32) -> u32 {
         let Side { pixels, bases } = self.basis.sides[axis];
         index / bases * pixels + self.first_pixels(member, axis)[(index % bases) as usize]
     }
@@ -78,7 +111,7 @@ impl Members {
         (0..side.bases).map(|base| (at(base).floor() as u32).min(side.pixels - 1)).collect()
     }
 
-    /// What combine.comp reads: of each member the pixels of its first samples, across and then down (`bases` of both sides a
+    /// What members.glsl reads: of each member the pixels of its first samples, across and then down (`bases` of both sides a
     /// member); behind them, from `firsts_at` on, the first member of each pixel of a period.
     pub fn table(&self) -> Vec<u32> {
         let of_member = |member| [0, 1].into_iter().flat_map(move |axis| self.first_pixels(member, axis));
@@ -144,11 +177,16 @@ impl Members {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choice::Choice;
     use crate::sampling::sampler::{Places, Sampler};
     use proptest::prelude::*;
 
     fn members(sides: [Side; 2], samples: f64, frame: Extent) -> Members {
-        Members::new(Basis::new(sides, &[], samples, Sampler::Random, Places::Spread, 5).unwrap(), frame)
+        drawn(sides, samples, frame, Drawing::Layers)
+    }
+
+    fn drawn(sides: [Side; 2], samples: f64, frame: Extent, drawing: Drawing) -> Members {
+        Members::new(Basis::new(sides, &[], samples, Sampler::Random, Places::Spread, 5).unwrap(), frame, drawing)
     }
 
     proptest! {
@@ -157,20 +195,24 @@ mod tests {
         #[test]
         fn texels_are_samples_of_the_pattern(
             sides in prop::array::uniform2((1u32..12, 1u32..4)), samples in 0.4f64..5.0, width in 1u32..40, height in 1u32..40,
+            is_whole: bool,
         ) {
-            let sides = sides.map(|(pixels, bases)| Side::new(pixels, bases));
-            let members = members(sides, samples, Extent::new(width, height));
+            // Over the whole frame a member's samples lie in one place of their pixels.
+            let sides = sides.map(|(pixels, bases)| Side::new(pixels, if is_whole { 1 } else { bases }));
+            let drawing = if is_whole { Drawing::Tuples } else { Drawing::Layers };
+            let members = drawn(sides, samples, Extent::new(width, height), drawing);
             let pattern = members.basis().pattern();
-            let (layer, mut found) = (members.layer(), vec![Vec::new(); (width * height) as usize]);
+            let (grid, layer, mut found) = (members.grid(), members.picture(), vec![Vec::new(); (width * height) as usize]);
             for member in 0..members.count() {
                 let Placement { scale, shift } = members.placement(member);
-                for (x, y) in (0..layer.height).flat_map(|y| (0..layer.width).map(move |x| (x, y))) {
+                for (x, y) in (0..grid.height).flat_map(|y| (0..grid.width).map(move |x| (x, y))) {
+                    let pixel = [members.pixel(member, 0, x), members.pixel(member, 1, y)];
+                    let texel = if is_whole { pixel } else { [x, y] };
                     let ndc = Vec2::new(
-                        2.0 * (x as f32 + 0.5) / layer.width as f32 - 1.0,
-                        2.0 * (y as f32 + 0.5) / layer.height as f32 - 1.0,
+                        2.0 * (texel[0] as f32 + 0.5) / layer.width as f32 - 1.0,
+                        2.0 * (texel[1] as f32 + 0.5) / layer.height as f32 - 1.0,
                     );
                     let at = ((ndc - shift) / scale + 1.0) * 0.5 * Vec2::new(width as f32, height as f32);
-                    let pixel = [members.pixel(member, 0, x), members.pixel(member, 1, y)];
                     let inside = at - Vec2::new(pixel[0] as f32, pixel[1] as f32);
                     prop_assert!((-1e-3..1.001).contains(&inside.x) && (-1e-3..1.001).contains(&inside.y), "{:?}", inside);
                     if pixel[0] < width && pixel[1] < height {
@@ -213,11 +255,10 @@ mod tests {
     fn a_single_member_is_drawn_as_any_picture() {
         let frame = Extent::new(7, 5);
         let alone = members([Side::new(1, 1); 2], 1.0, frame);
-        assert_eq!(alone.layer(), frame);
-        let alone = Members::new(
-            Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, Places::Spread, 5).unwrap(),
-            frame,
-        );
-        assert_eq!(alone.placement(0), Placement::WHOLE);
+        assert_eq!(alone.picture(), frame);
+        let basis = || Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, Places::Spread, 5).unwrap();
+        for drawing in Drawing::ALL {
+            assert_eq!(Members::new(basis(), frame, *drawing).placement(0), Placement::WHOLE);
+        }
     }
 }

@@ -6,12 +6,12 @@
 //! basis of one pixel that is the accumulation buffer, whose samples are the same in every pixel; with a basis as large as
 //! the frame no two pixels have the same; `--basis` is the way from one to the other.
 //!
-//! A run is a member: moment (on the host, where members differ in more than their place), shadow_maps (with `--direct-shadow
-//! map`), depth, material, blend (where the scene has BLEND surfaces), slices (with `--effect volume`), combine, mean.
+//! A run is a member: moment (on the host, where members differ in more than their place), mask (with `--members tuples`),
+//! shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces), slices (with `--effect volume`), combine, mean.
 //!
 //! Differences from the paper
-//! - a member's samples are scattered to their pixels by a compute pass (section 3.1 draws a polygon over the frame behind
-//!   a mask); the result is the same
+//! - a member's samples are scattered to their pixels by a compute pass, unless `--members stipple` asks for the polygon over
+//!   the frame behind a mask (section 3.1), which is a pattern in a shader; the result is the same
 //! - textures are read at the level of the frame's pixels, not of a member's, whose samples lie farther apart
 //! - a pixel without a sample shows the nearest one that has some
 //! - what moves does so along straight lines from where it is when the shutter opens (section 3.2 leaves it to the application)
@@ -24,9 +24,11 @@
 //! seen from, at which moment, under which places of its lights), so one recorded run serves all of them, and memory is that of
 //! one.
 
+mod aov;
 mod bench_stages;
 mod choices;
 mod combine;
+mod mask;
 mod mean;
 mod members;
 mod moment;
@@ -36,6 +38,7 @@ mod resources;
 mod settings;
 mod slices;
 mod soft;
+mod table;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
@@ -44,24 +47,25 @@ use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::shader::structs::FrameBlock;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
+use crate::passes::depth_prepass::DepthBegins;
 use crate::passes::forward::{self, Forward, ForwardScene, ListedLights, Targets};
-use crate::picture::{Aov, AovChannels};
+use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
 use crate::settings::{FORWARD, GeometryChoice, LIGHT_LISTS, SHADOW_MAPS, Setting, VOLUME_PLACE, Values};
 use choices::{Choices, Effect};
 use combine::Combine;
+use mask::Mask;
 use mean::Mean;
+use members::Drawing;
 use moment::Moment;
 use resources::NAME;
 use slices::Slices;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Samples of each pixel.
-const SAMPLES_STAGE: &str = "combine.sums.samples";
+use table::Table;
 
 pub struct InterleavedSampling;
 
@@ -83,7 +87,7 @@ impl Technique for InterleavedSampling {
     }
 
     fn aovs(&self) -> &'static [&'static str] {
-        &[SAMPLES_STAGE]
+        aov::ALL
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
@@ -161,7 +165,7 @@ impl Prepared for PreparedInterleaved {
         let mut counters = self.listed.counters();
         counters.extend([
             ("members", f64::from(members.count())),
-            ("samples_per_member", members.layer().pixel_count() as f64),
+            ("samples_per_member", members.grid().pixel_count() as f64),
             ("samples_per_pixel_least", f64::from(least)),
             ("samples_per_pixel_most", f64::from(most)),
         ]);
@@ -187,7 +191,7 @@ impl PreparedInterleaved {
         resources: &mut Resources,
     ) -> Result<Box<dyn Frame>> {
         let Self { choices, listed } = self;
-        let raster = Raster { extent: choices.members.layer(), coverage: Coverage::Anywhere };
+        let raster = Raster { extent: choices.members.picture(), coverage: Coverage::Anywhere };
         // What one place of the lens, or one moment, does not see another may.
         let is_other = choices.lens.is_some() || choices.exposure.is_some();
         let geometry = if is_other { GeometryChoice::All } else { inputs.values.choice("geometry") };
@@ -202,10 +206,17 @@ impl PreparedInterleaved {
             pixels_per_texel: choices.members.spacing_px().map(|spacing| spacing as f32),
         };
         let slices = choices.slices.as_ref();
+        let is_masked = choices.members.drawing() == Drawing::Tuples;
         Ok(Box::new(InterleavedFrame {
             drawing: Forward::new(gpu, resources, NAME, &choices.drawing, of, scene)?,
-            targets: Targets { depth: resources.image(resources::DEPTH), drawn: resources.image(resources::DRAWN) },
-            combine: Combine::new(gpu, resources, &choices.members)?,
+            targets: Targets {
+                depth: resources.image(resources::DEPTH),
+                begins: if is_masked { DepthBegins::Written } else { DepthBegins::Far },
+                drawn: resources.image(resources::DRAWN),
+            },
+            table: Table::new(gpu, resources, &choices.members)?,
+            mask: is_masked.then(|| Mask::new(gpu)).transpose()?,
+            combine: Combine::new(gpu, resources, &choices.members, inputs.view.extent)?,
             mean: Mean::new(gpu, resources, &choices.members)?,
             moment: Moment::new(gpu, inputs, scene, resources, &choices),
             slices: slices.map(|slices| Slices::new(gpu, resources, slices, &choices.members)).transpose()?,
@@ -217,6 +228,9 @@ impl PreparedInterleaved {
 struct InterleavedFrame {
     drawing: Forward,
     targets: Targets,
+    table: Table,
+    /// With `--members tuples`.
+    mask: Option<Mask>,
     combine: Combine,
     mean: Mean,
     /// What members see where it is not the same for all.
@@ -228,13 +242,16 @@ struct InterleavedFrame {
 impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let scene = self.moment.as_ref().and_then(Moment::scene).unwrap_or(scene);
+        if let Some(mask) = &self.mask {
+            mask.record(cmd, frame, &self.table, &self.targets.depth)?;
+        }
         self.drawing.record(cmd, NAME, frame, scene, &self.targets)?;
         if let Some(slices) = &self.slices {
-            let Targets { depth, drawn } = &self.targets;
+            let Targets { depth, drawn, .. } = &self.targets;
             slices.record(cmd, frame, depth.from(self.drawing.depth_access()), drawn.from(Access::ColorWrite))?;
         }
-        self.combine.record(cmd, frame, self.targets.drawn.from(Access::ColorWrite))?;
-        self.mean.record(cmd, frame, self.combine.sums.from(Access::ComputeWrite))
+        self.combine.record(cmd, frame, &self.table, self.targets.drawn.from(Access::ColorWrite))?;
+        self.mean.record(cmd, frame, self.combine.sums())
     }
 
     fn once(&self) -> Vec<(String, u64)> {
@@ -278,12 +295,11 @@ impl Frame for InterleavedFrame {
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        let bytes = readback::buffer(gpu, &self.combine.sums, self.combine.sums.bytes, Access::ComputeRead)?;
-        let sums: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
-        // Sums of pixels without a sample were never written.
-        let sources = self.choices.members.sources();
-        let has = |pixel: usize| sources.is_none_or(|sources| sources[pixel] == pixel as u32);
-        let counts = sums.iter().enumerate().map(|(pixel, sum)| if has(pixel) { sum[3] as u32 } else { 0 });
-        Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(counts.collect()) })
+        let members = &self.choices.members;
+        match name {
+            aov::SAMPLES => aov::samples(gpu, members, self.combine.sums().resource),
+            aov::MEMBER => aov::member(gpu, members, &self.targets.drawn),
+            _ => unreachable!("{NAME} has no stage {name}"),
+        }
     }
 }

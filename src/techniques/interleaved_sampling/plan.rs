@@ -1,7 +1,8 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
 use super::choices::Choices;
-use super::{combine, mean, moment};
+use super::members::Drawing;
+use super::{combine, mask, mean, moment, table};
 use crate::error::Result;
 use crate::passes::forward::ListedLights;
 use crate::passes::{depth_prepass, forward};
@@ -13,23 +14,31 @@ use ash::vk::ImageUsageFlags as Usage;
 /// Resources and passes of a run, which is a member.
 pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Result<Plan> {
     let Choices { drawing, members, slices, .. } = choices;
-    let (frame, layer) = (inputs.view.extent, members.layer());
+    let (frame, picture, drawing_of) = (inputs.view.extent, members.picture(), members.drawing());
     let mut plan = Plan::default();
     forward::plan(&mut plan, NAME, drawing, listed, (inputs.bvh, inputs.scene))?;
-    plan.image("depth", DEPTH, layer, depth_prepass::FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
-    plan.image("color", DRAWN, layer, PICTURE_FORMAT, Usage::COLOR_ATTACHMENT | Usage::STORAGE);
+    plan.image("depth", DEPTH, picture, depth_prepass::FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
+    plan.image(
+        "color",
+        DRAWN,
+        picture,
+        PICTURE_FORMAT,
+        Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC | combine::usage(drawing_of),
+    );
     moment::plan(&mut plan, choices, inputs);
-    combine::plan(&mut plan, members, frame);
+    table::plan(&mut plan, members);
+    combine::plan(&mut plan, frame);
     if let Some(slices) = slices {
         slices.plan(&mut plan, members);
+    }
+    if drawing_of == Drawing::Tuples {
+        mask::plan_pass(&mut plan);
     }
     forward::plan_passes(&mut plan, NAME, drawing, inputs.stats.has_blend, [DEPTH, DRAWN]);
     if let Some(slices) = slices {
         slices.plan_pass(&mut plan);
     }
-    combine::plan_pass(&mut plan);
+    combine::plan_pass(&mut plan, drawing_of);
     mean::plan(&mut plan, members, frame);
-    // Counted after the frame.
-    plan.read_back(super::resources::SUMS);
     Ok(plan)
 }

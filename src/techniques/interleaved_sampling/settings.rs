@@ -1,6 +1,7 @@
 //! The settings that only this technique reads.
 
 use super::choices::Effect;
+use super::members::Drawing;
 use super::slices::{PictureDepth, Summation};
 use crate::sampling::sampler::Sampler;
 use crate::settings::{
@@ -48,6 +49,16 @@ pub const SETTINGS: &[Setting] = &[
                sequence; r2, the generalised golden ratio's; jittered, one in each of equal cells; random; and for whole \
                pixels ign, turned by interleaved gradient noise; void-and-cluster, by blue noise masks; blue-errors, \
                Sobol's with errors that differ between neighbours",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "members",
+        kind: Kind::Choice(Drawing::WORDS),
+        default: "layers",
+        paper: "Keller 2001, 3.1",
+        help: "How members are drawn, the same samples: layers, each as a small picture whose samples are scattered to their \
+               pixels; stipple, each as a small picture that textures a polygon over the frame behind a stipple pattern (the \
+               paper's); tuples, each over the whole frame with the pixels of others masked (whole sides of the basis)",
         ..Setting::changing(Changes::Samples)
     },
     Setting { unread: |values| unless(values, Effect::Volume, "--effect volume", "volumes are not drawn"), ..VOLUME },

@@ -119,9 +119,9 @@ impl SliceChoices {
         self.placed.plan(plan, NAME);
         plan.buffer("combine", OFFSETS, 4 * u64::from(members.count()));
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED;
-        plan.image("color", LAYER, members.layer(), self.depth.format(), usage);
+        plan.image("color", LAYER, members.picture(), self.depth.format(), usage);
         if self.summation == Summation::Hierarchical {
-            plan.image("color", GROUP, members.layer(), self.depth.format(), usage);
+            plan.image("color", GROUP, members.picture(), self.depth.format(), usage);
         }
     }
 
@@ -178,8 +178,8 @@ impl Slices {
             over_surfaces: Over::new(gpu, PICTURE_FORMAT, Blending::Over)?,
             params: SlicesParams {
                 plane_count: choices.planes,
-                layer_width: members.layer().width,
-                layer_height: members.layer().height,
+                layer_width: members.picture().width,
+                layer_height: members.picture().height,
             },
             planes_of_group: choices.planes_of_group(),
         })

@@ -13,6 +13,7 @@ use quincunx::techniques::patterns;
 use quincunx::units::Extent;
 use std::time::{Duration, Instant};
 
+mod drawings;
 mod effects;
 mod volume;
 
@@ -60,8 +61,12 @@ fn pixels_are_the_means_of_their_samples() {
     let watched = Watched::with_scene(card(extent, sides));
     let mut partly = 0;
     let sizes = [("1x1", "4"), ("2x2", "4"), ("3x2", "2.5"), ("2.5x1.75", "3"), ("4x3", "0.5"), ("frame", "1")];
-    for sampler in Sampler::ALL {
+    let drawn = [(Sampler::Relaxed, "stipple"), (Sampler::Relaxed, "tuples")];
+    for (sampler, members) in Sampler::ALL.iter().map(|sampler| (*sampler, "layers")).chain(drawn) {
         for (basis, samples) in sizes {
+            if members == "tuples" && basis.contains('.') {
+                continue;
+            }
             // What counts by pixels has a whole number for each.
             let is_whole = !basis.contains('.') && !samples.contains('.');
             if sampler.counts_by_pixels() && !is_whole {
@@ -72,6 +77,7 @@ fn pixels_are_the_means_of_their_samples() {
                 ("basis", basis),
                 ("samples", samples),
                 ("sampler", sampler.name()),
+                ("members", members),
                 ("background", "0"),
                 ("rig", "none"),
             ];
@@ -151,6 +157,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("basis", "2x2.125")], "at most two decimal places"),
         (&[("basis", "0.5x2")], "from 1 to 16384 pixels"),
         (&[("basis", "frame"), ("size", "640x360")], "921600 members"),
+        (&[("members", "tuples"), ("basis", "2.5x2")], "--members tuples with --basis 2.5x2: a member's samples lie"),
         (&[("sampler", "ign"), ("basis", "2.5x2")], "--sampler ign: it gives every pixel the same number"),
         (&[("sampler", "blue-errors"), ("samples", "0.5")], "--sampler blue-errors"),
         (&[("effect", "defocus")], "--effect defocus with --aperture 0"),

@@ -1,0 +1,79 @@
+//! Ways to draw members (`--members`): the same samples, and how much each of them shades (section 3.1).
+
+use super::NAME;
+use crate::support::difference::{require_same, rmse};
+use crate::support::moving::moving;
+use crate::support::watched::{Watched, both};
+use quincunx::volume::{self, VolumeRequest};
+use std::sync::Arc;
+
+/// A polygon behind a stipple pattern lets through what is scattered, to the bit: with several samples a pixel and none, with
+/// sides that are no whole pixels, and whatever members differ in. A member over the whole frame has its samples in the same
+/// places, from where corners are snapped to parts of a pixel instead of parts of a basis, and numbers round otherwise.
+#[test]
+fn all_ways_take_the_same_samples() {
+    let still = |name| moving(name, [0.0; 2]);
+    let head = volume::open(&VolumeRequest { spec: "head:size=32", raw_size: None, seed: 1 });
+    let head = Arc::new(head.unwrap());
+    let basis = |basis, samples| [("basis", basis), ("samples", samples)];
+    for (scene, changes, bound) in [
+        (still("cornell"), both(&basis("2x2", "4"), &[("direct-shadow", "ray")]), 0.2),
+        (still("cornell"), both(&basis("2.5x1.75", "3"), &[]), 0.0),
+        (still("fence"), both(&basis("3x2", "0.5"), &[]), 0.02),
+        (
+            moving("chess:triangles=12000", [0.0, 0.6]),
+            both(&basis("2x3", "1"), &[("effect", "aa,motion"), ("shutter", "0,0.6")]),
+            0.02,
+        ),
+        (still("specimen:rod=on").holding(&head), both(&basis("2x2", "1"), &[("effect", "volume")]), 0.002),
+    ] {
+        let name = scene.name.clone();
+        let watched = Watched::with_scene(scene);
+        let shared = both(&changes, &[("size", "61x47")]);
+        let picture = |members| watched.picture(NAME, &both(&shared, &[("members", members)]));
+        let layers = picture("layers");
+        require_same(&watched.session.gpu, &picture("stipple"), &layers, &name);
+        if bound > 0.0 {
+            let tuples = picture("tuples");
+            // Samples of neighbours would be as far off as one pixel's picture is from the next one's.
+            let mut shifted = layers.clone();
+            shifted.pixels.rotate_right(1);
+            let (error, other) = (rmse(&tuples, &layers), rmse(&shifted, &layers));
+            println!("{name}: RMSE {error}, {other} a pixel beside");
+            assert!(error < bound && error < 0.25 * other, "{name}: {error}, {other}");
+        }
+    }
+}
+
+/// Pixels of other members are masked before they are shaded: over the whole frame nothing is drawn but where a member has its
+/// samples, and what it has there is what its own small picture has.
+#[test]
+fn pixels_of_other_members_are_not_drawn() {
+    let watched = Watched::open("cornell");
+    let member = |members: &str| {
+        let own = [
+            ("size", "62x46"),
+            ("basis", "4x3"),
+            ("samples", "0.5"),
+            ("background", "0.25"),
+            ("ambient", "0.3"),
+            ("members", members),
+        ];
+        let renderer = watched.render_stages(NAME, &own, &["material.color"]);
+        watched.rgb(&renderer, "material.color")
+    };
+    let [layers, stipple, tuples] = ["layers", "stipple", "tuples"].map(member);
+    assert_eq!(layers, stipple);
+    let (mut own, mut far) = (0, 0);
+    for (layer, tuple) in layers.iter().zip(&tuples) {
+        match *layer {
+            [0.0, 0.0, 0.0] => assert_eq!(*tuple, [0.25; 3]),
+            _ => {
+                own += 1;
+                far += u32::from((0..3).any(|channel| (layer[channel] - tuple[channel]).abs() > 0.02));
+            }
+        }
+    }
+    // One of twelve pixels, of which a few lie on edges.
+    assert!((225..=256).contains(&own) && far < own / 20, "{own}, {far}");
+}
