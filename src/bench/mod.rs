@@ -13,6 +13,8 @@ pub mod group;
 pub mod head;
 pub mod machine;
 pub mod pareto;
+pub mod rates;
+pub mod rates_plot;
 pub mod rays;
 pub mod reference;
 pub mod rounds;

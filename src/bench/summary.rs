@@ -3,6 +3,8 @@
 use super::best::{self, Best};
 use super::machine::BUSY_SHARE;
 use super::pareto;
+use super::rates::{self, Rate};
+use super::rates_plot;
 use super::row::BenchRow;
 use super::stats::LEAST_PAIRS;
 use super::sweep::Axis;
@@ -22,6 +24,8 @@ pub struct Summary {
     what: What,
     rows: Vec<BenchRow>,
     best: Vec<Best>,
+    /// How fast errors fall with the setting of `--rate`.
+    rates: Option<(String, Vec<Rate>)>,
     command: Vec<String>,
 }
 
@@ -31,13 +35,19 @@ impl Summary {
         pareto::mark(&mut rows);
         // What another stage's sweeps tell is no choice of this one's.
         let best = what.tuned().map_or_else(Vec::new, |key| best::best(key, axes, &rows));
-        Self { what, rows, best, command: command.to_vec() }
+        Self { what, rows, best, rates: None, command: command.to_vec() }
+    }
+
+    /// With how fast errors fall with `key`, one of the axes.
+    pub fn with_rates(mut self, key: &str, axes: &[Axis]) -> Self {
+        self.rates = Some((key.to_owned(), rates::rates(key, axes, &self.rows)));
+        self
     }
 
     pub fn json(&self) -> Value {
         let first = &self.rows[0];
         let errors = if first.reference.is_none() { "error_against_none.rmse" } else { "errors.rmse" };
-        json!({
+        let mut document = json!({
             "schema": 1,
             "bench": self.what.name(),
             "command": self.command,
@@ -50,7 +60,21 @@ impl Summary {
             "pareto_of": ["ratio.mean", errors],
             "rows": self.rows,
             "best_blocks": self.best,
-        })
+        });
+        if let Some((key, rates)) = &self.rates {
+            let rate = |rate: &Rate| {
+                let by_name = |values: [Value; 2]| rates::MEASURES.into_iter().map(str::to_owned).zip(values).collect();
+                let points = rate.points.iter().map(|point| {
+                    let mut at: serde_json::Map<String, Value> = by_name(point.errors.map(Value::from));
+                    at.insert("value".to_owned(), point.value.into());
+                    Value::Object(at)
+                });
+                let exponents: serde_json::Map<String, Value> = by_name(rate.exponents.map(Value::from));
+                json!({ "of": rate.of, "exponents": exponents, "points": points.collect::<Vec<_>>() })
+            };
+            document["rates"] = json!({ "by": key, "of": rates.iter().map(rate).collect::<Vec<_>>() });
+        }
+        document
     }
 
     /// What a terminal shows.
@@ -59,6 +83,9 @@ impl Summary {
         for line in self.notes() {
             text.push_str(&line);
             text.push('\n');
+        }
+        if let Some((key, rates)) = &self.rates {
+            text.push_str(&format!("\n{}", rates::markdown(key, rates)));
         }
         text
     }
@@ -74,15 +101,20 @@ impl Summary {
         for line in notes {
             text.push_str(&format!("- {line}\n"));
         }
+        if let Some((key, rates)) = &self.rates {
+            text.push_str(&format!("\n{}", rates::markdown(key, rates)));
+        }
         text
     }
 
-    /// Writes `summary.json` and `summary.md`.
+    /// Writes `summary.json` and `summary.md`, and where there are rates `rates.svg`.
     ///
     /// Errors: they cannot be written (exit code 2).
     pub fn write(&self, folder: &Path) -> Result<()> {
         write_whole(&folder.join("summary.json"), |out| writeln!(out, "{:#}", self.json()))?;
-        write_whole(&folder.join("summary.md"), |out| out.write_all(self.markdown().as_bytes()))
+        write_whole(&folder.join("summary.md"), |out| out.write_all(self.markdown().as_bytes()))?;
+        let Some((key, rates)) = &self.rates else { return Ok(()) };
+        write_whole(&folder.join("rates.svg"), |out| out.write_all(rates_plot::svg(key, rates).as_bytes()))
     }
 
     fn place(&self) -> String {

@@ -4,6 +4,7 @@ use super::listed::TechniqueSelection;
 use super::output;
 use super::{frames_args, job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
+use crate::bench::rates;
 use crate::bench::row::BenchRow;
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
@@ -88,6 +89,13 @@ fn sub_command(what: What) -> Command {
                 .default_value("5")
                 .help("Number of rounds, each of which measures every combination of a group once; intervals need three"),
         )
+        .arg(
+            Arg::new("rate")
+                .long("rate")
+                .value_name("KEY")
+                .help("Say how fast errors fall with KEY, whose numbers are swept: errors and fitted exponents for each \
+                       combination of the other axes, and with -o a plot, rates.svg"),
+        )
         .arg(Arg::new("fair").long("fair").action(ArgAction::SetTrue).help(
             "Shade the same number of texels a thread in all rows: one, or --texels; rows that cannot are skipped. Without \
              this flag each row shades as many as suit it best, up to 32 where threads share a list of lights and 1 where \
@@ -117,6 +125,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
     let axes = sweep::axes(&sweeps)?;
     axes.iter().try_for_each(|axis| require_known(&axis.key))?;
+    let rate = matches.get_one::<String>("rate").map(|key| rates::axis(key, &axes)).transpose()?;
     let folder = matches.get_one::<PathBuf>("output");
     let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
     let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
@@ -133,7 +142,10 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     };
     let found = run::run(&request, file.as_mut(), &mut Rounds { json, stage: None, pace: Pace::default() })?;
     if !found.rows.is_empty() {
-        let summary = Summary::new(what, &axes, found.rows, argv);
+        let mut summary = Summary::new(what, &axes, found.rows, argv);
+        if let Some(axis) = rate {
+            summary = summary.with_rates(&axis.key, &axes);
+        }
         if let Some(folder) = folder {
             summary.write(folder)?;
         }

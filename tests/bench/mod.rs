@@ -1,6 +1,7 @@
 //! `bench` from outside: rows with their keys, what is skipped, what is resumed. Never how long anything takes.
 
 mod frames;
+mod rates;
 mod rays;
 mod rows;
 mod stages;

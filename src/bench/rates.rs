@@ -1,0 +1,179 @@
+//! How fast errors fall with one setting of a sweep, such as the number of samples: straight lines through their logarithms, for
+//! each combination of the others.
+
+use super::row::BenchRow;
+use super::sweep::Axis;
+use crate::error::{Error, Result};
+use crate::metrics::Metrics;
+
+/// The errors that have rates.
+pub const MEASURES: [&str; 2] = ["rmse", "flip"];
+
+/// Errors of one combination of the other axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rate {
+    /// That combination; empty where there is no other axis.
+    pub of: String,
+    /// By their values.
+    pub points: Vec<RatePoint>,
+    /// Exponents by the names of `MEASURES`: an error grows as the value to this power, -0.5 for independent samples. None
+    /// where fewer than two points have an error above 0.
+    pub exponents: [Option<f64>; 2],
+}
+
+/// Errors at one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RatePoint {
+    pub value: f64,
+    /// By the names of `MEASURES`.
+    pub errors: [f64; 2],
+}
+
+/// The axis of `--rate KEY`.
+///
+/// Errors: `key` is not swept, or not over two numbers above 0 at least (exit code 2).
+pub fn axis<'a>(key: &str, axes: &'a [Axis]) -> Result<&'a Axis> {
+    let axis = axes.iter().find(|axis| axis.key == key).ok_or_else(|| {
+        Error::request(format!("--rate {key}: there is no --sweep {key}=")).note(format!("--sweep {key}=1,4,16 is one"))
+    })?;
+    match axis.values.iter().find(|value| number(value).is_none()) {
+        Some(value) => Err(Error::request(format!("--rate {key}: --sweep has {value}, which is no number above 0"))),
+        None if axis.values.len() < 2 => {
+            Err(Error::request(format!("--rate {key}: a line wants two values at least, and --sweep has one")))
+        }
+        None => Ok(axis),
+    }
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
+}
+
+/// For each combination of the other axes: its errors by the values of `key`, where they are known, and the exponents.
+pub fn rates(key: &str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Rate> {
+    let mut rates: Vec<Rate> = Vec::new();
+    for row in rows.iter().filter(|row| row.was_measured()) {
+        let others = axes.iter().filter(|axis| axis.key != key);
+        let of: Vec<String> = others.map(|axis| format!("{}={}", axis.key, row.asked_text(&axis.key))).collect();
+        let of = of.join(" ");
+        let Some((value, errors)) = number(&row.asked_text(key)).zip(row.best_known_errors()) else { continue };
+        let point = RatePoint { value, errors: MEASURES.map(|name| measure(errors, name)) };
+        match rates.iter_mut().find(|rate| rate.of == of) {
+            Some(rate) => rate.points.push(point),
+            None => rates.push(Rate { of, points: vec![point], exponents: [None; 2] }),
+        }
+    }
+    for rate in &mut rates {
+        rate.points.sort_by(|a, b| a.value.total_cmp(&b.value));
+        rate.exponents = [0, 1].map(|index| {
+            exponent(&rate.points.iter().map(|point| (point.value, point.errors[index])).collect::<Vec<_>>())
+        });
+    }
+    rates
+}
+
+fn measure(errors: &Metrics, name: &str) -> f64 {
+    if name == "rmse" { errors.rmse } else { errors.flip }
+}
+
+/// The slope of the straight line through logarithms, by least squares; points at 0 are passed over.
+fn exponent(points: &[(f64, f64)]) -> Option<f64> {
+    let logs: Vec<(f64, f64)> = points
+        .iter()
+        .filter(|(value, error)| *value > 0.0 && *error > 0.0 && error.is_finite())
+        .map(|(value, error)| (value.ln(), error.ln()))
+        .collect();
+    let count = logs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
+    let [x, y] = [mean(|log| log.0), mean(|log| log.1)];
+    let spread: f64 = logs.iter().map(|log| (log.0 - x).powi(2)).sum();
+    let together: f64 = logs.iter().map(|log| (log.0 - x) * (log.1 - y)).sum();
+    (spread > 0.0).then(|| together / spread)
+}
+
+/// A Markdown table of the rates: errors at each value, and the exponents.
+pub fn markdown(key: &str, rates: &[Rate]) -> String {
+    let mut values: Vec<f64> = rates.iter().flat_map(|rate| rate.points.iter().map(|point| point.value)).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let mut text = format!("| errors by {key} |");
+    for name in MEASURES {
+        values.iter().for_each(|value| text.push_str(&format!(" {name} at {value} |")));
+        text.push_str(" exponent |");
+    }
+    text.push_str(&format!("\n|{}\n", " --- |".repeat(1 + MEASURES.len() * (values.len() + 1))));
+    for rate in rates {
+        text.push_str(&format!("| {} |", if rate.of.is_empty() { "all" } else { &rate.of }));
+        for index in 0..MEASURES.len() {
+            for value in &values {
+                let point = rate.points.iter().find(|point| point.value == *value);
+                text.push_str(&point.map_or_else(|| " |".to_owned(), |point| format!(" {:.4} |", point.errors[index])));
+            }
+            let exponent = rate.exponents[index].map_or_else(String::new, |exponent| format!("{exponent:.2}"));
+            text.push_str(&format!(" {exponent} |"));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::sweep::axes;
+    use crate::settings::written::{SettingValue, WrittenSettings};
+
+    fn row(sampler: &str, samples: &str, rmse: f64, flip: f64) -> BenchRow {
+        let texts: WrittenSettings = [("sampler", sampler), ("samples", samples)]
+            .iter()
+            .map(|(key, text)| ((*key).to_owned(), SettingValue::Text((*text).to_owned())))
+            .collect();
+        BenchRow {
+            asked: Some(texts),
+            error_against_none: Some(Metrics { rmse, flip, ..Metrics::EQUAL }),
+            ..BenchRow::default()
+        }
+    }
+
+    /// Errors of a known power have that exponent; what is 0, unknown or skipped has no part in it.
+    #[test]
+    fn exponents_are_those_of_the_powers() {
+        let sweep = axes(&["sampler=a,b".to_owned(), "samples=1,4,16".to_owned()]).unwrap();
+        let mut rows = Vec::new();
+        for samples in ["1", "4", "16"] {
+            let count: f64 = samples.parse().unwrap();
+            rows.push(row("a", samples, 0.3 * count.powf(-0.5), 2.0 * count.powf(-0.75)));
+            rows.push(row("b", samples, if samples == "1" { 0.0 } else { count.powi(-1) }, 0.0));
+        }
+        rows.push(BenchRow { skipped: Some("impossible".to_owned()), ..row("b", "4", 9.0, 9.0) });
+        let found = rates("samples", &sweep, &rows);
+        assert_eq!(found.iter().map(|rate| rate.of.as_str()).collect::<Vec<_>>(), ["sampler=a", "sampler=b"]);
+        let near = |exponent: Option<f64>, wanted: f64| (exponent.unwrap() - wanted).abs() < 1e-9;
+        assert!(near(found[0].exponents[0], -0.5) && near(found[0].exponents[1], -0.75), "{found:?}");
+        assert!(near(found[1].exponents[0], -1.0) && found[1].exponents[1].is_none(), "{found:?}");
+        assert_eq!(found[1].points.len(), 3);
+        let text = markdown("samples", &found);
+        assert!(
+            text.contains("| sampler=a | 0.3000 | 0.1500 | 0.0750 | -0.50 | 2.0000 | 0.7071 | 0.2500 | -0.75 |"),
+            "{text}"
+        );
+        assert_eq!(
+            text.lines().next().unwrap().matches('|').count(),
+            text.lines().nth(1).unwrap().matches('|').count()
+        );
+    }
+
+    #[test]
+    fn an_axis_without_numbers_has_no_rate() {
+        let sweep = axes(&["samples=1,4".to_owned(), "sampler=a,b".to_owned(), "seed=1".to_owned()]).unwrap();
+        assert_eq!(axis("samples", &sweep).unwrap().key, "samples");
+        for (key, words) in [
+            ("planes", "no --sweep planes="),
+            ("sampler", "a, which is no number above 0"),
+            ("seed", "two values at least"),
+        ] {
+            let error = axis(key, &sweep).unwrap_err();
+            assert!(error.exit_code() == 2 && error.message().contains(words), "{error}");
+        }
+    }
+}
