@@ -9,6 +9,13 @@ use crate::selftest::judge::Must;
 /// Bars around a volume, and a rod within it.
 const SPECIMEN: Place = Place::Scene("specimen:rod=on");
 
+const VOLUME: (&str, &str) = ("volume", "marschner-lobb:size=16");
+const HEAT: (&str, &str) = ("transfer", "heat");
+
+/// Men that move, under spots.
+const MOVING: Place = Place::Scene("chess:triangles=12000");
+const EXPOSED: (&str, &str) = ("shutter", "0,0.6");
+
 const TRACED: Bounds = Bounds {
     apart: 0.5,
     rmse: 0.05,
@@ -21,8 +28,24 @@ const MARCHED: Bounds = Bounds {
     apart: 0.5,
     rmse: 0.04,
     flip: 0.05,
-    mean: 0.02,
+    mean: 0.03,
     why: "120 planes and a fine march, and 8 bits that round at each of them",
+};
+
+const SNAPPED: Bounds = Bounds {
+    apart: 0.1,
+    rmse: 0.05,
+    flip: 0.03,
+    mean: 0.004,
+    why: "the same samples, but corners are snapped to parts of a pixel in one and parts of a basis in the other",
+};
+
+const BLURRED: Bounds = Bounds {
+    apart: 0.6,
+    rmse: 0.06,
+    flip: 0.12,
+    mean: 0.03,
+    why: "64 paths a pixel and 64 members, whose few moments or places of a lamp are seen as steps",
 };
 
 pub const GROUPS: &[Group] = &[
@@ -100,13 +123,76 @@ pub const GROUPS: &[Group] = &[
         must: Must::Near(TRACED),
     },
     Group {
+        name: "stipple",
+        technique: "interleaved_sampling",
+        place: LAMPS,
+        common: &[("basis", "2.5x2"), ("samples", "2")],
+        twin: Twin::Method(&[("members", "layers")]),
+        methods: &[&[("members", "stipple")]],
+        must: SAME,
+    },
+    Group {
+        name: "tuples",
+        technique: "interleaved_sampling",
+        place: LAMPS,
+        common: &[("basis", "3x2"), ("samples", "2")],
+        twin: Twin::Method(&[("members", "layers")]),
+        methods: &[&[("members", "tuples")]],
+        must: Must::Near(SNAPPED),
+    },
+    Group {
+        name: "motion",
+        technique: "interleaved_sampling",
+        place: MOVING,
+        common: &[("effect", "aa,motion"), ("samples", "16"), ("direct-shadow", "ray"), EXPOSED, ("brdf", "lambert")],
+        twin: Twin::Other(
+            "path_traced",
+            &[
+                ("brdf", "lambert"),
+                ("transport", "direct"),
+                ("emissive", "off"),
+                ("ambient-visibility", "off"),
+                ("light-visibility", "on"),
+                ("spp", "64"),
+                EXPOSED,
+            ],
+        ),
+        methods: &[&[], &[("direct-shadow", "map"), ("shadow-map-size", "256")]],
+        must: Must::Near(BLURRED),
+    },
+    Group {
+        name: "soft-shadow",
+        technique: "interleaved_sampling",
+        place: LAMPS,
+        common: &[
+            ("effect", "aa,soft-shadow"),
+            ("samples", "16"),
+            ("direct-shadow", "ray"),
+            ("light-radius", "0.4"),
+            ("brdf", "lambert"),
+        ],
+        twin: Twin::Other(
+            "path_traced",
+            &[
+                ("brdf", "lambert"),
+                ("transport", "direct"),
+                ("light-radius", "0.4"),
+                ("ambient-visibility", "off"),
+                ("light-visibility", "on"),
+                ("spp", "64"),
+            ],
+        ),
+        methods: &[&[], &[("direct-shadow", "map"), ("shadow-map-size", "256")]],
+        must: Must::Near(BLURRED),
+    },
+    Group {
         name: "volume",
         technique: "interleaved_sampling",
         place: SPECIMEN,
         common: &[
             ("effect", "volume"),
-            ("volume", "marschner-lobb:size=16"),
-            ("transfer", "heat"),
+            VOLUME,
+            HEAT,
             ("planes", "120"),
             ("samples", "1"),
             ("direct-shadow", "ray"),
@@ -121,6 +207,8 @@ pub const GROUPS: &[Group] = &[
                 ("ambient-visibility", "off"),
                 ("pixel", "middle"),
                 ("spp", "1"),
+                VOLUME,
+                HEAT,
             ],
         ),
         methods: &[&[], &[("depth", "half")], &[("depth", "8")], &[("summation", "hierarchical")]],
