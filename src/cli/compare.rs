@@ -60,6 +60,9 @@ fn path_arg(name: &'static str, value_name: &'static str) -> Arg {
     Arg::new(name).value_name(value_name).value_parser(value_parser!(PathBuf))
 }
 
+/// Frequencies below this are slow: what one sees as moire and as steps, and not as grain.
+const LOW_CYCLES_PER_PX: f64 = 0.125;
+
 /// Compares, writes the difference picture, prints, and only then fails on the first failed gate.
 pub fn run(matches: &ArgMatches) -> Result<()> {
     let output = outcome(matches)?;
@@ -184,8 +187,12 @@ impl Seen<'_> {
                 writeln!(text, "{line}").expect("a string takes any text");
             }
         }
-        if let Some(ErrorSpectrum { mean, variance, .. }) = self.spectrum {
-            writeln!(text, "spectrum of A - B: mean {mean:.3e}, kept apart; variance {variance:.3e}")
+        if let Some(ErrorSpectrum { mean, variance, periodogram }) = self.spectrum {
+            let low = periodogram.energy_below(LOW_CYCLES_PER_PX);
+            writeln!(
+                text,
+                "spectrum of A - B: mean {mean:.3e}, kept apart; variance {variance:.3e}, {low:.3e} of it below 1/8 cycle a pixel"
+            )
                 .expect("a string takes any text");
         }
         for gate in self.gates {
@@ -213,7 +220,8 @@ impl Seen<'_> {
         }
         if let Some(ErrorSpectrum { mean, variance, periodogram }) = self.spectrum {
             let rings = spectrum::rings(periodogram);
-            document["spectrum"] = json!({ "mean": mean, "variance": variance, "rings": rings });
+            let low = periodogram.energy_below(LOW_CYCLES_PER_PX);
+            document["spectrum"] = json!({ "mean": mean, "variance": variance, "low_energy": low, "rings": rings });
         }
         format!("{document}\n")
     }
@@ -383,6 +391,8 @@ mod tests {
         let spectrum = &serde_json::from_str::<serde_json::Value>(&text).unwrap()["spectrum"];
         assert!((spectrum["mean"].as_f64().unwrap() - 0.25).abs() < 1e-6, "{spectrum}");
         assert!((spectrum["variance"].as_f64().unwrap() - 0.005).abs() < 1e-6, "{spectrum}");
+        // A wave of a quarter cycle a pixel is not slow.
+        assert!(spectrum["low_energy"].as_f64().unwrap() < 1e-9, "{spectrum}");
         let rings = spectrum["rings"].as_array().unwrap();
         let loud: Vec<_> = rings.iter().filter(|ring| ring["power"].as_f64().unwrap() > 1e-6).collect();
         assert_eq!((loud.len(), &loud[0]["cycles_per_px"]), (1, &json!(0.25)), "{spectrum}");
@@ -400,7 +410,7 @@ mod tests {
         assert!(code(7, 3) == code(7, 9) && code(7, 3) > 0.95 && code(8, 3) == 0.0);
         assert!(std::fs::read_to_string(plot).unwrap().contains("wave.exr - "));
         let text = compare(folder.path(), "wave.exr", "flat.exr", &["--spectrum", &path("s.png")]).unwrap().text;
-        assert!(text.contains("spectrum of A - B: mean 2.500e-1, kept apart; variance 5.000e-3\n"), "{text}");
+        assert!(text.contains("spectrum of A - B: mean 2.500e-1, kept apart; variance 5.000e-3, "), "{text}");
         assert!(compare(folder.path(), "a.exr", "a.exr", &["--spectrum", &path("same.png")]).is_ok());
     }
 

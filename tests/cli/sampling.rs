@@ -62,6 +62,8 @@ fn inspect_says_what_a_pattern_holds() {
         "schema": 1, "name": "grid", "technique": "interleaved_deferred", "settings": {"pattern": "8x6"},
         "period_px": [8, 6], "samples": 48, "samples_per_pixel": {"least": 1, "most": 1}, "dimensions": ["x", "y"],
         "subsets": 48, "least_distance_px": 1.0, "least_subset_distance_px": 6.0,
+        // Samples in the middles of pixels cannot tell a cycle a pixel from an even grey.
+        "pixel_frequency": { "across": 1.0, "down": 1.0 },
     });
     assert_eq!(grid, expected);
     let tuples = program.run(&["sampling", "inspect", "tuples:spp=4,tuples=64", "--json"]).fine().json();

@@ -7,6 +7,7 @@ use crate::cli::spectrum::{self, Spectrum};
 use crate::error::{Error, Result};
 use crate::job::require_folder;
 use crate::picture::image_file;
+use crate::sampling::periodogram::pixel_frequency;
 use crate::techniques::patterns::ChosenPattern;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::{Map, Value, json};
@@ -81,6 +82,7 @@ fn document(chosen: &ChosenPattern) -> Value {
     let setting = |key: &&str| ((*key).to_owned(), Value::from(chosen.values.text(key)));
     let settings: Map<String, Value> = chosen.named.keys.iter().map(setting).collect();
     let [least, most] = pattern.samples_per_pixel();
+    let [across, down] = pixel_frequency(pattern);
     json!({
         "schema": 1,
         "name": chosen.named.name,
@@ -93,6 +95,7 @@ fn document(chosen: &ChosenPattern) -> Value {
         "subsets": pattern.subset_count(),
         "least_distance_px": pattern.least_distance_px(),
         "least_subset_distance_px": pattern.least_subset_distance_px(),
+        "pixel_frequency": { "across": across, "down": down },
     })
 }
 
@@ -113,5 +116,11 @@ fn describe(text: &mut String, chosen: &ChosenPattern) -> std::fmt::Result {
     if let (Some(all), Some(subset)) = (pattern.least_distance_px(), pattern.least_subset_distance_px()) {
         writeln!(text, "   least distance: {all:.4} px, between samples of one subset {subset:.4} px")?;
     }
-    Ok(())
+    let [across, down] = pixel_frequency(pattern).map(|part| 100.0 * part);
+    let independent = 100.0 / pattern.samples().len() as f64;
+    writeln!(
+        text,
+        "   moire of the pixel frequency: {across:.2} % of its energy across, {down:.2} % down; independent samples have \
+         {independent:.2} %"
+    )
 }

@@ -40,6 +40,21 @@ fn waves(place: f64, most: u32) -> Vec<[f64; 2]> {
     (0..=most).map(wave).collect()
 }
 
+/// The part of a signal's energy that comes out as an even grey where the signal has the pixel frequency, one cycle a pixel across
+/// or down: |sum over samples of exp(-2 pi i p)|^2 / N^2, 1 / N on average for N independent samples of a period. Signals a
+/// little finer or coarser come out as moire of so much energy; 0 without samples.
+pub fn pixel_frequency(pattern: &Pattern) -> [f64; 2] {
+    let samples = pattern.samples();
+    [0, 1].map(|axis| {
+        let sum = samples.iter().fold([0.0, 0.0], |[real, imaginary], sample| {
+            let (sin, cos) = (TAU * f64::from(sample.place_px[axis])).sin_cos();
+            [real + cos, imaginary + sin]
+        });
+        let count = samples.len().max(1) as f64;
+        (sum[0] * sum[0] + sum[1] * sum[1]) / (count * count)
+    })
+}
+
 fn product([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
     [a * c - b * d, a * d + b * c]
 }
@@ -96,6 +111,19 @@ impl Periodogram {
     /// Row by row from the lowest frequency of both axes on; 0 is in the middle.
     pub fn powers(&self) -> &[f32] {
         &self.powers
+    }
+
+    /// Of a raster: energy of all frequencies but 0 that lie less than `cycles_per_px` from it. All together have the variance.
+    pub fn energy_below(&self, cycles_per_px: f64) -> f64 {
+        let values = f64::from(self.period_px[0]) * f64::from(self.period_px[1]);
+        let is_low = |index: usize| {
+            let at = [index as u32 % self.size[0], index as u32 / self.size[0]];
+            let [across, down] = [0, 1]
+                .map(|axis| (f64::from(at[axis]) - f64::from(self.reach[axis])) / f64::from(self.period_px[axis]));
+            at != self.reach && across.hypot(down) < cycles_per_px
+        };
+        let powers = self.powers.iter().enumerate().filter(|(index, _)| is_low(*index));
+        powers.map(|(_, power)| f64::from(*power)).sum::<f64>() / values
     }
 
     /// The power at a frequency in cycles a period, each within the reach.
@@ -199,6 +227,10 @@ mod tests {
                 let expected = (real * real + imaginary * imaginary) / pattern.samples().len() as f64;
                 prop_assert!((f64::from(found.power([u, v])) - expected).abs() < 1e-5 * expected.max(1.0), "{u} {v}");
                 prop_assert_eq!(found.power([u, v]), found.power([-u, -v]));
+            }
+            let count = pattern.samples().len() as f64;
+            for (part, power) in pixel_frequency(&pattern).into_iter().zip([found.power([3, 0]), found.power([0, 1])]) {
+                prop_assert!((part - f64::from(power) / count).abs() < 1e-6);
             }
         }
     }

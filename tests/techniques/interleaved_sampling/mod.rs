@@ -13,6 +13,7 @@ use quincunx::techniques::patterns;
 use quincunx::units::Extent;
 use std::time::{Duration, Instant};
 
+mod aliasing;
 mod drawings;
 mod effects;
 mod volume;
