@@ -109,6 +109,8 @@ impl Technique for InterleavedSampling {
 
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let mut settings = straight_light(values, lights, 0)?;
+        // As members read them: with the finest, errors would end at what levels of the frame's pixels blur.
+        settings.push(("texture-level", "cone".to_owned()));
         if Effect::SoftShadow.is_chosen(values) {
             let is_lit = emissive_lights(values, lights);
             settings.retain(|(key, _)| !["emissive", "light-visibility"].contains(key));
