@@ -109,6 +109,7 @@ impl StencilUse {
 }
 
 /// Layout of one vertex buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct VertexBuffer {
     pub stride_bytes: u32,
     pub attributes: &'static [(u32, vk::Format, u32)],

@@ -6,7 +6,7 @@
 //! A pipeline outlives the layout that it was made with (maintenance4); layouts that other renderers make of the same shaders
 //! are defined alike, and sets of the one fit the other.
 
-use super::description::{Blending, Constants, GraphicsDescription, StencilUse};
+use super::description::{Blending, Constants, GraphicsDescription, StencilUse, VertexBuffer};
 use super::shader::Shader;
 use crate::error::Result;
 use ash::vk;
@@ -28,7 +28,7 @@ pub(super) struct Recipe {
 /// What stages alone do not say of a graphics pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Drawn {
-    vertex_buffers: Vec<(u32, &'static [(u32, vk::Format, u32)])>,
+    vertex_buffers: Vec<VertexBuffer>,
     color_formats: Vec<vk::Format>,
     samples: u32,
     blending: Blending,
@@ -77,7 +77,7 @@ impl Recipe {
         } = *description;
         let stages = [Some(vertex), geometry, fragment].into_iter().flatten();
         let drawn = Drawn {
-            vertex_buffers: vertex_buffers.iter().map(|buffer| (buffer.stride_bytes, buffer.attributes)).collect(),
+            vertex_buffers: vertex_buffers.to_vec(),
             color_formats: color_formats.to_vec(),
             samples,
             blending,

@@ -113,7 +113,7 @@ impl Periodogram {
         &self.powers
     }
 
-    /// Of a raster: energy of all frequencies but 0 that lie less than `cycles_per_px` from it. All together have the variance.
+    /// Energy of a raster's frequencies that lie less than `cycles_per_px` from 0, without 0 itself. All together have the variance.
     pub fn energy_below(&self, cycles_per_px: f64) -> f64 {
         let values = f64::from(self.period_px[0]) * f64::from(self.period_px[1]);
         let is_low = |index: usize| {
