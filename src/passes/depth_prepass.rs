@@ -7,7 +7,7 @@
 
 use super::mesh;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, Constants, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::depth_prepass::FRAG_VARIANTS;
 use crate::gpu::shader::structs::DepthPrepassParams;
 use crate::gpu::shader::variant;
@@ -75,15 +75,18 @@ pub struct DepthPrepass {
 }
 
 impl DepthPrepass {
-    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, samples: u32) -> Result<Self> {
-        let pipeline = |fragment| {
+    /// `levels`: constants of the levels of textures, as the pass with the materials has them: holes are then where it has them.
+    ///
+    /// Errors: the driver refuses (exit code 4).
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, samples: u32, levels: Constants<'_>) -> Result<Self> {
+        let pipeline = |fragment, constants| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
                     fragment,
-                    constants: &[],
+                    constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[],
                     samples,
@@ -100,7 +103,7 @@ impl DepthPrepass {
             )
         };
         let mask = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene)]);
-        Ok(Self { opaque: pipeline(None)?, mask: pipeline(Some(mask))? })
+        Ok(Self { opaque: pipeline(None, &[])?, mask: pipeline(Some(mask), levels)? })
     }
 
     pub fn record(

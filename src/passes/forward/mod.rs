@@ -175,7 +175,7 @@ impl Forward {
             list: of.list,
             maps,
             maps_once: maps_once.flatten(),
-            depth: if choices.has_prepass { Some(DepthPrepass::new(gpu, scene, samples)?) } else { None },
+            depth: choices.has_prepass.then(|| DepthPrepass::new(gpu, scene, samples, &steps)).transpose()?,
             material: Material::new(
                 gpu,
                 technique,

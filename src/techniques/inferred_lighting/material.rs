@@ -163,7 +163,7 @@ impl Material {
             )
         };
         Ok(Self {
-            prepass: filter.has_prepass.then(|| DepthPrepass::new(gpu, scene, filter.samples)).transpose()?,
+            prepass: filter.has_prepass.then(|| DepthPrepass::new(gpu, scene, filter.samples, &[])).transpose()?,
             opaque: pipeline("opaque")?,
             mask: pipeline("mask")?,
             blend: pipeline("blend")?,

@@ -45,6 +45,17 @@ fn all_ways_take_the_same_samples() {
     }
 }
 
+/// The pass of depths reads holes at the level of the frame's pixels too: at that of a member's, which lie farther apart, thin wire
+/// is all hole and disappears.
+#[test]
+fn holes_are_where_materials_have_them() {
+    let watched = Watched::open("fence:alpha=mask,lights=8");
+    let own = [("size", "160x90"), ("basis", "2x2"), ("samples", "1")];
+    let [with, without] =
+        ["on", "off"].map(|prepass| watched.picture(NAME, &both(&own, &[("depth-prepass", prepass)])));
+    require_same(&watched.session.gpu, &with, &without, &"holes of a wire");
+}
+
 /// Pixels of other members are masked before they are shaded: over the whole frame nothing is drawn but where a member has its
 /// samples, and what it has there is what its own small picture has.
 #[test]
