@@ -78,6 +78,7 @@ pub mod session;
 pub mod settings;
 pub mod shading;
 pub mod study;
+pub mod svg;
 pub mod techniques;
 pub mod units;
 pub mod volume;

@@ -1,6 +1,7 @@
 //! A plot of errors by a setting's values: a panel a measure, a line a combination, both axes by powers.
 
 use super::rates::{MEASURES, Rate};
+use crate::svg;
 use std::fmt::Write;
 
 const LEFT: f64 = 72.0;
@@ -23,10 +24,6 @@ pub fn svg(key: &str, rates: &[Rate]) -> String {
     text
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;")
-}
-
 fn stroke(index: usize) -> String {
     let dash = DASHES[index / COLORS.len() % DASHES.len()];
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\" fill=\"none\"", COLORS[index % COLORS.len()])
@@ -35,18 +32,14 @@ fn stroke(index: usize) -> String {
 fn write(text: &mut String, key: &str, rates: &[Rate]) -> std::fmt::Result {
     let names = rates.len().div_ceil(NAMES_ACROSS) as f64 * NAME;
     let (width, height) = (LEFT + ACROSS + 24.0, TOP + MEASURES.len() as f64 * PANEL + names);
-    writeln!(
-        text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
-         font-size=\"12\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>"
-    )?;
+    svg::begin(text, [width, height])?;
     for (index, measure) in MEASURES.iter().enumerate() {
         panel(text, TOP + index as f64 * PANEL, [measure, key], index, rates)?;
     }
     for (index, rate) in rates.iter().enumerate() {
         let x = LEFT + (index % NAMES_ACROSS) as f64 * (ACROSS / NAMES_ACROSS as f64);
         let y = TOP + MEASURES.len() as f64 * PANEL + (index / NAMES_ACROSS) as f64 * NAME;
-        let (name, stroke) = (escaped(&rate.of), stroke(index));
+        let (name, stroke) = (svg::escaped(&rate.of), stroke(index));
         writeln!(text, "<path d=\"M{x} {}h24\" {stroke}/><text x=\"{}\" y=\"{y}\">{name}</text>", y - 4.0, x + 30.0)?;
     }
     writeln!(text, "</svg>")
@@ -88,7 +81,12 @@ fn panel(text: &mut String, top: f64, [measure, key]: [&str; 2], index: usize, r
         )?;
     }
     let middle = LEFT + ACROSS / 2.0;
-    writeln!(text, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{}</text>", top + DOWN + 32.0, escaped(key))?;
+    writeln!(
+        text,
+        "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+        top + DOWN + 32.0,
+        svg::escaped(key)
+    )?;
     for (number, rate) in rates.iter().enumerate() {
         let known = rate.points.iter().filter(|point| point.value > 0.0 && point.errors[index] > 0.0);
         let line: Vec<String> =

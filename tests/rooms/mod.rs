@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["choice", "error", "progress", "units"],
+    &["choice", "error", "progress", "svg", "units"],
     &["caps", "interrupt", "sampling", "whole_file"],
     &["memory", "picture", "volume"],
     &["gpu", "metrics", "scene", "settings"],

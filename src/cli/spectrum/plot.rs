@@ -1,6 +1,7 @@
 //! A plot of a periodogram's rings: radial mean and anisotropy over frequency, both by powers of ten.
 
 use crate::sampling::periodogram::Ring;
+use crate::svg;
 use std::fmt::Write;
 
 const WIDTH: f64 = 640.0;
@@ -20,13 +21,8 @@ pub fn svg(rings: &[Ring], title: &str) -> String {
 }
 
 fn write(text: &mut String, rings: &[Ring], title: &str) -> std::fmt::Result {
-    let title = title.replace('&', "&amp;").replace('<', "&lt;");
-    writeln!(
-        text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"sans-serif\" \
-         font-size=\"12\">\n<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"white\"/>\n\
-         <text x=\"{LEFT}\" y=\"20\">{title}</text>"
-    )?;
+    svg::begin(text, [WIDTH, HEIGHT])?;
+    writeln!(text, "<text x=\"{LEFT}\" y=\"20\">{}</text>", svg::escaped(title))?;
     let last = rings.last().map_or(1.0, |ring| ring.cycles_per_px);
     let power = rings.iter().map(|ring| (ring.cycles_per_px / last, Some(ring.power)));
     panel(text, 56.0, "radial mean of the power", power.collect())?;
