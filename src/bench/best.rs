@@ -63,21 +63,17 @@ pub fn best(key: &'static str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Best> {
     if axes.iter().all(|axis| axis.key != key) {
         return Vec::new();
     }
-    let others = |row: &BenchRow| -> Vec<String> {
-        let of = |axis: &Axis| format!("{}={}", axis.key, row.asked_text(&axis.key));
-        axes.iter().filter(|axis| axis.key != key).map(of).collect()
-    };
     let reads = |row: &&BenchRow| !row.unread_axes.iter().flatten().any(|unread| unread == key);
     let has_mean = |row: &&BenchRow| row.ratio.as_ref().is_some_and(|ratio| ratio.mean.is_finite());
-    let mut sweeps: Vec<(Vec<String>, Vec<&BenchRow>)> = Vec::new();
+    let mut sweeps: Vec<(String, Vec<&BenchRow>)> = Vec::new();
     for row in rows.iter().filter(reads).filter(has_mean) {
-        let of = others(row);
+        let of = row.others(key, axes);
         match sweeps.iter_mut().find(|(known, _)| *known == of) {
             Some((_, sweep)) => sweep.push(row),
             None => sweeps.push((of, vec![row])),
         }
     }
-    sweeps.iter().filter_map(|(of, sweep)| best_of(key, of.join(" "), sweep)).collect()
+    sweeps.iter().filter_map(|(of, sweep)| best_of(key, of.clone(), sweep)).collect()
 }
 
 fn mean(ratio: &Option<Ratio>) -> f64 {

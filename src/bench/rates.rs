@@ -4,7 +4,7 @@
 use super::row::BenchRow;
 use super::sweep::Axis;
 use crate::error::{Error, Result};
-use crate::metrics::Metrics;
+use serde_json::{Map, Value, json};
 
 /// The errors that have rates.
 pub const MEASURES: [&str; 2] = ["rmse", "flip"];
@@ -53,11 +53,9 @@ fn number(text: &str) -> Option<f64> {
 pub fn rates(key: &str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Rate> {
     let mut rates: Vec<Rate> = Vec::new();
     for row in rows.iter().filter(|row| row.was_measured()) {
-        let others = axes.iter().filter(|axis| axis.key != key);
-        let of: Vec<String> = others.map(|axis| format!("{}={}", axis.key, row.asked_text(&axis.key))).collect();
-        let of = of.join(" ");
+        let of = row.others(key, axes);
         let Some((value, errors)) = number(&row.asked_text(key)).zip(row.best_known_errors()) else { continue };
-        let point = RatePoint { value, errors: MEASURES.map(|name| measure(errors, name)) };
+        let point = RatePoint { value, errors: [errors.rmse, errors.flip] };
         match rates.iter_mut().find(|rate| rate.of == of) {
             Some(rate) => rate.points.push(point),
             None => rates.push(Rate { of, points: vec![point], exponents: [None; 2] }),
@@ -70,10 +68,6 @@ pub fn rates(key: &str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Rate> {
         });
     }
     rates
-}
-
-fn measure(errors: &Metrics, name: &str) -> f64 {
-    if name == "rmse" { errors.rmse } else { errors.flip }
 }
 
 /// The slope of the straight line through logarithms, by least squares; points at 0 are passed over.
@@ -91,8 +85,29 @@ fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| together / spread)
 }
 
+/// The rates as `summary.json` has them.
+pub fn json(key: &str, rates: &[Rate]) -> Value {
+    let by_name =
+        |values: [Value; 2]| -> Map<String, Value> { MEASURES.into_iter().map(str::to_owned).zip(values).collect() };
+    let point = |point: &RatePoint| {
+        let mut at = by_name(point.errors.map(Value::from));
+        at.insert("value".to_owned(), point.value.into());
+        at
+    };
+    let rate = |rate: &Rate| {
+        let points: Vec<_> = rate.points.iter().map(point).collect();
+        json!({ "of": rate.of, "exponents": by_name(rate.exponents.map(Value::from)), "points": points })
+    };
+    json!({ "by": key, "of": rates.iter().map(rate).collect::<Vec<_>>() })
+}
+
 /// A Markdown table of the rates: errors at each value, and the exponents.
 pub fn markdown(key: &str, rates: &[Rate]) -> String {
+    if rates.is_empty() {
+        return format!(
+            "no rates by {key}: errors of these rows are not known; --reference auto compares them with paths\n"
+        );
+    }
     let mut values: Vec<f64> = rates.iter().flat_map(|rate| rate.points.iter().map(|point| point.value)).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
@@ -121,6 +136,7 @@ pub fn markdown(key: &str, rates: &[Rate]) -> String {
 mod tests {
     use super::*;
     use crate::bench::sweep::axes;
+    use crate::metrics::Metrics;
     use crate::settings::written::{SettingValue, WrittenSettings};
 
     fn row(sampler: &str, samples: &str, rmse: f64, flip: f64) -> BenchRow {
@@ -152,6 +168,8 @@ mod tests {
         assert!(near(found[0].exponents[0], -0.5) && near(found[0].exponents[1], -0.75), "{found:?}");
         assert!(near(found[1].exponents[0], -1.0) && found[1].exponents[1].is_none(), "{found:?}");
         assert_eq!(found[1].points.len(), 3);
+        let nothing = rates("samples", &sweep, &[BenchRow { error_against_none: None, ..rows[0].clone() }]);
+        assert!(nothing.is_empty() && markdown("samples", &nothing).contains("--reference auto"));
         let text = markdown("samples", &found);
         assert!(
             text.contains("| sampler=a | 0.3000 | 0.1500 | 0.0750 | -0.50 | 2.0000 | 0.7071 | 0.2500 | -0.75 |"),

@@ -5,6 +5,7 @@
 
 use super::machine::Load;
 use super::stats::Ratio;
+use super::sweep::Axis;
 use super::units::UnitTimes;
 use crate::caps::Identity;
 use crate::metrics::Metrics;
@@ -260,6 +261,12 @@ impl BenchRow {
     /// The text of a setting as it was typed; empty where it was not.
     pub fn asked_text(&self, key: &str) -> String {
         self.asked().get(key).map(ToString::to_string).unwrap_or_default()
+    }
+
+    /// Its values of all axes but `key`, `axis=value axis=value`; empty where there is no other axis.
+    pub fn others(&self, key: &str, axes: &[Axis]) -> String {
+        let others = axes.iter().filter(|axis| axis.key != key);
+        others.map(|axis| format!("{}={}", axis.key, self.asked_text(&axis.key))).collect::<Vec<_>>().join(" ")
     }
 
     /// Times of the frame, or of the stage; None where it was not measured.

@@ -62,17 +62,7 @@ impl Summary {
             "best_blocks": self.best,
         });
         if let Some((key, rates)) = &self.rates {
-            let rate = |rate: &Rate| {
-                let by_name = |values: [Value; 2]| rates::MEASURES.into_iter().map(str::to_owned).zip(values).collect();
-                let points = rate.points.iter().map(|point| {
-                    let mut at: serde_json::Map<String, Value> = by_name(point.errors.map(Value::from));
-                    at.insert("value".to_owned(), point.value.into());
-                    Value::Object(at)
-                });
-                let exponents: serde_json::Map<String, Value> = by_name(rate.exponents.map(Value::from));
-                json!({ "of": rate.of, "exponents": exponents, "points": points.collect::<Vec<_>>() })
-            };
-            document["rates"] = json!({ "by": key, "of": rates.iter().map(rate).collect::<Vec<_>>() });
+            document["rates"] = rates::json(key, rates);
         }
         document
     }
@@ -84,9 +74,7 @@ impl Summary {
             text.push_str(&line);
             text.push('\n');
         }
-        if let Some((key, rates)) = &self.rates {
-            text.push_str(&format!("\n{}", rates::markdown(key, rates)));
-        }
+        text.push_str(&self.rates_text());
         text
     }
 
@@ -101,10 +89,13 @@ impl Summary {
         for line in notes {
             text.push_str(&format!("- {line}\n"));
         }
-        if let Some((key, rates)) = &self.rates {
-            text.push_str(&format!("\n{}", rates::markdown(key, rates)));
-        }
+        text.push_str(&self.rates_text());
         text
+    }
+
+    /// What stands behind the notes; nothing without `--rate`.
+    fn rates_text(&self) -> String {
+        self.rates.as_ref().map_or_else(String::new, |(key, rates)| format!("\n{}", rates::markdown(key, rates)))
     }
 
     /// Writes `summary.json` and `summary.md`, and where there are rates `rates.svg`.
