@@ -116,14 +116,18 @@ impl Periodogram {
     /// Energy of a raster's frequencies that lie less than `cycles_per_px` from 0, without 0 itself. All together have the variance.
     pub fn energy_below(&self, cycles_per_px: f64) -> f64 {
         let values = f64::from(self.period_px[0]) * f64::from(self.period_px[1]);
-        let is_low = |index: usize| {
+        let low = self.by_distance().filter(|(distance, _)| *distance < cycles_per_px);
+        low.map(|(_, power)| power).sum::<f64>() / values
+    }
+
+    /// Distances from 0, cycles a pixel, and powers of all frequencies but 0.
+    fn by_distance(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.powers.iter().enumerate().filter_map(|(index, power)| {
             let at = [index as u32 % self.size[0], index as u32 / self.size[0]];
             let [across, down] = [0, 1]
                 .map(|axis| (f64::from(at[axis]) - f64::from(self.reach[axis])) / f64::from(self.period_px[axis]));
-            at != self.reach && across.hypot(down) < cycles_per_px
-        };
-        let powers = self.powers.iter().enumerate().filter(|(index, _)| is_low(*index));
-        powers.map(|(_, power)| f64::from(*power)).sum::<f64>() / values
+            (at != self.reach).then(|| (across.hypot(down), f64::from(*power)))
+        })
     }
 
     /// The power at a frequency in cycles a period, each within the reach.

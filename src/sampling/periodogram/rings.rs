@@ -29,18 +29,12 @@ impl Periodogram {
     pub fn rings(&self) -> Vec<Ring> {
         let rings_per_cycle = self.period_px[0].min(self.period_px[1]).min(MOST_RINGS_PER_CYCLE);
         let mut powers: Vec<Vec<f64>> = Vec::new();
-        for (index, power) in self.powers.iter().enumerate() {
-            let at = [index as u32 % self.size[0], index as u32 / self.size[0]];
-            if at == self.reach {
-                continue;
-            }
-            let [across, down] = [0, 1]
-                .map(|axis| (f64::from(at[axis]) - f64::from(self.reach[axis])) / f64::from(self.period_px[axis]));
-            let ring = (across.hypot(down) * f64::from(rings_per_cycle)).round() as usize;
+        for (distance, power) in self.by_distance() {
+            let ring = (distance * f64::from(rings_per_cycle)).round() as usize;
             if powers.len() <= ring {
                 powers.resize(ring + 1, Vec::new());
             }
-            powers[ring].push(f64::from(*power));
+            powers[ring].push(power);
         }
         let ring = |(index, powers): (usize, &Vec<f64>)| {
             let count = powers.len() as f64;
