@@ -55,7 +55,7 @@ fn bright(middle: DVec2, growth: f64) -> Vec<Patch> {
     for cycle in cycles(near.length()).floor() as u32..=cycles(far.length()).floor() as u32 {
         let radius = |half_cycles: u32| (f64::from(2 * cycle + half_cycles) / growth).sqrt();
         let radii = [radius(0), radius(1)];
-        // A chord is nowhere farther from its arc than a hundredth of a half cycle.
+        // A chord is nowhere farther from its arc than a 256th of a half cycle.
         let segments = ((16.0 * std::f64::consts::PI * radii[1] * growth.sqrt()) as u32).max(48);
         let corner = move |segment: u32, radius: f64| {
             let (sine, cosine) = sin_cos_turns(f64::from(segment % segments) / f64::from(segments));

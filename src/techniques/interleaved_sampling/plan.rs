@@ -14,7 +14,7 @@ use ash::vk::ImageUsageFlags as Usage;
 /// Resources and passes of a run, which is a member.
 pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Result<Plan> {
     let Choices { drawing, members, slices, .. } = choices;
-    let (frame, picture, drawing_of) = (inputs.view.extent, members.picture(), members.drawing());
+    let (frame, picture, way) = (inputs.view.extent, members.picture(), members.drawing());
     let mut plan = Plan::default();
     forward::plan(&mut plan, NAME, drawing, listed, (inputs.bvh, inputs.scene))?;
     plan.image("depth", DEPTH, picture, depth_prepass::FORMAT, Usage::DEPTH_STENCIL_ATTACHMENT);
@@ -23,7 +23,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Re
         DRAWN,
         picture,
         PICTURE_FORMAT,
-        Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC | combine::usage(drawing_of),
+        Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC | combine::usage(way),
     );
     moment::plan(&mut plan, choices, inputs);
     table::plan(&mut plan, members);
@@ -31,14 +31,14 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Re
     if let Some(slices) = slices {
         slices.plan(&mut plan, members);
     }
-    if drawing_of == Drawing::Tuples {
+    if way == Drawing::Tuples {
         mask::plan_pass(&mut plan);
     }
     forward::plan_passes(&mut plan, NAME, drawing, inputs.stats.has_blend, [DEPTH, DRAWN]);
     if let Some(slices) = slices {
         slices.plan_pass(&mut plan);
     }
-    combine::plan_pass(&mut plan, drawing_of);
+    combine::plan_pass(&mut plan, way);
     mean::plan(&mut plan, members, frame);
     Ok(plan)
 }

@@ -61,8 +61,9 @@ fn holes_are_where_materials_have_them() {
 #[test]
 fn pixels_of_other_members_are_not_drawn() {
     let watched = Watched::open("cornell");
-    let member = |members: &str| {
+    let member = |members: &str, prepass: &str| {
         let own = [
+            ("depth-prepass", prepass),
             ("size", "62x46"),
             ("basis", "4x3"),
             ("samples", "0.5"),
@@ -73,7 +74,8 @@ fn pixels_of_other_members_are_not_drawn() {
         let renderer = watched.render_stages(NAME, &own, &["material.color"]);
         watched.rgb(&renderer, "material.color")
     };
-    let [layers, stipple, tuples] = ["layers", "stipple", "tuples"].map(member);
+    let [layers, stipple, tuples] = ["layers", "stipple", "tuples"].map(|members| member(members, "on"));
+    assert_eq!(tuples, member("tuples", "off"));
     assert_eq!(layers, stipple);
     let (mut own, mut far) = (0, 0);
     for (layer, tuple) in layers.iter().zip(&tuples) {
