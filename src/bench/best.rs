@@ -67,7 +67,7 @@ pub fn best(key: &'static str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Best> {
     let has_mean = |row: &&BenchRow| row.ratio.as_ref().is_some_and(|ratio| ratio.mean.is_finite());
     let mut sweeps: Vec<(String, Vec<&BenchRow>)> = Vec::new();
     for row in rows.iter().filter(reads).filter(has_mean) {
-        let of = row.others(key, axes);
+        let of = row.others(&[key], axes);
         match sweeps.iter_mut().find(|(known, _)| *known == of) {
             Some((_, sweep)) => sweep.push(row),
             None => sweeps.push((of, vec![row])),

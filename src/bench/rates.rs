@@ -1,5 +1,5 @@
 //! How fast errors fall with one setting of a sweep, such as the number of samples: straight lines through their logarithms, for
-//! each combination of the others.
+//! each combination of the others. Seeds are no combinations: what a setting does to an error is its mean over them.
 
 use super::row::BenchRow;
 use super::sweep::Axis;
@@ -12,7 +12,7 @@ pub const MEASURES: [&str; 2] = ["rmse", "flip"];
 /// Errors of one combination of the other axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rate {
-    /// That combination; empty where there is no other axis.
+    /// That combination, without the seed; empty where there is no other axis.
     pub of: String,
     /// By their values.
     pub points: Vec<RatePoint>,
@@ -25,8 +25,19 @@ pub struct Rate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RatePoint {
     pub value: f64,
-    /// By the names of `MEASURES`.
+    /// Means over the seeds, by the names of `MEASURES`.
     pub errors: [f64; 2],
+    /// Number of seeds that they are means of, at least 1.
+    pub seeds: usize,
+}
+
+impl RatePoint {
+    /// The mean of these errors and one seed's.
+    fn add(&mut self, errors: [f64; 2]) {
+        let before = self.seeds as f64;
+        self.errors = [0, 1].map(|index| (self.errors[index] * before + errors[index]) / (before + 1.0));
+        self.seeds += 1;
+    }
 }
 
 /// The axis of `--rate KEY`.
@@ -49,16 +60,20 @@ fn number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
 }
 
-/// For each combination of the other axes: its errors by the values of `key`, where they are known, and the exponents.
+/// For each combination of the other axes but the seed: its errors by the values of `key`, where they are known, and the exponents.
 pub fn rates(key: &str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Rate> {
     let mut rates: Vec<Rate> = Vec::new();
     for row in rows.iter().filter(|row| row.was_measured()) {
-        let of = row.others(key, axes);
+        let of = row.others(&[key, "seed"], axes);
         let Some((value, errors)) = number(&row.asked_text(key)).zip(row.best_known_errors()) else { continue };
-        let point = RatePoint { value, errors: [errors.rmse, errors.flip] };
-        match rates.iter_mut().find(|rate| rate.of == of) {
-            Some(rate) => rate.points.push(point),
-            None => rates.push(Rate { of, points: vec![point], exponents: [None; 2] }),
+        let errors = [errors.rmse, errors.flip];
+        let at = rates.iter().position(|rate| rate.of == of).unwrap_or_else(|| {
+            rates.push(Rate { of, points: Vec::new(), exponents: [None; 2] });
+            rates.len() - 1
+        });
+        match rates[at].points.iter_mut().find(|point| point.value == value) {
+            Some(point) => point.add(errors),
+            None => rates[at].points.push(RatePoint { value, errors, seeds: 1 }),
         }
     }
     for rate in &mut rates {
@@ -92,6 +107,7 @@ pub fn json(key: &str, rates: &[Rate]) -> Value {
     let point = |point: &RatePoint| {
         let mut at = by_name(point.errors.map(Value::from));
         at.insert("value".to_owned(), point.value.into());
+        at.insert("seeds".to_owned(), point.seeds.into());
         at
     };
     let rate = |rate: &Rate| {
@@ -168,6 +184,7 @@ mod tests {
         assert!(near(found[0].exponents[0], -0.5) && near(found[0].exponents[1], -0.75), "{found:?}");
         assert!(near(found[1].exponents[0], -1.0) && found[1].exponents[1].is_none(), "{found:?}");
         assert_eq!(found[1].points.len(), 3);
+        assert!(found.iter().flat_map(|rate| &rate.points).all(|point| point.seeds == 1), "{found:?}");
         let nothing = rates("samples", &sweep, &[BenchRow { error_against_none: None, ..rows[0].clone() }]);
         assert!(nothing.is_empty() && markdown("samples", &nothing).contains("--reference auto"));
         let text = markdown("samples", &found);
@@ -179,6 +196,28 @@ mod tests {
             text.lines().next().unwrap().matches('|').count(),
             text.lines().nth(1).unwrap().matches('|').count()
         );
+    }
+
+    /// Seeds are no combination of their own: errors are means over them.
+    #[test]
+    fn errors_are_means_over_seeds() {
+        let sweep = axes(&["seed=1,2,3".to_owned(), "samples=1,4".to_owned()]).unwrap();
+        let mut rows = Vec::new();
+        for (seed, errors) in [("1", [0.5, 0.1]), ("2", [0.6, 0.3]), ("3", [1.0, 0.2])] {
+            for (samples, error) in ["1", "4"].into_iter().zip(errors) {
+                let mut row = row("a", samples, error, error);
+                let asked = row.asked.as_mut().unwrap();
+                asked.insert("seed".to_owned(), SettingValue::Text(seed.to_owned()));
+                rows.push(row);
+            }
+        }
+        let found = rates("samples", &sweep, &rows);
+        let [rate] = found.as_slice() else { panic!("{found:?}") };
+        assert!(rate.of.is_empty() && rate.points.iter().all(|point| point.seeds == 3), "{found:?}");
+        for (point, wanted) in rate.points.iter().zip([0.7, 0.2]) {
+            assert!((point.errors[0] - wanted).abs() < 1e-12 && point.errors[1] == point.errors[0], "{found:?}");
+        }
+        assert!((rate.exponents[0].unwrap() - (0.2_f64 / 0.7).ln() / 4.0_f64.ln()).abs() < 1e-12, "{found:?}");
     }
 
     #[test]

@@ -104,7 +104,7 @@ mod tests {
     /// Equal factors are equal distances, the ends lie in the corners; an error of 0 has no place.
     #[test]
     fn points_lie_where_the_axes_say() {
-        let point = |value, error| RatePoint { value, errors: [error, 0.0] };
+        let point = |value, error| RatePoint { value, errors: [error, 0.0], seeds: 1 };
         let rates = [
             Rate {
                 of: "a<b".to_owned(),

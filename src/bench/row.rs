@@ -263,9 +263,9 @@ impl BenchRow {
         self.asked().get(key).map(ToString::to_string).unwrap_or_default()
     }
 
-    /// Its values of all axes but `key`, `axis=value axis=value`; empty where there is no other axis.
-    pub fn others(&self, key: &str, axes: &[Axis]) -> String {
-        let others = axes.iter().filter(|axis| axis.key != key);
+    /// Its values of all axes but `keys`, `axis=value axis=value`; empty where there is no other axis.
+    pub fn others(&self, keys: &[&str], axes: &[Axis]) -> String {
+        let others = axes.iter().filter(|axis| !keys.contains(&axis.key.as_str()));
         others.map(|axis| format!("{}={}", axis.key, self.asked_text(&axis.key))).collect::<Vec<_>>().join(" ")
     }
 
