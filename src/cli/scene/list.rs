@@ -23,5 +23,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
                 .expect("writing to a string");
         }
     }
+    let Parameter { key, description, choice } = procedural::SEED;
+    writeln!(text, "any scene\n         :{key}=N  {description}; {}", choice.described()).expect("writing to a string");
     output::print_text(matches, &text)
 }

@@ -38,7 +38,7 @@ use values::Values;
 
 pub use built_ins::{ALL, BuiltIn};
 pub use made::{Motion, ProceduralScene, Thing};
-pub use values::{Choice, Parameter};
+pub use values::{Choice, Parameter, SEED};
 
 /// Goes into every hash; raised whenever a generator makes something else from the same parameters.
 const GENERATOR_VERSION: u32 = 1;
@@ -51,28 +51,28 @@ impl BuiltIn {
             let Some((key, text)) = argument.split_once('=') else {
                 return Err(self.refusal(&format!("'{argument}' is not key=value")));
             };
-            let Some(index) = self.parameters.iter().position(|parameter| parameter.key == key) else {
+            let known = self.parameters.iter().chain([&SEED]).find(|parameter| parameter.key == key);
+            let Some(parameter) = known else {
                 return Err(self.refusal(&format!("there is no parameter '{key}'")));
             };
-            let choice = self.parameters[index].choice;
+            let choice = parameter.choice;
             let Some(value) = choice.parse(text) else {
-                let kind = if let Choice::Number { .. } = choice { "a whole number, " } else { "" };
+                let kind = if let Choice::Number { .. } | Choice::Seed = choice { "a whole number, " } else { "" };
                 return Err(self.refusal(&format!("{key}={text}: must be {kind}{}", choice.described())));
             };
-            values[index].1 = value;
+            values.retain(|(known, _)| known != &parameter.key);
+            values.push((parameter.key, value));
         }
         Ok(Values(values))
     }
 
     fn refusal(&self, trouble: &str) -> Error {
         let error = Error::request(format!("scene {}: {trouble}", self.name));
-        if self.parameters.is_empty() {
-            return error.note(format!("{} takes no parameters", self.name));
-        }
-        self.parameters.iter().fold(error, |error, parameter| {
+        let error = self.parameters.iter().fold(error, |error, parameter| {
             let Parameter { key, description, choice } = parameter;
             error.note(format!("{key}={}: {description}", choice.described()))
-        })
+        });
+        error.note(format!("seed={}: {}", SEED.choice.described(), SEED.description))
     }
 
     /// What stands after the colon of a scene's name: every parameter, but for switches that are off.
@@ -87,7 +87,7 @@ impl BuiltIn {
 /// Makes the scene that `spec` names: `name` or `name:key=value,key=value`.
 ///
 /// None where no built-in scene has that name: it may be a file. The error lists the parameters with what they may be
-/// where one is unknown or not that. The same spec and seed give the same bytes everywhere.
+/// where one is unknown or not that. The same spec and seed give the same bytes everywhere; a seed in the spec stands for `seed`.
 pub fn open(spec: &str, seed: u64) -> Option<Result<ProceduralScene>> {
     let (name, arguments) = match spec.split_once(':') {
         Some((name, arguments)) => (name, Some(arguments)),
@@ -95,12 +95,17 @@ pub fn open(spec: &str, seed: u64) -> Option<Result<ProceduralScene>> {
     };
     let built_in = ALL.iter().find(|built_in| built_in.name == name)?;
     let made = built_in.values(arguments).and_then(|values| {
+        let seed = values.seed().unwrap_or(seed);
         let Assembly { mut scene, motions } = (built_in.make)(&values, seed);
         scene.meshes.par_iter_mut().for_each(normal_groups::assign);
         let settings = built_in.settings(&values);
         scene.name = if settings.is_empty() { name.to_owned() } else { format!("{name}:{settings}") };
         let identity = format!("{} seed={seed} version={GENERATOR_VERSION}", scene.name);
         scene.hash = blake3::hash(identity.as_bytes()).to_hex().to_string();
+        if values.seed().is_some() {
+            let separator = if settings.is_empty() { ':' } else { ',' };
+            scene.name.extend([separator.to_string(), format!("{}={seed}", SEED.key)]);
+        }
         ProceduralScene { scene, motions }.playing(&AnimationChoice::All)
     });
     Some(made)
@@ -132,6 +137,22 @@ mod tests {
             let spec = if built_in.name == "hall" { "hall:triangles=20000" } else { built_in.name };
             let [first, second] = [made(spec, 1), made(spec, 1)].map(|scene| (checks::fingerprint(&scene), scene.hash));
             assert_eq!(first, second, "{spec}");
+        }
+    }
+
+    /// A seed of its own is that of `--seed`, whatever that is then.
+    #[test]
+    fn a_scene_has_the_seed_that_it_is_asked_for() {
+        let [seven, own] = [made("lamps:lights=3", 7), made("lamps:lights=3,seed=7", 1)];
+        assert_eq!((checks::fingerprint(&own), &own.hash), (checks::fingerprint(&seven), &seven.hash));
+        assert_eq!(own.name, format!("{},seed=7", seven.name));
+        assert_eq!(made(&own.name, 2).hash, own.hash);
+        assert_eq!(made("specimen:seed=3", 1).name, "specimen:seed=3");
+        for (text, said) in
+            [("-1", "seed=-1: must be a whole number, 0 to 4294967295"), ("4294967296", "default --seed")]
+        {
+            let error = open(&format!("cornell:seed={text}"), 1).unwrap().unwrap_err();
+            assert!(error.exit_code() == 2 && error.to_string().contains(said), "{error}");
         }
     }
 

@@ -18,7 +18,16 @@ pub enum Choice {
     /// `off` or `on`. While it is off, a scene is called as if it had no such parameter: one that had none before stays
     /// the same scene.
     Switch,
+    /// The seed of what is scattered in it, where it is not that of the picture's samples (`--seed`).
+    Seed,
 }
+
+/// What every scene can be asked for.
+pub const SEED: Parameter = Parameter {
+    key: "seed",
+    description: "seed of what the scene scatters, when --seed is to change a picture's samples alone",
+    choice: Choice::Seed,
+};
 
 const OFF_ON: [&str; 2] = ["off", "on"];
 
@@ -29,6 +38,7 @@ impl Choice {
             Self::Number { default, range: [least, greatest] } => format!("{least} to {greatest}, default {default}"),
             Self::Word(words) => format!("{}, default {}", words.join(" or "), words[0]),
             Self::Switch => Self::Word(&OFF_ON).described(),
+            Self::Seed => format!("0 to {}, default --seed", u32::MAX),
         }
     }
 
@@ -44,12 +54,13 @@ impl Choice {
             }
             Self::Word(words) => words.iter().position(|word| *word == text).map(|place| place as u64),
             Self::Switch => Self::Word(&OFF_ON).parse(text),
+            Self::Seed => text.parse::<u32>().ok().map(u64::from),
         }
     }
 
     pub(super) fn text(&self, value: u64) -> String {
         match self {
-            Self::Number { .. } => value.to_string(),
+            Self::Number { .. } | Self::Seed => value.to_string(),
             Self::Word(words) => words[value as usize].to_owned(),
             Self::Switch => Self::Word(&OFF_ON).text(value),
         }
@@ -61,10 +72,15 @@ impl Choice {
     }
 }
 
-/// One value for each parameter of a scene, in its order.
+/// One value for each parameter of a scene, and its seed where it was asked for one.
 pub struct Values(pub(super) Vec<(&'static str, u64)>);
 
 impl Values {
+    /// The seed that it was asked for.
+    pub(super) fn seed(&self) -> Option<u64> {
+        self.0.iter().find(|(name, _)| *name == SEED.key).map(|(_, seed)| *seed)
+    }
+
     pub(super) fn get(&self, key: &str) -> u64 {
         let found = self.0.iter().find(|(name, _)| *name == key);
         found.expect("a scene reads only the parameters that it lists").1
