@@ -27,6 +27,19 @@ pub fn all() -> impl Iterator<Item = (&'static dyn Technique, &'static NamedPatt
     ALL.iter().flat_map(|technique| technique.patterns().iter().map(move |named| (*technique, named)))
 }
 
+/// The settings of a pattern as they were written: what stands behind a comma and is no KEY=VALUE belongs to the value before it,
+/// as in `effect=aa,motion`.
+fn parts(settings: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for part in settings.split(',') {
+        match parts.last_mut().filter(|before| before.contains('=') && !part.contains('=')) {
+            Some(before) => before.extend([",", part]),
+            None => parts.push(part.to_owned()),
+        }
+    }
+    parts
+}
+
 /// The pattern that `spec` names: `name` or `name:key=value,key=value`.
 ///
 /// Errors: no pattern has the name, a key does not choose it or stands twice, a value is impossible (exit code 2).
@@ -39,7 +52,7 @@ pub fn open(spec: &str) -> Result<ChosenPattern> {
     })?;
     let mut values = defaults(technique);
     let mut seen = Vec::new();
-    for part in settings.into_iter().flat_map(|settings| settings.split(',')) {
+    for part in &settings.map(parts).unwrap_or_default() {
         let refused = |why: &str| {
             let keys: Vec<String> = named.keys.iter().map(|key| format!("{key}={}", values.text(key))).collect();
             Error::request(format!("pattern {name}: {part}: {why}"))
@@ -91,6 +104,14 @@ mod tests {
         assert_eq!(made("stipple:stipple=4x4"), Pattern::grid([4, 4]));
         assert_eq!(made("tuples:spp=4,seed=9"), Pattern::nets([2, 2], 4, 9, 0));
         assert_eq!(made("tuples:spp=2,tuples=6"), Pattern::nets([3, 1], 2, 1, 0));
+        let both = open("basis:effect=aa,motion,defocus,sampler=r2,samples=2").unwrap();
+        assert_eq!((both.pattern.dimension_count(), both.pattern.samples().len()), (5, 8));
+        assert_eq!(both.pattern, open(&both.spec()).unwrap().pattern);
+        // The same samples in both techniques, where a sampler counts by pixels.
+        for sampler in ["r2", "jittered", "ign", "void-and-cluster", "blue-errors"] {
+            let basis = format!("basis:effect=aa,motion,defocus,sampler={sampler},samples=2");
+            assert_eq!(made(&basis), made(&format!("tuples:spp=2,tuples=8,sampler={sampler}")), "{sampler}");
+        }
     }
 
     #[test]
@@ -99,6 +120,7 @@ mod tests {
             ("grids", "there are grid, direct-grid, stipple, tuples"),
             ("", "there is no such pattern"),
             ("grid:", "it is not KEY=VALUE"),
+            ("basis:effect=aa,lens", "it must be one or more of aa, motion"),
             ("grid:pattern", "for example grid:pattern=4x4"),
             ("grid:vpls=4", "does not choose it"),
             ("grid:pattern=2x2,pattern=3x3", "has a value already"),
