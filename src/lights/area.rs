@@ -1,8 +1,7 @@
 //! Area lights: connected emissive surfaces, and points of them for shadow rays (Dubla 2009, section 3.3).
 //!
 //! A draw's emissive triangles that share corners are one light. Points of a light are chosen by power over its
-//! triangles and evenly over each, from an Owen-scrambled Sobol sequence, so that any stretch of them is spread over
-//! the light.
+//! triangles and evenly over each, by two numbers, so that points of numbers that are spread are spread over the light.
 
 use crate::gpu::shader::structs::AreaSampleBlock;
 use crate::lights::emitters::luminous;
@@ -121,11 +120,10 @@ impl AreaLight {
         Self { triangles, power, cumulative }
     }
 
-    /// `count` of its points, each of which stands for all of the light: the mean over them is what the light gives.
-    /// `count`: at most 65,536.
-    pub fn points(&self, scene: &Scene, count: u32, seed: u32) -> Vec<AreaSampleBlock> {
-        let numbers = |index| [0, 1].map(|dimension| sobol_burley::sample(index, dimension, seed));
-        (0..count).map(|index| self.at(scene, numbers(index))).collect()
+    /// Points of it, each of which stands for all of the light: the mean over them is what the light gives. `numbers`: two for
+    /// each, as `at` takes them.
+    pub fn points(&self, scene: &Scene, numbers: &[[f32; 2]]) -> Vec<AreaSampleBlock> {
+        numbers.iter().map(|numbers| self.at(scene, *numbers)).collect()
     }
 
     /// The point of two numbers, 0 to 1 without 1. `scene`: of which it is a light, or that one at another moment.
@@ -161,6 +159,8 @@ impl AreaLight {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::pairs::in_order;
+    use crate::sampling::sampler::Sampler;
     use crate::scene::Material;
     use glam::{Mat4, Vec4, vec3};
 
@@ -196,7 +196,7 @@ mod tests {
     fn points_lie_on_the_light_and_their_mean_is_its_power() {
         let scene = panels(&[0.0, 5.0]);
         let light = &area_lights(&scene, 1)[0];
-        let points = light.points(&scene, 512, 7);
+        let points = light.points(&scene, &in_order(Sampler::Sobol, [16, 1], 32, 7));
         let mut right = 0;
         for point in &points {
             let [x, y, z, _] = point.position_ws;
@@ -220,7 +220,7 @@ mod tests {
         let mut scene = panels(&[0.0]);
         scene.draws[0].world_from_object = Mat4::from_scale(vec3(-1.0, 1.0, 1.0));
         scene.materials[0].double_sided = true;
-        let point = area_lights(&scene, 1)[0].points(&scene, 1, 1)[0];
+        let point = area_lights(&scene, 1)[0].at(&scene, [0.5; 2]);
         assert_eq!(point.normal_ws, [0.0, 0.0, 1.0, 1.0]);
     }
 }

@@ -126,7 +126,7 @@ fn exported_samples_are_the_pattern() {
     for samples in [of_csv, of_json] {
         assert_eq!(Pattern::new([2, 2], &dimensions, samples), expected);
     }
-    assert_eq!(document["pattern"], "tuples:spp=2,tuples=auto,seed=9");
+    assert_eq!(document["pattern"], "tuples:spp=2,tuples=auto,sampler=sobol,seed=9");
     assert_eq!((&document["period_px"], &document["subsets"]), (&json!([2, 2]), &json!(8)));
     program.run(&["sampling", "export", "grid", "--subset", "6", "-o", "b.csv"]).fine();
     let text = std::fs::read_to_string(program.path("b.csv")).unwrap();

@@ -20,10 +20,15 @@ pub fn points(over: &Over, grid: &PixelGrid) -> Points {
     let ranks: Vec<Vec<u32>> = (0..over.dimensions)
         .map(|dimension| mask(tile, &mut Pcg32::new(u64::from(over.seed), 4 + dimension as u64)))
         .collect();
+    // Where in a step of the ranks: without it all seeds would take the same numbers, and patterns of several seeds together would be
+    // no better than one.
+    let mut random = Pcg32::new(u64::from(over.seed), 15);
+    let within: Vec<f64> = ranks.iter().map(|_| f64::from(random.unit())).collect();
     let steps = recurrence::steps(over.dimensions);
     grid.points(|[x, y], sample| {
         let pixel = (y % tile[1] * tile[0] + x % tile[0]) as usize;
-        let turned: Vec<f64> = ranks.iter().map(|ranks| (f64::from(ranks[pixel]) + 0.5) / count).collect();
+        let turned: Vec<f64> =
+            ranks.iter().zip(&within).map(|(ranks, within)| (f64::from(ranks[pixel]) + within) / count).collect();
         recurrence::point(sample, &turned, &steps)
     })
 }

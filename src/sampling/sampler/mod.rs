@@ -22,8 +22,8 @@ mod torus;
 use super::side::Side;
 use crate::choice::choices;
 use crate::error::{Error, Result};
-pub use over::Points;
 use over::{Over, PixelGrid, part};
+pub use over::{Places, Points};
 
 choices! {
     /// How the samples of a basis pattern are spread (`--sampler`).
@@ -47,15 +47,6 @@ choices! {
     }
 }
 
-/// Where in a basis the places of points are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Places {
-    /// Where the sampler spreads them.
-    Spread,
-    /// In the middles of pixels, as many in each where the sides are whole and the number of points allows it.
-    Middles,
-}
-
 impl Sampler {
     /// Whether each pixel of a basis has the same number of samples, so that the basis has whole sides.
     pub fn counts_by_pixels(self) -> bool {
@@ -64,11 +55,14 @@ impl Sampler {
 
     /// `count` points of `dimensions` numbers, at least 2, over a basis of these sides.
     ///
+    /// Those of `Places::Counted`, and of samplers that count by pixels, stand pixel by pixel, row-major.
+    ///
     /// Errors: a sampler that counts by pixels has sides that are not whole, or a count that is not the same for every
     /// pixel (exit code 2).
     pub fn points(self, sides: [Side; 2], count: u32, dimensions: usize, seed: u32, places: Places) -> Result<Points> {
         let over = Over { sides_px: sides.map(Side::length_px), count, dimensions, seed };
         let pixels = PixelGrid::of(sides, count);
+        assert!(pixels.is_some() || places != Places::Counted, "{count} over {sides:?}");
         if self.counts_by_pixels() && pixels.is_none() {
             let [width, height] = over.sides_px;
             let why = format!(
@@ -78,12 +72,11 @@ impl Sampler {
             return Err(Error::request(why)
                 .note("a basis of whole pixels and a whole number of samples a pixel work, as do relaxed and sobol"));
         }
-        let middles = pixels.filter(|_| places == Places::Middles);
         // The others take the basis for one cell.
         let grid = pixels.unwrap_or(PixelGrid { sides: [1, 1], samples: count });
         let mut points = match self {
-            Self::Relaxed => relaxed::points(&over, middles),
-            Self::Random => random::points(&over, middles),
+            Self::Relaxed => relaxed::points(&over, pixels, places),
+            Self::Random => random::points(&over, pixels, places),
             Self::Sobol => sobol::points(&over, &grid),
             Self::R2 => recurrence::points(&over, &grid),
             Self::Jittered => jittered::points(&over, &grid),
@@ -123,12 +116,16 @@ mod tests {
                 prop_assert_eq!(point.len(), dimensions);
                 prop_assert!(point.iter().all(|number| (0.0..1.0).contains(number)), "{:?}", point);
             }
-            // Those that go by pixels give each the same number.
-            if !matches!(sampler, Sampler::Relaxed | Sampler::Random) {
+            // Those that go by pixels give each the same number, and all do where they are asked to.
+            let counted = sampler.points(sides, count, dimensions, seed, Places::Counted).unwrap();
+            let by_pixels = !matches!(sampler, Sampler::Relaxed | Sampler::Random);
+            for points in [Some(&counted), by_pixels.then_some(&points)].into_iter().flatten() {
                 let mut counts = vec![0; (sides[0].pixels * sides[1].pixels) as usize];
-                for point in &points {
+                for (index, point) in points.iter().enumerate() {
                     let [x, y] = [0, 1].map(|axis| (point[axis] * f64::from(sides[axis].pixels)) as u32);
-                    counts[(y * sides[0].pixels + x) as usize] += 1;
+                    let pixel = (y * sides[0].pixels + x) as usize;
+                    prop_assert_eq!(pixel, index / samples as usize, "{}: {:?}", sampler.name(), point);
+                    counts[pixel] += 1;
                 }
                 prop_assert!(counts.iter().all(|count| *count == samples), "{}: {:?}", sampler.name(), counts);
             }
@@ -153,17 +150,17 @@ mod tests {
     /// The error of a mean over time and place falls faster than that of independent samples wherever points are spread.
     #[test]
     fn all_but_random_ones_are_spread_in_every_dimension() {
-        let rms = |sampler: Sampler, axis: usize| {
+        let rms = |sampler: Sampler, places: Places, axis: usize| {
             let error = |seed: u32| {
-                let points = sampler.points([Side::new(2, 1); 2], 64, 3, seed, Places::Spread).unwrap();
+                let points = sampler.points([Side::new(2, 1); 2], 64, 3, seed, places).unwrap();
                 let below = points.iter().filter(|point| point[axis] < 0.37).count();
                 (below as f64 / 64.0 - 0.37).powi(2)
             };
             ((0..24).map(error).sum::<f64>() / 24.0).sqrt()
         };
         for sampler in Sampler::ALL {
-            for axis in 0..3 {
-                let (rms, independent) = (rms(*sampler, axis), (0.37f64 * 0.63 / 64.0).sqrt());
+            for (axis, places) in (0..3).flat_map(|axis| [(axis, Places::Spread), (axis, Places::Counted)]) {
+                let (rms, independent) = (rms(*sampler, places, axis), (0.37f64 * 0.63 / 64.0).sqrt());
                 let is_random = *sampler == Sampler::Random;
                 let bound = if is_random { 1.5 } else { 0.75 } * independent;
                 assert!(rms < bound && (!is_random || rms > 0.6 * independent), "{} {axis}: {rms}", sampler.name());

@@ -5,6 +5,17 @@ use crate::sampling::side::Side;
 /// Numbers of 0 to 1 without 1: a point's place as parts of the basis's sides, then its further dimensions.
 pub type Points = Vec<Vec<f64>>;
 
+/// Where in a basis the places of points are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Places {
+    /// Where the sampler spreads them.
+    Spread,
+    /// There too, but as many in each pixel: the sides are whole, and the number of points allows it.
+    Counted,
+    /// In the middles of pixels, as many in each where the sides are whole and the number of points allows it.
+    Middles,
+}
+
 /// What points are spread over.
 pub struct Over {
     pub sides_px: [f64; 2],
@@ -27,6 +38,12 @@ impl PixelGrid {
         let sides = [sides[0].whole_px()?, sides[1].whole_px()?];
         let pixels = sides[0].checked_mul(sides[1])?;
         count.is_multiple_of(pixels).then(|| Self { sides, samples: count / pixels })
+    }
+
+    /// The cell in which a place lies, px from the upper left corner of the basis, in row order; cells are pixels.
+    pub fn pixel_of(&self, place_px: [f64; 2]) -> usize {
+        let [x, y] = [0, 1].map(|axis| (place_px[axis] as u32).min(self.sides[axis] - 1));
+        (y * self.sides[0] + x) as usize
     }
 
     /// Points of all cells in row order, each as `in_cell` gives it, its place in the cell as a part of that one.

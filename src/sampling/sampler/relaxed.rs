@@ -6,7 +6,7 @@
 //! ones (swaps.rs).
 
 use super::jittered;
-use super::over::{Over, PixelGrid, Points, part};
+use super::over::{Over, PixelGrid, Places, Points, part};
 use super::swaps::{self, Group};
 use super::torus::Torus;
 use crate::sampling::pcg::Pcg32;
@@ -16,18 +16,29 @@ use rayon::prelude::*;
 /// How often every place moves to the middle of its cell. Ours: low frequencies are gone then, and no other one stands out
 /// (the test below).
 const RELAXATION_COUNT: u32 = 6;
+/// Nearest place to the edge of a pixel, px: what parts of sides are rounded by does not lift it into the next.
+const FROM_EDGE_PX: f64 = 1e-6;
 /// Darts of one radius for each place that is wanted.
 const DARTS_PER_PLACE: u32 = 24;
 
 /// Relaxed places, or the middles of pixels, with the rest exchanged between them. A single one lies in the middle of the
 /// basis.
-pub fn points(over: &Over, middles: Option<PixelGrid>) -> Points {
+pub fn points(over: &Over, pixels: Option<PixelGrid>, places: Places) -> Points {
     let mut random = Pcg32::new(u64::from(over.seed), 16);
     let in_px = |point: &Vec<f64>| [0, 1].map(|axis| point[axis] * over.sides_px[axis]);
-    let places = match (middles, over.count) {
-        (Some(grid), _) => Torus::new(over.sides_px, grid.points(|_, _| vec![0.5; 2]).iter().map(in_px).collect()),
-        (None, 1) => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
-        (None, count) => relaxed(over.sides_px, thrown(over.sides_px, count, &mut random).into_places()),
+    let quota = pixels.filter(|_| places == Places::Counted);
+    let places = match (pixels, over.count) {
+        (Some(grid), _) if places == Places::Middles => {
+            Torus::new(over.sides_px, grid.points(|_, _| vec![0.5; 2]).iter().map(in_px).collect())
+        }
+        (_, 1) => Torus::new(over.sides_px, vec![over.sides_px.map(|side| 0.5 * side)]),
+        (_, count) => {
+            let mut places = thrown(over.sides_px, count, quota, &mut random).into_places();
+            if let Some(grid) = quota {
+                places.sort_by_key(|place| grid.pixel_of(*place));
+            }
+            relaxed(over.sides_px, places, quota.is_some())
+        }
     };
     let mut points: Points = places
         .places()
@@ -56,16 +67,20 @@ pub fn points(over: &Over, middles: Option<PixelGrid>) -> Points {
     points
 }
 
-/// `count` places, none nearer to another than the last radius that was tried.
-fn thrown(sides: [f64; 2], count: u32, random: &mut Pcg32) -> Torus {
+/// `count` places, none nearer to another than the last radius that was tried, and in each pixel of `quota` as many as it says.
+fn thrown(sides: [f64; 2], count: u32, quota: Option<PixelGrid>, random: &mut Pcg32) -> Torus {
+    let mut left = quota.map(|grid| vec![grid.samples; (grid.sides[0] * grid.sides[1]) as usize]);
     // The densest packing of discs has this radius between middles.
     let mut radius = (2.0 / 3f64.sqrt() * sides[0] * sides[1] / f64::from(count)).sqrt();
     let mut board = Torus::empty(sides, radius);
     while board.places().len() < count as usize {
         for _ in 0..DARTS_PER_PLACE * count {
             let place = sides.map(|side| side * f64::from(random.unit()));
-            if board.places().len() < count as usize && !board.has_within(place, radius) {
+            let own = left.as_mut().zip(quota).map(|(left, grid)| &mut left[grid.pixel_of(place)]);
+            let has_room = own.as_ref().is_none_or(|own| **own > 0) && board.places().len() < count as usize;
+            if has_room && !board.has_within(place, radius) {
                 board.push(place);
+                own.into_iter().for_each(|own| *own -= 1);
             }
         }
         radius *= 0.9;
@@ -73,8 +88,9 @@ fn thrown(sides: [f64; 2], count: u32, random: &mut Pcg32) -> Torus {
     board
 }
 
-/// The places after some steps of Lloyd's method, by the middles of a fine raster's points.
-fn relaxed(sides: [f64; 2], places: Vec<[f64; 2]>) -> Torus {
+/// The places after some steps of Lloyd's method, by the middles of a fine raster's points. `in_pixels`: none leaves the pixel in
+/// which it began.
+fn relaxed(sides: [f64; 2], places: Vec<[f64; 2]>, in_pixels: bool) -> Torus {
     let mut torus = Torus::new(sides, places);
     let count = torus.places().len();
     // Points along each spacing: enough that a middle is known within a hundredth of it.
@@ -100,7 +116,14 @@ fn relaxed(sides: [f64; 2], places: Vec<[f64; 2]>) -> Torus {
         }
         let moved = torus.places().iter().zip(&sums).map(|(place, [x, y, own])| {
             let step = if *own > 0.0 { [x / own, y / own] } else { [0.0; 2] };
-            [0, 1].map(|axis| part((place[axis] + step[axis]) / sides[axis]) * sides[axis])
+            [0, 1].map(|axis| {
+                let (to, pixel) = (place[axis] + step[axis], place[axis].floor());
+                if in_pixels {
+                    to.clamp(pixel + FROM_EDGE_PX, pixel + 1.0 - FROM_EDGE_PX)
+                } else {
+                    part(to / sides[axis]) * sides[axis]
+                }
+            })
         });
         torus = Torus::new(sides, moved.collect());
     }

@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_METHODS: [&str; 28] = [
+        const NO_METHODS: [&str; 29] = [
             "mode",
             "pixel",
             "ss-guidance",
@@ -102,6 +102,7 @@ mod tests {
             "shadow-maps",
             "geometry",
             "instrument",
+            "sampler",
         ];
         let mut forgotten = Vec::new();
         for technique in ALL {

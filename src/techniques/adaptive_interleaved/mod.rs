@@ -76,6 +76,7 @@ use crate::passes::{blend, direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
+use crate::sampling::pairs;
 use crate::sampling::pattern::Pattern;
 use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::shading::medium::Medium;
@@ -91,13 +92,24 @@ use steps::ComponentSteps;
 
 pub struct AdaptiveInterleaved;
 
-/// The pattern of its pixels.
-const PATTERNS: &[NamedPattern] = &[NamedPattern {
-    name: "tile",
-    summary: "The tile: each of its pixels has samples of its own in every iteration",
-    keys: &["tile"],
-    make: |values| Ok(Pattern::grid(values.pair("tile"))),
-}];
+/// The pattern of its pixels, and that of their numbers.
+const PATTERNS: &[NamedPattern] = &[
+    NamedPattern {
+        name: "tile",
+        summary: "The tile: each of its pixels has samples of its own in every iteration",
+        keys: &["tile"],
+        make: |values| Ok(Pattern::grid(values.pair("tile"))),
+    },
+    NamedPattern {
+        name: "points",
+        summary: "Two numbers for each pixel of a tile in each iteration, which become points of lights and directions",
+        keys: &["tile", "ss-max", "sampler", "seed"],
+        make: |values| {
+            let (most, seed) = (values.integer("ss-max") as u32, values.integer("seed") as u32);
+            Ok(pairs::of_tile(values.choice("sampler"), values.pair("tile"), most, seed))
+        },
+    },
+];
 
 impl Technique for AdaptiveInterleaved {
     fn name(&self) -> &'static str {

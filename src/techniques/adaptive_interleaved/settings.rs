@@ -1,6 +1,7 @@
 //! The settings of adaptive interleaved sampling.
 
 use crate::choice::choices;
+use crate::sampling::sampler::Sampler;
 use crate::settings::{
     Changes, EMISSIVE, GEOMETRY, Kind, LIGHT_RADIUS, MEDIUM, NORMAL_THRESHOLD, POSITION, POSITION_THRESHOLD, Setting,
     TEXELS, Unread, VPL_CLAMP, Values, WORKGROUP,
@@ -170,6 +171,19 @@ pub const SETTINGS: &[Setting] = &[
         help: "Most iterations of soft shadows, the initial pass's included: points of each area light that a pixel \
                sends shadow rays to",
         unread: |values| without(values, Component::Ss),
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "sampler",
+        kind: Kind::Choice(Sampler::WORDS),
+        default: "sobol",
+        paper: "Keller 2001, 2.2",
+        help: "How points of area lights and directions of --components ao are spread over the pixels of a tile and their \
+               iterations: sobol, one scrambled sequence, a stretch of it an iteration; or all iterations' alike by relaxed, \
+               numbers that differ where pixels are near; r2, the generalised golden ratio's; jittered, one in each of equal cells; \
+               random; ign, turned by interleaved gradient noise; void-and-cluster, by blue noise masks; blue-errors, Sobol's \
+               with errors that differ between neighbours",
+        unread: |values| without_all(values, &[Component::Ss, Component::Pm, Component::Ao]),
         ..Setting::changing(Changes::Samples)
     },
     Setting {

@@ -1,5 +1,6 @@
 //! The settings that only this technique reads.
 
+use crate::sampling::sampler::Sampler;
 use crate::settings::{
     APERTURE, BRDF, Changes, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES,
     Setting, Unread, Values,
@@ -155,6 +156,17 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Clarberg 2014, 4.2",
         help: "Number of tuples, places in a pixel, on the lens and in time, that all samples share, spread over a \
                table of N/n pixels; a multiple of --spp; for each eye with --stereo; auto: four times --spp",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "sampler",
+        kind: Kind::Choice(Sampler::WORDS),
+        default: "sobol",
+        paper: "Keller 2001, 2.2",
+        help: "How tuples are spread over the pixels of their table, the lens and time: sobol, one scrambled sequence; \
+               relaxed, blue noise; r2, the generalised golden ratio's; jittered, one in each of equal cells; random; ign, \
+               turned by interleaved gradient noise; void-and-cluster, by blue noise masks; blue-errors, Sobol's with \
+               errors that differ between neighbours",
         ..Setting::changing(Changes::Samples)
     },
     Setting {

@@ -10,8 +10,12 @@
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::TupleBlock;
 use crate::lens::on_unit_disc;
+use crate::sampling::basis::Basis;
 use crate::sampling::pattern::grid::squarest;
-use crate::sampling::pattern::{Pattern, Sample};
+use crate::sampling::pattern::{Dimension, Pattern, Sample};
+use crate::sampling::sampler::{Places, Sampler};
+use crate::sampling::side::Side;
+use crate::sampling::sobol;
 use crate::settings::Values;
 use crate::techniques::NamedPattern;
 use crate::techniques::deep_shading::resources::NAME;
@@ -21,7 +25,7 @@ use crate::units::Extent;
 pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
     name: "tuples",
     summary: "Places in a pixel, on the lens and in time at which all samples are taken, over a table of pixels",
-    keys: &["spp", "tuples", "seed"],
+    keys: &["spp", "tuples", "sampler", "seed"],
     make: |values| Ok(TupleTable::from_settings(values)?.pattern(values.integer("seed") as u32, 0)),
 }];
 
@@ -34,6 +38,7 @@ pub struct TupleTable {
     pub samples: u32,
     /// 1 or 2.
     pub eyes: u32,
+    pub sampler: Sampler,
 }
 
 impl TupleTable {
@@ -48,12 +53,13 @@ impl TupleTable {
                 .within(NAME)
                 .note(format!("--tuples {} works", tuples.next_multiple_of(samples))));
         }
-        Ok(Self::new(samples, tuples))
+        Ok(Self { sampler: values.choice("sampler"), ..Self::new(samples, tuples) })
     }
 
-    /// For one eye. `tuples` is a multiple of `samples`, both at least 1. The cells are as square as their number allows.
+    /// For one eye, of one Sobol sequence. `tuples` is a multiple of `samples`, both at least 1. The cells are as square as
+    /// their number allows.
     pub fn new(samples: u32, tuples: u32) -> Self {
-        Self { cells: squarest(tuples / samples), samples, eyes: 1 }
+        Self { cells: squarest(tuples / samples), samples, eyes: 1, sampler: Sampler::Sobol }
     }
 
     /// Number of tuples of one eye, each a place in a pixel, on the lens and in time.
@@ -115,9 +121,17 @@ impl TupleTable {
         eyes.iter().flat_map(|eye| of_middle.iter().map(|tuple| beside(*eye, tuple))).collect()
     }
 
-    /// The tuples of one eye as a pattern over the table's cells. `run`: as for `tuples`.
+    /// The tuples of one eye as a pattern over the table's cells. `run`: as for `tuples`; another stretch of Sobol's
+    /// sequence, and another seed of what is no sequence.
     pub fn pattern(&self, seed: u32, run: u32) -> Pattern {
-        Pattern::nets(self.cells, self.samples, seed, run)
+        if self.sampler == Sampler::Sobol {
+            return Pattern::nets(self.cells, self.samples, seed, run);
+        }
+        let seed = if run == 0 { seed } else { sobol::pair_seed(seed, run) };
+        let sides = self.cells.map(|side| Side::new(side, 1));
+        let further = [Dimension::Time, Dimension::LensU, Dimension::LensV];
+        let basis = Basis::new(sides, &further, f64::from(self.samples), self.sampler, Places::Counted, seed);
+        basis.expect("every pixel has as many samples").pattern()
     }
 
     /// Those of one eye whose lens is the unit disk.
@@ -156,7 +170,7 @@ mod tests {
         for (samples, tuples, cells) in
             [(8, 32, [2, 2]), (8, 8, [1, 1]), (4, 64, [4, 4]), (4, 32, [4, 2]), (2, 6, [3, 1]), (1, 12, [4, 3])]
         {
-            assert_eq!(TupleTable::new(samples, tuples), TupleTable { cells, samples, eyes: 1 });
+            assert_eq!(TupleTable::new(samples, tuples), TupleTable { cells, ..TupleTable::new(samples, samples) });
             assert_eq!(TupleTable::new(samples, tuples).tuple_count(), tuples);
         }
     }

@@ -10,6 +10,8 @@ use quincunx::bvh::Bvh;
 use quincunx::frame::View;
 use quincunx::lights::area::area_lights;
 use quincunx::picture::Picture;
+use quincunx::sampling::pairs::in_order;
+use quincunx::sampling::sampler::Sampler;
 use quincunx::scene::{Material, Scene};
 use quincunx::shading::medium::Medium;
 
@@ -29,7 +31,7 @@ fn airlight_is_the_mean_of_the_pixel_s_own_marches() {
     let (eye, lamp) = (view.eye(), &scene.lights[0]);
     let block = MEDIUM.around(scene, eye, scene.lights.iter());
     let [x, y, most] = [3u32, 2, 5];
-    let points = area_lights(scene, 16)[0].points(scene, most * x * y, 1 ^ 0x9e37_79b9);
+    let points = area_lights(scene, 16)[0].points(scene, &in_order(Sampler::Sobol, [x, y], most, 1 ^ 0x9e37_79b9));
     let step = (xyz(block.max_ws) - xyz(block.min_ws)).length() / 12.0;
     let sampler = sampler([x, y], most);
     let scattered_at = |place: Vec3, direction: Vec3, point: usize| {

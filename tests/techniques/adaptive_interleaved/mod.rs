@@ -20,6 +20,8 @@ use quincunx::frame::View;
 use quincunx::gpu::shader::structs::{AdaptiveParams, AreaSampleBlock, VplBlock};
 use quincunx::lights::area::area_lights;
 use quincunx::lights::vpl;
+use quincunx::sampling::pairs::in_order;
+use quincunx::sampling::sampler::Sampler;
 use quincunx::scene::{Material, Scene};
 use quincunx::units::Extent;
 
@@ -138,6 +140,10 @@ fn indirect_light_of_all_subsets_is_every_virtual_light_with_its_shadow() {
 /// The mean over the points of the sampler that belong to the pixel's place in the tile.
 #[test]
 fn soft_shadows_are_the_mean_over_the_pixel_s_own_points() {
+    [("sobol", Sampler::Sobol), ("jittered", Sampler::Jittered)].into_iter().for_each(require_own_points);
+}
+
+fn require_own_points((name, spread): (&str, Sampler)) {
     let watched = Watched::open("cornell");
     let scene = &watched.session.scene;
     let bvh = Bvh::build(scene).unwrap();
@@ -146,7 +152,8 @@ fn soft_shadows_are_the_mean_over_the_pixel_s_own_points() {
     let [x, y, most] = [3u32, 2, 5];
     let own =
         [("components", "ss"), ("mode", "max"), ("tile", "3x2"), ("ss-max", "5"), ("rig", "none"), ("lights", "0")];
-    let points = area_lights(scene, 16)[0].points(scene, most * x * y, 1 ^ 0x9e37_79b9);
+    let own = both(&own, &[("sampler", name)]);
+    let points = area_lights(scene, 16)[0].points(scene, &in_order(spread, [x, y], most, 1 ^ 0x9e37_79b9));
     let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["irradiance.ss"]);
     let irradiance = watched.rgb(&renderer, "irradiance.ss");
     let lamps = &scene.lights;
@@ -165,7 +172,7 @@ fn soft_shadows_are_the_mean_over_the_pixel_s_own_points() {
         });
         areas + punctual.sum::<Vec3>()
     });
-    assert!(part > 0.985, "{part}");
+    assert!(part > 0.985, "{name}: {part}");
 }
 
 /// Two panels of unlike light and size over a floor with a shelf between: each has its own points, whatever the mode takes of
@@ -187,8 +194,10 @@ fn each_area_light_has_points_of_its_own_in_every_mode() {
     let seed = |light: u32| 1 ^ (light + 1).wrapping_mul(0x9e37_79b9);
     let lights = area_lights(scene, 16);
     assert_eq!(lights.len(), 2);
-    let points: Vec<_> =
-        (0u32..).zip(&lights).flat_map(|(index, light)| light.points(scene, 4 * 6, seed(index))).collect();
+    let points: Vec<_> = (0u32..)
+        .zip(&lights)
+        .flat_map(|(index, light)| light.points(scene, &in_order(Sampler::Sobol, [3, 2], 4, seed(index))))
+        .collect();
     let sampler = sampler([3, 2], 4);
     for (mode, iteration_count) in [("max", 4), ("igi", 1)] {
         let own = [("components", "ss"), ("mode", mode), ("tile", "3x2"), ("ss-max", "4"), ("rig", "none")];
@@ -275,7 +284,7 @@ fn each_light_guides_by_itself() {
     let bvh = Bvh::build(scene).unwrap();
     let offset = 1e-4 * scene.lasting_bounds().diagonal();
     let shown = shown(&watched, &bvh);
-    let points = area_lights(scene, 16)[0].points(scene, 9 * 9, 1 ^ 0x9e37_79b9);
+    let points = area_lights(scene, 16)[0].points(scene, &in_order(Sampler::Sobol, [3, 3], 9, 1 ^ 0x9e37_79b9));
     let sampler = sampler([3, 3], 9);
     let renderer = watched.render_stages(NAME, &both(&CORNELL, &own), &["guidance.ss.iterations"]);
     let iterations = watched.integers(&renderer, "guidance.ss.iterations");

@@ -6,6 +6,7 @@ mod hostile;
 mod looped;
 mod reconstruct;
 mod rivals;
+mod samplers;
 mod stereo;
 mod texture_space;
 mod visibility;

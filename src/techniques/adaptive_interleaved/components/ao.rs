@@ -5,6 +5,7 @@ use super::host::{Estimate, Given, HostComponent, Point};
 use super::method::{ComponentMethod, PreparedComponent, SampleCount, Samples};
 use crate::error::{Error, Result};
 use crate::gpu::shader::frame::FAR;
+use crate::sampling::pairs::in_order;
 use crate::settings::Values;
 use crate::shading::scatter::around;
 use crate::techniques::Inputs;
@@ -22,7 +23,7 @@ impl ComponentMethod for AmbientOcclusion {
     fn prepare(
         &self,
         inputs: &Inputs<'_>,
-        [x, y]: [u32; 2],
+        tile_px: [u32; 2],
         listed: bool,
     ) -> Result<Option<Box<dyn PreparedComponent>>> {
         if !listed {
@@ -34,24 +35,27 @@ impl ComponentMethod for AmbientOcclusion {
             ))
             .note("--ambient 0.3, or --components without ao"));
         }
-        Ok(Some(Box::new(PreparedOcclusion { direction_count: self.most_iterations(inputs.values) * x * y })))
+        Ok(Some(Box::new(PreparedOcclusion { tile_px, iterations: self.most_iterations(inputs.values) })))
     }
 }
 
+/// A direction for each pixel of a tile in each iteration.
 struct PreparedOcclusion {
-    /// One for each pixel of a tile in each iteration.
-    direction_count: u32,
+    tile_px: [u32; 2],
+    iterations: u32,
 }
 
 impl PreparedComponent for PreparedOcclusion {
     fn count(&self) -> SampleCount {
-        let source_bytes = u64::from(self.direction_count) * size_of::<[f32; 4]>() as u64;
-        SampleCount { sources: self.direction_count, source_bytes, has_lights: false }
+        let direction_count = self.iterations * self.tile_px[0] * self.tile_px[1];
+        let source_bytes = u64::from(direction_count) * size_of::<[f32; 4]>() as u64;
+        SampleCount { sources: direction_count, source_bytes, has_lights: false }
     }
 
     fn samples(&self, inputs: &Inputs<'_>) -> Result<Samples> {
-        let seed = inputs.values.integer("seed") as u32;
-        let directions: Vec<[f32; 4]> = (0..self.direction_count).map(|index| direction(index, seed)).collect();
+        let (seed, sampler) = (inputs.values.integer("seed") as u32, inputs.values.choice("sampler"));
+        let pairs = in_order(sampler, self.tile_px, self.iterations, seed);
+        let directions: Vec<[f32; 4]> = pairs.into_iter().map(direction).collect();
         Ok(Samples { sources: bytemuck::cast_slice(&directions).to_vec(), counters: Vec::new() })
     }
 
@@ -84,10 +88,8 @@ impl HostComponent for HostOcclusion {
     }
 }
 
-/// A unit vector around z, as dense as its cosine with it, from an Owen-scrambled Sobol sequence: any stretch of them is
-/// spread over the hemisphere.
-pub fn direction(index: u32, seed: u32) -> [f32; 4] {
-    let [u, v] = [0, 1].map(|dimension| sobol_burley::sample(index, dimension, seed));
+/// The unit vector around z of two numbers, 0 to 1 without 1, as dense as its cosine with it.
+pub fn direction([u, v]: [f32; 2]) -> [f32; 4] {
     let (radius, angle) = (u.sqrt(), TAU * v);
     [radius * angle.cos(), radius * angle.sin(), (1.0 - u).max(0.0).sqrt(), 0.0]
 }
@@ -95,12 +97,14 @@ pub fn direction(index: u32, seed: u32) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::sampler::Sampler;
 
     /// A cosine's mean over directions as dense as itself is 2/3, and those to the sides cancel.
     #[test]
     fn directions_are_as_dense_as_their_cosine() {
+        let pairs = in_order(Sampler::Sobol, [1, 1], 1024, 7);
         for (from, to) in [(0, 1024), (100, 612)] {
-            let mean = (from..to).map(|index| glam::Vec4::from_array(direction(index, 7))).sum::<glam::Vec4>()
+            let mean = pairs[from..to].iter().map(|pair| glam::Vec4::from_array(direction(*pair))).sum::<glam::Vec4>()
                 / (to - from) as f32;
             assert!((mean - glam::vec4(0.0, 0.0, 2.0 / 3.0, 0.0)).abs().max_element() < 0.02, "{mean}");
         }

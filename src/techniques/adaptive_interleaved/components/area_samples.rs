@@ -4,6 +4,7 @@
 use crate::gpu::shader::shading::light::LEAST_DISTANCE_SQUARED;
 use crate::gpu::shader::structs::{AdaptiveParams, AreaSampleBlock, LightBlock};
 use crate::lights::area::{AreaLight, area_lights};
+use crate::sampling::pairs::in_order;
 use crate::sampling::sobol;
 use crate::shading::light::incident_from_sphere;
 use crate::techniques::Inputs;
@@ -12,7 +13,8 @@ use glam::{Vec3, Vec4};
 /// Area lights, and how many points each has.
 pub struct AreaSamples {
     areas: Vec<AreaLight>,
-    point_count: u32,
+    tile_px: [u32; 2],
+    iterations: u32,
 }
 
 impl AreaSamples {
@@ -21,7 +23,7 @@ impl AreaSamples {
     pub fn new(inputs: &Inputs<'_>, tile_px: [u32; 2], most: u32) -> Self {
         let light_count = inputs.values.integer("ss-lights") as usize;
         let areas = if inputs.emissive_lights() { area_lights(inputs.scene, light_count) } else { Vec::new() };
-        Self { areas, point_count: most * tile_px[0] * tile_px[1] }
+        Self { areas, tile_px, iterations: most }
     }
 
     /// Area lights.
@@ -31,14 +33,17 @@ impl AreaSamples {
 
     /// Bytes of all points.
     pub fn bytes(&self) -> u64 {
-        u64::from(self.light_count()) * u64::from(self.point_count) * size_of::<AreaSampleBlock>() as u64
+        let point_count = self.iterations * self.tile_px[0] * self.tile_px[1];
+        u64::from(self.light_count()) * u64::from(point_count) * size_of::<AreaSampleBlock>() as u64
     }
 
-    /// All points, light by light. A seed of its own for each light: points of two lights would be correlated.
+    /// All points, light by light, as `--sampler` spreads them. A seed of its own for each light: points of two lights would be
+    /// correlated.
     pub fn points(&self, inputs: &Inputs<'_>) -> Vec<AreaSampleBlock> {
-        let seed = inputs.values.integer("seed") as u32;
+        let (seed, sampler) = (inputs.values.integer("seed") as u32, inputs.values.choice("sampler"));
         let points = |(index, light): (u32, &AreaLight)| {
-            light.points(inputs.scene, self.point_count, seed ^ index.wrapping_mul(0x9e37_79b9))
+            let seed = seed ^ index.wrapping_mul(0x9e37_79b9);
+            light.points(inputs.scene, &in_order(sampler, self.tile_px, self.iterations, seed))
         };
         (1u32..).zip(&self.areas).flat_map(points).collect()
     }
