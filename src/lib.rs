@@ -49,6 +49,7 @@
 
 pub mod bench;
 pub mod bvh;
+pub mod cache_folder;
 pub mod caps;
 pub mod choice;
 pub mod cli;

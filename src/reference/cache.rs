@@ -4,10 +4,10 @@
 //! make the same reference at once; each renames a whole file into place, and the last one stays.
 
 use super::recipe::Recipe;
+use crate::cache_folder;
 use crate::error::{Error, Result};
 use crate::picture::image_file::WriteOptions;
 use crate::picture::{Picture, image_file};
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 const KEY: &str = "quincunx.reference_key";
@@ -37,7 +37,7 @@ impl Cache {
     ///
     /// Errors: none of these is set (exit code 2).
     pub fn of_user() -> Result<Self> {
-        let folder = user_folder(|name| std::env::var_os(name)).ok_or_else(|| {
+        let folder = cache_folder::of_user().ok_or_else(|| {
             Error::request("--reference auto: there is no folder to keep references in, because HOME is not set")
                 .note("set QUINCUNX_CACHE to one")
         })?;
@@ -98,33 +98,4 @@ fn read(path: &Path, recipe: &Recipe) -> Result<Picture> {
         return Err(wrong("its pixels are not those that were written"));
     }
     Ok(picture)
-}
-
-/// The first of the places that is named; an empty or, of XDG's, a relative name is none (XDG Base Directory
-/// Specification).
-fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
-    let named = |name: &str| variable(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    named("QUINCUNX_CACHE")
-        .or_else(|| Some(named("XDG_CACHE_HOME").filter(|path| path.is_absolute())?.join("quincunx")))
-        .or_else(|| Some(named("HOME")?.join(".cache/quincunx")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_users_folder_is_the_first_that_is_named() {
-        let of = |set: &[(&str, &str)]| {
-            let found = user_folder(|name| set.iter().find(|(key, _)| *key == name).map(|(_, value)| value.into()));
-            found.map(|path| path.to_str().unwrap().to_owned())
-        };
-        let (own, xdg, home) = (("QUINCUNX_CACHE", "own"), ("XDG_CACHE_HOME", "/xdg"), ("HOME", "/home/me"));
-        assert_eq!(of(&[own, xdg, home]).unwrap(), "own");
-        assert_eq!(of(&[xdg, home]).unwrap(), "/xdg/quincunx");
-        assert_eq!(of(&[home]).unwrap(), "/home/me/.cache/quincunx");
-        assert_eq!(of(&[("XDG_CACHE_HOME", "relative"), home]).unwrap(), "/home/me/.cache/quincunx");
-        assert_eq!(of(&[("QUINCUNX_CACHE", ""), xdg]).unwrap(), "/xdg/quincunx");
-        assert_eq!(of(&[]), None);
-    }
 }

@@ -5,9 +5,11 @@
 //! different numbers of samples. As a `Pattern` such a basis stands several times in a period, and each of its samples is
 //! a subset.
 
+use super::kept::{self, Asked};
 use super::pattern::{Dimension, MOST_FURTHER, Pattern, Sample};
 use super::sampler::{Places, Points, Sampler};
 use super::side::Side;
+use crate::cache_folder;
 use crate::error::Result;
 
 /// The samples of one basis. Member `i` is sample `i` and its copies in all bases: a regular grid.
@@ -22,7 +24,7 @@ impl Basis {
     /// `samples_per_px` times the pixels of a basis, rounded to a whole number of samples, of which there is at least
     /// one.
     ///
-    /// `further`: dimensions beside the place, at most `MOST_FURTHER`.
+    /// `further`: dimensions beside the place, at most `MOST_FURTHER`. Samples that take long are kept in the user's cache folder.
     ///
     /// Errors: a sampler that counts by pixels has no whole number of samples for each (exit code 2).
     pub fn new(
@@ -36,7 +38,8 @@ impl Basis {
         assert!(further.len() <= MOST_FURTHER && samples_per_px > 0.0, "{further:?}, {samples_per_px}");
         let area_px = sides[0].length_px() * sides[1].length_px();
         let count = (samples_per_px * area_px).round().max(1.0) as u32;
-        let points = sampler.points(sides, count, 2 + further.len(), seed, places)?;
+        let asked = Asked { sampler, sides, count, dimensions: 2 + further.len(), seed, places };
+        let points = kept::points(&asked, cache_folder::of_user().map(|folder| folder.join("patterns")).as_deref())?;
         Ok(Self { sides, further: further.to_vec(), points })
     }
 

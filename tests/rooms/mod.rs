@@ -8,8 +8,9 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["choice", "error", "progress", "svg", "units"],
-    &["caps", "interrupt", "sampling", "whole_file"],
+    &["cache_folder", "choice", "error", "progress", "svg", "units"],
+    &["caps", "interrupt", "whole_file"],
+    &["sampling"],
     &["memory", "picture", "volume"],
     &["gpu", "metrics", "scene", "settings"],
     &["bvh", "framing", "plan", "shading"],
