@@ -117,7 +117,8 @@ pub fn json(key: &str, rates: &[Rate]) -> Value {
     json!({ "by": key, "of": rates.iter().map(rate).collect::<Vec<_>>() })
 }
 
-/// A Markdown table of the rates: errors at each value, and the exponents.
+/// A Markdown table of the rates: errors at each value, and the exponents; and over how many seeds, because those that were
+/// skipped leave no trace in a mean.
 pub fn markdown(key: &str, rates: &[Rate]) -> String {
     if rates.is_empty() {
         return format!(
@@ -145,6 +146,10 @@ pub fn markdown(key: &str, rates: &[Rate]) -> String {
         }
         text.push('\n');
     }
+    let seeds = || rates.iter().flat_map(|rate| &rate.points).map(|point| point.seeds);
+    let (least, most) = (seeds().min().unwrap_or(0), seeds().max().unwrap_or(0));
+    let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
+    text.push_str(&format!("\nmeasured seeds behind each error: {count}\n"));
     text
 }
 
@@ -214,6 +219,10 @@ mod tests {
         let found = rates("samples", &sweep, &rows);
         let [rate] = found.as_slice() else { panic!("{found:?}") };
         assert!(rate.of.is_empty() && rate.points.iter().all(|point| point.seeds == 3), "{found:?}");
+        assert!(markdown("samples", &found).ends_with("\nmeasured seeds behind each error: 3\n"));
+        rows.pop();
+        let fewer = markdown("samples", &rates("samples", &sweep, &rows));
+        assert!(fewer.ends_with("\nmeasured seeds behind each error: 2 to 3\n"), "{fewer}");
         for (point, wanted) in rate.points.iter().zip([0.7, 0.2]) {
             assert!((point.errors[0] - wanted).abs() < 1e-12 && point.errors[1] == point.errors[0], "{found:?}");
         }

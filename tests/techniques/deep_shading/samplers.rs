@@ -33,8 +33,8 @@ fn tuples_are_the_samples_that_interleaved_sampling_draws() {
     assert!(same < 0.005 && other > 0.03, "{same} {other}");
 }
 
-/// Sixteen sets of as many samples, of another seed each, halve the error at least, of some sets of theirs in the mean: independent
-/// ones come to a quarter.
+/// Sixteen sets of four samples have less than half of one set's error, in the mean over three seeds; independent ones come to a
+/// quarter.
 #[test]
 fn more_of_any_tuples_come_to_what_path_tracing_sees() {
     let watched = Watched::open("cornell");
