@@ -213,6 +213,11 @@ impl Choices {
         self.table.sample_count(frame)
     }
 
+    /// The value of the axis COUNT of shaders whose fragments write counters and nothing else.
+    pub fn count_axis(&self) -> &'static str {
+        if self.is_counted { "on" } else { "off" }
+    }
+
     /// Constants that several shaders have.
     pub fn constants(&self) -> Vec<(&'static str, u32)> {
         let mut constants = self.direct.light_constants().to_vec();

@@ -246,8 +246,7 @@ impl Prepared for PreparedDeep {
         if *shading == Shading::IndirectGbuffer {
             resolved.insert("shading-cache", self.choices.cache_entries.to_string());
         }
-        let instrument = if self.choices.is_counted { "on" } else { "off" };
-        resolved.insert(INSTRUMENT.key, instrument.to_owned());
+        resolved.insert(INSTRUMENT.key, self.choices.count_axis().to_owned());
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
             resolved.insert("layer-from", raster.layer_from.name().to_owned());

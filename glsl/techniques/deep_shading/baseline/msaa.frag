@@ -1,14 +1,12 @@
 // Stochastic multisampling: a pixel tests its samples against a triangle, each at its own place, time and place on the lens,
 // and is shaded once for all that see it (section 6, "MSAA"; McGuire et al. 2010).
 // Pass: src/techniques/deep_shading/baseline/msaa.rs.
-// variants: ALPHA=opaque|tested VERTEX=plain|extended SHADOWS=traced|mapped
+// variants: ALPHA=opaque|tested VERTEX=plain|extended SHADOWS=traced|mapped COUNT=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
-#include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/counting.glsl"
 
-// As in shade.frag.
-layout(constant_id = 94) const uint IS_COUNTED = 0;
 // Samples a pixel of the attachments.
 layout(constant_id = 98) const uint PASS_SAMPLES = 1;
 
@@ -24,7 +22,6 @@ layout(location = 11) flat in vec4 in_range;
 // surface.glsl calls the middle of the exposure `frame`.
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
-layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
@@ -99,7 +96,5 @@ void main() {
     gl_FragDepth = depth / float(bitCount(covered));
     gl_SampleMask[0] = int(covered);
     out_color = attached_color(color_of_base(base_color));
-    if (IS_COUNTED != 0u) {
-        atomicAdd(counters[COUNTED_SHADED], 1u);
-    }
+    count(COUNTED_SHADED);
 }

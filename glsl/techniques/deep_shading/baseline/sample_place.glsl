@@ -1,13 +1,11 @@
 // Where on its triangle a sample is that a tuple draws, by either kind of visibility. Pass:
 // src/techniques/deep_shading/baseline/mod.rs.
 //
-// After scene_buffers.glsl, place.glsl and counters.glsl; with the axes ALPHA and VISIBILITY. The including shader declares
-// IS_COUNTED.
+// After scene_buffers.glsl, place.glsl and counting.glsl; with the axes ALPHA and VISIBILITY.
 #ifndef DEEP_SHADING_SAMPLE_PLACE_GLSL
 #define DEEP_SHADING_SAMPLE_PLACE_GLSL
 
 layout(location = 1) flat in uint in_primitive;
-layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 #ifdef VISIBILITY_STOCHASTIC
 layout(location = 2) flat in vec4 in_corners[3];
 

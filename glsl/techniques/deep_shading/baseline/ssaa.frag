@@ -1,13 +1,10 @@
 // Supersampling: what a tuple draws is shaded there, sample by sample (section 6, "SSAA").
 // Pass: src/techniques/deep_shading/baseline/ssaa.rs.
-// variants: ALPHA=opaque|tested VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic
+// variants: ALPHA=opaque|tested VERTEX=plain|extended SHADOWS=traced|mapped VISIBILITY=interleaved|stochastic COUNT=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
-#include "techniques/deep_shading/counters.glsl"
-
-// As in shade.frag.
-layout(constant_id = 94) const uint IS_COUNTED = 0;
+#include "techniques/deep_shading/counting.glsl"
 
 #include "techniques/deep_shading/baseline/sample_place.glsl"
 
@@ -26,7 +23,5 @@ void main() {
     require_seen(base_color.a);
 #endif
     out_color = attached_color(color_of_base(base_color));
-    if (IS_COUNTED != 0u) {
-        atomicAdd(counters[COUNTED_SHADED], 1u);
-    }
+    count(COUNTED_SHADED);
 }

@@ -2,7 +2,7 @@
 //
 // Nearly all tests miss: what only a hit needs stands apart from them.
 //
-// After scene_buffers.glsl, counters.glsl and covers.glsl; the including shader declares `counters[]` and IS_COUNTED.
+// After scene_buffers.glsl, counting.glsl and covers.glsl.
 #ifndef DEEP_SHADING_HIT_GLSL
 #define DEEP_SHADING_HIT_GLSL
 
@@ -13,6 +13,7 @@ uint tests_hit = 0u;
 // After the last test, before the invocation is dropped. More than a word counts: the second has what the first was carried
 // over.
 void count_tests() {
+#ifdef COUNT_ON
     if (tests_done > 0u) {
         uint before = atomicAdd(counters[COUNTED_TESTS], tests_done);
         if (before + tests_done < before) {
@@ -22,21 +23,18 @@ void count_tests() {
     if (tests_hit > 0u) {
         atomicAdd(counters[COUNTED_TESTS_HIT], tests_hit);
     }
+#endif
 }
 
 // `count_tests` counts it later. `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the
 // corners' where it is true.
 bool is_hit(vec4 corners[3], vec2 at, out vec3 weights) {
-    if (IS_COUNTED != 0u) {
-        tests_done++;
-    }
+    tests_done++;
     bool is_front;
     if (!covers(corners[0], corners[1], corners[2], at, weights, is_front)) {
         return false;
     }
-    if (IS_COUNTED != 0u) {
-        tests_hit++;
-    }
+    tests_hit++;
     bool is_seen_front = is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
     return is_seen_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;
 }

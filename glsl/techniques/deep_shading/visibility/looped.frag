@@ -1,21 +1,18 @@
 // A polygon around all that a triangle covers while the shutter is open, drawn once over the frame: each of a pixel's samples is
 // tested in turn, and keeps what is nearest by an atomic maximum of depth and triangle (section 4.2).
 // Pass: src/techniques/deep_shading/visibility/looped.rs.
-// variants: ALPHA=opaque|tested VERTEX=plain|extended
+// variants: ALPHA=opaque|tested VERTEX=plain|extended COUNT=off|on
 #version 460
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"
-#include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/counting.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/nearest.glsl"
-
-// As in shade.frag.
-layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 // Written by polygon_out.glsl.
 layout(location = 1) flat in uint in_primitive;
@@ -27,7 +24,6 @@ layout(location = 9) flat in vec3 in_close_depth;
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
 layout(std430, set = 0, binding = 20) buffer Nearest { uint64_t nearest[]; };
-layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 #include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/visibility/place_alpha.glsl"

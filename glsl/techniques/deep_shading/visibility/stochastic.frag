@@ -1,21 +1,16 @@
 // Whether a sample lies in a triangle, which it is tested against because the polygon around the triangle's whole way has
 // reached its pixel; and what it sees then (section 4.2). Pass: src/techniques/deep_shading/visibility/stochastic.rs.
-// variants: ALPHA=opaque|tested VERTEX=plain|extended DEPTH=none|shading
+// variants: ALPHA=opaque|tested VERTEX=plain|extended DEPTH=none|shading COUNT=off|on
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"
-#include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/counting.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
-
-// As in shade.frag.
-layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 layout(location = 1) flat in uint in_primitive;
 layout(location = 2) flat in vec4 in_corners[3];
 layout(location = 7) flat in vec4 in_canonical_corners[3];
-
-layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 #include "techniques/deep_shading/visibility/hit.glsl"
 

@@ -35,5 +35,5 @@ pub(super) fn stages() -> SampleStages {
 /// `alpha`: the value of the shader's axis.
 pub(super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {
     let shadows = shadow_maps::axis(choices.maps.is_some());
-    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows])
+    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows, choices.count_axis()])
 }

@@ -14,7 +14,7 @@ use crate::techniques::deep_shading::modes::visibility::Visibility;
 /// `alpha`: the value of the shader's axis.
 pub(super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {
     let shadows = shadow_maps::axis(choices.maps.is_some());
-    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows, axis(choices)])
+    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), shadows, axis(choices), choices.count_axis()])
 }
 
 /// The value of the axis VISIBILITY of shaders that draw samples once.

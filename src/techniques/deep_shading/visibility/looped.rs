@@ -77,7 +77,7 @@ impl LoopedSamples {
     ) -> Result<Self> {
         let stages = stochastic::stages(choices, "loop");
         let pipeline = |alpha| {
-            let fragment = variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene)]);
+            let fragment = variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), choices.count_axis()]);
             let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
             let description = GraphicsDescription {
                 vertex: stages.vertex,

@@ -33,10 +33,13 @@ impl TupleDraws {
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = stages::stages(scene, choices, &repeats);
-        let fragments =
-            if choices.visibility == Visibility::Stochastic { stochastic::FRAGMENTS } else { FRAG_VARIANTS };
         let pipeline = |alpha| {
-            let fragment = variant(fragments, &[alpha, mesh::vertex_name(scene), depth]);
+            let names = [alpha, mesh::vertex_name(scene), depth, choices.count_axis()];
+            // What is interleaved counts nothing.
+            let fragment = match choices.visibility {
+                Visibility::Stochastic => variant(stochastic::FRAGMENTS, &names),
+                _ => variant(FRAG_VARIANTS, &names[..3]),
+            };
             let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
             GraphicsPipeline::new(
                 gpu,

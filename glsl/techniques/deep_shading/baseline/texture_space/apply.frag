@@ -1,13 +1,10 @@
 // A draw's texture on it, where tuples see it (section 2). Pass: src/techniques/deep_shading/baseline/texture_space/apply.rs.
-// variants: ALPHA=opaque|tested VERTEX=plain|extended VISIBILITY=interleaved|stochastic
+// variants: ALPHA=opaque|tested VERTEX=plain|extended VISIBILITY=interleaved|stochastic COUNT=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
-#include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/counting.glsl"
 #include "techniques/deep_shading/baseline/texture_space/atlas.glsl"
-
-// As in ../../shade.frag.
-layout(constant_id = 94) const uint IS_COUNTED = 0;
 
 #include "techniques/deep_shading/baseline/sample_place.glsl"
 #include "techniques/deep_shading/baseline/texture_space/lookup.glsl"

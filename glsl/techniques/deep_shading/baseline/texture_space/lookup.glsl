@@ -3,7 +3,7 @@
 // A chart's neighbours in the atlas may own texels that a look-up at its rim reads, where a level leaves too little between them: they
 // are passed over. Equal colours give that colour to the bit.
 //
-// After stored.glsl, counters.glsl and atlas.glsl; the including shader declares `counters[]` and IS_COUNTED.
+// After stored.glsl, counting.glsl and atlas.glsl.
 #ifndef DEEP_SHADING_LOOKUP_GLSL
 #define DEEP_SHADING_LOOKUP_GLSL
 
@@ -15,12 +15,6 @@ layout(std430, set = 0, binding = 43) readonly buffer Texels { uvec2 texels[]; }
 vec3 between(vec3 from, vec3 to, float part) {
     precise vec3 color = from + part * (to - from);
     return color;
-}
-
-void count(uint counter) {
-    if (IS_COUNTED != 0u) {
-        atomicAdd(counters[counter], 1u);
-    }
 }
 
 // `triangle`: of the index buffer; `weights`: of its corners. As it is stored.

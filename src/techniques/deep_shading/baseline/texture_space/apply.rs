@@ -10,5 +10,5 @@ use crate::resident::SceneGpu;
 
 /// `alpha`: the value of the shader's axis.
 pub(in super::super) fn fragment(scene: &SceneGpu, choices: &Choices, alpha: &str) -> &'static Shader {
-    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), ssaa::axis(choices)])
+    variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), ssaa::axis(choices), choices.count_axis()])
 }
