@@ -16,6 +16,9 @@
 // Odd; 0: the target is not fixed point, and numbers are whole words' halves.
 layout(constant_id = 20) const uint FIXED_STEPS = 0;
 
+// Alpha below which a BLEND surface is taken for empty: no lit sample belongs there (section 6).
+const float LEAST_ALPHA = 1.0 / 255.0;
+
 // The least number that is used. Branches, because the build cannot evaluate a choice of constants.
 uint first_number() {
     if (FIXED_STEPS == 0u) {

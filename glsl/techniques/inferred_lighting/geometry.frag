@@ -62,9 +62,6 @@ vec2 motion_px() {
 }
 #endif
 
-// Below this a texel is taken for empty: no lit sample belongs there (section 6).
-const float LEAST_ALPHA = 1.0 / 255.0;
-
 void main() {
     MaterialBlock material = params.material;
 #ifdef ALPHA_BLEND

@@ -1,6 +1,6 @@
 // The material pass: full materials, lit by the L-buffer through a filter that distinguishes surfaces. Kircher 2009,
 // sections 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
-// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals
+// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals COUNT=off|on
 #version 460
 #include "frame.glsl"
 #include "resident.glsl"
@@ -23,7 +23,8 @@ struct InferredMaterialParams {
     uint stipple_layer;
 };
 
-#ifdef ALPHA_OPAQUE
+// What is hidden writes no counters.
+#ifndef ALPHA_MASK
 layout(early_fragment_tests) in;
 #endif
 
@@ -34,8 +35,10 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; }
 #ifdef VERTEX_EXTENDED
 layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
 #endif
+#ifdef COUNT_ON
 // Fragments of solid surfaces, and of BLEND ones, that no sample belonged to.
 layout(std430, set = 0, binding = 2) buffer Rejections { uint rejected_counts[2]; };
+#endif
 
 #define INTERPOLATION centroid
 #include "shading/material.glsl"
@@ -60,6 +63,7 @@ vec4 lighting_here(MaterialBlock material) {
     query.normal_ws = normal_at(material);
 #endif
     FilteredLight result = filtered_light(query);
+#ifdef COUNT_ON
     if (result.is_rejected) {
 #ifdef ALPHA_BLEND
         atomicAdd(rejected_counts[1], 1u);
@@ -67,6 +71,7 @@ vec4 lighting_here(MaterialBlock material) {
         atomicAdd(rejected_counts[0], 1u);
 #endif
     }
+#endif
     // A sum that a driver has cut (loops.glsl) fails the picture in fixed point too, which has no NaN to filter.
     if (is_unknown(texelFetch(l_buffer, clamp(ivec2(query.at), ivec2(0), textureSize(l_buffer, 0) - 1), 0))) {
         return vec4(no_number());
@@ -104,6 +109,12 @@ void main() {
     vec4 base_color = base_color_at(material);
 #ifdef ALPHA_MASK
     if (base_color.a < material.alpha_cutoff) {
+        discard;
+    }
+#endif
+#ifdef ALPHA_BLEND
+    // What is as good as empty adds nothing, and no texel was lit for it.
+    if (base_color.a < LEAST_ALPHA) {
         discard;
     }
 #endif

@@ -4,6 +4,7 @@ use super::encoding::Packing;
 use super::layer_names;
 use super::light::Volumes;
 use super::light::store::{Store, Sums};
+use crate::caps::Ability;
 use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::lights::shadow_casters;
@@ -11,7 +12,7 @@ use crate::passes::direct::ShadingSettings;
 use crate::passes::resolve;
 use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
-use crate::settings::{Brdf, PositionStorage};
+use crate::settings::{Brdf, INSTRUMENT, PositionStorage};
 use crate::techniques::Inputs;
 use crate::techniques::inferred_lighting::assignment::{self, Assignment};
 use crate::units::Extent;
@@ -93,6 +94,8 @@ pub struct Choices {
     pub stipple: Pattern,
     /// Samples a pixel of the material pass.
     pub samples: u32,
+    /// The material pass counts fragments that it finds no light for.
+    pub is_counted: bool,
     /// The material pass shades what a pre-pass of its size sees.
     pub has_prepass: bool,
     pub assignment: Assignment,
@@ -158,6 +161,9 @@ impl Choices {
             tests_alpha: values.is("alpha", Alpha::Test),
             stipple,
             samples: resolve::samples(values),
+            is_counted: values
+                .unless_auto(INSTRUMENT.key, Values::is_on)
+                .unwrap_or_else(|| Ability::FragmentAtomics.is_there(inputs.caps)),
             has_prepass: values.is_on("depth-prepass"),
             assignment,
             named_layers,

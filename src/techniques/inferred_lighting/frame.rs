@@ -143,6 +143,7 @@ impl InferredFrame {
             stipple_side: choices.stipple_side(),
             samples: choices.samples,
             has_prepass: choices.has_prepass,
+            is_counted: choices.is_counted,
         };
         let draws = MaterialDraws { solid: list, stippled: stippled.clone() };
         let material_constants = choices.material_constants();

@@ -35,7 +35,7 @@ fn full(what: &str) -> String {
 }
 
 /// Plans its images and its counters.
-pub fn plan(plan: &mut Plan, extent: Extent, samples: u32) {
+pub fn plan(plan: &mut Plan, extent: Extent, samples: u32, is_counted: bool) {
     use vk::ImageUsageFlags as Usage;
     plan.picture(full("color"), extent);
     if samples > 1 {
@@ -49,8 +49,10 @@ pub fn plan(plan: &mut Plan, extent: Extent, samples: u32) {
         samples,
         Usage::DEPTH_STENCIL_ATTACHMENT,
     );
-    plan.buffer("counters", full("rejections"), REJECTIONS_BYTES);
-    plan.read_back(&full("rejections"));
+    if is_counted {
+        plan.buffer("counters", full("rejections"), REJECTIONS_BYTES);
+        plan.read_back(&full("rejections"));
+    }
 }
 
 /// Plans its pass, the one before it and the one that resolves it.
@@ -73,9 +75,10 @@ fn touches(drawn: &str, choices: &Choices) -> Vec<(String, Access)> {
         (light::l_buffer(), Access::FragmentSample),
         (drawn.to_owned(), Access::ColorWrite),
         (full("depth"), depth_prepass::access(choices.has_prepass)),
-        (full("rejections"), Access::TransferWrite),
-        (full("rejections"), Access::FragmentWrite),
     ]);
+    if choices.is_counted {
+        touches.extend([Access::TransferWrite, Access::FragmentWrite].map(|access| (full("rejections"), access)));
+    }
     touches
 }
 
@@ -92,6 +95,7 @@ pub struct FilterSettings {
     /// Samples a pixel of the material pass.
     pub samples: u32,
     pub has_prepass: bool,
+    pub is_counted: bool,
 }
 
 /// What tells the filter which texels of the light buffer belong to a surface.
@@ -122,7 +126,8 @@ pub struct Material {
     /// With several a pixel.
     samples: Option<Image>,
     depth: Image,
-    rejections: Buffer,
+    /// Where they are counted.
+    rejections: Option<Buffer>,
 }
 
 impl Material {
@@ -138,13 +143,14 @@ impl Material {
     ) -> Result<Self> {
         let MaterialDraws { solid, stippled } = draws;
         let guide = if filter.kind.reads_normals() { "normals" } else { "ids" };
+        let count = if filter.is_counted { "on" } else { "off" };
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide])),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide, count])),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
@@ -174,7 +180,7 @@ impl Material {
             color: resources.image(&full("color")),
             samples: (filter.samples > 1).then(|| resources.image(&full("samples"))),
             depth: resources.image(&full("depth")),
-            rejections: resources.buffer(&full("rejections")),
+            rejections: filter.is_counted.then(|| resources.buffer(&full("rejections"))),
         })
     }
 
@@ -216,10 +222,12 @@ impl Material {
             prepass.record(cmd, NAME, frame, scene, &self.solid, (&self.depth, DepthBegins::Far))?;
         }
         cmd.pass(&format!("{NAME}.material"), traffic, |cmd| {
-            cmd.barriers([self.rejections.discard(Access::TransferWrite)]);
-            cmd.clear(&self.rejections);
+            if let Some(rejections) = &self.rejections {
+                cmd.barriers([rejections.discard(Access::TransferWrite)]);
+                cmd.clear(rejections);
+                cmd.barriers([rejections.from(Access::TransferWrite).to(Access::FragmentWrite)]);
+            }
             cmd.barriers([
-                self.rejections.from(Access::TransferWrite).to(Access::FragmentWrite),
                 l_buffer.to(Access::FragmentSample),
                 guides.dsf.to(Access::FragmentSample),
                 drawn.discard(Access::ColorWrite),
@@ -234,10 +242,10 @@ impl Material {
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
             bound.extend([
-                ("Rejections", Bound::Buffer(&self.rejections)),
                 ("l_buffer", geometry.blended(l_buffer.resource, Access::FragmentSample)),
                 ("geometry_dsf", geometry.sampled(&geometry.dsf, Access::FragmentSample)),
             ]);
+            bound.extend(self.rejections.as_ref().map(|rejections| ("Rejections", Bound::Buffer(rejections))));
             if self.filter.kind.reads_normals() {
                 bound.push(("geometry_normal", geometry.sampled(&geometry.normal, Access::FragmentSample)));
             }
@@ -271,11 +279,13 @@ impl Material {
         }
     }
 
-    /// Fragments of solid and of BLEND surfaces that none of the four samples belonged to.
+    /// Fragments of solid and of BLEND surfaces that none of the four samples belonged to; nothing where they are not
+    /// counted.
     ///
     /// Errors: memory for the copy (exit code 4).
     pub fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
-        let bytes = readback::buffer(gpu, &self.rejections, REJECTIONS_BYTES, Access::FragmentWrite)?;
+        let Some(rejections) = &self.rejections else { return Ok(BTreeMap::new()) };
+        let bytes = readback::buffer(gpu, rejections, REJECTIONS_BYTES, Access::FragmentWrite)?;
         let count = |at: usize| f64::from(u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
         Ok(BTreeMap::from([("rejected_fragments", count(0)), ("rejected_alpha_fragments", count(4))]))
     }

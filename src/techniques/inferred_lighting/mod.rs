@@ -42,7 +42,7 @@ use crate::lights::LightSet;
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::{blend, cull as light_masks, direct, resolve};
 use crate::plan::Plan;
-use crate::settings::{MULTISAMPLE, Setting, Values};
+use crate::settings::{INSTRUMENT, MULTISAMPLE, Setting, Values};
 use crate::techniques::inferred_lighting::encoding::PackingFormat;
 use crate::techniques::inferred_lighting::light::store::Sums;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
@@ -84,8 +84,11 @@ impl Technique for InferredLighting {
         let of = "the geometry pass".to_owned();
         let mut needs = vec![Need { of, ability: Ability::FloatDepth, instead: "" }];
         needs.extend(blend::needs(has_blend));
-        let of = "the material pass".to_owned();
-        needs.push(Need { of, ability: Ability::FragmentAtomics, instead: "" });
+        if values.unless_auto(INSTRUMENT.key, Values::is_on) == Some(true) {
+            let of = "--instrument on".to_owned();
+            let instead = "--instrument auto counts where a device can";
+            needs.push(Need { of, ability: Ability::FragmentAtomics, instead });
+        }
         needs.extend(resolve::needs(values));
         if values.is("packing", PackingFormat::Fixed) {
             let of = "--packing fixed".to_owned();
@@ -179,7 +182,7 @@ impl Prepared for PreparedInferred {
         if !choices.casting_lights.is_empty() {
             shadow_volumes::plan(&mut plan, &self.casters);
         }
-        material::plan(&mut plan, inputs.view.extent, choices.samples);
+        material::plan(&mut plan, inputs.view.extent, choices.samples, choices.is_counted);
         if inputs.stats.has_blend && !choices.tests_alpha {
             // The texels that are left of BLEND draws are counted.
             plan.read_back(&geometry::filtered(false)[0].0);
@@ -220,6 +223,7 @@ impl Prepared for PreparedInferred {
         let texels = shading.texels.of_column(shading.direct.load(self.lights.len()));
         BTreeMap::from([
             ("cull-by", shading.cull_by.name().to_owned()),
+            (INSTRUMENT.key, if self.choices.is_counted { "on" } else { "off" }.to_owned()),
             ("light-size", self.choices.light_extent.to_string()),
             ("texels", texels.to_string()),
         ])

@@ -7,12 +7,13 @@ use super::layer_names;
 use super::light::Volumes;
 use super::light::store::Sums;
 use crate::settings::{
-    BRDF, CULL_BY, Changes, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, Kind, MOTION_INTERVAL, MOTION_VECTORS,
+    BRDF, CULL_BY, Changes, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, INSTRUMENT, Kind, MOTION_INTERVAL, MOTION_VECTORS,
     NORMAL_THRESHOLD, Setting, TEXELS, Unread, WORKGROUP,
 };
 
 /// Its rows of the table.
 pub const SETTINGS: &[Setting] = &[
+    INSTRUMENT,
     BRDF,
     GEOMETRY,
     DIRECT_SHADOW,
