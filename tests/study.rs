@@ -78,7 +78,7 @@ fn the_buffers_of_inferred_lighting_are_as_large_as_its_texels() {
                 ("geometry.normal", "R32_UINT", 4),
                 ("geometry.dsf", "R32_UINT", 4),
                 ("geometry.depth", "D32_SFLOAT", 4),
-                ("light.l_buffer", "R16G16B16A16_SFLOAT", 8),
+                ("light.l_buffer", "R32G32_UINT", 8),
             ] {
                 let name = format!("inferred_lighting.{name}");
                 let row = rows.iter().find(|row| row["name"] == name.as_str()).unwrap();

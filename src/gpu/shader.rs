@@ -20,6 +20,15 @@ pub struct Shader {
     pub workgroup: [Side; 3],
 }
 
+/// Those of `constants` that one of `shaders` has: a technique hands all of its own to each of its pipelines.
+pub fn constants_of(constants: &[(&'static str, u32)], shaders: &[Option<&Shader>]) -> Vec<(&'static str, u32)> {
+    let has = |name: &str| {
+        let mut shaders = shaders.iter().flatten();
+        shaders.any(|shader| shader.constants.iter().any(|constant| constant.name == name))
+    };
+    constants.iter().copied().filter(|(name, _)| has(name)).collect()
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     Vertex,

@@ -3,7 +3,7 @@
 //
 // normal  xy of the view-space normal after the map of the sphere to the hemisphere, 16-bit snorm each
 // dsf     16 bits of linear depth, 65535 where no surface is; above them the object's id and the normal group's, 8 bits each
-// extras  8 bits each of roughness and of the material's id, where the light pass has the specular power
+// extras  8 bits each of roughness and of the material's id, 16 of F0, where the light pass has the specular power
 //
 // A texel is a word of two 16-bit numbers. Its target is that word, or the word's bytes in four channels, or its numbers in
 // two channels of fixed point (section 5); all are read as the word. In fixed point a number has FIXED_STEPS steps of the
@@ -112,14 +112,40 @@ bool dsf_has_surface(uint word) {
     return (word & 0xffffu) != first_number() + depth_steps() + 1u;
 }
 
-// In fixed point roughness and material have a number each.
-uint pack_extras_word(float roughness, uint material) {
+// F0 in 16 bits, by roots, which dark values need. 0: nothing mirrors, at no angle. Up to 32767: gray, as of all that is not metal;
+// from 32768 on: 5 bits a channel. The ends of gray are left out, so that fewer steps of fixed point do not round into them.
+const uint F0_COLORED = 0x8000u;
+const uint F0_LEAST_GRAY = 64u;
+const uint F0_MOST_GRAY = 0x7fffu - 64u;
+
+uint pack_f0(vec3 f0, float f90) {
+    if (f90 == 0.0) {
+        return 0u;
+    }
+    vec3 root = sqrt(clamp(f0, vec3(0.0), vec3(1.0)));
+    if (all(lessThan(abs(root - root.ggg), vec3(1.0 / 1024.0)))) {
+        return clamp(uint(root.g * float(0x7fff) + 0.5), F0_LEAST_GRAY, F0_MOST_GRAY);
+    }
+    uvec3 steps = uvec3(root * 31.0 + 0.5);
+    return F0_COLORED | (steps.r << 10) | (steps.g << 5) | steps.b;
+}
+
+vec3 unpack_f0(uint code) {
+    vec3 root = vec3(float(code) / float(0x7fff));
+    if (code >= F0_COLORED) {
+        root = vec3((code >> 10) & 0x1fu, (code >> 5) & 0x1fu, code & 0x1fu) / 31.0;
+    }
+    return root * root;
+}
+
+// In fixed point roughness and F0 have a number each, and the material's id has no room.
+uint pack_extras_word(float roughness, uint material, uint f0_code) {
     float held = clamp(roughness, 0.0, 1.0);
     if (FIXED_STEPS == 0u) {
-        return uint(held * 255.0 + 0.5) | ((material & 0xffu) << 8);
+        return uint(held * 255.0 + 0.5) | ((material & 0xffu) << 8) | (f0_code << 16);
     }
     uint code = first_number() + uint(held * float(FIXED_STEPS) + 0.5);
-    return code | (fixed_code(material & 0xffffu) << 16);
+    return code | (fixed_code(f0_code) << 16);
 }
 
 float roughness_of_extras(uint word) {
@@ -127,6 +153,13 @@ float roughness_of_extras(uint word) {
         return float(word & 0xffu) / 255.0;
     }
     return float((word & 0xffffu) - first_number()) / float(FIXED_STEPS);
+}
+
+uint f0_code_of_extras(uint word) {
+    if (FIXED_STEPS == 0u) {
+        return word >> 16;
+    }
+    return (((word >> 16) - first_number()) * 0xffffu + FIXED_STEPS / 2u) / FIXED_STEPS;
 }
 
 #endif

@@ -3,6 +3,9 @@
 // variants: ALPHA=opaque|mask|blend EXTRAS=off|on MOTION=off|on PACKING=words|channels VERTEX=plain|extended
 #version 460
 #include "techniques/inferred_lighting/encoding.glsl"
+#ifdef EXTRAS_ON
+#include "shading/brdf.glsl"
+#endif
 #include "resident.glsl"
 
 struct GeometryParams {
@@ -23,6 +26,11 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 #endif
 
 #include "shading/material.glsl"
+
+#ifdef EXTRAS_ON
+// 1: the light pass divides highlights by F0.
+layout(constant_id = 24) const uint KEEPS_F0 = 0;
+#endif
 
 // Targets have as many bits a texel all, in every packing (section 5.2).
 #ifdef PACKING_WORDS
@@ -82,7 +90,18 @@ void main() {
     float depth_m = linear_depth(frame, in_position_ws);
     out_dsf = target_of(pack_dsf(depth_m, vec2(params.first_depth_m, params.depth_range_m), in_ids.y));
 #ifdef EXTRAS_ON
-    out_extras = target_of(pack_extras_word(metallic_roughness_at(material).y, in_material));
+    vec2 metallic_roughness = metallic_roughness_at(material);
+    uint f0_code = 0u;
+    if (KEEPS_F0 != 0u) {
+        // The base colour of what is no metal at all does not matter.
+        vec3 base_color = material.metallic > 0.0 ? base_color_at(material).rgb : vec3(0.0);
+        Surface surface = Surface(base_color, metallic_roughness.x, metallic_roughness.y, DEFAULT_DIELECTRIC_F0);
+        if (SURFACE_EXTRAS != 0u) {
+            surface.dielectric_f0 = f0_of_extras(extras_at(material));
+        }
+        f0_code = pack_f0(f0_of(surface), f90_of(surface));
+    }
+    out_extras = target_of(pack_extras_word(metallic_roughness.y, in_material, f0_code));
 #endif
 #ifdef MOTION_ON
     out_motion = packHalf2x16(motion_px());

@@ -1,12 +1,20 @@
 // The L-buffer at a fragment, from the four samples around it: those of its surface by the discontinuity sensitive filter
 // (Kircher 2009, section 3), or by what other papers distinguish surfaces by. Of alpha surfaces, section 4, the samples
-// are one texel of each cell of a stipple. With GUIDE=normals the including shader declares `frame`.
+// are one texel of each cell of a stipple. With GUIDE=normals the including shader declares `frame`; its axis LIGHT=words|sampled
+// says how the L-buffer is read.
 #ifndef INFERRED_LIGHTING_LIGHT_FILTER_GLSL
 #define INFERRED_LIGHTING_LIGHT_FILTER_GLSL
 
 #include "techniques/inferred_lighting/encoding.glsl"
+#include "techniques/inferred_lighting/l_buffer.glsl"
 
+#ifdef LIGHT_SAMPLED
+// Its channels, which the sampler can blend.
 layout(set = 0, binding = 40) uniform sampler2D l_buffer;
+#else
+// Its words.
+layout(set = 0, binding = 40) uniform usampler2D l_buffer;
+#endif
 layout(set = 0, binding = 41) uniform usampler2D geometry_dsf;
 #ifdef GUIDE_NORMALS
 layout(set = 0, binding = 42) uniform usampler2D geometry_normal;
@@ -16,8 +24,8 @@ layout(set = 0, binding = 42) uniform usampler2D geometry_normal;
 layout(constant_id = 6) const uint LIGHT_FILTER = 1;
 // Radius of the cone filter of alpha surfaces in texels of the light buffer; 0: they too are filtered bilinearly.
 layout(constant_id = 7) const float CONE_RADIUS = 0.0;
-// 1: where all four samples belong to a solid surface, the sampler blends them.
-layout(constant_id = 8) const uint SAMPLER_BLENDS = 0;
+// Rings of texels beyond the four in which a surface looks for its own where none of those is: 0 or 1.
+layout(constant_id = 8) const uint RINGS = 1;
 // GUIDE=normals: most that 1 - cos between two normals of one surface may be.
 layout(constant_id = 9) const float NORMAL_THRESHOLD = 0.3;
 
@@ -52,8 +60,8 @@ struct LightQuery {
 };
 
 struct FilteredLight {
-    vec4 lighting;
-    // None of the four belongs to the surface.
+    Lighting lighting;
+    // Nothing that was looked at belongs to the surface.
     bool is_rejected;
 };
 
@@ -102,59 +110,102 @@ float belonging_of(LightQuery query, ivec2 texel) {
 #endif
 }
 
+// Texel of the surface's lattice at whole coordinates `at`.
+ivec2 lattice_texel(LightQuery query, ivec2 at, ivec2 last, ivec2 extent) {
+    return min(clamp(at, ivec2(0), last) * query.spacing + query.offset, extent - 1);
+}
+
+Lighting lighting_at(ivec2 texel) {
+#ifdef LIGHT_SAMPLED
+    return lighting_of(texelFetch(l_buffer, texel, 0));
+#else
+    return unpack_lighting(texelFetch(l_buffer, texel, 0).rg);
+#endif
+}
+
+// Adds a part of one to another.
+void add_part(inout Lighting sum, Lighting part, float weight) {
+    sum.irradiance += part.irradiance * weight;
+    sum.highlight += part.highlight * weight;
+}
+
+// What belongs to the surface of the 12 texels of its lattice around the four, nearer ones more: a tent twice as wide as theirs.
+// `weight_sum` is 0 where nothing does.
+Lighting ring_light(LightQuery query, ivec2 base, vec2 fraction, ivec2 last, ivec2 extent, out float weight_sum) {
+    Lighting sum = Lighting(vec3(0.0), vec3(0.0));
+    weight_sum = 0.0;
+    for (int y = -1; y <= 2; y++) {
+        for (int x = -1; x <= 2; x++) {
+            bool is_inner = (x == 0 || x == 1) && (y == 0 || y == 1);
+            ivec2 texel = lattice_texel(query, base + ivec2(x, y), last, extent);
+            float belonging = is_inner ? 0.0 : belonging_of(query, texel);
+            if (belonging > 0.0) {
+                vec2 tent = max(1.0 - 0.5 * abs(vec2(x, y) - fraction), vec2(1e-3));
+                float weight = belonging * tent.x * tent.y;
+                add_part(sum, lighting_at(texel), weight);
+                weight_sum += weight;
+            }
+        }
+    }
+    return sum;
+}
+
 FilteredLight filtered_light(LightQuery query) {
     ivec2 extent = textureSize(geometry_dsf, 0);
     // The lattice of the surface's samples.
     ivec2 last = max((extent - 1 - query.offset) / query.spacing, ivec2(0));
     vec2 place = (query.at - 0.5 - vec2(query.offset)) / float(query.spacing);
-    vec2 base = floor(place);
-    vec2 fraction = place - base;
+    ivec2 base = ivec2(floor(place));
+    vec2 fraction = place - vec2(base);
     ivec2 texels[4];
     vec4 belonging = vec4(0.0);
+    vec4 bilinear = vec4(0.0);
+    vec4 weights = vec4(0.0);
     for (int i = 0; i < 4; i++) {
         ivec2 corner = ivec2(i & 1, i >> 1);
-        texels[i] = min(clamp(ivec2(base) + corner, ivec2(0), last) * query.spacing + query.offset, extent - 1);
+        texels[i] = lattice_texel(query, base + corner, last, extent);
         belonging[i] = belonging_of(query, texels[i]);
-    }
-    if (SAMPLER_BLENDS != 0u) {
-        if (query.spacing == 1 && belonging == vec4(1.0)) {
-            return FilteredLight(textureLod(l_buffer, query.at / vec2(extent), 0.0), false);
-        }
-    }
-    vec4 weighted = vec4(0.0);
-    float weight_sum = 0.0;
-    vec4 plain = vec4(0.0);
-    vec4 unweighted = vec4(0.0);
-    float belonging_sum = 0.0;
-    for (int i = 0; i < 4; i++) {
-        vec2 near = mix(1.0 - fraction, fraction, vec2(i & 1, i >> 1));
+        vec2 near = mix(1.0 - fraction, fraction, vec2(corner));
         if (LIGHT_FILTER == FILTER_NEAREST) {
-            near = mix(1.0 - step(0.5, fraction), step(0.5, fraction), vec2(i & 1, i >> 1));
+            near = mix(1.0 - step(0.5, fraction), step(0.5, fraction), vec2(corner));
         }
-        float bilinear = near.x * near.y;
-        float weight = bilinear;
+        bilinear[i] = near.x * near.y;
+        float weight = bilinear[i];
         if (query.spacing > 1 && CONE_RADIUS > 0.0) {
             float away = length((1.0 - near) * float(query.spacing));
             weight = max(1.0 - away / CONE_RADIUS, 0.0);
         }
-        vec4 lighting = texelFetch(l_buffer, texels[i], 0);
-        plain += lighting * bilinear;
-        if (belonging[i] > 0.0) {
-            weight *= belonging[i];
-            weighted += lighting * weight;
-            weight_sum += weight;
-            unweighted += lighting * belonging[i];
-            belonging_sum += belonging[i];
+        weights[i] = belonging[i] * weight;
+    }
+#ifdef LIGHT_SAMPLED
+    if (query.spacing == 1 && belonging == vec4(1.0)) {
+        return FilteredLight(lighting_of(textureLod(l_buffer, query.at / vec2(extent), 0.0)), false);
+    }
+#endif
+    float weight_sum = dot(weights, vec4(1.0));
+    bool is_rejected = false;
+    if (!(weight_sum > 0.0)) {
+        // Those that belong lie where the filter has no weight left; or none belongs.
+        float belonging_sum = dot(belonging, vec4(1.0));
+        is_rejected = !(belonging_sum > 0.0);
+        weights = is_rejected ? bilinear : belonging;
+        weight_sum = is_rejected ? 1.0 : belonging_sum;
+        if (RINGS != 0u && is_rejected) {
+            float ring_sum;
+            Lighting ring = ring_light(query, base, fraction, last, extent, ring_sum);
+            if (ring_sum > 0.0) {
+                return FilteredLight(Lighting(ring.irradiance / ring_sum, ring.highlight / ring_sum), false);
+            }
         }
     }
-    if (weight_sum > 0.0) {
-        return FilteredLight(weighted / weight_sum, false);
+    Lighting sum = Lighting(vec3(0.0), vec3(0.0));
+    for (int i = 0; i < 4; i++) {
+        // What has no weight may be anything, and that times 0 no number.
+        if (weights[i] > 0.0) {
+            add_part(sum, lighting_at(texels[i]), weights[i] / weight_sum);
+        }
     }
-    // Those that belong lie where the filter has no weight left.
-    if (belonging_sum > 0.0) {
-        return FilteredLight(unweighted / belonging_sum, false);
-    }
-    return FilteredLight(plain, true);
+    return FilteredLight(sum, is_rejected);
 }
 
 #endif

@@ -1,6 +1,6 @@
 // The material pass: full materials, lit by the L-buffer through a filter that distinguishes surfaces. Kircher 2009,
 // sections 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
-// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals COUNT=off|on
+// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals LIGHT=words|sampled COUNT=off|on
 #version 460
 #include "frame.glsl"
 #include "resident.glsl"
@@ -42,12 +42,12 @@ layout(std430, set = 0, binding = 2) buffer Rejections { uint rejected_counts[2]
 
 #define INTERPOLATION centroid
 #include "shading/material.glsl"
-#include "techniques/inferred_lighting/l_buffer.glsl"
 #include "techniques/inferred_lighting/light_filter.glsl"
+#include "techniques/inferred_lighting/highlight.glsl"
 
 layout(location = 0) out vec4 out_color;
 
-vec4 lighting_here(MaterialBlock material) {
+Lighting lighting_here(MaterialBlock material) {
     float depth_m = linear_depth(frame, in_position_ws);
     int side = int(params.stipple_side);
     LightQuery query;
@@ -72,11 +72,14 @@ vec4 lighting_here(MaterialBlock material) {
 #endif
     }
 #endif
-    // A sum that a driver has cut (loops.glsl) fails the picture in fixed point too, which has no NaN to filter.
-    if (is_unknown(texelFetch(l_buffer, clamp(ivec2(query.at), ivec2(0), textureSize(l_buffer, 0) - 1), 0))) {
-        return vec4(no_number());
+#ifdef LIGHT_SAMPLED
+    // A sum that a driver has cut (loops.glsl) fails the picture in fixed point too, which has no NaN for a sampler to blend.
+    ivec2 nearest = clamp(ivec2(query.at), ivec2(0), textureSize(l_buffer, 0) - 1);
+    if (is_unknown_sample(texelFetch(l_buffer, nearest, 0))) {
+        return Lighting(vec3(no_number()), vec3(0.0));
     }
-    return light_of(result.lighting);
+#endif
+    return result.lighting;
 }
 
 // Radiance towards the eye.
@@ -89,17 +92,14 @@ vec3 lit(MaterialBlock material, vec3 base_color) {
         surface.dielectric_f0 = f0_of_extras(extras);
         openness = openness_of_extras(extras);
     }
-    vec4 lighting = lighting_here(material);
+    Lighting lighting = lighting_here(material);
     vec3 f0 = BRDF_KIND == BRDF_LAMBERT ? vec3(0.0) : f0_of(surface);
     vec3 ambient = frame.ambient.rgb;
     // The L-buffer has the whole ambient light: what is hidden of it is taken off.
-    vec3 received = max(lighting.rgb / PI - (1.0 - openness) * ambient, vec3(0.0));
+    vec3 received = max(lighting.irradiance / PI - (1.0 - openness) * ambient, vec3(0.0));
     vec3 radiance = emissive_at(material) + (1.0 - f0) * albedo_of(surface) * received + f0 * ambient * openness;
     if (BRDF_KIND != BRDF_LAMBERT) {
-        // The highlight has the colour of the diffuse lighting (section 2.2).
-        float brightness = dot(lighting.rgb, vec3(0.2126, 0.7152, 0.0722));
-        vec3 tint = brightness > 0.0 ? lighting.rgb / brightness : vec3(0.0);
-        radiance += f0 * lighting.a * tint;
+        radiance += highlight_of(lighting, f0, f90_of(surface));
     }
     return radiance;
 }

@@ -9,6 +9,7 @@
 #include "passes/depth.glsl"
 #include "shading/light.glsl"
 #include "shading/brdf.glsl"
+#include "techniques/inferred_lighting/l_buffer.glsl"
 
 layout(set = 0, binding = 40) uniform sampler2D geometry_depth;
 layout(set = 0, binding = 41) uniform usampler2D geometry_normal;
@@ -36,6 +37,8 @@ struct LitSurface {
     vec3 normal_ws;
     vec3 eye_ws;
     float roughness;
+    vec3 f0;
+    float f90;
 };
 
 LitSurface surface_at(uvec2 pixel) {
@@ -45,9 +48,16 @@ LitSurface surface_at(uvec2 pixel) {
     surface.normal_ws = world_from_view(frame, unpack_view_normal(normal_word));
     surface.eye_ws = to_eye(frame, surface.position_ws);
 #ifdef EXTRAS_ON
-    surface.roughness = roughness_of_extras(texelFetch(geometry_extras, ivec2(pixel), 0).r);
+    uint extras = texelFetch(geometry_extras, ivec2(pixel), 0).r;
+    uint f0_code = f0_code_of_extras(extras);
+    surface.roughness = roughness_of_extras(extras);
+    surface.f0 = unpack_f0(f0_code);
+    surface.f90 = f0_code == 0u ? 0.0 : 1.0;
 #else
+    // Highlights that need to know it are refused.
     surface.roughness = ROUGHNESS;
+    surface.f0 = vec3(0.0);
+    surface.f90 = 1.0;
 #endif
     return surface;
 }

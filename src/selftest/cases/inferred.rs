@@ -24,6 +24,13 @@ const DEFERRED: Bounds = Bounds {
     mean: 0.002,
     why: "a light buffer of the frame's size is deferred shading but for normals and light in 16 bits",
 };
+const HIGHLIGHTS: Bounds = Bounds {
+    apart: 0.3,
+    rmse: 0.03,
+    flip: 0.05,
+    mean: 0.03,
+    why: "one number of a highlight or two have the colour of the light that is scattered",
+};
 const SAMPLER: Bounds = Bounds {
     apart: 0.005,
     rmse: 0.002,
@@ -123,7 +130,7 @@ pub const GROUPS: &[Group] = &[
         name: "l-buffer",
         technique: NAME,
         place: LAMPS,
-        common: &[("volumes", "scissor")],
+        common: &[("volumes", "scissor"), ("highlight", "intensity")],
         twin: Twin::Method(&[("l-buffer", "float")]),
         methods: &[&[("l-buffer", "half")], &[("l-buffer", "fixed")]],
         must: Must::Near(HALVES),
@@ -153,10 +160,25 @@ pub const GROUPS: &[Group] = &[
         must: Must::Near(DEFERRED),
     },
     Group {
+        name: "highlight",
+        technique: NAME,
+        place: LAMPS,
+        common: &[AT_FRAME_SIZE, ("direct-shadow", "none")],
+        twin: Twin::Other("deferred", &[("position", "depth"), ("direct-shadow", "none")]),
+        methods: &[
+            &[("highlight", "rgb")],
+            &[("highlight", "rgb"), ("volumes", "scissor"), ("l-buffer", "half")],
+            &[("highlight", "split")],
+            &[("highlight", "intensity"), ("fresnel", "light")],
+            &[("highlight", "intensity"), ("fresnel", "normal")],
+        ],
+        must: Must::Near(HIGHLIGHTS),
+    },
+    Group {
         name: "light-fetch",
         technique: NAME,
         place: LAMPS,
-        common: &[],
+        common: &[("highlight", "intensity")],
         twin: Twin::Method(&[("light-fetch", "texels")]),
         methods: &[&[("light-fetch", "sampler")]],
         must: Must::Near(SAMPLER),

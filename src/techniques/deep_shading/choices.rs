@@ -242,11 +242,7 @@ impl Choices {
 
 /// The technique's constants that one of these shaders has.
 pub fn constants_of(choices: &Choices, shaders: &[Option<&Shader>]) -> Vec<(&'static str, u32)> {
-    let has = |name: &str| {
-        let mut shaders = shaders.iter().flatten();
-        shaders.any(|shader| shader.constants.iter().any(|constant| constant.name == name))
-    };
-    choices.constants().into_iter().filter(|(name, _)| has(name)).collect()
+    crate::gpu::shader::constants_of(&choices.constants(), shaders)
 }
 
 /// Entries of the longest buffer that has as many a pixel of shading space.

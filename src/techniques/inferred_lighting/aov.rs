@@ -2,9 +2,9 @@
 //! the light buffer's size: a pixel of the frame
 //! shows the texel that it lies in.
 
-use super::frame::{InferredFrame, LightPass, Packed};
+use super::frame::{InferredFrame, LightPass};
 use super::light;
-use super::light::store::Store;
+use super::light::store::{Lighting, Store};
 use super::material::FilterGuides;
 use super::motion;
 use super::survivors::{StippleCounts, Survivors};
@@ -69,11 +69,16 @@ pub fn read(frame: &InferredFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
         }
         "light.l_buffer.irradiance" => {
             let texels = l_buffer(frame, gpu)?;
-            AovChannels::Rgb(spread(frame, &texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>()))
+            AovChannels::Rgb(spread(frame, &texels.iter().map(|texel| texel.irradiance).collect::<Vec<_>>()))
         }
+        // One number, two and a 0, or three.
         "light.l_buffer.highlight" => {
             let texels = l_buffer(frame, gpu)?;
-            AovChannels::Y(spread(frame, &texels.iter().map(|[.., a]| *a).collect::<Vec<_>>()))
+            if frame.described.store.has_channels() {
+                AovChannels::Y(spread(frame, &texels.iter().map(|texel| texel.highlight[0]).collect::<Vec<_>>()))
+            } else {
+                AovChannels::Rgb(spread(frame, &texels.iter().map(|texel| texel.highlight).collect::<Vec<_>>()))
+            }
         }
         _ => unreachable!("{NAME} has no stage {name}"),
     };
@@ -97,24 +102,23 @@ fn normal(frame: &InferredFrame, word: u32) -> [f32; 3] {
     if frame.packing.has_normal(word) { frame.packing.view_normal(word).to_array() } else { [0.0; 3] }
 }
 
-/// Four channels of 16 bits a texel.
-fn l_buffer_bits(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<Vec<[u16; 4]>> {
-    let bytes = readback::image(gpu, &frame.l_buffer, Access::FragmentSample)?;
-    let bits = |texel: &[u8], at: usize| u16::from_le_bytes([texel[2 * at], texel[2 * at + 1]]);
-    Ok(bytes.chunks_exact(8).map(|texel| [0, 1, 2, 3].map(|at| bits(texel, at))).collect())
+/// Two words a texel.
+fn l_buffer_words(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<Vec<[u32; 2]>> {
+    let [l_buffer] = &frame.l_buffer;
+    let words: Vec<u32> = words(&readback::image(gpu, l_buffer, Access::FragmentSample)?).collect();
+    Ok(words.chunks_exact(2).map(|texel| [texel[0], texel[1]]).collect())
 }
 
-fn l_buffer(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<Vec<[f32; 4]>> {
-    let texels = l_buffer_bits(frame, gpu)?;
-    Ok(texels.into_iter().map(|texel| texel.map(|bits| frame.store.read(bits))).collect())
+fn l_buffer(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<Vec<Lighting>> {
+    Ok(l_buffer_words(frame, gpu)?.into_iter().map(|words| frame.described.store.read(words)).collect())
 }
 
 /// Texels of the L-buffer of which a channel holds the most that it can.
 ///
 /// Errors: memory for the copy (exit code 4).
 pub fn cut_texels(frame: &InferredFrame, gpu: &Arc<Gpu>) -> Result<usize> {
-    let texels = l_buffer_bits(frame, gpu)?;
-    Ok(texels.iter().filter(|texel| texel.iter().any(|bits| frame.store.is_cut(*bits))).count())
+    let texels = l_buffer_words(frame, gpu)?;
+    Ok(texels.iter().filter(|words| frame.described.store.is_cut(**words)).count())
 }
 
 /// The texel of each pixel.
@@ -135,6 +139,7 @@ fn spread<T: Copy>(frame: &InferredFrame, texels: &[T]) -> Vec<T> {
 impl Frame for InferredFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let geometry = &self.geometry;
+        let [l_buffer] = &self.l_buffer;
         self.geometry_pass.record(cmd, &self.light_frame, scene, geometry)?;
         let mut written = Access::DepthWrite;
         if let (Some(cull), Some(masks)) = (&self.cull, &self.lights.masks) {
@@ -146,22 +151,22 @@ impl Frame for InferredFrame {
         match &self.light_pass {
             LightPass::Tiled(tiled) => {
                 let lights = self.lights.from(Access::ComputeWrite);
-                tiled.record(cmd, &self.light_frame, lights, from, &self.l_buffer)?;
+                tiled.record(cmd, &self.light_frame, lights, from, l_buffer)?;
             }
-            LightPass::Drawn { volumes, packed } => {
-                let target = packed.as_ref().map_or(&self.l_buffer, |packed| &packed.sums);
-                volumes.record(cmd, &self.light_frame, &self.lights, from, target)?;
-                if let Some(Packed { pack, sums }) = packed.as_deref() {
-                    pack.record(cmd, &self.light_frame, sums.from(Access::ColorWrite), &self.l_buffer)?;
+            LightPass::Drawn { volumes, pack } => {
+                let targets = pack.as_ref().map_or(&self.l_buffer[..], |pack| &pack.sums);
+                volumes.record(cmd, &self.light_frame, &self.lights, from, targets)?;
+                if let Some(pack) = pack {
+                    pack.record(cmd, &self.light_frame, l_buffer)?;
                 }
             }
         }
-        let last = light::last_access(self.in_halves);
+        let last = light::last_access(self.described);
         let guides = FilterGuides {
             dsf: geometry.dsf.from(Access::ColorWrite),
             normals: geometry.normal.from(self.lit_access()),
         };
-        self.material.record(cmd, frame, scene, geometry, guides, self.l_buffer.from(last))
+        self.material.record(cmd, frame, scene, geometry, guides, l_buffer.from(last))
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
@@ -185,7 +190,7 @@ impl Frame for InferredFrame {
             counters.insert("stipple_draws_lit", draws as f64);
             counters.insert("stipple_draws_unlit", unlit_draws as f64);
         }
-        if let Store::Fixed { .. } = self.store {
+        if let Store::Fixed { .. } = self.described.store {
             counters.insert("light_texels_cut", cut_texels(self, gpu)? as f64);
         }
         match &self.light_pass {

@@ -3,7 +3,7 @@
 use super::encoding::Packing;
 use super::layer_names;
 use super::light::Volumes;
-use super::light::store::{Store, Sums};
+use super::light::store::{Fresnel, Highlight, Store, Sums};
 use crate::caps::Ability;
 use crate::choice::choices;
 use crate::error::{Error, Result};
@@ -15,6 +15,7 @@ use crate::settings::Values;
 use crate::settings::{Brdf, INSTRUMENT, PositionStorage};
 use crate::techniques::Inputs;
 use crate::techniques::inferred_lighting::assignment::{self, Assignment};
+use crate::techniques::inferred_lighting::light::LBuffer;
 use crate::units::Extent;
 use ash::vk;
 use std::collections::BTreeMap;
@@ -79,13 +80,12 @@ pub struct Choices {
     pub least_counted_texels: u64,
     /// Lights that cast shadow volumes, ascending.
     pub casting_lights: Vec<usize>,
-    /// The L-buffer is blended in half floats.
-    pub in_halves: bool,
+    pub l_buffer: LBuffer,
+    fresnel: Fresnel,
     pub filter: LightFilter,
-    /// The sampler blends four texels of one surface.
-    sampler_blends: bool,
+    /// Rings of texels in which a surface looks for its own where the nearest four are not.
+    rings: u32,
     normal_threshold: f32,
-    pub store: Store,
     /// Light at which losses of the L-buffer are reported.
     pub light_range: f32,
     pub packing: Packing,
@@ -140,21 +140,23 @@ impl Choices {
             }
         };
         let light_range = values.number("light-range") as f32;
+        let has_extras = values.is_on("extras") && !values.is("brdf", Brdf::Lambert);
+        let is_sampled = values.is("light-fetch", LightFetch::Sampler);
         let (position, cull) = (PositionStorage::Depth, volumes == Volumes::Tiled);
         Ok(Self {
             shading: ShadingSettings::with(values, inputs.lights, inputs.scene, inputs.caps, position, cull),
             light_extent: light_extent(values.unless_auto("light-size", Values::extent), inputs.view.extent),
-            has_extras: values.is_on("extras") && !values.is("brdf", Brdf::Lambert),
+            has_extras,
             has_motion: values.is_on("motion-vectors"),
             light_roughness: values.number("light-roughness") as f32,
             volumes,
             least_counted_texels: values.integer("stencil-least"),
             casting_lights: shadow_casters::strongest(&inputs.lights.lights, casting_count),
-            in_halves,
+            l_buffer: LBuffer { store: store(values, has_extras, light_range)?, volumes, in_halves, is_sampled },
+            fresnel: values.choice("fresnel"),
             filter: values.choice("light-filter"),
-            sampler_blends: values.is("light-fetch", LightFetch::Sampler),
+            rings: values.integer("light-rings") as u32,
             normal_threshold: values.number("normal-threshold") as f32,
-            store: if sums == Sums::Fixed { Store::Fixed { range: light_range } } else { Store::Halves },
             light_range,
             packing: Packing::from_settings(values),
             depth_threshold: values.number("depth-threshold") as f32,
@@ -186,14 +188,13 @@ impl Choices {
         if self.has_stencil() { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT }
     }
 
-    /// Constants of the light pass: those of lights that are not of materials, and ROUGHNESS without extras.
+    /// Constants of the light pass's shaders.
     pub fn light_constants(&self) -> Vec<(&'static str, u32)> {
         let mut constants = vec![("BRDF_KIND", self.shading.direct.brdf as u32), self.fixed_constant()];
         constants.push(self.shading.direct.kinds_constant());
         constants.extend(self.shading.direct.shadow_constants());
-        if !self.has_extras && self.shading.direct.brdf != Brdf::Lambert {
-            constants.push(("ROUGHNESS", self.light_roughness.to_bits()));
-        }
+        constants.extend(self.l_buffer.store.constants());
+        constants.extend([("ROUGHNESS", self.light_roughness.to_bits()), ("FRESNEL_PER_LIGHT", self.fresnel as u32)]);
         constants
     }
 
@@ -202,18 +203,80 @@ impl Choices {
         ("FIXED_STEPS", self.packing.fixed_steps())
     }
 
-    /// Constants of the material pass.
-    pub fn material_constants(&self) -> [(&'static str, u32); 8] {
+    /// The word of `--highlight` that is followed; `none` where nothing mirrors.
+    pub fn highlight(&self) -> &'static str {
+        match self.l_buffer.store {
+            _ if self.shading.direct.brdf == Brdf::Lambert => "none",
+            Store::Shared => Highlight::Rgb.name(),
+            Store::Split => Highlight::Split.name(),
+            Store::Halves | Store::Fixed { .. } => Highlight::Intensity.name(),
+        }
+    }
+
+    /// Constants of the geometry pass.
+    pub fn geometry_constants(&self) -> [(&'static str, u32); 3] {
+        let store = self.l_buffer.store;
+        let divides = store == Store::Shared || (store.has_channels() && self.fresnel == Fresnel::Light);
         [
             self.fixed_constant(),
-            self.store.constant(),
+            ("SURFACE_EXTRAS", u32::from(self.shading.direct.extras)),
+            ("KEEPS_F0", u32::from(divides)),
+        ]
+    }
+
+    /// Constants of the material pass.
+    pub fn material_constants(&self) -> [(&'static str, u32); 10] {
+        let [range, highlight] = self.l_buffer.store.constants();
+        [
+            self.fixed_constant(),
+            range,
+            highlight,
+            ("FRESNEL_PER_LIGHT", self.fresnel as u32),
             ("BRDF_KIND", self.shading.direct.brdf as u32),
             ("SURFACE_EXTRAS", u32::from(self.shading.direct.extras)),
             ("LIGHT_FILTER", self.filter as u32),
-            ("SAMPLER_BLENDS", u32::from(self.sampler_blends)),
+            ("RINGS", self.rings),
             ("NORMAL_THRESHOLD", self.normal_threshold.to_bits()),
             ("CONE_RADIUS", self.cone_radius.to_bits()),
         ]
+    }
+}
+
+/// What the L-buffer keeps, by `--l-buffer` and `--highlight`.
+///
+/// Errors: a highlight that the L-buffer's format or the geometry pass has no room for (exit code 2).
+fn store(values: &Values, has_extras: bool, light_range: f32) -> Result<Store> {
+    let sums: Sums = values.choice("l-buffer");
+    let channels = if sums == Sums::Fixed { Store::Fixed { range: light_range } } else { Store::Halves };
+    if values.is("brdf", Brdf::Lambert) {
+        return Ok(channels);
+    }
+    let is_sampled = values.is("light-fetch", LightFetch::Sampler);
+    let four = match (sums, is_sampled) {
+        (Sums::Fixed, _) => Some("--l-buffer fixed"),
+        (_, true) => Some("--light-fetch sampler"),
+        _ => None,
+    };
+    let asked: Option<Highlight> = values.unless_auto("highlight", Values::choice);
+    match (asked, four) {
+        (Some(asked @ (Highlight::Rgb | Highlight::Split)), Some(setting)) => {
+            let error =
+                format!("--highlight {} with {setting}: there are four channels, one for highlights", asked.name());
+            Err(Error::request(error).note("--highlight intensity has one number"))
+        }
+        (Some(Highlight::Rgb), None) if !has_extras => Err(Error::request(
+            "--highlight rgb with --extras off: the light pass does not know the F0 that it divides by",
+        )
+        .note("--highlight split works without it")),
+        (Some(Highlight::Intensity), _) | (None, Some(_)) if !has_extras && values.is("fresnel", Fresnel::Light) => {
+            let error = "--fresnel light with --extras off: the light pass does not know the F0 that it divides by";
+            Err(Error::request(error)
+                .note("--fresnel normal works without it, as in the paper; so does --highlight split"))
+        }
+        (Some(Highlight::Intensity), _) | (None, Some(_)) => Ok(channels),
+        (Some(Highlight::Split), None) => Ok(Store::Split),
+        (Some(Highlight::Rgb), None) => Ok(Store::Shared),
+        (None, None) => Ok(if has_extras { Store::Shared } else { Store::Split }),
     }
 }
 

@@ -5,10 +5,9 @@ use super::cull::Cull;
 use super::encoding::Packing;
 use super::geometry::{Geometry, LowGeometry};
 use super::light::pack::Pack;
-use super::light::store::Store;
 use super::light::tiled::Tiled;
 use super::light::volumes::{LightVolumes, VolumeSettings};
-use super::light::{self, Volumes};
+use super::light::{self, LBuffer, Volumes};
 use super::material::{FilterSettings, Material, MaterialDraws};
 use super::motion::PreviousMoment;
 use super::stipple::{self, Shares};
@@ -19,7 +18,7 @@ use crate::gpu::{Access, Buffer, Gpu, Image, upload};
 use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::blend;
 use crate::passes::direct::DirectGpu;
-use crate::plan::{PICTURE_FORMAT, Resources};
+use crate::plan::Resources;
 use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
 use crate::techniques::Inputs;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
@@ -28,17 +27,11 @@ use std::sync::Arc;
 /// How lights reach the L-buffer.
 pub(super) enum LightPass {
     Tiled(Tiled),
-    /// Without `packed` blended into the L-buffer itself.
+    /// Without `pack` blended into the L-buffer itself.
     Drawn {
         volumes: Box<LightVolumes>,
-        packed: Option<Box<Packed>>,
+        pack: Option<Box<Pack>>,
     },
-}
-
-/// Float sums on their way to the L-buffer.
-pub(super) struct Packed {
-    pub(super) pack: Pack,
-    pub(super) sums: Image,
 }
 
 pub struct InferredFrame {
@@ -47,7 +40,8 @@ pub struct InferredFrame {
     pub(super) light_pass: LightPass,
     pub(super) material: Material,
     pub(super) geometry: LowGeometry,
-    pub(super) l_buffer: Image,
+    pub(super) l_buffer: [Image; 1],
+    pub(super) described: LBuffer,
     pub(super) depth_range_m: [f32; 2],
     pub(super) lights: DirectGpu,
     /// The frame's block at the light buffer's extent.
@@ -55,9 +49,7 @@ pub struct InferredFrame {
     pub(super) shares: Shares,
     /// Where the scene has BLEND draws that are stippled.
     pub(super) survivors: Option<Survivors>,
-    pub(super) in_halves: bool,
     filter: LightFilter,
-    pub(super) store: Store,
     pub(super) packing: Packing,
 }
 
@@ -101,34 +93,26 @@ impl InferredFrame {
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();
-        let volumes = |target_format, resources: &mut Resources| {
+        let l_buffer = choices.l_buffer;
+        let volumes = |resources: &mut Resources| {
             let settings = VolumeSettings {
                 constants: &constants,
                 has_extras: choices.has_extras,
-                volumes: choices.volumes,
                 depth_format: choices.has_stencil().then_some(choices.depth_format()),
                 casters,
                 least_counted_texels: choices.least_counted_texels,
-                target_format,
+                l_buffer,
                 ambient,
             };
             LightVolumes::new(gpu, &settings, resources, lights, inputs.view, light_extent)
         };
-        let light_pass = match (choices.volumes, choices.in_halves) {
-            (Volumes::Tiled, _) => {
-                let constants = [&constants[..], &[choices.store.constant()]].concat();
-                LightPass::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
-            }
-            (_, true) => LightPass::Drawn { volumes: Box::new(volumes(light::HALF_FORMAT, resources)?), packed: None },
-            (_, false) => {
-                let constants = [&choices.shading.workgroup_constants()[..], &[choices.store.constant()]].concat();
-                let pack = Pack::new(gpu, &constants)?;
-                let packed = Packed { pack, sums: resources.image(&light::sums()) };
-                LightPass::Drawn {
-                    volumes: Box::new(volumes(PICTURE_FORMAT, resources)?),
-                    packed: Some(Box::new(packed)),
-                }
-            }
+        let light_pass = if choices.volumes == Volumes::Tiled {
+            LightPass::Tiled(Tiled::new(gpu, &choices.shading, &constants, choices.has_extras, lights.len())?)
+        } else {
+            let volumes = Box::new(volumes(resources)?);
+            let constants = [&choices.shading.workgroup_constants()[..], &l_buffer.store.constants()].concat();
+            let pack = l_buffer.has_sums().then(|| Pack::new(gpu, resources, l_buffer, &constants)).transpose()?;
+            LightPass::Drawn { volumes, pack: pack.map(Box::new) }
         };
         let survivors = (!stippled.is_empty()).then(|| {
             let stipple = choices.stipple.clone();
@@ -142,6 +126,7 @@ impl InferredFrame {
             light_extent,
             stipple_side: choices.stipple_side(),
             samples: choices.samples,
+            is_sampled: l_buffer.is_sampled,
             has_prepass: choices.has_prepass,
             is_counted: choices.is_counted,
         };
@@ -153,15 +138,14 @@ impl InferredFrame {
             geometry: LowGeometry::new(gpu, resources, choices)?,
             geometry_pass: Geometry::new(gpu, scene, low_list, stippled, depth_range_m, choices, earlier)?,
             material: Material::new(gpu, resources, scene, draws, filter, &material_constants, background)?,
-            l_buffer: resources.image(&light::l_buffer()),
+            l_buffer: [resources.image(&light::l_buffer())],
+            described: l_buffer,
             depth_range_m,
             lights: direct,
             light_frame,
             shares,
             survivors,
-            in_halves: choices.in_halves,
             filter: choices.filter,
-            store: choices.store,
             packing: choices.packing,
         })
     }

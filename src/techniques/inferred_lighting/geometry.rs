@@ -3,7 +3,7 @@
 //! reads   the scene
 //! writes  geometry.normal   image, 4 B a texel: view-space normal through the map of the sphere to the hemisphere
 //!         geometry.dsf      image, 4 B a texel: linear depth, ids of object and normal group
-//!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id
+//!         geometry.extras   image, 4 B a texel, with --extras on: roughness, material id, F0
 //!         geometry.motion   image, 4 B a texel, with --motion-vectors on: texels on the screen (motion.rs)
 //!         geometry.depth    image, 4 B a texel, reversed; with a stencil where lights are counted into one
 //!
@@ -20,7 +20,7 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::GeometryParams;
 use crate::gpu::shader::techniques::inferred_lighting::geometry::FRAG_VARIANTS;
-use crate::gpu::shader::variant;
+use crate::gpu::shader::{constants_of, variant};
 use crate::gpu::{Access, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
@@ -211,13 +211,15 @@ impl Geometry {
         let packing = if choices.packing == Packing::Words { "words" } else { "channels" };
         let pipeline = |alpha: &str| {
             let names = [alpha, extras_name(choices.has_extras), motion, packing, mesh::vertex_name(scene)];
+            let fragment = variant(FRAG_VARIANTS, &names);
+            let constants = constants_of(&choices.geometry_constants(), &[Some(fragment)]);
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex,
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &names)),
-                    constants: &[choices.fixed_constant()],
+                    fragment: Some(fragment),
+                    constants: &constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     samples: 1,

@@ -96,6 +96,8 @@ pub struct FilterSettings {
     pub samples: u32,
     pub has_prepass: bool,
     pub is_counted: bool,
+    /// A sampler reads the L-buffer's channels.
+    pub is_sampled: bool,
 }
 
 /// What tells the filter which texels of the light buffer belong to a surface.
@@ -131,7 +133,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// `constants`: BRDF_KIND, SURFACE_EXTRAS and light_filter.glsl's.
+    /// `constants`: of material.frag.
     pub fn new(
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
@@ -143,6 +145,7 @@ impl Material {
     ) -> Result<Self> {
         let MaterialDraws { solid, stippled } = draws;
         let guide = if filter.kind.reads_normals() { "normals" } else { "ids" };
+        let light = if filter.is_sampled { "sampled" } else { "words" };
         let count = if filter.is_counted { "on" } else { "off" };
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
@@ -150,7 +153,7 @@ impl Material {
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide, count])),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide, light, count])),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
@@ -241,8 +244,13 @@ impl Material {
             cmd.begin_rendering(extent, &colors, Some(depth));
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
+            // Words are fetched alone.
+            let light = match self.filter.is_sampled {
+                true => geometry.blended(l_buffer.resource, Access::FragmentSample),
+                false => geometry.sampled(l_buffer.resource, Access::FragmentSample),
+            };
             bound.extend([
-                ("l_buffer", geometry.blended(l_buffer.resource, Access::FragmentSample)),
+                ("l_buffer", light),
                 ("geometry_dsf", geometry.sampled(&geometry.dsf, Access::FragmentSample)),
             ]);
             bound.extend(self.rejections.as_ref().map(|rejections| ("Rejections", Bound::Buffer(rejections))));

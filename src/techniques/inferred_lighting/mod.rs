@@ -7,12 +7,13 @@
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
 //! default method is one dispatch with light lists for tiles (`--volumes quad`, `scissor`, `stencil`, `both` and `auto`
 //! are draws, and only lights that are drawn have `--shadow-volumes`); depth is reversed and a float; specular power
-//! travels in a third target by default (`--extras`), because materials of glTF have a roughness each; a highlight's
-//! Fresnel factor is that of normal incidence, because the L-buffer keeps no directions (that of the angle to the eye
-//! is worse: `fence` against `forward`, FLIP 0.195 instead of 0.131).
+//! travels in a third target by default (`--extras`), because materials of glTF have a roughness each, and F0 beside it;
+//! the L-buffer has three channels of the highlight by default, with the Fresnel factor of each light over that F0
+//! (`--highlight`; `intensity` with `--fresnel normal` is the paper's one number, without a factor of angles); a surface
+//! that none of its four texels belongs to looks one texel farther (`--light-rings 0` does not, as in the paper).
 //!
-//! Equals `deferred` within the rounding of normals, depth and L-buffer with `--light-size` at the frame's size, without
-//! BLEND surfaces, with `--brdf lambert` (tests/techniques/inferred_lighting/mod.rs has the bound).
+//! Equals `deferred` within the rounding of normals, depth, roughness and L-buffer with `--light-size` at the frame's
+//! size, without BLEND surfaces (tests/techniques/inferred_lighting/mod.rs has the bound).
 
 mod aov;
 mod assignment;
@@ -46,7 +47,7 @@ use crate::settings::{INSTRUMENT, MULTISAMPLE, Setting, Values};
 use crate::techniques::inferred_lighting::encoding::PackingFormat;
 use crate::techniques::inferred_lighting::light::store::Sums;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
-use choices::Choices;
+use choices::{Choices, LightFetch};
 use encoding::Loss;
 use frame::InferredFrame;
 use light::{Volumes, shadow_volumes};
@@ -94,9 +95,9 @@ impl Technique for InferredLighting {
             let of = "--packing fixed".to_owned();
             needs.push(Need { of, ability: Ability::FixedPairs, instead: "--packing words works without it" });
         }
-        if values.is("l-buffer", Sums::Fixed) {
-            let of = "--l-buffer fixed".to_owned();
-            needs.push(Need { of, ability: Ability::FixedQuads, instead: "--l-buffer float works without it" });
+        if values.is("l-buffer", Sums::Fixed) && values.is("light-fetch", LightFetch::Sampler) {
+            let of = "--l-buffer fixed with --light-fetch sampler".to_owned();
+            needs.push(Need { of, ability: Ability::FixedQuads, instead: "--light-fetch texels works without it" });
         }
         let volumes: Volumes = values.choice("volumes");
         if volumes != Volumes::Tiled {
@@ -178,7 +179,7 @@ impl Prepared for PreparedInferred {
         let tree = choices.shading.direct.tree(inputs.bvh, inputs.scene)?;
         direct::plan_with_masks(&mut plan, NAME, light_count, &choices.shading, tree, choices.light_extent);
         plan.buffer("lights", light_frame(), size_of::<FrameBlock>() as u64);
-        light::plan(&mut plan, choices.light_extent, choices.volumes, choices.in_halves, choices.store);
+        light::plan(&mut plan, choices.light_extent, choices.l_buffer);
         if !choices.casting_lights.is_empty() {
             shadow_volumes::plan(&mut plan, &self.casters);
         }
@@ -202,12 +203,13 @@ impl Prepared for PreparedInferred {
         } else {
             let depth_access = if choices.has_stencil() { Access::StencilWrite } else { Access::FragmentSample };
             let mut touches = geometry::lit(choices.has_extras, Access::FragmentSample, depth_access);
-            let target = if choices.in_halves { light::l_buffer() } else { light::sums() };
-            touches.push((target, Access::ColorWrite));
+            let sums = light::sums(choices.l_buffer);
+            let targets = if sums.is_empty() { vec![light::l_buffer()] } else { sums.clone() };
+            touches.extend(targets.into_iter().map(|target| (target, Access::ColorWrite)));
             plan.pass(format!("{NAME}.light"), touches);
-            if !choices.in_halves {
-                let touches = [(light::sums(), Access::ComputeSample), (light::l_buffer(), Access::ComputeWrite)];
-                plan.pass(format!("{NAME}.pack"), touches);
+            if !sums.is_empty() {
+                let read = sums.into_iter().map(|sums| (sums, Access::ComputeSample));
+                plan.pass(format!("{NAME}.pack"), read.chain([(light::l_buffer(), Access::ComputeWrite)]));
             }
         }
         material::plan_passes(&mut plan, choices);
@@ -223,6 +225,7 @@ impl Prepared for PreparedInferred {
         let texels = shading.texels.of_column(shading.direct.load(self.lights.len()));
         BTreeMap::from([
             ("cull-by", shading.cull_by.name().to_owned()),
+            ("highlight", self.choices.highlight().to_owned()),
             (INSTRUMENT.key, if self.choices.is_counted { "on" } else { "off" }.to_owned()),
             ("light-size", self.choices.light_extent.to_string()),
             ("texels", texels.to_string()),
@@ -251,7 +254,7 @@ impl PreparedInferred {
             ("normal_error_most_deg", loss.normal_most_deg),
             ("normal_error_mean_deg", loss.normal_mean_deg),
             ("depth_error_most", loss.depth_most),
-            ("light_error_most", self.choices.store.loss(self.choices.light_range)),
+            ("light_error_most", self.choices.l_buffer.store.loss(self.choices.light_range)),
         ]);
         if !self.choices.casting_lights.is_empty() {
             counters.insert("shadow_volume_lights", self.casters.lights.len() as f64);

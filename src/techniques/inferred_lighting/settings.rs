@@ -5,10 +5,10 @@ use super::choices::{Alpha, AlphaFilter, LightFetch, LightFilter};
 use super::encoding::{FIXED_LIMIT, PackingFormat};
 use super::layer_names;
 use super::light::Volumes;
-use super::light::store::Sums;
+use super::light::store::{Fresnel, Highlight, Sums};
 use crate::settings::{
-    BRDF, CULL_BY, Changes, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, INSTRUMENT, Kind, MOTION_INTERVAL, MOTION_VECTORS,
-    NORMAL_THRESHOLD, Setting, TEXELS, Unread, WORKGROUP,
+    BRDF, Brdf, CULL_BY, Changes, DEPTH_PREPASS, DIRECT_SHADOW, GEOMETRY, INSTRUMENT, Kind, MOTION_INTERVAL,
+    MOTION_VECTORS, NORMAL_THRESHOLD, Setting, TEXELS, Unread, Values, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -91,8 +91,39 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Choice(Sums::WORDS),
         default: "float",
         paper: "Kircher 2009, 2.2, 5.1",
-        help: "How the L-buffer sums up light: in 32 bits and packed once, to half floats (float) or to 16 bits of \
+        help: "How the L-buffer sums up light: in 32 bits and packed once, as --highlight says (float) or to 16 bits of \
                fixed point (fixed); or blended in half floats, as in the paper (half)",
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "highlight",
+        kind: Kind::Choice(Highlight::WORDS),
+        auto: true,
+        default: "auto",
+        paper: "Kircher 2009, 2.2",
+        help: "What the L-buffer keeps of highlights, in 8 bytes a texel with the light: three channels of each, with \
+               Fresnel's factor of each light over F0, which --extras knows (rgb); two numbers, one for F0 and one for \
+               F90, coloured as the diffuse light (split); or one number so coloured, the paper's (intensity). auto: \
+               rgb; with --extras off split; where there are four channels only (--l-buffer fixed, --light-fetch \
+               sampler) intensity",
+        unread: |values| Unread::unless(values, "brdf", &[Brdf::Ggx, Brdf::BlinnPhong], "nothing mirrors"),
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "fresnel",
+        kind: Kind::Choice(Fresnel::WORDS),
+        default: "light",
+        paper: "Kircher 2009, 2.2",
+        help: "Fresnel's factor in --highlight intensity: that of each light's angle, over F0 (light), or that of normal \
+               incidence, as in the paper (normal)",
+        unread: |values| {
+            let has_four = values.is("l-buffer", Sums::Fixed) || values.is("light-fetch", LightFetch::Sampler);
+            let is_one = has_four && values.unless_auto("highlight", Values::choice::<Highlight>).is_none();
+            let unmirrored = Unread::unless(values, "brdf", &[Brdf::Ggx, Brdf::BlinnPhong], "nothing mirrors");
+            let whole =
+                || Unread::unless(values, "highlight", &[Highlight::Intensity], "it has the factor of each light");
+            unmirrored.or_else(|| if is_one { None } else { whole() })
+        },
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -142,6 +173,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "How the four texels of a solid surface's pixel are read where all of them belong to that surface: one \
                by one (texels), or blended by the sampler in a single fetch, with the device's precision of position \
                (sampler)",
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "light-rings",
+        kind: Kind::Integer { min: 0, max: 1 },
+        default: "1",
+        unit: "texels",
+        paper: "Kircher 2009, 3",
+        help: "How far beyond the four texels a surface looks for its own where none of the four is: one texel more (1), \
+               or not at all, as in the paper (0)",
         ..Setting::changing(Changes::Picture)
     },
     Setting {

@@ -33,7 +33,8 @@ fn the_filter_keeps_another_surface_s_light_out() {
 }
 
 /// The paper's figure 4, pixel by pixel: the light of a pixel is the bilinear mean of those of its four texels that show its
-/// surface, by their ids; of all four where none does, which is counted. The sliver is too narrow to reach many texels.
+/// surface, by their ids. Where none does, `--light-rings 1` takes those of the twelve around them that do, by a tent of twice the
+/// width; all four where there is none either, which is counted. The sliver is too narrow to reach many texels.
 #[test]
 fn a_pixel_takes_the_texels_of_its_own_surface() {
     const RATIO: usize = 4;
@@ -44,45 +45,54 @@ fn a_pixel_takes_the_texels_of_its_own_surface() {
     let watched = Watched::with_scene(scene);
     let common = [("size", "160x120"), ("light-size", "40x30"), ("brdf", "lambert"), ("light-cutoff", "0")];
     let stages = ["geometry.dsf.id", "light.l_buffer.irradiance"];
-    let low = watched.render_stages(NAME, &common, &stages);
     let full = watched.render_stages(NAME, &both(&common, &[("light-size", "160x120")]), &stages[..1]);
-    let (low_ids, ids) = (watched.integers(&low, stages[0]), watched.integers(&full, stages[0]));
-    let light = watched.rgb(&low, stages[1]);
-    let picture = low.picture().unwrap();
-    // Any pixel of a texel shows the texel.
-    let shown = |[x, y]: [usize; 2]| (y * RATIO + RATIO / 2) * extent[0] + x * RATIO + RATIO / 2;
-    let mut found = [0; 5];
-    for (pixel, id) in ids.iter().enumerate() {
-        let at = [pixel % extent[0], pixel / extent[0]].map(|at| (at as f32 + 0.5) / RATIO as f32 - 0.5);
-        let [mut own, mut all] = [(Vec3::ZERO, 0.0, 0); 2];
-        for corner in 0..4usize {
-            let step = [corner & 1, corner >> 1];
-            let texel = [0, 1].map(|side| {
-                let place = at[side].floor() as i32 + step[side] as i32;
-                place.clamp(0, texels[side] - 1) as usize
-            });
-            let weigh = |side: usize| {
-                let part = at[side] - at[side].floor();
-                if step[side] == 1 { part } else { 1.0 - part }
-            };
-            let (weight, irradiance) = (weigh(0) * weigh(1), Vec3::from_array(light[shown(texel)]));
-            let add = |sum: &mut (Vec3, f32, usize)| {
-                *sum = (sum.0 + irradiance * weight, sum.1 + weight, sum.2 + 1);
-            };
-            add(&mut all);
-            if low_ids[shown(texel)] == *id {
-                add(&mut own);
+    let ids = watched.integers(&full, stages[0]);
+    for (rings, texels_away) in [("0", 0..2), ("1", -1..3)] {
+        let low = watched.render_stages(NAME, &both(&common, &[("light-rings", rings)]), &stages);
+        let low_ids = watched.integers(&low, stages[0]);
+        let light = watched.rgb(&low, stages[1]);
+        let picture = low.picture().unwrap();
+        // Any pixel of a texel shows the texel.
+        let shown = |[x, y]: [usize; 2]| (y * RATIO + RATIO / 2) * extent[0] + x * RATIO + RATIO / 2;
+        // Pixels by how many of their four texels are their own; of those without, how many found some farther away.
+        let (mut found, mut found_farther) = ([0; 5], 0);
+        for (pixel, id) in ids.iter().enumerate() {
+            let at = [pixel % extent[0], pixel / extent[0]].map(|at| (at as f32 + 0.5) / RATIO as f32 - 0.5);
+            let [mut own, mut all, mut farther] = [(Vec3::ZERO, 0.0, 0); 3];
+            for step in texels_away.clone().flat_map(|y| texels_away.clone().map(move |x| [x, y])) {
+                let texel =
+                    [0, 1].map(|side| (at[side].floor() as i32 + step[side]).clamp(0, texels[side] - 1) as usize);
+                let is_near = step.iter().all(|step| (0..2).contains(step));
+                let reach = if is_near { 1.0 } else { 2.0 };
+                let weigh = |side: usize| 1.0 - (step[side] as f32 - at[side] + at[side].floor()).abs() / reach;
+                let (weight, irradiance) = (weigh(0) * weigh(1), Vec3::from_array(light[shown(texel)]));
+                let add = |sum: &mut (Vec3, f32, usize)| {
+                    *sum = (sum.0 + irradiance * weight, sum.1 + weight, sum.2 + 1);
+                };
+                let is_own = low_ids[shown(texel)] == *id;
+                match (is_near, is_own) {
+                    (true, true) => [&mut all, &mut own].into_iter().for_each(add),
+                    (true, false) => add(&mut all),
+                    (false, true) => add(&mut farther),
+                    (false, false) => {}
+                }
             }
+            found[own.2] += 1;
+            found_farther += usize::from(own.2 == 0 && farther.2 > 0);
+            let (sum, weights, _) = [own, farther].into_iter().find(|sum| sum.2 > 0).unwrap_or(all);
+            let expected = sum / weights * (0.5 / std::f32::consts::PI);
+            let off = (Vec3::from_array(picture.pixels[pixel]) - expected).abs().max_element();
+            let bound = 3e-4 * expected.max_element() + 1e-6;
+            assert!(off <= bound, "{rings} rings, pixel {pixel}: {off} off {expected}, {} texels", own.2);
         }
-        found[own.2] += 1;
-        let (sum, weights, _) = if own.2 > 0 { own } else { all };
-        let expected = sum / weights * (0.5 / std::f32::consts::PI);
-        let off = (Vec3::from_array(picture.pixels[pixel]) - expected).abs().max_element();
-        assert!(off <= 1e-4 * expected.max_element() + 1e-6, "pixel {pixel}: {off} off {expected}, {} texels", own.2);
+        println!(
+            "{rings} rings: pixels by how many of their four texels are theirs {found:?}, {found_farther} farther away"
+        );
+        assert!(found.iter().all(|count| *count > 20), "{found:?}");
+        assert!(rings == "0" || (found_farther > 20 && found_farther < found[0]), "{found_farther} of {found:?}");
+        let rejected = low.measured_counters().unwrap()["rejected_fragments"];
+        assert_eq!(rejected, (found[0] - found_farther) as f64, "{found:?}");
     }
-    println!("pixels by how many of their four texels are their own: {found:?}");
-    assert!(found.iter().all(|count| *count > 20), "{found:?}");
-    assert_eq!(low.measured_counters().unwrap()["rejected_fragments"], f64::from(found[0]), "{found:?}");
 }
 
 /// Where the light buffer's nearest texel shows another surface than the pixel does, the filter is nearer to what many samples a

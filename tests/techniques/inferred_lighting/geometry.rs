@@ -117,7 +117,7 @@ fn packings_take_the_same_bytes_and_show_the_same_picture() {
 fn light_in_fixed_point_is_near_half_floats_and_what_is_cut_is_counted() {
     let watched = Watched::open("lamps:objects=30,lights=30");
     for volumes in ["tiled", "scissor"] {
-        let common = [("size", "160x90"), ("volumes", volumes)];
+        let common = [("size", "160x90"), ("volumes", volumes), ("highlight", "intensity")];
         let names = ["light.l_buffer.irradiance", "light.l_buffer.highlight"];
         let halves = watched.render_stages(NAME, &common, &names);
         let AovChannels::Y(highlight) = halves.aov(names[1]).unwrap().channels else { panic!("it has a number") };

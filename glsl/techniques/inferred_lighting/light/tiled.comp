@@ -23,20 +23,21 @@ layout(std430, set = 0, binding = 4) readonly buffer LightMasks { uint light_mas
 layout(set = 0, binding = 5, rg32ui) writeonly uniform uimage2D l_buffer;
 
 #include "bvh_walk.glsl"
-#include "techniques/inferred_lighting/l_buffer.glsl"
 #include "techniques/inferred_lighting/lighting.glsl"
 
 // Pixels of a column inside one tile: one light list, which is read once.
 LitSurface point_surface[TEXELS];
 bool point_has_surface[TEXELS];
-vec4 point_lighting[TEXELS];
+Lighting point_lighting[TEXELS];
 
 void add_light(LightBlock light) {
     uint i = 0u;
     for (; i < TEXELS; i++) {
         if (point_has_surface[i]) {
-            precise vec4 sum = point_lighting[i] + lighting_by(light, point_surface[i]);
-            point_lighting[i] = sum;
+            Lighting more = lighting_by(light, point_surface[i]);
+            precise vec3 irradiance = point_lighting[i].irradiance + more.irradiance;
+            precise vec3 highlight = point_lighting[i].highlight + more.highlight;
+            point_lighting[i] = Lighting(irradiance, highlight);
         }
     }
     expect_done(i == TEXELS);
@@ -57,7 +58,7 @@ void main() {
     for (uint i = 0u; i < TEXELS; i++) {
         uvec2 pixel = first + uvec2(0u, i);
         if (pixel.x < extent.x && pixel.y < extent.y) {
-            vec4 lighting = vec4(nan_if_cut(point_lighting[i].rgb), point_lighting[i].a);
+            Lighting lighting = Lighting(nan_if_cut(point_lighting[i].irradiance), point_lighting[i].highlight);
             imageStore(l_buffer, ivec2(pixel), uvec4(pack_lighting(lighting), 0u, 0u));
         }
     }

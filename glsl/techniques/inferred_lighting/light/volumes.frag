@@ -1,6 +1,6 @@
 // The light pass with a draw a light: what it adds to the texels that it may reach. Kircher 2009, section 2.2.
 // Pass: src/techniques/inferred_lighting/light/volumes.rs.
-// variants: EXTRAS=off|on
+// variants: EXTRAS=off|on TARGETS=one|two
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -18,13 +18,21 @@ layout(std430, set = 0, binding = 3) readonly buffer BvhTriangles { BvhTriangleB
 #include "bvh_walk.glsl"
 #include "techniques/inferred_lighting/lighting.glsl"
 
+// The first of the highlight's numbers is the fourth.
 layout(location = 0) out vec4 out_lighting;
+#ifdef TARGETS_TWO
+layout(location = 1) out vec4 out_more;
+#endif
 
 void main() {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
-    out_lighting = vec4(0.0);
+    Lighting lighting = no_lighting();
     if (has_surface_at(pixel)) {
-        vec4 lighting = lighting_by(lights[params.light], surface_at(pixel));
-        out_lighting = vec4(nan_if_cut(lighting.rgb), lighting.a);
+        lighting = lighting_by(lights[params.light], surface_at(pixel));
+        lighting.irradiance = nan_if_cut(lighting.irradiance);
     }
+    out_lighting = vec4(lighting.irradiance, lighting.highlight.x);
+#ifdef TARGETS_TWO
+    out_more = vec4(lighting.highlight.yz, 0.0, 0.0);
+#endif
 }

@@ -5,7 +5,7 @@ use super::super::geometry::{LowGeometry, extras_name};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::inferred_lighting::light::tiled::COMP_VARIANTS;
-use crate::gpu::shader::variant;
+use crate::gpu::shader::{constants_of, variant};
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::{DirectGpu, ShadingSettings};
 use crate::techniques::inferred_lighting::resources::NAME;
@@ -18,18 +18,19 @@ pub struct Tiled {
 }
 
 impl Tiled {
-    /// `constants`: BRDF_KIND and those that `surface.glsl` has beside it.
+    /// `constants`: the technique's, of which the shader has some.
     pub fn new(
         gpu: &Arc<Gpu>,
         settings: &ShadingSettings,
-        constants: &[(&str, u32)],
+        constants: &[(&'static str, u32)],
         has_extras: bool,
         light_count: usize,
     ) -> Result<Self> {
         let cull = if settings.culls(light_count) { "tiled" } else { "none" };
         let shader = variant(COMP_VARIANTS, &[extras_name(has_extras), cull]);
         let texels = settings.texels.of_column(settings.direct.load(light_count));
-        let constants = [constants, &settings.workgroup_constants(), &[("TEXELS", texels)]].concat();
+        let own = constants_of(constants, &[Some(shader)]);
+        let constants = [&own[..], &settings.workgroup_constants(), &[("TEXELS", texels)]].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, texels })
     }
 

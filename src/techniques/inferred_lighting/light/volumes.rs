@@ -1,6 +1,6 @@
 //! Light, a draw a light: over the whole light buffer, within the rectangle that bounds what the light reaches, where its
 //! volume meets a surface, or both. Kircher 2009, section 2.2. Shaders: fullscreen.vert, volumes.vert, volumes.frag.
-//! reads  geometry.normal, geometry.depth, geometry.extras      writes  light.sums, or light.l_buffer
+//! reads  geometry.normal, geometry.depth, geometry.extras      writes  light.sums and light.more_sums, or light.l_buffer
 //!
 //! Beyond its range a light adds exactly 0, so what a rectangle or a volume leaves out changes no bit of a float sum. A volume
 //! is counted into the stencil by the depth-fail test, which is right with the eye inside of it too; depth is clamped, so
@@ -10,15 +10,15 @@
 //! rectangle.
 
 use super::super::geometry::{LowGeometry, extras_name};
-use super::Volumes;
 use super::reach::{self, Rectangle};
 use super::shadow_volumes::ShadowVolumes;
+use super::{LBuffer, Volumes};
 use crate::error::Result;
 use crate::frame::View;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline, StencilUse};
 use crate::gpu::shader::structs::{LightBlock, VolumesParams};
 use crate::gpu::shader::techniques::inferred_lighting::light::volumes::{FRAG_VARIANTS, VERT};
-use crate::gpu::shader::variant;
+use crate::gpu::shader::{constants_of, variant};
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
 use crate::lights::shadow_casters::{CastingLight, ShadowCasters};
 use crate::passes::direct::DirectGpu;
@@ -68,17 +68,15 @@ pub struct LightVolumes {
 
 /// What the draws are made of.
 pub struct VolumeSettings<'a> {
-    /// BRDF_KIND and those that `surface.glsl` has beside it.
+    /// The technique's, of which the shader has some.
     pub constants: &'a [(&'static str, u32)],
     pub has_extras: bool,
-    pub volumes: Volumes,
     /// Depth format of the geometry pass, where lights or shadows are counted in its stencil.
     pub depth_format: Option<vk::Format>,
     pub casters: &'a ShadowCasters,
     /// `--volumes auto`: lights whose rectangle has fewer texels go without the stencil.
     pub least_counted_texels: u64,
-    /// What lights are summed in.
-    pub target_format: vk::Format,
+    pub l_buffer: LBuffer,
     /// Radiance.
     pub ambient: Vec3,
 }
@@ -93,16 +91,18 @@ impl LightVolumes {
         view: &View,
         extent: Extent,
     ) -> Result<Self> {
-        let shader = variant(FRAG_VARIANTS, &[extras_name(settings.has_extras)]);
-        let formats = [settings.target_format];
+        let l_buffer = settings.l_buffer;
+        let shader = variant(FRAG_VARIANTS, &[extras_name(settings.has_extras), l_buffer.targets_axis()]);
+        let constants = constants_of(settings.constants, &[Some(shader)]);
+        let formats = l_buffer.target_formats();
         let light = |stencil| GraphicsDescription {
-            constants: settings.constants,
+            constants: &constants,
             blending: Blending::Add,
             depth_format: settings.depth_format,
             stencil,
             ..fullscreen::description(shader, &formats)
         };
-        let counted = if settings.volumes.counts() {
+        let counted = if settings.l_buffer.volumes.counts() {
             let count = GraphicsDescription {
                 vertex: &VERT,
                 fragment: None,
@@ -130,7 +130,7 @@ impl LightVolumes {
             let whole = Rectangle { corner_px: [0, 0], extent };
             let has_end = light.intensity[3] > 0.0;
             let is_large = bounds.extent.pixel_count() >= settings.least_counted_texels;
-            let (rectangle, is_counted) = match settings.volumes {
+            let (rectangle, is_counted) = match settings.l_buffer.volumes {
                 Volumes::Quad | Volumes::Tiled => (whole, false),
                 Volumes::Scissor => (bounds, false),
                 Volumes::Stencil => (whole, has_end),
@@ -160,17 +160,18 @@ impl LightVolumes {
         self.draws.iter().filter(|draw| matches!(draw.mask, Mask::Volume)).count()
     }
 
-    /// `frame`: the block of the light buffer's extent. `target`: where lights are summed.
+    /// `frame`: the block of the light buffer's extent. `targets`: where lights are summed.
     pub fn record(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
         lights: &DirectGpu,
         geometry: Edge<'_, LowGeometry>,
-        target: &Image,
+        targets: &[Image],
     ) -> Result<()> {
         let extent = geometry.resource.extent();
-        let texel_bytes = u64::from(crate::gpu::image::texel_bytes(target.description.format));
+        let bytes_of = |target: &Image| u64::from(crate::gpu::image::texel_bytes(target.description.format));
+        let texel_bytes: u64 = targets.iter().map(bytes_of).sum();
         let traffic = Traffic {
             read_bytes: self.evaluations() * (geometry.resource.lit_bytes() + texel_bytes),
             written_bytes: self.evaluations() * texel_bytes,
@@ -180,12 +181,15 @@ impl LightVolumes {
             let has_stencil = self.counted.is_some() || self.shadows.is_some();
             let depth_access = if has_stencil { Access::StencilWrite } else { Access::FragmentSample };
             cmd.barriers(geometry.lit_with_depth_to(Access::FragmentSample, depth_access));
-            cmd.barriers([target.discard(Access::ColorWrite)]);
+            cmd.barriers(targets.iter().map(|target| target.discard(Access::ColorWrite)));
             // As lighting.glsl's ambient_lighting: a float times a float, rounded once.
             let [r, g, b] = (std::f32::consts::PI * self.ambient).to_array();
             let ambient = Some(vk::ClearColorValue { float32: [r, g, b, 0.0] });
+            let dark = Some(vk::ClearColorValue { float32: [0.0; 4] });
+            let colors = targets.iter().zip([ambient, dark]).map(|(target, clear)| ColorTarget::new(target, clear));
+            let colors: Vec<_> = colors.collect();
             let depth = has_stencil.then_some((&geometry.resource.depth, None, depth_access));
-            cmd.begin_rendering(extent, &[ColorTarget::new(target, ambient)], depth);
+            cmd.begin_rendering(extent, &colors, depth);
             let mut bound = geometry.resource.bound_with_depth(Access::FragmentSample, depth_access);
             bound.extend(lights.bound());
             bound.push(("Frame", Bound::Buffer(frame)));
