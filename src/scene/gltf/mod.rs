@@ -28,6 +28,7 @@ mod morph;
 mod motion;
 mod nodes;
 mod normals;
+mod parts;
 mod primitives;
 mod skins;
 mod source;

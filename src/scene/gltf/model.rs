@@ -28,7 +28,8 @@ use crate::scene::gltf::motion::Channel;
 use crate::scene::{Bounds, Camera, Facing, Light, Mesh, Scene};
 
 /// Stands in the hash for how a file becomes a scene; a change that alters scenes alters this line.
-const IMPORT_SETTINGS: &[u8] = b"quincunx glTF import 4: posed, COLOR_0, two UV sets, flat normals, MikkTSpace at rest";
+const IMPORT_SETTINGS: &[u8] =
+    b"quincunx glTF import 5: posed, COLOR_0, two UV sets, flat normals, MikkTSpace at rest, BLEND in connected parts";
 
 /// Number of equal parts of the animations' duration at which the scene's bounds are taken.
 const REACH_PARTS: u32 = 16;

@@ -10,10 +10,10 @@ use super::attributes::{Attributes, Vertices, vectors};
 use super::buffers::Buffers;
 use super::deform::Deform;
 use super::limits::Allowance;
-use super::{accessors, label, tangents, topology};
+use super::{accessors, label, parts, tangents, topology};
 use crate::error::{Error, Result};
 use crate::scene::gltf::normals::{corners, flat_normals, normalize_normals};
-use crate::scene::{Material, Mesh, TextureSlot, normal_groups};
+use crate::scene::{AlphaMode, Material, Mesh, TextureSlot, normal_groups};
 
 /// How many indices the drawn meshes may have together beside one for each byte of the file: 1.4 million triangles,
 /// 210 MiB where no two share a vertex.
@@ -22,7 +22,7 @@ const FREE_INDICES: usize = 1 << 22;
 /// How many elements of attributes that are read whole, whatever triangles use of them (`is_packed`).
 const FREE_ELEMENTS: usize = 1 << 24;
 
-/// A primitive as a mesh.
+/// A primitive as a mesh, or a connected part of one that blends.
 #[derive(Debug)]
 pub struct Piece {
     pub mesh: Mesh,
@@ -96,7 +96,13 @@ pub fn read(
                 clamped += clamped_colors;
                 let influences = piece.deform.as_ref().and_then(Deform::influences);
                 weightless += influences.map_or(0, |influences| influences.weightless);
-                of_mesh.push(*piece);
+                let blends = materials.get(piece.mesh.material).is_some_and(|one| one.alpha == AlphaMode::Blend);
+                // What bends has weights for the vertices in their order.
+                if blends && piece.deform.is_none() {
+                    of_mesh.extend(parts::split(piece.mesh).into_iter().map(|mesh| Piece { mesh, deform: None }));
+                } else {
+                    of_mesh.push(*piece);
+                }
             }
             Outcome::NotTriangles => not_triangles += 1,
             Outcome::Empty => {}

@@ -1,4 +1,4 @@
-//! Strips and fans to triangle lists, unused vertices dropped, shared vertices parted.
+//! Strips and fans to triangle lists, unused vertices dropped, shared vertices parted, some triangles taken out.
 
 use gltf::mesh::Mode;
 
@@ -61,34 +61,48 @@ pub fn drop_unused_vertices(mesh: &mut Mesh) {
     for (new, old) in used.iter().enumerate() {
         kept[*old as usize] = new as u32;
     }
-    gather_vertices(mesh, &used);
-    for index in &mut mesh.indices {
-        *index = kept[*index as usize];
-    }
+    let indices = mesh.indices.iter().map(|index| kept[*index as usize]).collect();
+    *mesh = Mesh { indices, ..of_vertices(mesh, &used) };
+}
+
+/// A mesh of some of the triangles, in that order, with the vertices that they use.
+pub fn of_triangles(mesh: &Mesh, triangles: &[usize]) -> Mesh {
+    let mut vertices: Vec<u32> =
+        triangles.iter().flat_map(|triangle| mesh.corners(*triangle)).map(|vertex| vertex as u32).collect();
+    let corners = vertices.clone();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let place = |vertex: u32| vertices.binary_search(&vertex).expect("a corner is a vertex") as u32;
+    Mesh { indices: corners.into_iter().map(place).collect(), ..of_vertices(mesh, &vertices) }
 }
 
 /// Gives every corner of every triangle a vertex of its own.
 pub fn unshare_vertices(mesh: &mut Mesh) {
-    let corners = std::mem::take(&mut mesh.indices);
-    gather_vertices(mesh, &corners);
-    mesh.indices = (0..corners.len() as u32).collect();
+    let indices = (0..mesh.indices.len() as u32).collect();
+    *mesh = Mesh { indices, ..of_vertices(mesh, &mesh.indices) };
 }
 
-/// Makes `vertices`, in that order, the mesh's vertices; attributes that are empty stay so.
-fn gather_vertices(mesh: &mut Mesh, vertices: &[u32]) {
-    fn gather<T: Copy>(attribute: &mut Vec<T>, vertices: &[u32]) {
-        if !attribute.is_empty() {
-            *attribute = vertices.iter().map(|vertex| attribute[*vertex as usize]).collect();
+/// `vertices` of a mesh, in that order, without triangles; attributes that are empty stay so.
+fn of_vertices(mesh: &Mesh, vertices: &[u32]) -> Mesh {
+    fn gather<T: Copy>(attribute: &[T], vertices: &[u32]) -> Vec<T> {
+        if attribute.is_empty() {
+            return Vec::new();
         }
+        vertices.iter().map(|vertex| attribute[*vertex as usize]).collect()
     }
-    gather(&mut mesh.positions, vertices);
-    gather(&mut mesh.normals, vertices);
-    gather(&mut mesh.tangents, vertices);
-    gather(&mut mesh.uvs, vertices);
-    gather(&mut mesh.uvs_1, vertices);
-    gather(&mut mesh.atlas, vertices);
-    gather(&mut mesh.colors, vertices);
-    gather(&mut mesh.normal_groups, vertices);
+    Mesh {
+        name: mesh.name.clone(),
+        positions: gather(&mesh.positions, vertices),
+        normals: gather(&mesh.normals, vertices),
+        tangents: gather(&mesh.tangents, vertices),
+        uvs: gather(&mesh.uvs, vertices),
+        uvs_1: gather(&mesh.uvs_1, vertices),
+        atlas: gather(&mesh.atlas, vertices),
+        colors: gather(&mesh.colors, vertices),
+        normal_groups: gather(&mesh.normal_groups, vertices),
+        indices: Vec::new(),
+        material: mesh.material,
+    }
 }
 
 #[cfg(test)]

@@ -67,7 +67,7 @@ pub const GROUPS: &[Group] = &[
         name: "volumes",
         technique: NAME,
         place: FENCE,
-        common: &[],
+        common: &[("stipple", "2x2")],
         twin: Twin::Method(&[("volumes", "tiled"), ("texels", "1"), ("depth-prepass", "off"), EVERYTHING[0]]),
         methods: &[
             &[("volumes", "tiled"), ("cull-by", "invocation")],

@@ -175,6 +175,7 @@ impl Frame for InferredFrame {
             ("stipple_layers_used", self.shares.layers_used as f64),
             ("stipple_layers_shared", self.shares.layers_shared as f64),
             ("stipple_draws_sharing", self.shares.draws_sharing as f64),
+            ("stipple_screen_shared", self.shares.part_of_screen()),
         ])
     }
 

@@ -10,7 +10,8 @@ pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
     name: "stipple",
     summary: "Texels of the light buffer by their layer: 0 is the solid surfaces', the others are BLEND surfaces'",
     keys: &["stipple"],
-    make: |values| Ok(stipple(values)),
+    // Which one auto is says a scene.
+    make: |values| Ok(values.unless_auto("stipple", Values::choice).unwrap_or(StippleSize::Two).stipple()),
 }];
 
 choices! {
@@ -33,13 +34,11 @@ choices! {
     }
 }
 
-/// The square of texels of `--stipple`, each a layer; layer 0 is the solid surfaces'.
-pub fn stipple(values: &Values) -> Pattern {
-    let side = match values.choice("stipple") {
-        StippleSize::Two => 2,
-        StippleSize::Four => 4,
-    };
-    Pattern::grid([side; 2])
+impl StippleSize {
+    /// The square of texels, each a layer; layer 0 is the solid surfaces'.
+    pub fn stipple(self) -> Pattern {
+        Pattern::grid([if self == Self::Two { 2 } else { 4 }; 2])
+    }
 }
 
 /// Layers of a stipple that BLEND draws can have.

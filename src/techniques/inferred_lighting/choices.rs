@@ -4,6 +4,7 @@ use super::encoding::Packing;
 use super::layer_names;
 use super::light::Volumes;
 use super::light::store::{Fresnel, Highlight, Store, Sums};
+use super::stipple::{self, Rules};
 use crate::caps::Ability;
 use crate::choice::choices;
 use crate::error::{Error, Result};
@@ -14,7 +15,7 @@ use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
 use crate::settings::{Brdf, INSTRUMENT, PositionStorage};
 use crate::techniques::Inputs;
-use crate::techniques::inferred_lighting::assignment::{self, Assignment};
+use crate::techniques::inferred_lighting::assignment::{self, Assignment, StippleSize};
 use crate::techniques::inferred_lighting::light::LBuffer;
 use crate::units::Extent;
 use ash::vk;
@@ -22,6 +23,10 @@ use std::collections::BTreeMap;
 
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
+/// Part of the screen on which BLEND draws may share layers of a 2x2 stipple before --stipple auto takes 4x4. `fence` with 0.09
+/// and 0.15 is better with 4x4 (FLIP 0.066 to 0.062, 0.058 to 0.039), with 0.02 the same; maps of games with up to 0.02 are
+/// better with 2x2.
+const MOST_SHARED_SCREEN: f64 = 0.05;
 
 choices! {
     /// How texels of one surface are distinguished from those of another (`--light-filter`); the number is
@@ -91,6 +96,7 @@ pub struct Choices {
     pub packing: Packing,
     pub depth_threshold: f32,
     pub tests_alpha: bool,
+    stipple_size: StippleSize,
     pub stipple: Pattern,
     /// Samples a pixel of the material pass.
     pub samples: u32,
@@ -98,9 +104,9 @@ pub struct Choices {
     pub is_counted: bool,
     /// The material pass shades what a pre-pass of its size sees.
     pub has_prepass: bool,
-    pub assignment: Assignment,
+    assignment: Assignment,
     /// Layers that the user gives to draws, for `Assignment::Static`.
-    pub named_layers: BTreeMap<u32, u32>,
+    named_layers: BTreeMap<u32, u32>,
     /// In texels; 0: bilinear.
     cone_radius: f32,
 }
@@ -122,22 +128,35 @@ impl Choices {
             return Err(Error::request(format!("--shadow-volumes {casting_count} with --volumes tiled: {why}"))
                 .note("--volumes scissor draws a light at a time, as quad, stencil, both and auto do"));
         }
-        let stipple = assignment::stipple(values);
-        let [stipple_side, _] = stipple.period_px();
-        let cone_radius = match values.choice("alpha-filter") {
-            AlphaFilter::Cone => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
-            AlphaFilter::Bilinear => 0.0,
-        };
+        let tests_alpha = values.is("alpha", Alpha::Test);
         let assignment = values.choice("assignment");
+        let asked = values.unless_auto("stipple", Values::choice);
+        let largest = asked.unwrap_or(StippleSize::Four).stipple();
         let named = values.text("stipple-layers");
         let named_layers = match assignment {
-            Assignment::Static => layer_names::layers(inputs.scene, named, &stipple)?,
+            Assignment::Static => layer_names::layers(inputs.scene, named, &largest)?,
             _ if named == layer_names::NONE => BTreeMap::new(),
             _ => {
                 let (assignment, error) = (assignment.name(), "layers are given out otherwise");
                 return Err(Error::request(format!("--stipple-layers with --assignment {assignment}: {error}"))
                     .note("--assignment static takes them"));
             }
+        };
+        let stipple_size = asked.unwrap_or_else(|| {
+            let small = StippleSize::Two;
+            let layer_count = assignment::layer_count(&small.stipple());
+            let rules = Rules { assignment, named_layers: &named_layers, layer_count };
+            let has_room = || {
+                let names_fit = named_layers.values().all(|layer| *layer <= layer_count);
+                names_fit && stipple::shared(inputs.scene, inputs.view, rules).part_of_screen() <= MOST_SHARED_SCREEN
+            };
+            if tests_alpha || has_room() { small } else { StippleSize::Four }
+        });
+        let stipple = stipple_size.stipple();
+        let [stipple_side, _] = stipple.period_px();
+        let cone_radius = match values.choice("alpha-filter") {
+            AlphaFilter::Cone => values.number("cone-radius") as f32 * stipple_side as f32 * 0.5,
+            AlphaFilter::Bilinear => 0.0,
         };
         let light_range = values.number("light-range") as f32;
         let has_extras = values.is_on("extras") && !values.is("brdf", Brdf::Lambert);
@@ -160,7 +179,8 @@ impl Choices {
             light_range,
             packing: Packing::from_settings(values),
             depth_threshold: values.number("depth-threshold") as f32,
-            tests_alpha: values.is("alpha", Alpha::Test),
+            tests_alpha,
+            stipple_size,
             stipple,
             samples: resolve::samples(values),
             is_counted: values
@@ -171,6 +191,17 @@ impl Choices {
             named_layers,
             cone_radius,
         })
+    }
+
+    /// The word of `--stipple` that is followed.
+    pub fn stipple_name(&self) -> &'static str {
+        self.stipple_size.name()
+    }
+
+    /// How BLEND draws get their layers.
+    pub fn stipple_rules(&self) -> Rules<'_> {
+        let layer_count = assignment::layer_count(&self.stipple);
+        Rules { assignment: self.assignment, named_layers: &self.named_layers, layer_count }
     }
 
     /// Texels of a side of the stipple.

@@ -89,7 +89,7 @@ impl InferredFrame {
             lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));
             (Vec::new(), Shares::default())
         } else {
-            stipple::assign(inputs.scene, inputs.view, blended, choices)
+            stipple::assign(inputs.scene, inputs.view, blended, choices.stipple_rules())
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();

@@ -21,6 +21,7 @@ mod bench_stages;
 mod choices;
 mod cull;
 pub mod encoding;
+mod footprint;
 mod frame;
 mod geometry;
 mod layer_names;
@@ -228,6 +229,7 @@ impl Prepared for PreparedInferred {
             ("highlight", self.choices.highlight().to_owned()),
             (INSTRUMENT.key, if self.choices.is_counted { "on" } else { "off" }.to_owned()),
             ("light-size", self.choices.light_extent.to_string()),
+            ("stipple", self.choices.stipple_name().to_owned()),
             ("texels", texels.to_string()),
         ])
     }

@@ -206,11 +206,13 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "stipple",
         kind: Kind::Choice(StippleSize::WORDS),
-        default: "2x2",
+        auto: true,
+        default: "auto",
         unit: "px",
         paper: "Kircher 2009, 4",
         help: "Texels at which BLEND surfaces are lit: one in four (2x2, which leaves 3 layers over the solid one) or \
-               one in sixteen (4x4, 15 layers)",
+               one in sixteen (4x4, 15 layers). auto: 4x4 where with 2x2 they would share layers on more than a twentieth \
+               of the screen",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -219,7 +221,7 @@ pub const SETTINGS: &[Setting] = &[
         default: "overlap",
         paper: "Kircher 2009, 4, 7.1",
         help: "How BLEND surfaces share the layers of the stipple: those that overlap on the screen get different \
-               ones, nearest first (overlap, not the paper's); in rotation from the nearest on (depth); or as \
+               ones, or those that they share least with, nearest first (overlap, not the paper's); in rotation from the nearest on (depth); or as \
                --stipple-layers says, the rest in rotation in the order of the file (static)",
         ..Setting::changing(Changes::Picture)
     },

@@ -3,15 +3,19 @@
 //! A stipple of side s has s * s layers; layer 0 is the solid surfaces' alone, the others are the BLEND surfaces'. Two that
 //! share a layer and overlap on screen fight for its texels: the nearer one gets them, the farther one is filtered from
 //! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
-//! a greedy colouring, nearest first, of the graph of draws whose boxes overlap on screen.
+//! a greedy colouring, nearest first, of the graph of draws that overlap on screen, each in the layer with whose draws it
+//! shares the least area, and then moves of single draws while they help.
 
-use super::assignment::{Assignment, layer_count};
-use super::choices::Choices;
+use super::assignment::Assignment;
+use super::footprint::{Footprint, SCREEN_CELLS};
 use crate::frame::View;
 use crate::resident::DrawCall;
-use crate::scene::{Bounds, Scene};
-use glam::{Mat4, Vec2, Vec3, Vec4};
-use std::collections::BTreeSet;
+use crate::scene::{AlphaMode, Draw, Scene};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Times that all draws are looked at again for a better layer.
+const MOST_ROUNDS: usize = 8;
 
 /// A BLEND draw and its layer.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +23,7 @@ pub struct StippledDraw {
     pub call: DrawCall,
     /// 1 to side * side - 1: which texel of each cell of the stipple is its, row-major.
     pub layer: u32,
-    /// Its box reaches into the screen.
+    /// It reaches into the screen.
     pub is_on_screen: bool,
 }
 
@@ -32,89 +36,137 @@ pub struct Shares {
     pub layers_shared: usize,
     /// Draws that overlap another of their layer on screen.
     pub draws_sharing: usize,
+    /// Cells that two draws of a layer reach into, summed over all such pairs.
+    pub cells_shared: u64,
 }
 
-/// A rectangle of the screen, in parts of it from -1 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Footprint {
-    low: Vec2,
-    high: Vec2,
-}
-
-impl Footprint {
-    const WHOLE: Self = Self { low: Vec2::NEG_ONE, high: Vec2::ONE };
-
-    /// Footprint of a box in object space; None where it lies outside of the screen.
-    fn of(bounds: &Bounds, clip_from_object: Mat4) -> Option<Self> {
-        let mut footprint = Self { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY };
-        let mut is_crossing = false;
-        for at in corners(bounds, clip_from_object) {
-            // What crosses the eye's plane may be anywhere.
-            if at.w <= BEFORE_EYE {
-                is_crossing = true;
-                continue;
-            }
-            let place = Vec2::new(at.x, at.y) / at.w;
-            footprint = Self { low: footprint.low.min(place), high: footprint.high.max(place) };
-        }
-        if is_crossing {
-            return Some(Self::WHOLE);
-        }
-        let inside = Self { low: footprint.low.max(Vec2::NEG_ONE), high: footprint.high.min(Vec2::ONE) };
-        inside.low.cmple(inside.high).all().then_some(inside)
-    }
-
-    fn overlaps(&self, other: &Self) -> bool {
-        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+impl Shares {
+    /// Part of the screen on which two draws of a layer overlap, summed over all such pairs: it may be more than 1.
+    pub fn part_of_screen(&self) -> f64 {
+        self.cells_shared as f64 / SCREEN_CELLS as f64
     }
 }
 
-/// The least w of clip space at which something lies before the eye.
-const BEFORE_EYE: f32 = 1e-6;
+/// How layers are given to BLEND draws.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules<'a> {
+    pub assignment: Assignment,
+    /// `Choices::named_layers`.
+    pub named_layers: &'a BTreeMap<u32, u32>,
+    /// Layers that there are for them.
+    pub layer_count: u32,
+}
 
-/// The corners of a box in object space.
-fn corners(bounds: &Bounds, clip_from_object: Mat4) -> impl Iterator<Item = Vec4> {
-    let [min, max] = [bounds.min, bounds.max];
-    (0..8u32).map(move |corner| {
-        let pick = |bit: u32, low: f32, high: f32| if corner & bit == 0 { low } else { high };
-        let point = Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z));
-        clip_from_object * point.extend(1.0)
-    })
+/// What `draws` get, farthest first: their layers, and where they are on the screen.
+fn given(scene: &Scene, view: &View, draws: &[u32], rules: Rules<'_>) -> (Vec<u32>, Vec<Footprint>, Shares) {
+    let clip_from_world = view.clip_from_world();
+    let footprint = |draw: &u32| {
+        let draw = &scene.draws[*draw as usize];
+        let mesh = &scene.meshes[draw.mesh];
+        Footprint::of(draw, mesh, scene.materials[mesh.material].double_sided, clip_from_world)
+    };
+    let footprints: Vec<Footprint> = draws.par_iter().map(footprint).collect();
+    let places: Vec<_> = match rules.assignment {
+        Assignment::Static => draws.iter().map(|draw| (*draw, rules.named_layers.get(draw).copied())).collect(),
+        _ => Vec::new(),
+    };
+    let layers = layers(&footprints, &places, rules.layer_count, rules.assignment);
+    let shares = Shares::of(&footprints, &layers, rules.layer_count);
+    (layers, footprints, shares)
 }
 
 /// Layers for `calls`, which are sorted farthest first, as they are drawn.
-pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, choices: &Choices) -> (Vec<StippledDraw>, Shares) {
-    let of_call = |call: &DrawCall| {
-        let draw = &scene.draws[call.draw as usize];
-        let mut bounds = Bounds::EMPTY;
-        scene.meshes[draw.mesh].positions.iter().for_each(|position| bounds.include(*position));
-        let clip_from_object = view.clip_from_world() * draw.world_from_object;
-        let footprint = Footprint::of(&bounds, clip_from_object);
-        // What lies behind the eye altogether has a footprint, as what crosses the eye's plane, but no texels.
-        let is_before_eye = corners(&bounds, clip_from_object).any(|at| at.w > BEFORE_EYE);
-        (footprint, footprint.is_some() && is_before_eye)
+pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, rules: Rules<'_>) -> (Vec<StippledDraw>, Shares) {
+    let draws: Vec<u32> = calls.iter().map(|call| call.draw).collect();
+    let (layers, footprints, shares) = given(scene, view, &draws, rules);
+    let all = calls.into_iter().zip(layers).zip(&footprints);
+    let stippled = |((call, layer), footprint): ((DrawCall, u32), &Footprint)| StippledDraw {
+        call,
+        layer,
+        is_on_screen: !footprint.is_empty(),
     };
-    let (footprints, on_screen): (Vec<_>, Vec<_>) = calls.iter().map(of_call).unzip();
-    let static_place = |call: &DrawCall| (call.draw, choices.named_layers.get(&call.draw).copied());
-    let places: Vec<_> = match choices.assignment {
-        Assignment::Static => calls.iter().map(static_place).collect(),
-        _ => Vec::new(),
-    };
-    let layers = layers(&footprints, &places, layer_count(&choices.stipple), choices.assignment);
-    let shares = shares(&footprints, &layers);
-    let all = calls.into_iter().zip(layers).zip(on_screen);
-    let stippled = |((call, layer), is_on_screen): ((DrawCall, u32), bool)| StippledDraw { call, layer, is_on_screen };
     (all.map(stippled).collect(), shares)
 }
 
-/// A layer, 1 to `count`, for each footprint, farthest first. `places`: of `Assignment::Static`, in the file, with the layer
-/// that the user says.
-pub(super) fn layers(
-    footprints: &[Option<Footprint>],
-    places: &[(u32, Option<u32>)],
-    count: u32,
-    assignment: Assignment,
-) -> Vec<u32> {
+/// What BLEND draws would share by `rules`.
+pub fn shared(scene: &Scene, view: &View, rules: Rules<'_>) -> Shares {
+    let blends = |draw: &Draw| scene.materials[scene.meshes[draw.mesh].material].alpha == AlphaMode::Blend;
+    let place = |(index, draw): (usize, &Draw)| {
+        let middle = draw.bounds(&scene.meshes[draw.mesh]).center();
+        (middle.distance_squared(view.eye()), index as u32)
+    };
+    let mut draws: Vec<(f32, u32)> =
+        scene.draws.iter().enumerate().filter(|(_, draw)| blends(draw)).map(place).collect();
+    draws.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let draws: Vec<u32> = draws.into_iter().map(|(_, draw)| draw).collect();
+    given(scene, view, &draws, rules).2
+}
+
+/// How many draws of each layer reach into each cell of the screen.
+struct Occupancy {
+    layer_count: usize,
+    /// Numbers of a cell stand together, a layer each.
+    draws: Vec<u32>,
+}
+
+impl Occupancy {
+    fn new(layer_count: u32) -> Self {
+        let layer_count = layer_count as usize;
+        Self { layer_count, draws: vec![0; SCREEN_CELLS * layer_count] }
+    }
+
+    fn of_cell(&self, cell: usize) -> &[u32] {
+        &self.draws[cell * self.layer_count..][..self.layer_count]
+    }
+
+    fn add(&mut self, footprint: &Footprint, layer: u32) {
+        footprint.cells().for_each(|cell| self.draws[cell * self.layer_count + layer as usize - 1] += 1);
+    }
+
+    fn remove(&mut self, footprint: &Footprint, layer: u32) {
+        footprint.cells().for_each(|cell| self.draws[cell * self.layer_count + layer as usize - 1] -= 1);
+    }
+
+    /// Cells that a draw which is in none shares with those of each layer, summed over them.
+    fn shared_with(&self, footprint: &Footprint) -> Vec<u64> {
+        let mut shared = vec![0; self.layer_count];
+        for cell in footprint.cells() {
+            shared.iter_mut().zip(self.of_cell(cell)).for_each(|(sum, draws)| *sum += u64::from(*draws));
+        }
+        shared
+    }
+
+    /// The layer, from 1, that it shares least with, and how many cells of it.
+    fn least_shared(&self, footprint: &Footprint) -> (u32, u64) {
+        let shared = self.shared_with(footprint);
+        let least = (1..).zip(shared).min_by_key(|(_, cells)| *cells);
+        least.expect("a stipple has a layer for alpha")
+    }
+}
+
+impl Shares {
+    /// What draws share that have these layers.
+    fn of(footprints: &[Footprint], layers: &[u32], layer_count: u32) -> Self {
+        let mut all = Occupancy::new(layer_count);
+        footprints.iter().zip(layers).for_each(|(footprint, layer)| all.add(footprint, *layer));
+        let is_shared = |(footprint, layer): &(&Footprint, &u32)| {
+            footprint.cells().any(|cell| all.of_cell(cell)[**layer as usize - 1] > 1)
+        };
+        let sharing: Vec<u32> = footprints.iter().zip(layers).filter(is_shared).map(|(_, layer)| *layer).collect();
+        let distinct = |layers: &[u32]| layers.iter().collect::<BTreeSet<_>>().len();
+        let pairs = |draws: &u32| u64::from(*draws) * u64::from(draws.saturating_sub(1)) / 2;
+        Self {
+            layers_used: distinct(layers),
+            draws_sharing: sharing.len(),
+            layers_shared: distinct(&sharing),
+            cells_shared: all.draws.iter().map(pairs).sum(),
+        }
+    }
+}
+
+/// A layer, 1 to `count`, for each draw, farthest first. `places`: of `Assignment::Static`, in the file, with the layer that the
+/// user says.
+fn layers(footprints: &[Footprint], places: &[(u32, Option<u32>)], count: u32, assignment: Assignment) -> Vec<u32> {
     let mut layers = vec![0; footprints.len()];
     match assignment {
         Assignment::Static => {
@@ -135,48 +187,48 @@ pub(super) fn layers(
             layers.iter_mut().rev().enumerate().for_each(|(turn, layer)| *layer = 1 + turn as u32 % count);
         }
         Assignment::Overlap => {
-            for index in (0..footprints.len()).rev() {
-                let mut neighbours = vec![0u32; count as usize];
-                let nearer = index + 1..footprints.len();
-                for other in nearer.filter(|other| overlap(footprints[index], footprints[*other])) {
-                    neighbours[layers[other] as usize - 1] += 1;
+            let mut occupancy = Occupancy::new(count);
+            for (footprint, layer) in footprints.iter().zip(&mut layers).rev() {
+                (*layer, _) = occupancy.least_shared(footprint);
+                occupancy.add(footprint, *layer);
+            }
+            // The nearest were placed without those behind them: each moves while that takes something off the sum.
+            for _ in 0..MOST_ROUNDS {
+                let mut is_better = false;
+                for (footprint, layer) in footprints.iter().zip(&mut layers).rev() {
+                    occupancy.remove(footprint, *layer);
+                    let shared = occupancy.shared_with(footprint)[*layer as usize - 1];
+                    let (best, least) = occupancy.least_shared(footprint);
+                    if least < shared {
+                        *layer = best;
+                        is_better = true;
+                    }
+                    occupancy.add(footprint, *layer);
                 }
-                let least = neighbours.iter().min().copied().unwrap_or_default();
-                let first = neighbours.iter().position(|neighbours| *neighbours == least);
-                layers[index] = 1 + first.expect("a stipple has a layer for alpha") as u32;
+                if !is_better {
+                    break;
+                }
             }
         }
     }
     layers
 }
 
-pub(super) fn overlap(a: Option<Footprint>, b: Option<Footprint>) -> bool {
-    matches!((a, b), (Some(a), Some(b)) if a.overlaps(&b))
-}
-
-fn shares(footprints: &[Option<Footprint>], layers: &[u32]) -> Shares {
-    let distinct = |layers: Vec<u32>| layers.into_iter().collect::<BTreeSet<u32>>().len();
-    let shares_layer = |index: &usize| {
-        (0..layers.len()).any(|other| {
-            other != *index && layers[other] == layers[*index] && overlap(footprints[*index], footprints[other])
-        })
-    };
-    let sharing: Vec<u32> = (0..layers.len()).filter(shares_layer).map(|index| layers[index]).collect();
-    Shares { layers_used: distinct(layers.to_vec()), draws_sharing: sharing.len(), layers_shared: distinct(sharing) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::techniques::inferred_lighting::footprint::tests::{rectangle, shared_cells};
     use proptest::prelude::*;
 
-    fn footprint(x: f32, y: f32, side: f32) -> Option<Footprint> {
-        Some(Footprint { low: Vec2::new(x, y), high: Vec2::new(x + side, y + side) })
+    fn assigned(footprints: &[Footprint], count: u32, assignment: Assignment) -> (Vec<u32>, Shares) {
+        let layers = layers(footprints, &[], count, assignment);
+        let shares = Shares::of(footprints, &layers, count);
+        (layers, shares)
     }
 
     #[test]
     fn turns_run_from_the_nearest_or_in_the_order_of_the_file() {
-        let four = [footprint(0.0, 0.0, 0.5); 4];
+        let four = [(); 4].map(|()| rectangle(0, 0, 32, 32));
         assert_eq!(layers(&four, &[], 3, Assignment::Depth), [1, 3, 2, 1]);
         assert_eq!(layers(&four, &[7, 2, 9, 4].map(|place| (place, None)), 3, Assignment::Static), [3, 1, 1, 2]);
         let said = [(7, None), (2, Some(3)), (9, None), (4, None)];
@@ -188,39 +240,55 @@ mod tests {
     /// Two piles side by side: turns by depth make neighbours share where colouring needs two layers.
     #[test]
     fn what_does_not_overlap_shares_a_layer_and_what_does_does_not() {
-        let piles =
-            [footprint(-0.9, 0.0, 0.2), footprint(0.5, 0.0, 0.2), footprint(0.6, 0.1, 0.2), footprint(-0.8, 0.1, 0.2)];
-        let found = layers(&piles, &[], 3, Assignment::Overlap);
+        let piles = [rectangle(3, 0, 6, 6), rectangle(50, 0, 6, 6), rectangle(52, 3, 6, 6), rectangle(5, 3, 6, 6)];
+        let (found, shares) = assigned(&piles, 3, Assignment::Overlap);
         assert_eq!(found, [2, 2, 1, 1]);
-        assert_eq!(shares(&piles, &found), Shares { layers_used: 2, draws_sharing: 0, layers_shared: 0 });
-        let five = [footprint(0.0, 0.0, 0.5); 5];
-        let found = layers(&five, &[], 3, Assignment::Overlap);
-        assert_eq!(shares(&five, &found), Shares { layers_used: 3, draws_sharing: 4, layers_shared: 2 });
+        let none = Shares { layers_used: 2, ..Shares::default() };
+        assert_eq!(shares, none);
+        let five = [(); 5].map(|()| rectangle(0, 0, 8, 8));
+        let (_, shares) = assigned(&five, 3, Assignment::Overlap);
+        let of_five = Shares { layers_used: 3, draws_sharing: 4, layers_shared: 2, cells_shared: 128 };
+        assert_eq!(shares, of_five);
+    }
+
+    /// Four of which any two overlap, in two layers: a large one goes with a small one.
+    #[test]
+    fn of_layers_that_are_all_taken_the_least_shared_area_decides() {
+        let small = || rectangle(18, 18, 10, 30);
+        let four = [rectangle(0, 0, 20, 20), small(), rectangle(0, 0, 20, 19), small()];
+        let (found, shares) = assigned(&four, 2, Assignment::Overlap);
+        assert_eq!(found, [1, 2, 2, 1]);
+        assert_eq!(shares.cells_shared, 2 * 2 + 2);
     }
 
     #[test]
     fn what_lies_outside_of_the_screen_shares_with_nothing() {
-        let all = [None, footprint(0.0, 0.0, 0.1), None];
-        let found = layers(&all, &[], 3, Assignment::Overlap);
-        assert_eq!(shares(&all, &found), Shares { layers_used: 1, draws_sharing: 0, layers_shared: 0 });
+        let outside = || rectangle(70, 70, 5, 5);
+        let (found, shares) = assigned(&[outside(), rectangle(32, 32, 3, 3), outside()], 3, Assignment::Overlap);
+        assert_eq!(shares, Shares { layers_used: 1, ..Shares::default() }, "{found:?}");
     }
 
     proptest! {
-        /// A draw shares a layer with a nearer one only where it overlaps as many nearer ones as there are layers.
+        /// A draw shares a layer only where it overlaps as many others as there are layers; no single move helps; and the sum is
+        /// that of a plain count.
         #[test]
         fn colouring_shares_only_where_it_must(
-            places in proptest::collection::vec((-1f32..0.8, -1f32..0.8, 0.01f32..0.4), 0..24),
+            places in proptest::collection::vec((0usize..60, 0usize..60, 1usize..16), 0..24),
             count in prop::sample::select(vec![3u32, 15]),
         ) {
-            let all: Vec<_> = places.iter().map(|(x, y, side)| footprint(*x, *y, *side)).collect();
-            let found = layers(&all, &[], count, Assignment::Overlap);
+            let all: Vec<_> = places.iter().map(|(x, y, side)| rectangle(*x, *y, *side, *side)).collect();
+            let (found, shares) = assigned(&all, count, Assignment::Overlap);
+            let shared = |index: usize, layer: u32| -> usize {
+                let others = (0..all.len()).filter(|other| *other != index && found[*other] == layer);
+                others.map(|other| shared_cells(&all[index], &all[other])).sum()
+            };
             for (index, layer) in found.iter().enumerate() {
                 prop_assert!((1..=count).contains(layer));
-                let nearer: Vec<usize> =
-                    (index + 1..all.len()).filter(|other| overlap(all[index], all[*other])).collect();
-                let is_sharing = nearer.iter().any(|other| found[*other] == *layer);
-                prop_assert!(!is_sharing || nearer.len() >= count as usize);
+                let least = (1..=count).map(|layer| shared(index, layer)).min().unwrap();
+                prop_assert_eq!(shared(index, *layer), least);
             }
+            let sum: usize = (0..all.len()).map(|index| shared(index, found[index])).sum();
+            prop_assert_eq!(shares.cells_shared, sum as u64 / 2);
         }
     }
 }

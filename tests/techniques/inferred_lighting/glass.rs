@@ -97,16 +97,79 @@ fn the_report_counts_layers_that_are_lit_and_draws_that_are_not() {
         (&[-2.0, -2.5, -3.0, -3.5, -4.0], 3.0, 2.0, 2.0),
         (&[-2.0, behind_wall], 1.0, 1.0, 0.0),
         (&[-2.0, 3.0], 1.0, 0.0, 0.0),
+        (&[-2.0, 3.0, 3.5, 4.0, 4.5], 1.0, 0.0, 0.0),
     ] {
         let watched = Watched::with_scene(sheets(z_m));
         for (packing, extras) in [("words", "on"), ("words", "off"), ("fixed", "on"), ("rgba8", "on")] {
-            let changes = [("size", "80x60"), ("light-size", "50x38"), ("packing", packing), ("extras", extras)];
+            let size = [("size", "80x60"), ("light-size", "50x38"), ("stipple", "2x2")];
+            let changes = both(&size, &[("packing", packing), ("extras", extras)]);
             let renderer = watched.render(NAME, &changes);
             let found = renderer.measured_counters().unwrap();
             let names = ["stipple_layers_lit", "stipple_draws_lit", "stipple_draws_unlit", "stipple_layers_shared"];
             assert_eq!(names.map(|name| found[name]), [lit, lit, unlit, shared], "{z_m:?}, {packing}: {names:?}");
         }
     }
+}
+
+/// A stipple of 2x2 where its three layers do for what is on the screen, and where the user names none beyond; else one of 4x4.
+#[test]
+fn the_stipple_is_as_coarse_as_the_scene_needs() {
+    let size = [("size", "64x48"), ("light-size", "64x48")];
+    let chosen = |watched: &Watched, more: &[(&str, &str)]| {
+        let renderer = watched.render(NAME, &both(&size, more));
+        renderer.resolved["stipple"].clone()
+    };
+    for (z_m, expected) in [
+        (&[][..], "2x2"),
+        (&[-2.0, -2.5, -3.0], "2x2"),
+        (&[-2.0, -2.5, -3.0, -3.5], "4x4"),
+        (&[-2.0, -2.5, -3.0, 3.0, 3.5], "2x2"),
+    ] {
+        let watched = Watched::with_scene(sheets(z_m));
+        assert_eq!(chosen(&watched, &[]), expected, "{z_m:?}");
+        assert_eq!(chosen(&watched, &[("alpha", "test")]), "2x2", "{z_m:?}: none is stippled");
+        assert_eq!(chosen(&watched, &[("stipple", "2x2")]), "2x2", "{z_m:?}");
+    }
+    let watched = Watched::with_scene(panes().load().unwrap());
+    for (layers, expected) in [("none", "2x2"), ("blue=3", "2x2"), ("blue=4", "4x4"), ("amber=2,blue=2", "2x2")] {
+        let changes = [("assignment", "static"), ("stipple-layers", layers)];
+        assert_eq!(chosen(&watched, &changes), expected, "{layers}");
+    }
+}
+
+/// Panes one behind the other that are one primitive of a file are a draw each, so that each has a layer, and is drawn in its order.
+#[test]
+fn panes_of_one_primitive_are_lit_as_those_of_several() {
+    let corners = |z: f32| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| [x + 0.1 * z, y, z])
+    };
+    let file = |groups: &[&[f32]]| {
+        let mut file = GltfFile::empty();
+        let surface = json!({"baseColorFactor": [0.5, 0.5, 0.5, 0.5]});
+        file.push("materials", json!({"name": "glass", "alphaMode": "BLEND", "pbrMetallicRoughness": surface}));
+        for (mesh, group) in groups.iter().enumerate() {
+            let all: Vec<f32> = group.iter().flat_map(|z| corners(*z)).flatten().collect();
+            let positions = file.floats("VEC3", &all);
+            file.push("meshes", json!({"primitives": [{"attributes": {"POSITION": positions}, "material": 0}]}));
+            file.root(json!({"mesh": mesh}));
+        }
+        file.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}));
+        file.root(json!({"camera": 0}));
+        let mut scene = file.load().unwrap();
+        scene.lights.push(point_light(vec3(0.5, 0.5, -1.0), 10.0));
+        scene
+    };
+    let changes = [("size", "80x60"), ("light-size", "50x38")];
+    // Nearest first, which as one draw would hide what is behind.
+    let [one, several] = [file(&[&[-3.0, -4.0, -5.0]]), file(&[&[-3.0], &[-4.0], &[-5.0]])];
+    assert_eq!([one.draws.len(), several.draws.len()], [3, 3]);
+    let [one, several] = [one, several].map(|scene| {
+        let watched = Watched::with_scene(scene);
+        ["inferred_lighting", "forward"].map(|technique| {
+            watched.picture(technique, if technique == NAME { &changes } else { &changes[..1] }).pixels
+        })
+    });
+    assert!(one == several);
 }
 
 /// Two panes side by side of one material each, from a file.
@@ -157,7 +220,8 @@ fn the_user_names_layers_in_the_file_or_by_flag() {
     let watched = Watched::with_scene(by_node.load().unwrap());
     for (changes, said) in [
         (&[("assignment", "static"), ("stipple-layers", "green=1")][..], "amber, amber pane, blue, blue pane"),
-        (&[("assignment", "static"), ("stipple-layers", "blue=4")], "layers 1 to 3"),
+        (&[("assignment", "static"), ("stipple", "2x2"), ("stipple-layers", "blue=4")], "layers 1 to 3"),
+        (&[("assignment", "static"), ("stipple-layers", "blue=16")], "layers 1 to 15"),
         (&[("stipple-layers", "blue=2")], "--assignment static takes them"),
     ] {
         let error = watched.try_renderer(NAME, changes, &[], quincunx::gpu::commands::Submits::One).err().unwrap();
