@@ -2,10 +2,8 @@
 #ifndef PASSES_MESH_VERTEX_GLSL
 #define PASSES_MESH_VERTEX_GLSL
 
-#include "frame.glsl"
-#include "resident.glsl"
+#include "passes/mesh_position.glsl"
 
-layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;
 layout(location = 3) in vec2 uv;
@@ -13,9 +11,6 @@ layout(location = 3) in vec2 uv;
 layout(location = 4) in vec4 color;
 layout(location = 5) in vec2 uv_1;
 #endif
-
-layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
-layout(std430, set = 0, binding = 1) readonly buffer Draws { DrawBlock draws[]; };
 
 layout(location = 0) out vec3 out_position_ws;
 layout(location = 1) out vec3 out_normal_ws;
@@ -28,14 +23,10 @@ layout(location = 5) out vec4 out_color;
 layout(location = 6) out vec2 out_uv_1;
 #endif
 
-// Two passes over the same triangles must agree on depth to the bit.
-invariant gl_Position;
-
 // All but the place in the picture. Returns the place in the world.
 vec4 write_attributes() {
-    // The first instance is the draw's index: no push constants between draws.
     DrawBlock draw = draws[gl_InstanceIndex];
-    vec4 position_ws = draw.world_from_object * vec4(position, 1.0);
+    vec4 position_ws = vertex_position_ws();
     out_position_ws = position_ws.xyz;
     out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
     // w carries the normal group's id too.

@@ -1,6 +1,6 @@
 //! Depth pre-pass: the depth of solid surfaces, so that the pass with their materials shades only what is seen. Shaders:
-//! mesh.vert and, for MASK surfaces, depth_prepass.frag.
-//! reads  the scene      writes  a depth buffer, reversed, 4 B a sample
+//! depth_prepass.vert, and for MASK surfaces mesh.vert and depth_prepass.frag.
+//! reads  the scene, of opaque surfaces positions alone      writes  a depth buffer, reversed, 4 B a sample
 //!
 //! The pass that shades draws its lists backwards, by "equal" with this one and by "nearer or as near" without it. So it
 //! shades the same surface of several at the same depth: the first draw's, and of its triangles the last one.
@@ -8,7 +8,7 @@
 use super::mesh;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, Constants, GraphicsDescription, GraphicsPipeline};
-use crate::gpu::shader::passes::depth_prepass::FRAG_VARIANTS;
+use crate::gpu::shader::passes::depth_prepass::{FRAG_VARIANTS, VERT};
 use crate::gpu::shader::structs::DepthPrepassParams;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Buffer, Commands, Gpu, Image, Traffic};
@@ -79,15 +79,15 @@ impl DepthPrepass {
     ///
     /// Errors: the driver refuses (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, samples: u32, levels: Constants<'_>) -> Result<Self> {
-        let pipeline = |fragment, constants| {
+        let pipeline = |(vertex, vertex_buffers), fragment, constants| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
-                    vertex: mesh::vertex_shader(scene),
+                    vertex,
                     geometry: None,
                     fragment,
                     constants,
-                    vertex_buffers: mesh::vertex_buffers(scene),
+                    vertex_buffers,
                     color_formats: &[],
                     samples,
                     blending: Blending::Replace,
@@ -103,7 +103,11 @@ impl DepthPrepass {
             )
         };
         let mask = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene)]);
-        Ok(Self { opaque: pipeline(None, &[])?, mask: pipeline(Some(mask), levels)? })
+        let with_holes = (mesh::vertex_shader(scene), mesh::vertex_buffers(scene));
+        Ok(Self {
+            opaque: pipeline((&VERT, mesh::POSITIONS), None, &[])?,
+            mask: pipeline(with_holes, Some(mask), levels)?,
+        })
     }
 
     pub fn record(
@@ -116,7 +120,7 @@ impl DepthPrepass {
         (depth, begins): (&Image, DepthBegins),
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(scene, list.calls()),
+            read_bytes: mesh::depth_bytes(scene, list),
             written_bytes: depth.description.bytes(),
             invocations: None,
         };

@@ -6,7 +6,7 @@ use crate::gpu::pipeline::{GraphicsPipeline, VertexBuffer};
 use crate::gpu::shader::passes::mesh::VERT_VARIANTS;
 use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{Bound, Buffer, Commands};
-use crate::resident::{DrawCall, ExtendedAttributes, SceneGpu, VertexAttributes};
+use crate::resident::{DrawCall, DrawList, ExtendedAttributes, SceneGpu, VertexAttributes};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -29,6 +29,9 @@ const VERTEX_BUFFERS: [VertexBuffer; 3] = [
         ],
     },
 ];
+
+/// The stream of positions, for stages that read nothing else.
+pub const POSITIONS: &[VertexBuffer] = &[VERTEX_BUFFERS[0]];
 
 /// The streams that `scene` has.
 pub fn vertex_buffers(scene: &SceneGpu) -> &'static [VertexBuffer] {
@@ -61,6 +64,13 @@ pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> Vec<(&'static str, B
 pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
     let vertex: u64 = vertex_buffers(scene).iter().map(|stream| u64::from(stream.stride_bytes)).sum();
     calls.into_iter().map(|call| u64::from(call.index_count) * (4 + vertex)).sum()
+}
+
+/// Bytes that a pass reads which writes depth alone: positions of what has no holes.
+pub fn depth_bytes(scene: &SceneGpu, list: &DrawList) -> u64 {
+    let vertex = u64::from(POSITIONS[0].stride_bytes);
+    let opaque: u64 = list.opaque.iter().map(|call| u64::from(call.index_count) * (4 + vertex)).sum();
+    opaque + read_bytes(scene, &list.mask)
 }
 
 /// Binds the scene's streams, inside rendering.

@@ -88,7 +88,7 @@ impl ShadowMaps {
         scene: &SceneGpu,
     ) -> Result<Self> {
         let vertex_name = mesh::vertex_name(scene);
-        let pipeline = |alpha, fragment| {
+        let pipeline = |alpha, vertex_buffers, fragment| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
@@ -96,7 +96,7 @@ impl ShadowMaps {
                     geometry: None,
                     fragment,
                     constants: &[],
-                    vertex_buffers: mesh::vertex_buffers(scene),
+                    vertex_buffers,
                     color_formats: &[],
                     samples: 1,
                     blending: Blending::Replace,
@@ -115,8 +115,8 @@ impl ShadowMaps {
         let mask = variant(FRAG_VARIANTS, &[vertex_name]);
         let casters = layout.views.iter().map(|view| DrawList::of_casters(posed, scene, view, layout.casters));
         let maps = Self {
-            opaque: pipeline("opaque", None)?,
-            mask: pipeline("mask", Some(mask))?,
+            opaque: pipeline("opaque", mesh::POSITIONS, None)?,
+            mask: pipeline("mask", mesh::vertex_buffers(scene), Some(mask))?,
             casters: casters.collect(),
             depth: resources.image(&depth_name(technique)),
             blocks: resources.buffer(&blocks_name(technique)),
@@ -160,7 +160,7 @@ impl ShadowMaps {
 
     fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: self.casters.iter().map(|casters| mesh::read_bytes(scene, casters.calls())).sum(),
+            read_bytes: self.casters.iter().map(|casters| mesh::depth_bytes(scene, casters)).sum(),
             written_bytes: self.depth.description.bytes(),
             invocations: None,
         };

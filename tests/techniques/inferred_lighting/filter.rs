@@ -4,7 +4,9 @@ use crate::support::boxes::{edge, rectangle};
 use crate::support::choices::words_but;
 use crate::support::watched::{Watched, both};
 use glam::{Vec3, vec3};
+use quincunx::picture::AovChannels;
 use quincunx::scene::Material;
+use std::collections::BTreeSet;
 
 const NAME: &str = "inferred_lighting";
 
@@ -29,6 +31,38 @@ fn the_filter_keeps_another_surface_s_light_out() {
         assert_eq!(changed > 0, leaks, "--light-filter {filter}: {changed} pixels of the square changed");
         let wall = (0..ids.len()).filter(|index| !is_square(index)).filter(|index| a[*index] != b[*index]).count();
         assert!(wall > 1000, "the light reaches the wall");
+    }
+}
+
+/// The same where the wall and the square are one draw in one normal group: depth alone says which samples are whose.
+#[test]
+fn depth_tells_parts_of_one_surface_apart() {
+    let one_draw = |wall_light: f32| {
+        let mut scene = edge(wall_light);
+        let square = scene.meshes.pop().unwrap();
+        let wall = &mut scene.meshes[0];
+        wall.indices.extend(square.indices.iter().map(|index| index + 4));
+        wall.positions.extend(square.positions);
+        wall.normals.extend(square.normals);
+        wall.tangents.extend(square.tangents);
+        wall.uvs.extend(square.uvs);
+        scene.draws.pop();
+        Watched::with_scene(scene)
+    };
+    let (dark, bright) = (one_draw(0.0), one_draw(500.0));
+    let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    let stages = ["geometry.dsf.id", "geometry.dsf.depth"];
+    let full = dark.render_stages(NAME, &both(&common, &[("light-size", "160x120")]), &stages);
+    assert_eq!(dark.integers(&full, stages[0]).into_iter().collect::<BTreeSet<u32>>().len(), 1, "one id");
+    let AovChannels::Y(depths_m) = full.aov(stages[1]).unwrap().channels else { panic!("one channel") };
+    let square: Vec<usize> = (0..depths_m.len()).filter(|index| depths_m[*index] < 4.5).collect();
+    assert!(square.len() > 1000);
+    // The wall is 6 m away, the square 3.
+    for (threshold, leaks) in [("0", false), ("0.05", false), ("0.9", false), ("1", true)] {
+        let changes = both(&common, &[("light-size", "50x38"), ("depth-threshold", threshold)]);
+        let [a, b] = [&dark, &bright].map(|watched| watched.picture(NAME, &changes).pixels);
+        let changed = square.iter().filter(|index| a[**index] != b[**index]).count();
+        assert_eq!(changed > 0, leaks, "--depth-threshold {threshold}: {changed} pixels of the square changed");
     }
 }
 

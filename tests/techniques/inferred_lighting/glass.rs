@@ -111,6 +111,78 @@ fn the_report_counts_layers_that_are_lit_and_draws_that_are_not() {
     }
 }
 
+/// What is as good as empty has no texel and adds nothing: the picture is that without it.
+#[test]
+fn glass_of_less_than_a_step_of_alpha_is_not_lit() {
+    let size = [("size", "80x60"), ("light-size", "50x38")];
+    for (steps, is_lit) in [(0.9, false), (1.1, true)] {
+        let mut scene = sheets(&[-2.0]);
+        scene.materials[1].base_color.w = steps / 255.0;
+        let (sheet, wall) = (Watched::with_scene(scene), Watched::with_scene(sheets(&[])));
+        let [sheet, wall] = [&sheet, &wall].map(|watched| watched.render(NAME, &size));
+        assert_eq!(sheet.measured_counters().unwrap()["stipple_layers_lit"], f64::from(u8::from(is_lit)), "{steps}");
+        let [sheet, wall] = [sheet, wall].map(|renderer| renderer.picture().unwrap().pixels);
+        assert_eq!(sheet != wall, is_lit, "{steps} steps of alpha");
+    }
+}
+
+/// The light of a pixel of glass is the mean of the four texels of its layer around it: bilinear, or by a cone that falls to 0 at
+/// --cone-radius, in half sides of the stipple. Where the cone reaches none of them, all four count alike.
+#[test]
+fn a_pixel_of_glass_takes_the_texels_of_its_layer_by_the_filter_s_weights() {
+    const RATIO: i32 = 4;
+    let (extent, texels) = ([160, 120], [40, 30]);
+    let mut scene = sheets(&[-3.0]);
+    scene.materials[0] = Material::diffuse("wall", Vec3::ZERO);
+    scene.lights = vec![point_light(vec3(0.3, 0.2, -2.2), 5.0)];
+    let watched = Watched::with_scene(scene);
+    let common = [("size", "160x120"), ("light-size", "40x30"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    let irradiance = "light.l_buffer.irradiance";
+    for (stipple, side) in [("2x2", 2), ("4x4", 4)] {
+        for radius in [None, Some(0.3), Some(1.0), Some(1.7)] {
+            let radius_name = radius.unwrap_or(1.0).to_string();
+            let filter = if radius.is_some() { "cone" } else { "bilinear" };
+            let own = [("stipple", stipple), ("alpha-filter", filter), ("cone-radius", &radius_name)];
+            let renderer =
+                watched.render_stages(NAME, &both(&common, &own[..2 + usize::from(radius.is_some())]), &[irradiance]);
+            let light = watched.rgb(&renderer, irradiance);
+            // Layer 1 is the second texel of each cell's first row. Any pixel of a texel shows the texel.
+            let offset = [1, 0];
+            let of_texel = |[x, y]: [i32; 2]| {
+                let at = (y * RATIO + RATIO / 2) * extent[0] + x * RATIO + RATIO / 2;
+                Vec3::from_array(light[at as usize])
+            };
+            let mut far_from_all = 0;
+            for (pixel, found) in renderer.picture().unwrap().pixels.iter().enumerate() {
+                let at = [pixel as i32 % extent[0], pixel as i32 / extent[0]];
+                let place = [0, 1]
+                    .map(|axis| ((at[axis] as f32 + 0.5) / RATIO as f32 - 0.5 - offset[axis] as f32) / side as f32);
+                let mut sums = [(Vec3::ZERO, 0.0); 2];
+                for step in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+                    let cell = [0, 1].map(|axis| place[axis].floor() as i32 + step[axis]);
+                    let away = [0, 1].map(|axis| (place[axis] - cell[axis] as f32).abs());
+                    let texel = of_texel([0, 1].map(|axis| {
+                        let last = (texels[axis] - 1 - offset[axis]) / side;
+                        cell[axis].clamp(0, last) * side + offset[axis]
+                    }));
+                    let weight = match radius {
+                        None => (1.0 - away[0]) * (1.0 - away[1]),
+                        Some(radius) => (1.0 - away[0].hypot(away[1]) * 2.0 / radius).max(0.0),
+                    };
+                    sums = [(sums[0].0 + texel * weight, sums[0].1 + weight), (sums[1].0 + texel, sums[1].1 + 1.0)];
+                }
+                far_from_all += usize::from(sums[0].1 == 0.0);
+                let (sum, weights) = if sums[0].1 > 0.0 { sums[0] } else { sums[1] };
+                let expected = sum / weights * (0.5 * 0.3 / std::f32::consts::PI);
+                let off = (Vec3::from_array(*found) - expected).abs().max_element();
+                let bound = 5e-4 * expected.max_element() + 1e-6;
+                assert!(off <= bound, "{stipple}, {radius:?}, pixel {pixel}: {off} off {expected}");
+            }
+            assert_eq!(far_from_all > 0, radius.is_some_and(|radius| radius < 1.4), "{stipple}, {radius:?}");
+        }
+    }
+}
+
 /// A stipple of 2x2 where its three layers do for what is on the screen, and where the user names none beyond; else one of 4x4.
 #[test]
 fn the_stipple_is_as_coarse_as_the_scene_needs() {
