@@ -28,6 +28,7 @@ use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
 use ash::vk;
 use bytemuck::Zeroable;
+use glam::Vec3;
 use std::sync::Arc;
 
 /// What the fragment stage reads beside the scene.
@@ -85,13 +86,15 @@ pub fn all_lights(least_squared: f32) -> BlendParams {
 
 /// The BLEND draws, farthest first, by the middles of their boxes.
 pub fn back_to_front(scene: &SceneGpu, view: &View) -> Vec<DrawCall> {
-    let eye = view.eye();
     let mut calls: Vec<DrawCall> = scene.calls.iter().filter(|call| call.alpha == AlphaMode::Blend).copied().collect();
-    calls.sort_by(|a, b| {
-        let distance = |call: &DrawCall| call.center_ws.distance_squared(eye);
-        distance(b).total_cmp(&distance(a))
-    });
+    sort_farthest_first(&mut calls, view, |call| call.center_ws);
     calls
+}
+
+/// Sorts BLEND draws as they are drawn, by `center_ws`, the middle of a draw's box; equally far ones stay in their order.
+pub fn sort_farthest_first<T>(draws: &mut [T], view: &View, center_ws: impl Fn(&T) -> Vec3) {
+    let distance = |draw: &T| center_ws(draw).distance_squared(view.eye());
+    draws.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
 }
 
 /// The lists of BLEND surfaces, where all others are shaded from a G-buffer. `lights`: the punctual lights of the picture.

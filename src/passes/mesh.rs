@@ -60,17 +60,20 @@ pub fn bound<'a>(frame: &'a Buffer, scene: &'a SceneGpu) -> Vec<(&'static str, B
     bound
 }
 
-/// Bytes that a pass over `calls` reads of the scene: each call's indices, and each index's vertex once.
-pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
-    let vertex: u64 = vertex_buffers(scene).iter().map(|stream| u64::from(stream.stride_bytes)).sum();
+/// Bytes of indices, 4 each, and of each index's vertex in `streams` once.
+fn stream_bytes<'a>(streams: &[VertexBuffer], calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
+    let vertex: u64 = streams.iter().map(|stream| u64::from(stream.stride_bytes)).sum();
     calls.into_iter().map(|call| u64::from(call.index_count) * (4 + vertex)).sum()
+}
+
+/// Bytes that a pass over `calls` reads of the scene.
+pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
+    stream_bytes(&vertex_buffers(scene), calls)
 }
 
 /// Bytes that a pass reads which writes depth alone: positions of what has no holes.
 pub fn depth_bytes(scene: &SceneGpu, list: &DrawList) -> u64 {
-    let vertex = u64::from(POSITIONS[0].stride_bytes);
-    let opaque: u64 = list.opaque.iter().map(|call| u64::from(call.index_count) * (4 + vertex)).sum();
-    opaque + read_bytes(scene, &list.mask)
+    stream_bytes(POSITIONS, &list.opaque) + read_bytes(scene, &list.mask)
 }
 
 /// Binds the scene's streams, inside rendering.

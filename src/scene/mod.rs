@@ -9,6 +9,7 @@ pub mod camera;
 pub mod facing;
 pub mod glb;
 pub mod gltf;
+pub mod joined;
 pub mod light;
 pub mod material;
 pub mod medium;

@@ -24,6 +24,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::Mesh;
+use super::joined::Joined;
 use super::palette::{self, Ids};
 use super::places::Places;
 
@@ -176,31 +177,6 @@ fn welded(normals: &[Vec3], places: &Places) -> Vec<u32> {
         }
     }
     (0..normals.len() as u32).map(|vertex| joined.first(vertex)).collect()
-}
-
-/// Sets of numbers that are joined one by one; the least represents its set.
-struct Joined(Vec<u32>);
-
-impl Joined {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    /// The least of the set that holds `member`.
-    fn first(&mut self, mut member: u32) -> u32 {
-        let above = &mut self.0;
-        while above[member as usize] != member {
-            // Every second one is lifted by a step: later ways are half as long.
-            above[member as usize] = above[above[member as usize] as usize];
-            member = above[member as usize];
-        }
-        member
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.first(a), self.first(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,6 @@
-//! Where on the screen a BLEND draw may leave texels: the cells of a coarse grid that its triangles reach into.
+//! Where on the screen a BLEND draw may leave texels: the cells of a coarse grid that its triangles reach into. Kircher 2009,
+//! section 7.1, leaves open what layers are to be given by; this is what they are given by here. 528 bytes a draw, and 16 a
+//! vertex of a mesh meanwhile.
 
 use crate::scene::{Draw, Mesh};
 use glam::{Mat3, Mat4, Vec2, Vec4};

@@ -221,8 +221,9 @@ pub const SETTINGS: &[Setting] = &[
         default: "overlap",
         paper: "Kircher 2009, 4, 7.1",
         help: "How BLEND surfaces share the layers of the stipple: those that overlap on the screen get different \
-               ones, or those that they share least with, nearest first (overlap, not the paper's); in rotation from the nearest on (depth); or as \
-               --stipple-layers says, the rest in rotation in the order of the file (static)",
+               ones, or those that they share least with, nearest first (overlap, not the paper's); in rotation from \
+               the nearest on (depth); or as --stipple-layers says, the rest in rotation in the order of the file \
+               (static)",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
