@@ -91,6 +91,12 @@ pub fn back_to_front(scene: &SceneGpu, view: &View) -> Vec<DrawCall> {
     calls
 }
 
+/// The same, each side for itself: of what is closed, the wall behind comes before the one in front.
+pub fn sides_back_to_front(scene: &SceneGpu, view: &View) -> Vec<DrawCall> {
+    let apart = |call: DrawCall| call.sides.apart().iter().map(move |sides| DrawCall { sides: *sides, ..call });
+    back_to_front(scene, view).into_iter().flat_map(apart).collect()
+}
+
 /// Sorts BLEND draws as they are drawn, by `center_ws`, the middle of a draw's box; equally far ones stay in their order.
 pub fn sort_farthest_first<T>(draws: &mut [T], view: &View, center_ws: impl Fn(&T) -> Vec3) {
     let distance = |draw: &T| center_ws(draw).distance_squared(view.eye());
@@ -157,7 +163,7 @@ impl Blend {
             index_count: 3 * piece.triangles.len() as u32,
             ..call
         };
-        let (calls, lights): (Vec<DrawCall>, Vec<ObjectLights>) = back_to_front(scene, view)
+        let (calls, lights): (Vec<DrawCall>, Vec<ObjectLights>) = sides_back_to_front(scene, view)
             .into_iter()
             .flat_map(|call| {
                 target.pieces[call.draw as usize].iter().map(move |piece| (of_piece(call, piece), piece.lights))

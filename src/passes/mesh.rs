@@ -6,7 +6,7 @@ use crate::gpu::pipeline::{GraphicsPipeline, VertexBuffer};
 use crate::gpu::shader::passes::mesh::VERT_VARIANTS;
 use crate::gpu::shader::{Shader, variant};
 use crate::gpu::{Bound, Buffer, Commands};
-use crate::resident::{DrawCall, DrawList, ExtendedAttributes, SceneGpu, VertexAttributes};
+use crate::resident::{DrawCall, DrawList, ExtendedAttributes, SceneGpu, Sides, VertexAttributes};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -68,7 +68,7 @@ fn stream_bytes<'a>(streams: &[VertexBuffer], calls: impl IntoIterator<Item = &'
 
 /// Bytes that a pass over `calls` reads of the scene.
 pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a DrawCall>) -> u64 {
-    stream_bytes(&vertex_buffers(scene), calls)
+    stream_bytes(vertex_buffers(scene), calls)
 }
 
 /// Bytes that a pass reads which writes depth alone: positions of what has no holes.
@@ -115,7 +115,7 @@ pub fn draw_each<'a>(
     calls: impl IntoIterator<Item = &'a DrawCall>,
     mut before: impl FnMut(&DrawCall),
 ) {
-    for_each(cmd, pipeline, scene, Sides::AsDrawn, calls, |call| {
+    for_each(cmd, pipeline, scene, None, calls, |call| {
         before(call);
         let DrawCall { index_count, first_index, vertex_offset, draw, .. } = *call;
         // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
@@ -125,34 +125,28 @@ pub fn draw_each<'a>(
     });
 }
 
-/// Which sides of triangles are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sides {
-    /// Fronts, and backs of what is double-sided.
-    AsDrawn,
-    Both,
-}
-
-/// Sets sides, winding and material where they change, and lets `draw` draw each call.
+/// Sets sides, winding and material where they change, and lets `draw` draw each call. `sides`: those of every call, if not its
+/// own.
 pub fn for_each<'a>(
     cmd: &Commands,
     pipeline: &GraphicsPipeline,
     scene: &SceneGpu,
-    sides: Sides,
+    sides: Option<Sides>,
     calls: impl IntoIterator<Item = &'a DrawCall>,
     mut draw: impl FnMut(&DrawCall),
 ) {
     let device = &cmd.gpu().device;
     let buffer = cmd.buffer();
-    let mut state: Option<(bool, bool)> = None;
+    let mut state: Option<(Sides, bool)> = None;
     let mut material = None;
     for call in calls {
-        if state != Some((call.double_sided, call.mirrored)) {
-            state = Some((call.double_sided, call.mirrored));
-            let cull = if call.double_sided || sides == Sides::Both {
-                vk::CullModeFlags::NONE
-            } else {
-                vk::CullModeFlags::BACK
+        let sides = sides.unwrap_or(call.sides);
+        if state != Some((sides, call.mirrored)) {
+            state = Some((sides, call.mirrored));
+            let cull = match sides {
+                Sides::Fronts => vk::CullModeFlags::BACK,
+                Sides::Backs => vk::CullModeFlags::FRONT,
+                Sides::Both => vk::CullModeFlags::NONE,
             };
             // glTF's front faces are counter-clockwise; y is turned in clip space, so they arrive as such.
             let front = if call.mirrored { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE };

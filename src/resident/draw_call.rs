@@ -1,6 +1,6 @@
 //! Draws of a scene and the attributes of their vertices, as they lie in device memory.
 
-use crate::scene::AlphaMode;
+use crate::scene::{AlphaMode, Material};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use std::ops::Range;
@@ -23,6 +23,30 @@ pub struct ExtendedAttributes {
     pub uv_1: [f32; 2],
 }
 
+/// Which sides of a draw's triangles are drawn; they sort in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sides {
+    Fronts,
+    Backs,
+    Both,
+}
+
+impl Sides {
+    /// What is seen of a material.
+    pub fn of(material: &Material) -> Self {
+        if material.double_sided { Self::Both } else { Self::Fronts }
+    }
+
+    /// Each side for itself, backs first: of a closed shape they are what is farther away.
+    pub fn apart(self) -> &'static [Self] {
+        match self {
+            Self::Fronts => &[Self::Fronts],
+            Self::Backs => &[Self::Backs],
+            Self::Both => &[Self::Backs, Self::Fronts],
+        }
+    }
+}
+
 /// One draw call.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawCall {
@@ -36,7 +60,7 @@ pub struct DrawCall {
     pub cluster_count: u32,
     pub vertex_offset: i32,
     pub alpha: AlphaMode,
-    pub double_sided: bool,
+    pub sides: Sides,
     /// The transform mirrors: front faces are clockwise.
     pub mirrored: bool,
     /// Middle of its box, world space: what BLEND draws are sorted by.

@@ -2,7 +2,7 @@
 //! over them.
 
 use super::clusters::{Cluster, grouped};
-use super::{DrawCall, ExtendedAttributes, VertexAttributes};
+use super::{DrawCall, ExtendedAttributes, Sides, VertexAttributes};
 use crate::scene::{AlphaMode, Bounds, Mesh, Scene};
 use glam::{Vec3, Vec4};
 use std::ops::Range;
@@ -78,7 +78,7 @@ impl Geometry {
                 cluster_count: start.clusters.len() as u32,
                 vertex_offset: start.vertex as i32,
                 alpha: material.alpha,
-                double_sided: material.double_sided,
+                sides: Sides::of(material),
                 mirrored: draw.world_from_object.determinant() < 0.0,
                 center_ws: draw.world_from_object.transform_point3(boxes[draw.mesh].center()),
             }

@@ -35,7 +35,7 @@ use crate::plan::{Resources, Sharing};
 use crate::scene::{AlphaMode, Material, Scene, object_ids};
 use ash::vk;
 use bytemuck::Zeroable;
-pub use draw_call::{DrawCall, ExtendedAttributes, VertexAttributes};
+pub use draw_call::{DrawCall, ExtendedAttributes, Sides, VertexAttributes};
 use glam::Vec3;
 pub use stats::SceneStats;
 use std::sync::Arc;
@@ -191,7 +191,7 @@ fn sort(calls: &mut [DrawCall]) {
             AlphaMode::Mask { .. } => 1,
             AlphaMode::Blend => 2,
         };
-        (alpha, call.double_sided, call.mirrored, call.material, call.draw)
+        (alpha, call.sides, call.mirrored, call.material, call.draw)
     });
 }
 

@@ -12,7 +12,7 @@
 //! same order, in which what was left out has no say: the same bits on every device.
 
 use super::raster::{Coverage, Raster};
-use super::{Cluster, ClusteredCalls, DrawCall, SceneGpu};
+use super::{Cluster, ClusteredCalls, DrawCall, SceneGpu, Sides};
 use crate::frame::View;
 use crate::scene::{AlphaMode, Bounds, Projection, Scene};
 use crate::settings::GeometryChoice;
@@ -42,7 +42,7 @@ impl DrawList {
     /// What casts shadows into a map that is drawn from `view`: both sides of every triangle, as shadow rays meet both. `scene`:
     /// as its draws stand in the map.
     pub fn of_casters(scene: &Scene, resident: &SceneGpu, view: &View, choice: GeometryChoice) -> Self {
-        let both_sides = |call: &DrawCall| DrawCall { double_sided: true, ..*call };
+        let both_sides = |call: &DrawCall| DrawCall { sides: Sides::Both, ..*call };
         let calls: Vec<DrawCall> = resident.calls.iter().map(both_sides).collect();
         let raster = Raster { extent: view.extent, coverage: Coverage::Middle };
         Self::of(scene, &resident.clustered(&calls), view, raster, choice)
@@ -101,7 +101,7 @@ impl DrawList {
 /// A view of one draw.
 struct DrawView<'a> {
     positions: &'a [Vec3],
-    double_sided: bool,
+    sides: Sides,
     mirrored: bool,
     coverage: Coverage,
     extent_px: DVec2,
@@ -151,7 +151,7 @@ impl<'a> DrawView<'a> {
         };
         Self {
             positions: &scene.meshes[draw.mesh].positions,
-            double_sided: call.double_sided,
+            sides: call.sides,
             mirrored: call.mirrored,
             coverage: raster.coverage,
             extent_px: DVec2::new(f64::from(raster.extent.width), f64::from(raster.extent.height)),
@@ -183,7 +183,7 @@ impl<'a> DrawView<'a> {
         if outside_one_plane(&corners) {
             return true;
         }
-        if self.double_sided {
+        if self.sides != Sides::Fronts {
             return false;
         }
         // No point of the box has a greater one than the worst corner.
@@ -372,7 +372,7 @@ mod tests {
                 for corners in geometry.indices[cluster.indices()].chunks_exact(3).filter(|_| !drawn) {
                     let draw = &scene.draws[call.draw as usize];
                     let triangle = [0, 1, 2].map(|at| scene.meshes[draw.mesh].positions[corners[at] as usize]);
-                    let made = makes_a_fragment(view, draw, triangle, call.double_sided, &places);
+                    let made = makes_a_fragment(view, draw, triangle, call.sides == Sides::Both, &places);
                     assert!(!made, "{triangle:?} in {view:?}");
                 }
             }

@@ -63,6 +63,46 @@ fn a_pane_has_the_lamps_that_reach_it() {
     }
 }
 
+/// A shape of one draw that is closed but for its rim: a wall that faces the eye, 1 m from a lamp, and 1 m behind it one that
+/// faces away. The nearer one's triangles come first in the mesh.
+fn two_walls() -> Scene {
+    let mut scene = square(matt(Vec4::new(1.0, 1.0, 1.0, 0.5)));
+    scene.materials[0].alpha = AlphaMode::Blend;
+    scene.materials[0].double_sided = true;
+    let mesh = &mut scene.meshes[0];
+    let behind: Vec<Vec3> = mesh.positions.iter().map(|at| *at - Vec3::Z).collect();
+    mesh.positions.extend(behind);
+    mesh.normals.extend(mesh.normals.clone().iter().map(|normal| -*normal));
+    mesh.uvs.extend_from_within(..);
+    let turned: Vec<u32> = mesh.indices.iter().rev().map(|vertex| vertex + 4).collect();
+    mesh.indices.extend(turned);
+    scene.lights = vec![Light {
+        name: String::new(),
+        kind: LightKind::Point,
+        intensity: Vec3::ONE,
+        position: Vec3::Z,
+        direction: Vec3::NEG_Y,
+        range: None,
+        radius: 0.0,
+    }];
+    let projection = Projection::Orthographic { x_mag: 0.4, y_mag: 0.4, z_near: 0.1, z_far: 9.0 };
+    let world_from_view = Mat4::from_translation(2.0 * Vec3::Z);
+    scene.cameras = vec![Camera { name: String::new(), world_from_view, projection }];
+    scene
+}
+
+#[test]
+fn the_far_wall_of_a_closed_shape_is_behind_the_near_one() {
+    let watched = Watched::with_scene(two_walls());
+    let common = [("size", "41x41"), ("brdf", "lambert"), ("rig", "none"), ("light-cutoff", "0")];
+    for technique in TECHNIQUES.into_iter().chain(["inferred_lighting"]) {
+        // 1 cd at 1 m and at 2 m, head-on, on white; half of it over half of the other.
+        let expected = (0.5 + 0.25 / 4.0) / std::f32::consts::PI;
+        let found = Vec3::from_array(watched.picture(technique, &common).pixels[20 * 41 + 20]);
+        assert!((found / expected - 1.0).abs().max_element() < 0.02, "{technique}: {found} for {expected}");
+    }
+}
+
 #[test]
 fn lists_change_no_pixel_of_what_blends() {
     let watched = Watched::open("hall:triangles=8000");

@@ -9,7 +9,7 @@ use crate::scene::{Bounds, Mesh};
 use glam::Vec3;
 
 /// Parts of a primitive at most; where more hang together, neighbours are one.
-const MOST_PARTS: usize = 64;
+const MOST_PARTS: usize = 256;
 
 /// The parts of `mesh` whose triangles touch in a vertex's place, in the order of their first triangles.
 pub fn split(mesh: Mesh) -> Vec<Mesh> {
@@ -139,8 +139,8 @@ mod tests {
         for part in &parts {
             let mut bounds = Bounds::EMPTY;
             part.positions.iter().for_each(|position| bounds.include(*position));
-            // 15 or 16 squares of a field that is 20 by 200.
-            assert!(bounds.diagonal() < 30.0, "{bounds:?}");
+            // 3 or 4 squares of a field that is 20 by 200.
+            assert!(bounds.diagonal() < 15.0, "{bounds:?}");
         }
     }
 

@@ -5,7 +5,7 @@ use crate::frame::View;
 use crate::gpu::shader::structs::DrawnParams;
 use crate::gpu::shader::techniques::deep_shading::scene_buffers::{DRAWN_BLENDED, DRAWN_DOUBLE_SIDED, DRAWN_MIRRORED};
 use crate::passes::blend;
-use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu};
+use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu, Sides};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::GeometryChoice;
 use bytemuck::Zeroable;
@@ -78,7 +78,7 @@ impl Primitives {
         if call.alpha == AlphaMode::Blend {
             flags |= DRAWN_BLENDED;
         }
-        if call.double_sided {
+        if call.sides == Sides::Both {
             flags |= DRAWN_DOUBLE_SIDED;
         }
         DrawnParams {

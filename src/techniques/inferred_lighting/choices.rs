@@ -24,9 +24,9 @@ use std::collections::BTreeMap;
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
 /// Part of the screen on which BLEND draws may share layers of a 2x2 stipple before --stipple auto takes 4x4. `fence` with 0.09
-/// and 0.15 is better with 4x4 (FLIP 0.066 to 0.062, 0.058 to 0.039), with 0.02 the same; maps of games with up to 0.02 are
+/// and 0.15 is better with 4x4 (FLIP 0.066 to 0.062, 0.058 to 0.039), with 0.02 the same; maps of games with up to 0.057 are
 /// better with 2x2.
-const MOST_SHARED_SCREEN: f64 = 0.05;
+const MOST_SHARED_SCREEN: f64 = 0.07;
 
 choices! {
     /// How texels of one surface are distinguished from those of another (`--light-filter`); the number is

@@ -2,6 +2,7 @@
 //! section 7.1, leaves open what layers are to be given by; this is what they are given by here. 528 bytes a draw, and 16 a
 //! vertex of a mesh meanwhile.
 
+use crate::resident::Sides;
 use crate::scene::{Draw, Mesh};
 use glam::{Mat3, Mat4, Vec2, Vec4};
 use std::ops::RangeInclusive;
@@ -22,8 +23,8 @@ pub struct Footprint {
 impl Footprint {
     const EMPTY: Self = Self { rows: [0; SIDE_CELLS], spread: [SIDE_CELLS, 0] };
 
-    /// That of `mesh`, which is the one drawn. `is_two_sided`: the material's back is seen too.
-    pub fn of(draw: &Draw, mesh: &Mesh, is_two_sided: bool, clip_from_world: Mat4) -> Self {
+    /// That of `mesh`, which is the one drawn.
+    pub fn of(draw: &Draw, mesh: &Mesh, sides: Sides, clip_from_world: Mat4) -> Self {
         let clip_from_object = clip_from_world * draw.world_from_object;
         let is_mirrored = draw.world_from_object.determinant() < 0.0;
         let places: Vec<Vec4> = mesh.positions.iter().map(|position| clip_from_object * position.extend(1.0)).collect();
@@ -33,7 +34,12 @@ impl Footprint {
             // y runs down in clip space, so that what runs left seen from the front runs right there.
             let turn = Mat3::from_cols_array_2d(&corners.map(|at| [at.x, at.y, at.w])).determinant();
             let is_front = if is_mirrored { turn > 0.0 } else { turn < 0.0 };
-            if is_two_sided || is_front {
+            let is_drawn = match sides {
+                Sides::Fronts => is_front,
+                Sides::Backs => !is_front,
+                Sides::Both => true,
+            };
+            if is_drawn {
                 footprint.include(&beyond_near_plane(&corners));
             }
         }
@@ -176,18 +182,21 @@ pub mod tests {
         let orthographic =
             clip_from_world(Projection::Orthographic { x_mag: 2.0, y_mag: 2.0, z_near: 0.1, z_far: 9.0 });
         for clip in [perspective(), orthographic] {
-            for (draw, mesh, is_two_sided, is_seen) in [
-                (STILL, &front, false, true),
-                (STILL, &back, false, false),
-                (STILL, &back, true, true),
-                (at(mirror), &front, false, true),
-                (at(mirror), &back, false, false),
-                (at(Mat4::from_translation(Vec3::Z * 6.0)), &front, true, false),
-                (at(Mat4::from_translation(Vec3::X * 60.0)), &front, true, false),
-                (at(Mat4::from_translation(Vec3::Y * -60.0)), &front, true, false),
+            for (draw, mesh, sides, is_seen) in [
+                (STILL, &front, Sides::Fronts, true),
+                (STILL, &front, Sides::Backs, false),
+                (STILL, &back, Sides::Fronts, false),
+                (STILL, &back, Sides::Backs, true),
+                (STILL, &back, Sides::Both, true),
+                (at(mirror), &front, Sides::Fronts, true),
+                (at(mirror), &front, Sides::Backs, false),
+                (at(mirror), &back, Sides::Fronts, false),
+                (at(Mat4::from_translation(Vec3::Z * 6.0)), &front, Sides::Both, false),
+                (at(Mat4::from_translation(Vec3::X * 60.0)), &front, Sides::Both, false),
+                (at(Mat4::from_translation(Vec3::Y * -60.0)), &front, Sides::Both, false),
             ] {
-                let seen = !Footprint::of(&draw, mesh, is_two_sided, clip).is_empty();
-                assert_eq!(seen, is_seen, "{draw:?}, two sides {is_two_sided}");
+                let seen = !Footprint::of(&draw, mesh, sides, clip).is_empty();
+                assert_eq!(seen, is_seen, "{draw:?}, {sides:?}");
             }
         }
     }
@@ -201,7 +210,7 @@ pub mod tests {
         ) {
             let corners = [0, 3, 6].map(|at| vec3(numbers[at], numbers[at + 1], numbers[at + 2] - 2.0));
             let clip = perspective();
-            let found = Footprint::of(&STILL, &triangle(corners), true, clip);
+            let found = Footprint::of(&STILL, &triangle(corners), Sides::Both, clip);
             let sum: f32 = weights.iter().sum();
             let point: Vec3 = corners.iter().zip(weights).map(|(corner, weight)| *corner * (weight / sum)).sum();
             let at = clip * point.extend(1.0);

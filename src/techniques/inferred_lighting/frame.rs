@@ -84,12 +84,13 @@ impl InferredFrame {
             inputs.draw_list_into(scene, Raster { extent: light_extent, coverage: Coverage::Middle }),
             inputs.draw_list(scene, coverage),
         ];
-        let blended = blend::back_to_front(scene, inputs.view);
         let (stippled, shares) = if choices.tests_alpha {
+            let blended = blend::back_to_front(scene, inputs.view);
             lists.iter_mut().for_each(|list| list.mask.extend(blended.iter().copied()));
             (Vec::new(), Shares::default())
         } else {
-            stipple::assign(inputs.scene, inputs.view, blended, choices.stipple_rules())
+            let sides = blend::sides_back_to_front(scene, inputs.view);
+            stipple::assign(inputs.scene, inputs.view, sides, choices.stipple_rules())
         };
         let [low_list, list]: [DrawList; 2] = lists;
         let constants = choices.light_constants();

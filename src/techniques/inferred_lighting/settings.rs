@@ -211,8 +211,8 @@ pub const SETTINGS: &[Setting] = &[
         unit: "px",
         paper: "Kircher 2009, 4",
         help: "Texels at which BLEND surfaces are lit: one in four (2x2, which leaves 3 layers over the solid one) or \
-               one in sixteen (4x4, 15 layers). auto: 4x4 where with 2x2 they would share layers on more than a twentieth \
-               of the screen",
+               one in sixteen (4x4, 15 layers). auto: 4x4 where with 2x2 they would share layers on more than 0.07 of the \
+               screen",
         ..Setting::changing(Changes::Picture)
     },
     Setting {

@@ -2,7 +2,7 @@
 //!
 //! A stipple of side s has s * s layers; layer 0 is the solid surfaces' alone, the others are the BLEND surfaces'. Two that
 //! share a layer and overlap on screen fight for its texels: the nearer one gets them, the farther one is filtered from
-//! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
+//! whatever is there. What is drawn double-sided counts as two, its backs and its fronts: the walls of a closed shape overlap. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
 //! a greedy colouring, nearest first, of the graph of draws that overlap on screen, each in the layer with whose draws it
 //! shares the least area, and then moves of single draws while they help. Memory meanwhile: a footprint a draw (528 bytes),
 //! and for each of 4096 cells 4 bytes a layer: 48 or 240 KiB.
@@ -11,7 +11,7 @@ use super::assignment::Assignment;
 use super::footprint::{Footprint, SCREEN_CELLS};
 use crate::frame::View;
 use crate::passes::blend;
-use crate::resident::DrawCall;
+use crate::resident::{DrawCall, Sides};
 use crate::scene::{AlphaMode, Draw, Scene};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -60,46 +60,56 @@ pub struct Rules<'a> {
     pub layer_count: u32,
 }
 
-/// What `draws` get, farthest first: their layers, and where they are on the screen.
-fn given(scene: &Scene, view: &View, draws: &[u32], rules: Rules<'_>) -> (Vec<u32>, Vec<Footprint>, Shares) {
-    let clip_from_world = view.clip_from_world();
-    let footprint = |draw: &u32| {
-        let draw = &scene.draws[*draw as usize];
-        let mesh = &scene.meshes[draw.mesh];
-        Footprint::of(draw, mesh, scene.materials[mesh.material].double_sided, clip_from_world)
-    };
-    let footprints: Vec<Footprint> = draws.par_iter().map(footprint).collect();
-    let places: Vec<_> = match rules.assignment {
-        Assignment::Static => draws.iter().map(|draw| (*draw, rules.named_layers.get(draw).copied())).collect(),
-        _ => Vec::new(),
-    };
-    let layers = layers(&footprints, &places, rules.layer_count, rules.assignment);
-    let shares = Shares::of(&footprints, &layers, rules.layer_count);
-    (layers, footprints, shares)
+/// Sides of BLEND draws, farthest first: their layers, and where they are on the screen.
+struct Given {
+    footprints: Vec<Footprint>,
+    layers: Vec<u32>,
+    shares: Shares,
 }
 
-/// Layers for `calls`, which are sorted farthest first, as they are drawn.
+impl Given {
+    fn new(scene: &Scene, view: &View, draws: &[(u32, Sides)], rules: Rules<'_>) -> Self {
+        let clip_from_world = view.clip_from_world();
+        let footprint = |(draw, sides): &(u32, Sides)| {
+            let draw = &scene.draws[*draw as usize];
+            Footprint::of(draw, &scene.meshes[draw.mesh], *sides, clip_from_world)
+        };
+        let footprints: Vec<Footprint> = draws.par_iter().map(footprint).collect();
+        let draws: Vec<u32> = draws.iter().map(|(draw, _)| *draw).collect();
+        let layers = layers(&footprints, &draws, rules);
+        let shares = Shares::of(&footprints, &layers, rules.layer_count);
+        Self { footprints, layers, shares }
+    }
+}
+
+/// Layers for `calls`, which are sorted farthest first, as they are drawn, the sides of a draw one after the other.
 pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, rules: Rules<'_>) -> (Vec<StippledDraw>, Shares) {
-    let draws: Vec<u32> = calls.iter().map(|call| call.draw).collect();
-    let (layers, footprints, shares) = given(scene, view, &draws, rules);
-    let all = calls.into_iter().zip(layers).zip(&footprints);
+    let draws: Vec<(u32, Sides)> = calls.iter().map(|call| (call.draw, call.sides)).collect();
+    let given = Given::new(scene, view, &draws, rules);
+    let all = calls.into_iter().zip(given.layers).zip(&given.footprints);
     let stippled = |((call, layer), footprint): ((DrawCall, u32), &Footprint)| StippledDraw {
         call,
         layer,
         is_on_screen: !footprint.is_empty(),
     };
-    (all.map(stippled).collect(), shares)
+    (all.map(stippled).collect(), given.shares)
 }
 
 /// What BLEND draws would share by `rules`.
 pub fn shared(scene: &Scene, view: &View, rules: Rules<'_>) -> Shares {
-    let blends = |draw: &Draw| scene.materials[scene.meshes[draw.mesh].material].alpha == AlphaMode::Blend;
-    let place = |(index, draw): (usize, &Draw)| (draw.bounds(&scene.meshes[draw.mesh]).center(), index as u32);
-    let mut draws: Vec<(Vec3, u32)> =
-        scene.draws.iter().enumerate().filter(|(_, draw)| blends(draw)).map(place).collect();
-    blend::sort_farthest_first(&mut draws, view, |(center_ws, _)| *center_ws);
-    let draws: Vec<u32> = draws.into_iter().map(|(_, draw)| draw).collect();
-    given(scene, view, &draws, rules).2
+    let material = |draw: &Draw| &scene.materials[scene.meshes[draw.mesh].material];
+    let blends = |(_, draw): &(usize, &Draw)| material(draw).alpha == AlphaMode::Blend;
+    let place = |(index, draw): (usize, &Draw)| {
+        (draw.bounds(&scene.meshes[draw.mesh]).center(), index as u32, Sides::of(material(draw)))
+    };
+    let mut draws: Vec<(Vec3, u32, Sides)> = scene.draws.iter().enumerate().filter(blends).map(place).collect();
+    blend::sort_farthest_first(&mut draws, view, |(center_ws, ..)| *center_ws);
+    let apart = |(_, draw, sides): &(Vec3, u32, Sides)| {
+        let draw = *draw;
+        sides.apart().iter().map(move |sides| (draw, *sides))
+    };
+    let sides: Vec<(u32, Sides)> = draws.iter().flat_map(apart).collect();
+    Given::new(scene, view, &sides, rules).shares
 }
 
 /// How many draws of each layer reach into each cell of the screen.
@@ -164,27 +174,32 @@ impl Shares {
     }
 }
 
-/// A layer, 1 to `count`, for each draw, farthest first. `places`: of `Assignment::Static`, in the file, with the layer that the
-/// user says.
-fn layers(footprints: &[Footprint], places: &[(u32, Option<u32>)], count: u32, assignment: Assignment) -> Vec<u32> {
-    let mut layers = vec![0; footprints.len()];
-    match assignment {
+/// A layer, from 1, for each entry of `draws`, indices in the file, farthest first. A draw's sides are entries of their own, one
+/// after the other.
+fn layers(footprints: &[Footprint], draws: &[u32], rules: Rules<'_>) -> Vec<u32> {
+    let count = rules.layer_count;
+    let mut layers = vec![0; draws.len()];
+    match rules.assignment {
+        // The paper's layers are an object's, whichever of its sides is seen.
         Assignment::Static => {
+            let said = |draw: &u32| rules.named_layers.get(draw).copied();
             let mut free: Vec<u32> =
-                (1..=count).filter(|layer| places.iter().all(|(_, said)| *said != Some(*layer))).collect();
+                (1..=count).filter(|layer| draws.iter().all(|draw| said(draw) != Some(*layer))).collect();
             if free.is_empty() {
                 free.extend(1..=count);
             }
-            let mut order: Vec<usize> = (0..places.len()).collect();
-            order.sort_by_key(|index| places[*index].0);
-            let mut turns = free.iter().cycle();
-            for index in order {
-                let said = places[index].1;
-                layers[index] = said.unwrap_or_else(|| *turns.next().expect("a stipple has a layer for alpha"));
-            }
+            let in_file: BTreeSet<u32> = draws.iter().copied().collect();
+            let (named, others): (Vec<u32>, Vec<u32>) = in_file.into_iter().partition(|draw| said(draw).is_some());
+            let mut layer_of: BTreeMap<u32, u32> = others.into_iter().zip(free.iter().copied().cycle()).collect();
+            layer_of.extend(named.iter().filter_map(|draw| said(draw).map(|layer| (*draw, layer))));
+            layers.iter_mut().zip(draws).for_each(|(layer, draw)| *layer = layer_of[draw]);
         }
         Assignment::Depth => {
-            layers.iter_mut().rev().enumerate().for_each(|(turn, layer)| *layer = 1 + turn as u32 % count);
+            let mut turn = 0;
+            for index in (0..draws.len()).rev() {
+                layers[index] = 1 + turn % count;
+                turn += u32::from(index == 0 || draws[index - 1] != draws[index]);
+            }
         }
         Assignment::Overlap => {
             let mut occupancy = Occupancy::new(count);
@@ -217,8 +232,21 @@ mod tests {
     use crate::techniques::inferred_lighting::footprint::tests::{rectangle, shared_cells};
     use proptest::prelude::*;
 
+    /// Layers of these draws, some of which are said.
+    fn given(
+        footprints: &[Footprint],
+        draws: &[u32],
+        said: &[(u32, u32)],
+        layer_count: u32,
+        assignment: Assignment,
+    ) -> Vec<u32> {
+        let named_layers = &said.iter().copied().collect();
+        layers(footprints, draws, Rules { assignment, named_layers, layer_count })
+    }
+
     fn assigned(footprints: &[Footprint], count: u32, assignment: Assignment) -> (Vec<u32>, Shares) {
-        let layers = layers(footprints, &[], count, assignment);
+        let draws: Vec<u32> = (0..footprints.len() as u32).collect();
+        let layers = given(footprints, &draws, &[], count, assignment);
         let shares = Shares::of(footprints, &layers, count);
         (layers, shares)
     }
@@ -226,12 +254,16 @@ mod tests {
     #[test]
     fn turns_run_from_the_nearest_or_in_the_order_of_the_file() {
         let four = [(); 4].map(|()| rectangle(0, 0, 32, 32));
-        assert_eq!(layers(&four, &[], 3, Assignment::Depth), [1, 3, 2, 1]);
-        assert_eq!(layers(&four, &[7, 2, 9, 4].map(|place| (place, None)), 3, Assignment::Static), [3, 1, 1, 2]);
-        let said = [(7, None), (2, Some(3)), (9, None), (4, None)];
-        assert_eq!(layers(&four, &said, 3, Assignment::Static), [2, 3, 1, 1], "3 is taken, 1 and 2 go by turns");
-        let all = [(7, Some(1)), (2, Some(3)), (9, Some(2)), (4, None)];
-        assert_eq!(layers(&four, &all, 3, Assignment::Static), [1, 3, 2, 1], "none is free");
+        let file = [7, 2, 9, 4];
+        assert_eq!(given(&four, &file, &[], 3, Assignment::Depth), [1, 3, 2, 1]);
+        let sides = [7, 2, 2, 4];
+        assert_eq!(given(&four, &sides, &[], 3, Assignment::Depth), [3, 2, 2, 1], "two sides have one turn");
+        assert_eq!(given(&four, &file, &[], 3, Assignment::Static), [3, 1, 1, 2]);
+        assert_eq!(given(&four, &sides, &[], 3, Assignment::Static), [3, 1, 1, 2]);
+        let said = given(&four, &file, &[(2, 3)], 3, Assignment::Static);
+        assert_eq!(said, [2, 3, 1, 1], "3 is taken, 1 and 2 go by turns");
+        let said = given(&four, &file, &[(7, 1), (2, 3), (9, 2)], 3, Assignment::Static);
+        assert_eq!(said, [1, 3, 2, 1], "none is free");
     }
 
     /// Two piles side by side: turns by depth make neighbours share where colouring needs two layers.

@@ -22,14 +22,13 @@
 use super::super::choices::Choices;
 use crate::gpu::shader::techniques::deep_shading::baseline::msaa::{FRAG_VARIANTS, VERT};
 use crate::gpu::shader::{Shader, variant};
-use crate::passes::mesh::Sides;
 use crate::passes::{mesh, shadow_maps};
-use crate::resident::SceneGpu;
+use crate::resident::{SceneGpu, Sides};
 use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
 pub(super) fn stages() -> SampleStages {
     // The shader tells sides apart: what is drawn has none.
-    SampleStages { vertex: &VERT, geometry: None, sides: Sides::Both, vertex_count: 3 }
+    SampleStages { vertex: &VERT, geometry: None, sides: Some(Sides::Both), vertex_count: 3 }
 }
 
 /// `alpha`: the value of the shader's axis.

@@ -16,9 +16,9 @@ use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
-use crate::passes::mesh::{self, Sides};
+use crate::passes::mesh;
 use crate::passes::shadow_maps;
-use crate::resident::SceneGpu;
+use crate::resident::{SceneGpu, Sides};
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::resources::full;
@@ -113,7 +113,7 @@ impl Shade {
             };
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), set);
             // A triangle whose back faces the middle of the lens may show its front to the rim.
-            mesh::for_each(cmd, &self.pipeline, scene, Sides::Both, list.calls(), |call| {
+            mesh::for_each(cmd, &self.pipeline, scene, Some(Sides::Both), list.calls(), |call| {
                 cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&primitives.params(scene, call)));
                 let of = |indices: u32| indices / 3 * self.stages.vertex_count;
                 let (count, first) = (of(call.index_count), of(call.first_index));

@@ -4,8 +4,8 @@ use crate::gpu::Commands;
 use crate::gpu::pipeline::GraphicsPipeline;
 use crate::gpu::shader::techniques::deep_shading::visibility::sample::VERT_VARIANTS;
 use crate::gpu::shader::{Shader, variant};
-use crate::passes::mesh::{self, Sides};
-use crate::resident::{DrawCall, SceneGpu};
+use crate::passes::mesh;
+use crate::resident::{DrawCall, SceneGpu, Sides};
 use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::primitives;
 use std::ops::Range;
@@ -30,7 +30,7 @@ impl Repeats {
 pub struct SampleStages {
     pub vertex: &'static Shader,
     pub geometry: Option<&'static Shader>,
-    pub sides: Sides,
+    pub sides: Option<Sides>,
     /// Vertices of a triangle.
     pub vertex_count: u32,
 }
@@ -38,7 +38,7 @@ pub struct SampleStages {
 impl SampleStages {
     /// Stages that draw triangles as one tuple sees them.
     pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
-        Self { vertex, geometry, sides: Sides::AsDrawn, vertex_count: 3 }
+        Self { vertex, geometry, sides: None, vertex_count: 3 }
     }
 
     /// How many vertices a call has, and the first.
@@ -73,7 +73,7 @@ pub fn draw<'a>(
 pub fn draw_by<'a>(
     cmd: &Commands,
     pipeline: &GraphicsPipeline,
-    sides: Sides,
+    sides: Option<Sides>,
     inputs: DrawInputs<'_>,
     calls: impl IntoIterator<Item = &'a DrawCall>,
     repeats: &Repeats,

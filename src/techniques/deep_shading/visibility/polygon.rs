@@ -3,7 +3,7 @@
 
 use crate::gpu::shader::techniques::deep_shading::visibility::polygon::{GEOM_VARIANTS, VERT};
 use crate::gpu::shader::variant;
-use crate::passes::mesh::Sides;
+use crate::resident::Sides;
 use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
 /// `tests`: the value of the shader's axis.
@@ -12,7 +12,7 @@ pub(super) fn stages(tests: &str) -> SampleStages {
     SampleStages {
         vertex: &VERT,
         geometry: Some(variant(GEOM_VARIANTS, &[tests])),
-        sides: Sides::Both,
+        sides: Some(Sides::Both),
         vertex_count: 3,
     }
 }

@@ -13,7 +13,7 @@ use super::polygon;
 use crate::gpu::shader::techniques::deep_shading::visibility::bound::{BOUND_MOST_SIDES, BOUND_STILL_SIDES};
 use crate::gpu::shader::techniques::deep_shading::visibility::stochastic::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::{Shader, variant};
-use crate::passes::mesh::Sides;
+use crate::resident::Sides;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
@@ -29,7 +29,7 @@ pub(super) fn stages(choices: &Choices, tests: &str) -> SampleStages {
         vertex: variant(VERT_VARIANTS, &[tests]),
         geometry: None,
         // The shader tells sides apart: polygons have none.
-        sides: Sides::Both,
+        sides: Some(Sides::Both),
         // A fan of triangles.
         vertex_count: 3 * (side_count - 2),
     }

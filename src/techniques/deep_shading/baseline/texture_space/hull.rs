@@ -8,8 +8,8 @@ use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::texture_space::hull::VERT;
 use crate::gpu::shader::techniques::deep_shading::hull::HULL_VERTICES;
 use crate::gpu::{Bound, Commands, Gpu};
-use crate::passes::mesh::{self, Sides};
-use crate::resident::{DrawList, SceneGpu};
+use crate::passes::mesh;
+use crate::resident::{DrawList, SceneGpu, Sides};
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::units::Extent;
@@ -73,7 +73,7 @@ impl Hulls {
         for (list, set) in draws.iter().zip(sets) {
             let Some(first) = list.calls().next() else { continue };
             cmd.bind_with_set(&self.pipeline, bytemuck::bytes_of(&primitives.params(scene, first)), *set);
-            mesh::for_each(cmd, &self.pipeline, scene, Sides::Both, list.calls(), |call| {
+            mesh::for_each(cmd, &self.pipeline, scene, Some(Sides::Both), list.calls(), |call| {
                 cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&primitives.params(scene, call)));
                 let [count, first] = [call.index_count, call.first_index].map(|indices| indices / 3 * HULL_VERTICES);
                 // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
