@@ -306,6 +306,9 @@ pub struct Features {
     /// False in caps files older than this field.
     #[serde(default)]
     pub depth_clamp: bool,
+    /// Occlusion queries count samples. False in caps files older than this field.
+    #[serde(default)]
+    pub occlusion_query_precise: bool,
     pub sampler_anisotropy: bool,
     pub storage_image_extended_formats: bool,
     pub shader_float16: bool,

@@ -97,6 +97,8 @@ abilities! {
     /// Corners are drawn where they are, within 1/256 pixel: depths are of the planes that shadow rays start off.
     FineCorners:
         "subPixelPrecisionBits of at least 8", "corners within 1/256 pixel", |caps| caps.limits.sub_pixel_bits >= 8;
+    /// The device counts the samples that a draw leaves.
+    PreciseOcclusion: "occlusionQueryPrecise", "exact occlusion queries", |caps| caps.features.occlusion_query_precise;
     /// The device counts what the stages of a pass do.
     PipelineStatistics: "pipelineStatisticsQuery", "pipeline statistics", |caps| caps.features.pipeline_statistics;
     /// The driver says how much of a heap is left.

@@ -14,6 +14,7 @@ pub mod device;
 pub mod failure;
 pub mod image;
 pub mod interface;
+pub mod occlusion;
 pub mod pipeline;
 mod pipeline_store;
 pub mod probe;

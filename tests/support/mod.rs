@@ -96,6 +96,8 @@ pub enum Feature {
     WideAtomics,
     /// The device counts what stages do.
     PipelineStatistics,
+    /// The device counts the samples of a draw.
+    PreciseOcclusion,
 }
 
 impl Feature {
@@ -107,6 +109,7 @@ impl Feature {
             Self::GeometryShader => caps.features.geometry_shader,
             Self::WideAtomics => caps.features.shader_int64_atomics,
             Self::PipelineStatistics => caps.features.pipeline_statistics,
+            Self::PreciseOcclusion => caps.features.occlusion_query_precise,
         }
     }
 
@@ -117,7 +120,8 @@ impl Feature {
             | Self::ExactPositions
             | Self::GeometryShader
             | Self::WideAtomics
-            | Self::PipelineStatistics => true,
+            | Self::PipelineStatistics
+            | Self::PreciseOcclusion => true,
             Self::RayQuery => false,
         }
     }
@@ -133,6 +137,7 @@ impl Feature {
             Self::GeometryShader => "geometryShader".to_owned(),
             Self::WideAtomics => "shaderBufferInt64Atomics with shaderInt64".to_owned(),
             Self::PipelineStatistics => "pipelineStatisticsQuery".to_owned(),
+            Self::PreciseOcclusion => "occlusionQueryPrecise".to_owned(),
         }
     }
 }

@@ -198,7 +198,7 @@ impl Frame for InferredFrame {
             LightPass::Tiled(_) => counters.extend(self.lights.counters(gpu, self.geometry.extent())?),
             LightPass::Drawn { volumes, .. } => {
                 let all = self.geometry.extent().pixel_count() * u64::from(self.lights.light_count);
-                let evaluated = volumes.evaluations();
+                let evaluated = volumes.evaluations()?;
                 counters.insert("lights_counted_into_stencil", volumes.counted_lights() as f64);
                 counters.insert("light_evaluations", evaluated as f64);
                 counters.insert("light_evaluations_culled", (all - evaluated) as f64);

@@ -12,6 +12,7 @@ use super::material::{FilterSettings, Material, MaterialDraws};
 use super::motion::PreviousMoment;
 use super::stipple::{self, Shares};
 use super::survivors::Survivors;
+use crate::caps::Ability;
 use crate::error::Result;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::gpu::{Access, Buffer, Gpu, Image, upload};
@@ -103,6 +104,7 @@ impl InferredFrame {
                 casters,
                 least_counted_texels: choices.least_counted_texels,
                 l_buffer,
+                is_counted: choices.is_counted && Ability::PreciseOcclusion.is_there(&gpu.caps),
                 ambient,
             };
             LightVolumes::new(gpu, &settings, resources, lights, inputs.view, light_extent)

@@ -10,16 +10,16 @@ use crate::support::boxes::{edge, point_light};
 use crate::support::choices::{ways, words_but};
 use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
-use glam::vec3;
+use crate::support::{self, Feature};
+use glam::{Vec3, vec3};
 use quincunx::picture::{AovChannels, Picture};
 use quincunx::scene::{self, AlphaMode, Light, LightKind, Projection, Scene};
 use quincunx::units::Extent;
 
 const NAME: &str = "inferred_lighting";
 
-/// Light that falls on each pixel's place from everywhere, were every light straight above it: what a cosine that is off by one
-/// would be off by. Brightest channel; `depths_m`: linear.
-fn light_from_above(scene: &Scene, extent: Extent, depths_m: &[f32]) -> Vec<f32> {
+/// Where the surface of each pixel is, world space, by its `depths_m`: linear, row-major.
+fn places(scene: &Scene, extent: Extent, depths_m: &[f32]) -> Vec<Vec3> {
     let camera = &scene.cameras[0];
     let Projection::Perspective { y_fov, .. } = camera.projection else { panic!("an eye") };
     let half = [extent.width, extent.height].map(|side| side as f32 * 0.5);
@@ -27,14 +27,22 @@ fn light_from_above(scene: &Scene, extent: Extent, depths_m: &[f32]) -> Vec<f32>
     let of_pixel = |(pixel, depth): (usize, &f32)| {
         let [x, y] = [pixel as u32 % extent.width, pixel as u32 / extent.width].map(|at| at as f32 + 0.5);
         let along = vec3((x - half[0]) * tangent, (half[1] - y) * tangent, -1.0);
-        let place = camera.world_from_view.transform_point3(along * *depth);
+        camera.world_from_view.transform_point3(along * *depth)
+    };
+    depths_m.iter().enumerate().map(of_pixel).collect()
+}
+
+/// Light that falls on each pixel's place from everywhere, were every light straight above it: what a cosine that is off by one
+/// would be off by. Brightest channel; `depths_m`: linear.
+fn light_from_above(scene: &Scene, extent: Extent, depths_m: &[f32]) -> Vec<f32> {
+    let of_place = |place: Vec3| {
         let from = |light: &Light| match light.kind {
             LightKind::Directional => light.intensity.max_element(),
             _ => light.intensity.max_element() / light.position.distance_squared(place).max(1e-4),
         };
         scene.lights.iter().map(from).sum()
     };
-    depths_m.iter().enumerate().map(of_pixel).collect()
+    places(scene, extent, depths_m).into_iter().map(of_place).collect()
 }
 
 /// Without surfaces that either buffer cannot hold exactly: the G-buffer has 8 bits for what is metal, of which a step at 95 % is
@@ -123,10 +131,9 @@ fn every_method_of_the_lights_leaves_the_same_l_buffer() {
     }
 }
 
-/// The eye inside of a volume, volumes that cross the near plane and that reach beyond a far plane just behind the scene, and
-/// one behind the eye: the stencil leaves out what adds nothing, and nothing else.
-#[test]
-fn volumes_are_right_around_the_eye_and_beyond_the_far_plane() {
+/// Lights with the eye inside of their volume, with volumes that cross the near plane and that reach beyond a far plane just
+/// behind the scene, and one behind the eye.
+fn lights_around_the_eye() -> Scene {
     let mut scene = edge(300.0);
     let Projection::Perspective { z_far, .. } = &mut scene.cameras[0].projection else { panic!("edge has an eye") };
     *z_far = Some(6.5);
@@ -139,12 +146,57 @@ fn volumes_are_right_around_the_eye_and_beyond_the_far_plane() {
     ] {
         scene.lights.push(Light { range: Some(range), ..point_light(position, 40.0) });
     }
-    let watched = Watched::with_scene(scene);
+    scene
+}
+
+/// The stencil leaves out what adds nothing, and nothing else.
+#[test]
+fn volumes_are_right_around_the_eye_and_beyond_the_far_plane() {
+    let watched = Watched::with_scene(lights_around_the_eye());
     let changes = [("size", "160x120"), ("brdf", "blinn-phong"), ("light-cutoff", "0")];
     let first = watched.picture(NAME, &both(&changes, &[("volumes", "tiled")]));
     for volumes in words_but(NAME, "volumes", &["tiled"]).into_iter().chain(["auto"]) {
         let found = watched.picture(NAME, &both(&changes, &[("volumes", volumes)]));
         require_same(&watched.session.gpu, &found, &first, &volumes);
+    }
+}
+
+/// A light is evaluated at the texels of its rectangle, or at those whose surface lies in the icosahedron around its sphere,
+/// which lies between that sphere and one of 1.26 times the radius. A light without an end is evaluated everywhere.
+#[test]
+fn the_stencil_leaves_of_a_light_what_its_volume_holds() {
+    /// Corners' distance over faces'.
+    const OUTER: f32 = 1.902_113 / 1.511_522_6;
+    let watched = Watched::with_scene(lights_around_the_eye());
+    if !support::has(&watched.session.gpu.caps, Feature::PreciseOcclusion) {
+        return;
+    }
+    let extent = Extent::new(160, 120);
+    let changes = [("size", "160x120"), ("light-size", "160x120"), ("light-cutoff", "0")];
+    let evaluated = |volumes: &str| {
+        let renderer = watched.render_stages(NAME, &both(&changes, &[("volumes", volumes)]), &["geometry.dsf.depth"]);
+        let AovChannels::Y(depths_m) = renderer.aov("geometry.dsf.depth").unwrap().channels else { panic!() };
+        (renderer.measured_counters().unwrap()["light_evaluations"], depths_m)
+    };
+    let scene = &watched.session.scene;
+    let (everywhere, depths_m) = evaluated("quad");
+    let shown = scene.lights.len() - 1;
+    assert_eq!(everywhere, (shown as u64 * extent.pixel_count()) as f64, "but for the light behind the eye");
+    let places = places(scene, extent, &depths_m);
+    let within = |part: f32| -> usize {
+        let of_light = |light: &Light| match light.range {
+            Some(range) => places.iter().filter(|place| place.distance(light.position) < part * range).count(),
+            None => places.len(),
+        };
+        scene.lights.iter().map(of_light).sum()
+    };
+    let (least, most) = (within(0.999) as f64, within(1.002 * OUTER) as f64);
+    let (by_rectangles, _) = evaluated("scissor");
+    for volumes in ["stencil", "both"] {
+        let (found, _) = evaluated(volumes);
+        println!("{volumes}: {found} of {everywhere}, rectangles {by_rectangles}, spheres {least} to {most}");
+        assert!(least <= found && found <= most, "{volumes}: {found}, but {least} to {most} lie in the spheres");
+        assert!(found < by_rectangles, "{volumes}: {found} of {by_rectangles}");
     }
 }
 

@@ -15,6 +15,7 @@ use super::shadow_volumes::ShadowVolumes;
 use super::{LBuffer, Volumes};
 use crate::error::Result;
 use crate::frame::View;
+use crate::gpu::occlusion::Occlusion;
 use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline, StencilUse};
 use crate::gpu::shader::structs::{LightBlock, VolumesParams};
 use crate::gpu::shader::techniques::inferred_lighting::light::volumes::{FRAG_VARIANTS, VERT};
@@ -63,6 +64,8 @@ pub struct LightVolumes {
     shadows: Option<ShadowVolumes>,
     /// The lights that reach something on the screen, in their order.
     draws: Vec<LightDraw>,
+    /// Counts the texels of each.
+    occlusion: Option<Occlusion>,
     ambient: Vec3,
 }
 
@@ -77,6 +80,8 @@ pub struct VolumeSettings<'a> {
     /// `--volumes auto`: lights whose rectangle has fewer texels go without the stencil.
     pub least_counted_texels: u64,
     pub l_buffer: LBuffer,
+    /// Texels are counted that depth and stencil leave of a light: the device can.
+    pub is_counted: bool,
     /// Radiance.
     pub ambient: Vec3,
 }
@@ -145,14 +150,23 @@ impl LightVolumes {
             };
             Some(LightDraw { light, rectangle, mask })
         };
-        let draws = lights.iter().enumerate().filter_map(draw).collect();
+        let draws: Vec<LightDraw> = lights.iter().enumerate().filter_map(draw).collect();
+        let is_counted = settings.is_counted && !draws.is_empty();
+        let occlusion = is_counted.then(|| Occlusion::new(gpu, draws.len() as u32)).transpose()?;
         let plain = GraphicsPipeline::new(gpu, &light(None))?;
-        Ok(Self { plain, counted, shadows, draws, ambient: settings.ambient })
+        Ok(Self { plain, counted, shadows, draws, occlusion, ambient: settings.ambient })
     }
 
     /// Texels times lights that are drawn, whatever the stencil leaves of them.
-    pub fn evaluations(&self) -> u64 {
+    fn drawn_texels(&self) -> u64 {
         self.draws.iter().map(|draw| draw.rectangle.extent.pixel_count()).sum()
+    }
+
+    /// Those that the last frame evaluated; all that are drawn where the device counts none.
+    ///
+    /// Errors: the device is lost (exit code 4).
+    pub fn evaluations(&self) -> Result<u64> {
+        self.occlusion.as_ref().map_or_else(|| Ok(self.drawn_texels()), Occlusion::sum)
     }
 
     /// Lights whose volumes are counted.
@@ -173,8 +187,8 @@ impl LightVolumes {
         let bytes_of = |target: &Image| u64::from(crate::gpu::image::texel_bytes(target.description.format));
         let texel_bytes: u64 = targets.iter().map(bytes_of).sum();
         let traffic = Traffic {
-            read_bytes: self.evaluations() * (geometry.resource.lit_bytes() + texel_bytes),
-            written_bytes: self.evaluations() * texel_bytes,
+            read_bytes: self.drawn_texels() * (geometry.resource.lit_bytes() + texel_bytes),
+            written_bytes: self.drawn_texels() * texel_bytes,
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {
@@ -189,6 +203,9 @@ impl LightVolumes {
             let colors = targets.iter().zip([ambient, dark]).map(|(target, clear)| ColorTarget::new(target, clear));
             let colors: Vec<_> = colors.collect();
             let depth = has_stencil.then_some((&geometry.resource.depth, None, depth_access));
+            if let Some(occlusion) = &self.occlusion {
+                occlusion.reset(cmd.buffer());
+            }
             cmd.begin_rendering(extent, &colors, depth);
             let mut bound = geometry.resource.bound_with_depth(Access::FragmentSample, depth_access);
             bound.extend(lights.bound());
@@ -216,7 +233,7 @@ impl LightVolumes {
             None => None,
         };
         let shadow_sets = self.shadows.as_ref().map(|shadows| shadows.sets(cmd, bound, frame, lights)).transpose()?;
-        for LightDraw { light, rectangle, mask } in &self.draws {
+        for (index, LightDraw { light, rectangle, mask }) in self.draws.iter().enumerate() {
             let params = VolumesParams { light: *light };
             let params = bytemuck::bytes_of(&params);
             cmd.set_scissor(rectangle.corner_px, rectangle.extent);
@@ -233,7 +250,10 @@ impl LightVolumes {
                 }
                 _ => cmd.bind_with_set(&self.plain, params, plain_set),
             }
-            fullscreen::draw(cmd, 0);
+            match &self.occlusion {
+                Some(occlusion) => occlusion.count(cmd.buffer(), index as u32, || fullscreen::draw(cmd, 0)),
+                None => fullscreen::draw(cmd, 0),
+            }
         }
         Ok(())
     }
