@@ -335,6 +335,9 @@ pub struct Formats {
     /// R16G16_UNORM as colour attachment. False in caps files older than this field.
     #[serde(default)]
     pub fixed_pair_color: bool,
+    /// The same, blended. False in caps files older than this field.
+    #[serde(default)]
+    pub fixed_pair_blend: bool,
     /// R16G16B16A16_UNORM sampled. False in caps files older than this field.
     #[serde(default)]
     pub fixed_quad_sampled: bool,

@@ -56,6 +56,9 @@ abilities! {
         "R32G32B32A32_SFLOAT as blended colour attachment", "blending of floats", |caps| caps.formats.float_color_blend;
     /// Surfaces are drawn into pairs of 16-bit fractions.
     FixedPairs: "R16G16_UNORM as colour attachment", "drawn 16-bit fractions", |caps| caps.formats.fixed_pair_color;
+    /// The same, blended.
+    BlendFixedPairs:
+        "R16G16_UNORM as blended colour attachment", "blended 16-bit fractions", |caps| caps.formats.fixed_pair_blend;
     /// Shaders sample four 16-bit fractions a texel.
     FixedQuads:
         "R16G16B16A16_UNORM as sampled image", "sampled 16-bit fractions", |caps| caps.formats.fixed_quad_sampled;

@@ -24,8 +24,7 @@ pub struct GraphicsDescription<'a> {
     pub depth_compare: vk::CompareOp,
     /// Depth is clamped: what lies before the near plane or beyond the far one is drawn on it instead of being clipped.
     pub depth_clamp: bool,
-    /// Slope-scaled depth bias: added to depth, in multiples of its greatest change from a pixel to the next.
-    pub depth_slope_bias: f32,
+    pub depth_bias: DepthBias,
     /// Every pixel is drawn that a triangle touches whose edges lie this much farther out, pixels
     /// (VK_EXT_conservative_rasterization). None: every pixel whose middle it covers.
     pub conservative_margin_px: Option<f32>,
@@ -33,6 +32,19 @@ pub struct GraphicsDescription<'a> {
     pub stencil: Option<StencilUse>,
     /// Layouts of set 1 and above.
     pub foreign_sets: &'a [vk::DescriptorSetLayout],
+}
+
+/// What is added to depth, which is reversed: more is nearer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthBias {
+    /// In multiples of its greatest change from a pixel to the next.
+    pub slope: f32,
+    /// In steps of the float of the triangle's greatest depth.
+    pub steps: f32,
+}
+
+impl DepthBias {
+    pub const NONE: Self = Self { slope: 0.0, steps: 0.0 };
 }
 
 /// How fragments meet what is in the colour attachments, all of them alike.

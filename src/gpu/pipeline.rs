@@ -1,7 +1,7 @@
 //! Compute and graphics pipelines from the table's entries: their layouts come from the shaders and are not written by
 //! hand.
 
-pub use super::description::{Blending, Constants, GraphicsDescription, StencilUse, VertexBuffer};
+pub use super::description::{Blending, Constants, DepthBias, GraphicsDescription, StencilUse, VertexBuffer};
 
 use super::Gpu;
 use super::interface::Interface;
@@ -214,8 +214,9 @@ impl GraphicsPipeline {
         let mut raster = vk::PipelineRasterizationStateCreateInfo::default()
             .line_width(1.0)
             .depth_clamp_enable(description.depth_clamp)
-            .depth_bias_enable(description.depth_slope_bias != 0.0)
-            .depth_bias_slope_factor(description.depth_slope_bias);
+            .depth_bias_enable(description.depth_bias != DepthBias::NONE)
+            .depth_bias_slope_factor(description.depth_bias.slope)
+            .depth_bias_constant_factor(description.depth_bias.steps);
         if let Some(overestimate) = &mut overestimate {
             raster = raster.push_next(overestimate);
         }

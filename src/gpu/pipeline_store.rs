@@ -6,7 +6,7 @@
 //! A pipeline outlives the layout that it was made with (maintenance4); layouts that other renderers make of the same shaders
 //! are defined alike, and sets of the one fit the other.
 
-use super::description::{Blending, Constants, GraphicsDescription, StencilUse, VertexBuffer};
+use super::description::{Blending, Constants, DepthBias, GraphicsDescription, StencilUse, VertexBuffer};
 use super::shader::Shader;
 use crate::error::Result;
 use ash::vk;
@@ -33,8 +33,8 @@ struct Drawn {
     samples: u32,
     blending: Blending,
     depth: (Option<vk::Format>, bool, vk::CompareOp, bool),
-    /// Bits of `depth_slope_bias` and `conservative_margin_px`.
-    depth_slope_bias: u32,
+    /// Bits of `depth_bias` and `conservative_margin_px`.
+    depth_bias: [u32; 2],
     conservative_margin_px: Option<u32>,
     stencil: Option<StencilUse>,
     /// All of them are materials' (`resident`), which are defined alike in all scenes.
@@ -70,7 +70,7 @@ impl Recipe {
             depth_write,
             depth_compare,
             depth_clamp,
-            depth_slope_bias,
+            depth_bias: DepthBias { slope, steps },
             conservative_margin_px,
             stencil,
             foreign_sets,
@@ -82,7 +82,7 @@ impl Recipe {
             samples,
             blending,
             depth: (depth_format, depth_write, depth_compare, depth_clamp),
-            depth_slope_bias: depth_slope_bias.to_bits(),
+            depth_bias: [slope, steps].map(f32::to_bits),
             conservative_margin_px: conservative_margin_px.map(f32::to_bits),
             stencil,
             foreign_sets: foreign_sets.len(),

@@ -67,6 +67,7 @@ fn formats(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Formats {
         float_depth_with_stencil: has(vk::Format::D32_SFLOAT_S8_UINT, Flags::DEPTH_STENCIL_ATTACHMENT),
         float_color_blend: has(vk::Format::R32G32B32A32_SFLOAT, Flags::COLOR_ATTACHMENT_BLEND),
         fixed_pair_color: has(vk::Format::R16G16_UNORM, Flags::COLOR_ATTACHMENT),
+        fixed_pair_blend: has(vk::Format::R16G16_UNORM, Flags::COLOR_ATTACHMENT_BLEND),
         fixed_quad_sampled: has(vk::Format::R16G16B16A16_UNORM, Flags::SAMPLED_IMAGE),
         float_color_sample_counts: samples(vk::Format::R32G32B32A32_SFLOAT, color),
         half_color_sample_counts: samples(vk::Format::R16G16B16A16_SFLOAT, color),

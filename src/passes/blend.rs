@@ -16,7 +16,7 @@ use super::shadow_maps::{self, ShadowMaps};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::blend::FRAG_VARIANTS;
 use crate::gpu::shader::structs::{BlendParams, LightBlock};
 use crate::gpu::shader::variant;
@@ -30,6 +30,10 @@ use ash::vk;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use std::sync::Arc;
+
+/// How much nearer BLEND surfaces are drawn: a decal in the plane of what it lies on is seen whole, though corners are rounded
+/// to a 256th of a pixel or finer and depths of two triangles of one plane differ by some steps.
+pub const DECAL_BIAS: DepthBias = DepthBias { slope: 1.0 / 32.0, steps: 8.0 };
 
 /// What the fragment stage reads beside the scene.
 pub struct BlendLights<'a> {
@@ -187,7 +191,7 @@ impl Blend {
                 depth_write: false,
                 depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
                 depth_clamp: false,
-                depth_slope_bias: 0.0,
+                depth_bias: DECAL_BIAS,
                 conservative_margin_px: None,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],

@@ -7,7 +7,7 @@
 
 use super::mesh;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, Constants, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, Constants, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::depth_prepass::{FRAG_VARIANTS, VERT};
 use crate::gpu::shader::structs::DepthPrepassParams;
 use crate::gpu::shader::variant;
@@ -95,7 +95,7 @@ impl DepthPrepass {
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
-                    depth_slope_bias: 0.0,
+                    depth_bias: DepthBias::NONE,
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],

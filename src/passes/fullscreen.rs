@@ -2,7 +2,7 @@
 //! Shader: fullscreen.vert.
 
 use crate::gpu::Commands;
-use crate::gpu::pipeline::{Blending, GraphicsDescription};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription};
 use crate::gpu::shader::Shader;
 use ash::vk;
 
@@ -21,7 +21,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         depth_write: false,
         depth_compare: vk::CompareOp::ALWAYS,
         depth_clamp: false,
-        depth_slope_bias: 0.0,
+        depth_bias: DepthBias::NONE,
         conservative_margin_px: None,
         stencil: None,
         foreign_sets: &[],

@@ -13,7 +13,7 @@
 use super::{decode, mesh};
 use crate::caps::{Ability, Need};
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::gbuffer::FRAG_VARIANTS;
 use crate::gpu::shader::structs::GBufferParams;
@@ -301,7 +301,7 @@ impl GBufferPass {
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
-                    depth_slope_bias: 0.0,
+                    depth_bias: DepthBias::NONE,
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],

@@ -1,11 +1,12 @@
 //! What blends is lit from lists of its pieces: the picture of every light, of a technique with a G-buffer as of forward.
 
 use crate::support;
+use crate::support::boxes::{camera, rectangle};
 use crate::support::difference::require_same;
 use crate::support::square::{matt, square};
 use crate::support::watched::{Changes, Watched, both};
-use glam::{Mat4, Vec3, Vec4};
-use quincunx::scene::{AlphaMode, Camera, Light, LightKind, Projection, Scene};
+use glam::{Mat3, Mat4, Vec3, Vec4};
+use quincunx::scene::{AlphaMode, Camera, Light, LightKind, Material, Projection, Scene};
 
 const TECHNIQUES: [&str; 3] = ["deferred", "interleaved_deferred", "forward"];
 
@@ -130,5 +131,36 @@ fn lists_of_real_maps_are_short_and_change_no_pixel() {
         let (mean, lights) = (counters["blended_lights_per_piece"], counters["lights"]);
         println!("{map}: {counters:?}");
         assert!(mean < 0.2 * lights, "{map}: {mean} of {lights} lights a piece");
+    }
+}
+
+/// A wall that glows green and a decal in its plane, of other triangles, that glows red and lets nothing through; `tilt` of the
+/// plane towards the eye, radians.
+fn decal(tilt: f32, has_wall: bool) -> Scene {
+    let mut scene = Scene::default();
+    let turned = |along: Vec3| Mat3::from_rotation_x(-tilt) * Mat3::from_rotation_y(0.4) * along;
+    let glowing = |color: Vec3| Material { emissive: color, ..Material::diffuse("glowing", Vec3::ZERO) };
+    let middle = Vec3::new(0.1, -0.2, -6.0);
+    if has_wall {
+        rectangle(&mut scene, middle, 7.0 * turned(Vec3::X), 5.0 * turned(Vec3::Y), glowing(Vec3::Y));
+    }
+    let [u, v] = [Vec3::new(1.2, 0.7, 0.0), Vec3::new(-0.6, 1.1, 0.0)].map(turned);
+    let place = middle + 0.3 * u + 0.1 * v;
+    rectangle(&mut scene, place, u, v, Material { alpha: AlphaMode::Blend, ..glowing(Vec3::X) });
+    scene.cameras = vec![camera(Vec3::ZERO, Vec3::NEG_Z, 0.9)];
+    scene
+}
+
+#[test]
+fn a_decal_in_the_plane_of_a_wall_is_seen_whole() {
+    for tilt in [0.0, 0.3, 0.9, 1.35] {
+        let [alone, on_wall] = [false, true].map(|has_wall| Watched::with_scene(decal(tilt, has_wall)));
+        let common = [("size", "160x120"), ("rig", "none"), ("background", "0,0,0")];
+        for technique in TECHNIQUES.into_iter().chain(["inferred_lighting"]) {
+            let [alone, on_wall] = [&alone, &on_wall].map(|watched| watched.picture(technique, &common).pixels);
+            let seen: Vec<_> = alone.iter().zip(&on_wall).filter(|(alone, _)| alone[0] > 0.0).collect();
+            let lost = seen.iter().filter(|(alone, on_wall)| alone != on_wall).count();
+            assert!(seen.len() > 200 && lost == 0, "{technique}, tilt {tilt}: {lost} of {} pixels", seen.len());
+        }
     }
 }

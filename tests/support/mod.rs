@@ -98,6 +98,8 @@ pub enum Feature {
     PipelineStatistics,
     /// The device counts the samples of a draw.
     PreciseOcclusion,
+    /// Pairs of 16-bit fractions are blended.
+    BlendFixedPairs,
 }
 
 impl Feature {
@@ -110,6 +112,7 @@ impl Feature {
             Self::WideAtomics => caps.features.shader_int64_atomics,
             Self::PipelineStatistics => caps.features.pipeline_statistics,
             Self::PreciseOcclusion => caps.features.occlusion_query_precise,
+            Self::BlendFixedPairs => caps.formats.fixed_pair_blend,
         }
     }
 
@@ -121,7 +124,8 @@ impl Feature {
             | Self::GeometryShader
             | Self::WideAtomics
             | Self::PipelineStatistics
-            | Self::PreciseOcclusion => true,
+            | Self::PreciseOcclusion
+            | Self::BlendFixedPairs => true,
             Self::RayQuery => false,
         }
     }
@@ -138,6 +142,7 @@ impl Feature {
             Self::WideAtomics => "shaderBufferInt64Atomics with shaderInt64".to_owned(),
             Self::PipelineStatistics => "pipelineStatisticsQuery".to_owned(),
             Self::PreciseOcclusion => "occlusionQueryPrecise".to_owned(),
+            Self::BlendFixedPairs => "R16G16_UNORM as blended colour attachment".to_owned(),
         }
     }
 }

@@ -108,6 +108,11 @@ float depth_of_dsf(uint word, vec2 range_m) {
     return range_m.x + float((word & 0xffffu) - first_number()) * (range_m.y / float(depth_steps()));
 }
 
+// How far apart two depths of one surface may be, `threshold` a part of the depth: that, and two steps.
+float depth_slack_m(float depth_m, float threshold, vec2 range_m) {
+    return threshold * abs(depth_m) + 2.0 * range_m.y / float(depth_steps());
+}
+
 bool dsf_has_surface(uint word) {
     return (word & 0xffffu) != first_number() + depth_steps() + 1u;
 }

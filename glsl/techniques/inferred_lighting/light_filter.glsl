@@ -46,6 +46,8 @@ struct LightQuery {
     vec2 at;
     // The object's and the normal group's.
     uint id;
+    // Samples of any object are its, at its depth.
+    bool is_decal;
     float depth_m;
     // How far a sample's depth may be off, or its place off the tangent plane.
     float threshold_m;
@@ -106,7 +108,8 @@ float belonging_of(LightQuery query, ivec2 texel) {
 #ifdef GUIDE_NORMALS
     return alikeness(query, texel, depth_m);
 #else
-    return word >> 16 == query.id && abs(depth_m - query.depth_m) <= query.threshold_m ? 1.0 : 0.0;
+    bool is_same = query.is_decal || word >> 16 == query.id;
+    return is_same && abs(depth_m - query.depth_m) <= query.threshold_m ? 1.0 : 0.0;
 #endif
 }
 

@@ -18,7 +18,8 @@ struct InferredMaterialParams {
     // Texels of the light buffer a pixel.
     float light_scale_x;
     float light_scale_y;
-    // BLEND: side of the stipple, and which of its texels are the draw's, row-major; 1 and 0: every texel.
+    // BLEND: side of the stipple, and which of its texels are the draw's, row-major; 1 and 0: every texel; 0 and 0: the same, of
+    // whatever the decal lies on.
     uint stipple_side;
     uint stipple_layer;
 };
@@ -54,10 +55,15 @@ Lighting lighting_here(MaterialBlock material) {
     query.at = gl_FragCoord.xy * vec2(params.light_scale_x, params.light_scale_y);
     query.id = fixed_code(in_ids.y);
     query.depth_m = depth_m;
-    query.threshold_m = params.depth_threshold * abs(depth_m) + 2.0 * params.depth_range_m / float(depth_steps());
     query.range_m = vec2(params.first_depth_m, params.depth_range_m);
-    query.spacing = side;
-    query.offset = ivec2(int(params.stipple_layer) % side, int(params.stipple_layer) / side);
+    query.threshold_m = depth_slack_m(depth_m, params.depth_threshold, query.range_m);
+    query.spacing = max(side, 1);
+    query.offset = ivec2(int(params.stipple_layer) % query.spacing, int(params.stipple_layer) / query.spacing);
+#ifdef ALPHA_BLEND
+    query.is_decal = side == 0;
+#else
+    query.is_decal = false;
+#endif
 #ifdef GUIDE_NORMALS
     query.position_ws = in_position_ws;
     query.normal_ws = normal_at(material);

@@ -8,7 +8,7 @@
 
 use super::choices::ForwardChoices;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::forward::material::FRAG_VARIANTS;
 use crate::gpu::shader::structs::MaterialParams;
 use crate::gpu::shader::variant;
@@ -69,7 +69,7 @@ impl Material {
                     depth_write: !has_prepass,
                     depth_compare: depth_prepass::compare(has_prepass),
                     depth_clamp: false,
-                    depth_slope_bias: 0.0,
+                    depth_bias: DepthBias::NONE,
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],

@@ -31,7 +31,7 @@ use super::mesh;
 use crate::caps::{Ability, Need};
 use crate::error::Result;
 use crate::gpu::commands::Submits;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::passes::shadow_maps::{FRAG_VARIANTS, VERT_VARIANTS};
 use crate::gpu::shader::structs::ShadowMapsParams;
@@ -105,7 +105,7 @@ impl ShadowMaps {
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
                     // Depth is reversed: less is farther from the light.
-                    depth_slope_bias: -layout.slope_bias_px,
+                    depth_bias: DepthBias { slope: -layout.slope_bias_px, ..DepthBias::NONE },
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],

@@ -8,7 +8,7 @@ use super::pass_inputs::DrawInputs;
 use super::stray_draws::StrayDraws;
 use super::visibility;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
 use crate::gpu::{Access, Bound, Commands, Gpu};
 use crate::passes::mesh;
@@ -66,7 +66,7 @@ impl TriangleRedraw {
                 depth_write: false,
                 depth_compare: vk::CompareOp::EQUAL,
                 depth_clamp: false,
-                depth_slope_bias: 0.0,
+                depth_bias: DepthBias::NONE,
                 conservative_margin_px: None,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],

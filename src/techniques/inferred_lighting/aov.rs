@@ -141,7 +141,11 @@ impl Frame for InferredFrame {
         let geometry = &self.geometry;
         let [l_buffer] = &self.l_buffer;
         self.geometry_pass.record(cmd, &self.light_frame, scene, geometry)?;
-        let mut written = Access::DepthWrite;
+        let [mut written, mut keyed] = [Access::DepthWrite, Access::ColorWrite];
+        if let Some(decals) = &self.decals {
+            decals.record(cmd, &self.light_frame, scene, geometry)?;
+            [written, keyed] = [Access::DepthTest, Access::FragmentSample];
+        }
         if let (Some(cull), Some(masks)) = (&self.cull, &self.lights.masks) {
             let lights = CullLights { blocks: &self.lights.lights, count: self.lights.light_count };
             cull.record(cmd, geometry.from(written), &self.light_frame, lights, masks)?;
@@ -162,10 +166,7 @@ impl Frame for InferredFrame {
             }
         }
         let last = light::last_access(self.described);
-        let guides = FilterGuides {
-            dsf: geometry.dsf.from(Access::ColorWrite),
-            normals: geometry.normal.from(self.lit_access()),
-        };
+        let guides = FilterGuides { dsf: geometry.dsf.from(keyed), normals: geometry.normal.from(self.lit_access()) };
         self.material.record(cmd, frame, scene, geometry, guides, l_buffer.from(last))
     }
 

@@ -1,6 +1,6 @@
 //! The choices that the settings make, before there is a device: sizes, methods, the constants of the shaders.
 
-use super::encoding::Packing;
+use super::encoding::{Packing, PackingFormat};
 use super::layer_names;
 use super::light::Volumes;
 use super::light::store::{Fresnel, Highlight, Store, Sums};
@@ -19,7 +19,7 @@ use crate::techniques::inferred_lighting::assignment::{self, Assignment, Stipple
 use crate::techniques::inferred_lighting::light::LBuffer;
 use crate::units::Extent;
 use ash::vk;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The light buffer's default size, as a part of the frame's: 800x450 of 1280x720 (section 3, figure 3).
 const LIGHT_SCALE: f64 = 0.625;
@@ -107,6 +107,8 @@ pub struct Choices {
     assignment: Assignment,
     /// Layers that the user gives to draws, for `Assignment::Static`.
     named_layers: BTreeMap<u32, u32>,
+    /// BLEND draws whose normals are blended into those of what they lie on.
+    pub decals: BTreeSet<u32>,
     /// In texels; 0: bilinear.
     cone_radius: f32,
 }
@@ -142,10 +144,19 @@ impl Choices {
                     .note("--assignment static takes them"));
             }
         };
+        // Where alpha is tested, BLEND surfaces are solid.
+        let decals = values.text("decals");
+        let decals = layer_names::decals(inputs.scene, if tests_alpha { layer_names::NONE } else { decals })?;
+        let packing: PackingFormat = values.choice("packing");
+        if !decals.is_empty() && packing != PackingFormat::Fixed {
+            let (packing, why) = (packing.name(), "normals in words of bits cannot be blended");
+            return Err(Error::request(format!("--decals with --packing {packing}: {why}"))
+                .note("--packing fixed has a channel for each number"));
+        }
         let stipple_size = asked.unwrap_or_else(|| {
             let small = StippleSize::Two;
             let layer_count = assignment::layer_count(&small.stipple());
-            let rules = Rules { assignment, named_layers: &named_layers, layer_count };
+            let rules = Rules { assignment, named_layers: &named_layers, decals: &decals, layer_count };
             let has_room = || {
                 let names_fit = named_layers.values().all(|layer| *layer <= layer_count);
                 names_fit && stipple::shared(inputs.scene, inputs.view, rules).part_of_screen() <= MOST_SHARED_SCREEN
@@ -189,6 +200,7 @@ impl Choices {
             has_prepass: values.is_on("depth-prepass"),
             assignment,
             named_layers,
+            decals,
             cone_radius,
         })
     }
@@ -201,7 +213,7 @@ impl Choices {
     /// How BLEND draws get their layers.
     pub fn stipple_rules(&self) -> Rules<'_> {
         let layer_count = assignment::layer_count(&self.stipple);
-        Rules { assignment: self.assignment, named_layers: &self.named_layers, layer_count }
+        Rules { assignment: self.assignment, named_layers: &self.named_layers, decals: &self.decals, layer_count }
     }
 
     /// Texels of a side of the stipple.

@@ -2,6 +2,7 @@
 
 use super::choices::{Choices, LightFilter};
 use super::cull::Cull;
+use super::decals::Decals;
 use super::encoding::Packing;
 use super::geometry::{Geometry, LowGeometry};
 use super::light::pack::Pack;
@@ -10,7 +11,7 @@ use super::light::volumes::{LightVolumes, VolumeSettings};
 use super::light::{self, LBuffer, Volumes};
 use super::material::{FilterSettings, Material, MaterialDraws};
 use super::motion::PreviousMoment;
-use super::stipple::{self, Shares};
+use super::stipple::{self, Shares, StippledDraw};
 use super::survivors::Survivors;
 use crate::caps::Ability;
 use crate::error::Result;
@@ -20,7 +21,7 @@ use crate::lights::shadow_casters::ShadowCasters;
 use crate::passes::blend;
 use crate::passes::direct::DirectGpu;
 use crate::plan::Resources;
-use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
+use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu};
 use crate::techniques::Inputs;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
 use std::sync::Arc;
@@ -37,6 +38,7 @@ pub(super) enum LightPass {
 
 pub struct InferredFrame {
     pub(super) geometry_pass: Geometry,
+    pub(super) decals: Option<Decals>,
     pub(super) cull: Option<Cull>,
     pub(super) light_pass: LightPass,
     pub(super) material: Material,
@@ -135,11 +137,16 @@ impl InferredFrame {
         };
         let draws = MaterialDraws { solid: list, stippled: stippled.clone() };
         let material_constants = choices.material_constants();
+        let (decals, lit): (Vec<StippledDraw>, Vec<StippledDraw>) =
+            stippled.into_iter().partition(StippledDraw::is_decal);
+        let decals: Vec<DrawCall> = decals.into_iter().map(|decal| decal.call).collect();
+        let decals = (!decals.is_empty()).then(|| Decals::new(gpu, scene, decals, depth_range_m, choices));
         Ok(Self {
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, choices.shading.cull_by)).transpose()?,
             light_pass,
             geometry: LowGeometry::new(gpu, resources, choices)?,
-            geometry_pass: Geometry::new(gpu, scene, low_list, stippled, depth_range_m, choices, earlier)?,
+            geometry_pass: Geometry::new(gpu, scene, low_list, lit, depth_range_m, choices, earlier)?,
+            decals: decals.transpose()?,
             material: Material::new(gpu, resources, scene, draws, filter, &material_constants, background)?,
             l_buffer: [resources.image(&light::l_buffer())],
             described: l_buffer,

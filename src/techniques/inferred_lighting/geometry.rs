@@ -16,13 +16,13 @@ use super::encoding::Packing;
 use super::motion::{self, PreviousMoment};
 use super::stipple::StippledDraw;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::GeometryParams;
 use crate::gpu::shader::techniques::inferred_lighting::geometry::FRAG_VARIANTS;
 use crate::gpu::shader::{constants_of, variant};
 use crate::gpu::{Access, Barrier, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic};
-use crate::passes::mesh;
+use crate::passes::{blend, mesh};
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::inferred_lighting::resources::NAME;
@@ -34,7 +34,7 @@ use std::sync::Arc;
 const WORD: vk::Format = vk::Format::R32_UINT;
 
 /// Format that a word is drawn as.
-fn target_format(packing: Packing) -> vk::Format {
+pub fn target_format(packing: Packing) -> vk::Format {
     match packing {
         Packing::Words => WORD,
         Packing::Bytes => vk::Format::R8G8B8A8_UNORM,
@@ -73,6 +73,12 @@ pub fn written(choices: &Choices) -> Touches {
     let all = color_images(choices.has_extras).into_iter().chain(choices.has_motion.then_some("motion"));
     let images = all.map(|what| (full(what), Access::ColorWrite));
     images.chain([(full("depth"), Access::DepthWrite)]).collect()
+}
+
+/// What the pass of decals touches.
+pub fn marked() -> Touches {
+    let accesses = [("dsf", Access::FragmentSample), ("normal", Access::ColorWrite), ("depth", Access::DepthTest)];
+    accesses.map(|(what, access)| (full(what), access)).to_vec()
 }
 
 /// What a pass touches that lights its surfaces.
@@ -228,7 +234,7 @@ impl Geometry {
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
-                    depth_slope_bias: 0.0,
+                    depth_bias: if alpha == "blend" { blend::DECAL_BIAS } else { DepthBias::NONE },
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],

@@ -1,5 +1,5 @@
-//! Layers of the stipple that the user gives to BLEND surfaces: by `--stipple-layers`, or in the file. Kircher 2009, section 4:
-//! patterns are assigned statically, with user input.
+//! What the user says of BLEND surfaces by their names: layers of the stipple by `--stipple-layers`, or in the file (Kircher 2009,
+//! section 4: patterns are assigned statically, with user input), and which are decals by `--decals`.
 //!
 //! The flag is heard before the file, a node before a material.
 
@@ -11,7 +11,7 @@ use crate::scene::gltf::marks::STIPPLE_LAYER;
 use crate::scene::{AlphaMode, Material, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Value of `--stipple-layers` that names no draw.
+/// Value of `--stipple-layers` and `--decals` that names no draw.
 pub const NONE: &str = "none";
 
 /// A BLEND draw by what it may be called.
@@ -23,30 +23,44 @@ struct Blended<'a> {
     material: &'a Material,
 }
 
+impl Blended<'_> {
+    fn names(&self) -> [&str; 2] {
+        [self.node_name, &self.material.name]
+    }
+}
+
+/// The draws that are decals. `text`: of `--decals`.
+///
+/// Errors: a name that no BLEND surface has (exit code 2).
+pub fn decals(scene: &Scene, text: &str) -> Result<BTreeSet<u32>> {
+    let asked: BTreeSet<&str> = text.split(',').filter(|_| text != NONE).collect();
+    let blended: Vec<Blended<'_>> = blended(scene).collect();
+    require_known(&blended, "--decals", asked.iter().copied())?;
+    let is_asked = |one: &&Blended<'_>| one.names().iter().any(|name| asked.contains(name));
+    Ok(blended.iter().filter(is_asked).map(|one| one.draw).collect())
+}
+
+fn require_known<'a>(blended: &[Blended<'_>], flag: &str, mut asked: impl Iterator<Item = &'a str>) -> Result<()> {
+    let names: BTreeSet<&str> = blended.iter().flat_map(Blended::names).filter(|name| !name.is_empty()).collect();
+    let Some(name) = asked.find(|name| !names.contains(name)) else { return Ok(()) };
+    let name = label::shown(name);
+    let refused = Error::request(format!("{flag} {name}: no BLEND surface has a node or a material of that name"));
+    Err(refused.note(match names.len() {
+        0 => "the scene has none with a name".to_owned(),
+        _ => format!("there are {}", label::list(names.iter().copied())),
+    }))
+}
+
 /// The layers of draws that have one, by draw. `text`: of `--stipple-layers`.
 ///
 /// Errors: a name that no BLEND surface has, a name twice, a layer that the stipple does not have (exit code 2).
 pub fn layers(scene: &Scene, text: &str, stipple: &Pattern) -> Result<BTreeMap<u32, u32>> {
     let blended: Vec<Blended<'_>> = blended(scene).collect();
-    let names: BTreeSet<&str> = blended
-        .iter()
-        .flat_map(|one| [one.node_name, one.material.name.as_str()])
-        .filter(|name| !name.is_empty())
-        .collect();
     let asked = asked(text, stipple)?;
-    if let Some(name) = asked.keys().find(|name| !names.contains(*name)) {
-        return Err(Error::request(format!(
-            "--stipple-layers {}: no BLEND surface has a node or a material of that name",
-            label::shown(name)
-        ))
-        .note(match names.len() {
-            0 => "the scene has none with a name".to_owned(),
-            _ => format!("there are {}", label::list(names.iter().copied())),
-        }));
-    }
+    require_known(&blended, "--stipple-layers", asked.keys().copied())?;
     let mut layers = BTreeMap::new();
     for one in &blended {
-        let of_flag = [one.node_name, one.material.name.as_str()].into_iter().find_map(|name| asked.get(name));
+        let of_flag = one.names().into_iter().find_map(|name| asked.get(name));
         let of_file = one.node_layer.or(one.material.stipple_layer);
         if let (None, Some(layer)) = (of_flag, of_file) {
             require_layer(layer, stipple).map_err(|error| {
@@ -134,6 +148,16 @@ mod tests {
         assert_eq!(layers(&scene, NONE, &two).unwrap(), BTreeMap::from([(1, 3), (2, 1)]));
         assert_eq!(layers(&scene, "amber=1,right=3", &two).unwrap(), BTreeMap::from([(1, 1), (2, 3)]));
         assert_eq!(layers(&scene, "blue=3,right=2", &two).unwrap(), BTreeMap::from([(1, 3), (2, 2)]));
+    }
+
+    #[test]
+    fn decals_are_named_by_node_or_material() {
+        let scene = scene();
+        assert_eq!(decals(&scene, NONE).unwrap(), BTreeSet::new());
+        assert_eq!(decals(&scene, "amber").unwrap(), BTreeSet::from([1]));
+        assert_eq!(decals(&scene, "amber,right").unwrap(), BTreeSet::from([1, 2]));
+        let error = decals(&scene, "wall").unwrap_err().to_string();
+        assert!(error.contains("--decals wall") && error.contains("there are amber, blue"), "{error}");
     }
 
     #[test]

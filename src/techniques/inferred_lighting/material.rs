@@ -10,13 +10,13 @@ use super::geometry::LowGeometry;
 use super::light;
 use super::stipple::StippledDraw;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::InferredMaterialParams;
 use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::passes::depth_prepass::{self, DepthBegins, DepthPrepass};
-use crate::passes::{mesh, resolve};
+use crate::passes::{blend, mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::inferred_lighting::resources::NAME;
@@ -164,7 +164,7 @@ impl Material {
                     // What is blended may lie in one place with what is solid.
                     depth_compare: depth_prepass::compare(filter.has_prepass && alpha != "blend"),
                     depth_clamp: false,
-                    depth_slope_bias: 0.0,
+                    depth_bias: if alpha == "blend" { blend::DECAL_BIAS } else { DepthBias::NONE },
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],
@@ -266,7 +266,7 @@ impl Material {
             }
             if let Some(first) = self.stippled.first() {
                 let params = |stippled: &StippledDraw| InferredMaterialParams {
-                    stipple_side: self.filter.stipple_side,
+                    stipple_side: if stippled.is_decal() { 0 } else { self.filter.stipple_side },
                     stipple_layer: stippled.layer,
                     ..self.params(scene, stippled.call.material)
                 };

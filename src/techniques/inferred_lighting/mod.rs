@@ -1,7 +1,7 @@
 //! Inferred lighting: Kircher and Lawrance 2009, "Inferred Lighting: Fast dynamic lighting and shadows for opaque and
 //! translucent objects". Light small, shade large.
 //!
-//! Passes: geometry (at the light buffer's size), cull (with `--volumes tiled`), light, pack (with draws and float sums), depth
+//! Passes: geometry (at the light buffer's size), decals (with `--decals`), cull (with `--volumes tiled`), light, pack (with draws and float sums), depth
 //! and material (at the frame's size), resolve (with `--msaa`).
 //!
 //! Differs from the paper: the light pass sums in 32 bits and rounds once (`--l-buffer half` is the paper's way); its
@@ -20,6 +20,7 @@ mod assignment;
 mod bench_stages;
 mod choices;
 mod cull;
+mod decals;
 pub mod encoding;
 mod footprint;
 mod frame;
@@ -95,6 +96,11 @@ impl Technique for InferredLighting {
         if values.is("packing", PackingFormat::Fixed) {
             let of = "--packing fixed".to_owned();
             needs.push(Need { of, ability: Ability::FixedPairs, instead: "--packing words works without it" });
+        }
+        if values.text("decals") != layer_names::NONE {
+            let of = "--decals".to_owned();
+            let instead = "without it decals have layers of their own";
+            needs.push(Need { of, ability: Ability::BlendFixedPairs, instead });
         }
         if values.is("l-buffer", Sums::Fixed) && values.is("light-fetch", LightFetch::Sampler) {
             let of = "--l-buffer fixed with --light-fetch sampler".to_owned();
@@ -190,6 +196,9 @@ impl Prepared for PreparedInferred {
             plan.read_back(&geometry::filtered(false)[0].0);
         }
         plan.pass(format!("{NAME}.geometry"), geometry::written(choices));
+        if !choices.decals.is_empty() {
+            plan.pass(decals::pass(), geometry::marked());
+        }
         let masks = choices.shading.culls(light_count);
         if masks {
             let written = light_masks::masks(NAME, Access::ComputeWrite);

@@ -236,6 +236,17 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Picture)
     },
     Setting {
+        key: "decals",
+        kind: Kind::Text("NAME,...|none"),
+        default: layer_names::NONE,
+        paper: "Kircher 2009, 5.2",
+        help: "BLEND surfaces, by the name of their node or material, that lie on others: their normals are blended into \
+               those, and they are lit with them instead of in a layer of the stipple; --packing fixed has channels \
+               that can be blended",
+        unread: |values| Unread::unless(values, "alpha", &[Alpha::Blend], "BLEND surfaces are solid"),
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
         key: "alpha-filter",
         kind: Kind::Choice(AlphaFilter::WORDS),
         default: "cone",

@@ -24,7 +24,7 @@ const MOST_ROUNDS: usize = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct StippledDraw {
     pub call: DrawCall,
-    /// 1 to side * side - 1: which texel of each cell of the stipple is its, row-major.
+    /// 1 to side * side - 1: which texel of each cell of the stipple is its, row-major. 0: it is a decal.
     pub layer: u32,
     /// It reaches into the screen.
     pub is_on_screen: bool,
@@ -56,6 +56,8 @@ pub struct Rules<'a> {
     pub assignment: Assignment,
     /// `Choices::named_layers`.
     pub named_layers: &'a BTreeMap<u32, u32>,
+    /// Draws that get none: they are lit with what they lie on.
+    pub decals: &'a BTreeSet<u32>,
     /// Layers that there are for them.
     pub layer_count: u32,
 }
@@ -82,23 +84,33 @@ impl Given {
     }
 }
 
+impl StippledDraw {
+    pub fn is_decal(&self) -> bool {
+        self.layer == 0
+    }
+}
+
 /// Layers for `calls`, which are sorted farthest first, as they are drawn, the sides of a draw one after the other.
 pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, rules: Rules<'_>) -> (Vec<StippledDraw>, Shares) {
-    let draws: Vec<(u32, Sides)> = calls.iter().map(|call| (call.draw, call.sides)).collect();
+    let is_decal = |draw: u32| rules.decals.contains(&draw);
+    let draws: Vec<(u32, Sides)> =
+        calls.iter().map(|call| (call.draw, call.sides)).filter(|(draw, _)| !is_decal(*draw)).collect();
     let given = Given::new(scene, view, &draws, rules);
-    let all = calls.into_iter().zip(given.layers).zip(&given.footprints);
-    let stippled = |((call, layer), footprint): ((DrawCall, u32), &Footprint)| StippledDraw {
-        call,
-        layer,
-        is_on_screen: !footprint.is_empty(),
+    let mut layers = given.layers.into_iter().zip(&given.footprints);
+    let stippled = |call: DrawCall| {
+        let layer = if is_decal(call.draw) { None } else { layers.next() };
+        let [layer, cells] = layer.map_or([0, 0], |(layer, footprint)| [layer, u32::from(!footprint.is_empty())]);
+        StippledDraw { call, layer, is_on_screen: cells > 0 }
     };
-    (all.map(stippled).collect(), given.shares)
+    (calls.into_iter().map(stippled).collect(), given.shares)
 }
 
 /// What BLEND draws would share by `rules`.
 pub fn shared(scene: &Scene, view: &View, rules: Rules<'_>) -> Shares {
     let material = |draw: &Draw| &scene.materials[scene.meshes[draw.mesh].material];
-    let blends = |(_, draw): &(usize, &Draw)| material(draw).alpha == AlphaMode::Blend;
+    let blends = |(index, draw): &(usize, &Draw)| {
+        material(draw).alpha == AlphaMode::Blend && !rules.decals.contains(&(*index as u32))
+    };
     let place = |(index, draw): (usize, &Draw)| {
         (draw.bounds(&scene.meshes[draw.mesh]).center(), index as u32, Sides::of(material(draw)))
     };
@@ -241,7 +253,7 @@ mod tests {
         assignment: Assignment,
     ) -> Vec<u32> {
         let named_layers = &said.iter().copied().collect();
-        layers(footprints, draws, Rules { assignment, named_layers, layer_count })
+        layers(footprints, draws, Rules { assignment, named_layers, decals: &BTreeSet::new(), layer_count })
     }
 
     fn assigned(footprints: &[Footprint], count: u32, assignment: Assignment) -> (Vec<u32>, Shares) {

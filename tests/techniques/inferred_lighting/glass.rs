@@ -5,6 +5,7 @@ use crate::support::choices::words;
 use crate::support::difference::greatest_part;
 use crate::support::gltf_file::GltfFile;
 use crate::support::watched::{Watched, both};
+use crate::support::{self, Feature};
 use glam::{Vec3, vec3};
 use quincunx::picture::AovChannels;
 use quincunx::scene::{AlphaMode, Material, Scene};
@@ -311,30 +312,30 @@ fn the_user_names_layers_in_the_file_or_by_flag() {
     }
 }
 
+/// A wall and, two millimetres over it, a decal of this alpha that lets `lean` of its normal point to the right.
+fn decal(lean: f32, alpha: f32) -> Scene {
+    let mut scene = Scene { name: format!("decal {lean} {alpha}"), ..Scene::default() };
+    let wall = Material::diffuse("wall", Vec3::splat(0.5));
+    rectangle(&mut scene, vec3(0.0, 0.0, -4.0), 5.0 * Vec3::X, 5.0 * Vec3::Y, wall);
+    let decal = Material {
+        base_color: vec3(0.8, 0.6, 0.2).extend(alpha),
+        alpha: AlphaMode::Blend,
+        ..Material::diffuse("decal", Vec3::ONE)
+    };
+    rectangle(&mut scene, vec3(0.2, 0.1, -3.998), Vec3::X, 0.8 * Vec3::Y, decal);
+    scene.meshes[1].normals.fill(vec3(lean, 0.0, 1.0).normalize());
+    scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
+    scene.lights.push(point_light(vec3(3.0, 2.0, 2.0), 100.0));
+    scene
+}
+
 /// A decal is a BLEND surface just over another (section 4): it is lit by texels of its own, and so by its own normal and not by
-/// that of what it lies on, which normals blended into a G-buffer could not be.
+/// that of what it lies on.
 #[test]
 fn a_decal_is_lit_by_its_own_normal() {
-    let scene = |lean: f32| {
-        let mut scene = Scene { name: format!("decal {lean}"), ..Scene::default() };
-        let wall = Material::diffuse("wall", Vec3::splat(0.5));
-        rectangle(&mut scene, vec3(0.0, 0.0, -4.0), 5.0 * Vec3::X, 5.0 * Vec3::Y, wall);
-        let decal = Material {
-            base_color: vec3(0.8, 0.6, 0.2).extend(0.7),
-            alpha: AlphaMode::Blend,
-            ..Material::diffuse("decal", Vec3::ONE)
-        };
-        // Two millimetres over the wall.
-        rectangle(&mut scene, vec3(0.2, 0.1, -3.998), Vec3::X, 0.8 * Vec3::Y, decal);
-        let normal = vec3(lean, 0.0, 1.0).normalize();
-        scene.meshes[1].normals.fill(normal);
-        scene.cameras.push(camera(Vec3::ZERO, -Vec3::Z, 0.9));
-        scene.lights.push(point_light(vec3(3.0, 2.0, 2.0), 100.0));
-        scene
-    };
     let common = [("size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
     let pictures = [-1.0, 0.0, 1.0].map(|lean| {
-        let watched = Watched::with_scene(scene(lean));
+        let watched = Watched::with_scene(decal(lean, 0.7));
         let forward = watched.picture("forward", &common);
         for stipple in words(NAME, "stipple") {
             let picture = watched.picture(NAME, &both(&common, &[("light-size", "160x120"), ("stipple", stipple)]));
@@ -346,4 +347,56 @@ fn a_decal_is_lit_by_its_own_normal() {
     });
     // The light comes from the right.
     assert!(greatest_part(&pictures[0], &pictures[1]) > 0.3, "a normal to the left darkens");
+}
+
+/// A decal's normal over that of the wall is one by its alpha (section 5.2): wall and decal are lit as by a normal between theirs,
+/// which the map to the hemisphere adds up; nothing of it is stippled.
+#[test]
+fn normals_of_a_decal_are_blended_into_those_of_what_it_lies_on() {
+    const LEAN: f32 = 0.8;
+    const ALPHA: f32 = 0.6;
+    let watched = Watched::with_scene(decal(LEAN, ALPHA));
+    if !support::has(&watched.session.gpu.caps, Feature::BlendFixedPairs) {
+        return;
+    }
+    let common = [("size", "160x120"), ("light-size", "160x120"), ("brdf", "lambert"), ("light-cutoff", "0")];
+    let changes = both(&common, &[("packing", "fixed"), ("decals", "decal")]);
+    let stages = ["geometry.normal", "geometry.dsf.depth", "geometry.dsf.id"];
+    let renderer = watched.render_stages(NAME, &changes, &stages);
+    let counters = renderer.measured_counters().unwrap();
+    assert_eq!(counters["stipple_layers_used"], 0.0, "{counters:?}");
+    let mapped = |normal: Vec3| (normal + Vec3::Z).truncate() / (normal + Vec3::Z).length();
+    let own = vec3(LEAN, 0.0, 1.0).normalize();
+    let between = mapped(own) * ALPHA + mapped(Vec3::Z) * (1.0 - ALPHA);
+    let z = (1.0 - between.length_squared()).sqrt();
+    let expected = (2.0 * z * between).extend(2.0 * z * z - 1.0);
+    let (normals, ids) = (watched.rgb(&renderer, stages[0]), watched.integers(&renderer, stages[2]));
+    assert!(ids.iter().all(|id| *id == ids[0]), "ids are the wall's");
+    let picture = renderer.picture().unwrap();
+    let plain = watched.picture(NAME, &both(&common, &[("packing", "fixed")]));
+    let light = &watched.session.scene.lights[0];
+    let mut seen = 0;
+    for (pixel, (normal, found)) in normals.iter().zip(&picture.pixels).enumerate() {
+        let is_decal = Vec3::from_array(*normal).distance(expected) < 1e-4;
+        assert!(is_decal || Vec3::from_array(*normal).distance(Vec3::Z) < 1e-4, "pixel {pixel}: {normal:?}");
+        if !is_decal {
+            assert_eq!(*found, plain.pixels[pixel], "pixel {pixel} is of the wall");
+            continue;
+        }
+        seen += 1;
+        let [x, y] = [pixel % 160, pixel / 160].map(|at| at as f32 + 0.5);
+        let per_px = (0.5f32 * 0.9).tan() / 60.0;
+        let place = 4.0 * vec3((x - 80.0) * per_px, (60.0 - y) * per_px, -1.0);
+        let to_light = light.position - place;
+        let lux = light.intensity * expected.dot(to_light.normalize()) / to_light.length_squared();
+        let albedo = vec3(0.8, 0.6, 0.2) * ALPHA + Vec3::splat(0.5) * (1.0 - ALPHA);
+        let radiance = albedo * lux / std::f32::consts::PI;
+        let off = ((Vec3::from_array(*found) - radiance) / radiance).abs().max_element();
+        assert!(off < 0.01, "pixel {pixel}: {found:?} for {radiance}");
+    }
+    println!("{seen} pixels of the decal");
+    assert!(seen > 1000, "{seen} pixels of the decal");
+    let words = both(&common, &[("decals", "decal")]);
+    let error = watched.try_renderer(NAME, &words, &[], quincunx::gpu::commands::Submits::One).err().unwrap();
+    assert!(error.exit_code() == 2 && error.to_string().contains("--packing words"), "{error}");
 }

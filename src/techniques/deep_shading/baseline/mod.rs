@@ -19,7 +19,7 @@ use super::visibility::repeat_frame;
 use super::visibility::sample::{PipelineSets, TupleDraws};
 use crate::caps::Need;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::Shader;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, ImageDescription, Layers, Traffic};
@@ -250,7 +250,7 @@ fn pipeline(
             depth_write: true,
             depth_compare: vk::CompareOp::GREATER,
             depth_clamp: false,
-            depth_slope_bias: 0.0,
+            depth_bias: DepthBias::NONE,
             conservative_margin_px: None,
             stencil: None,
             foreign_sets: &[scene.material_layout],

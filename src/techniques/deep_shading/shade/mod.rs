@@ -12,7 +12,7 @@ use super::choices::Choices;
 use super::lists::ListsEdge;
 use super::pass_inputs::{DrawInputs, ShadingEdges};
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
@@ -68,7 +68,7 @@ impl Shade {
                 depth_write: false,
                 depth_compare: vk::CompareOp::ALWAYS,
                 depth_clamp: false,
-                depth_slope_bias: 0.0,
+                depth_bias: DepthBias::NONE,
                 conservative_margin_px: stages.is_conservative.then(|| choices.snap_px()),
                 stencil: None,
                 foreign_sets: &[scene.material_layout],

@@ -4,7 +4,7 @@ use super::super::choices::Choices;
 use super::stages;
 use super::stochastic;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::visibility::sample::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Bound, Commands, Gpu};
@@ -56,7 +56,7 @@ impl TupleDraws {
                     depth_write: true,
                     depth_compare: vk::CompareOp::GREATER,
                     depth_clamp: false,
-                    depth_slope_bias: 0.0,
+                    depth_bias: DepthBias::NONE,
                     conservative_margin_px: None,
                     stencil: None,
                     foreign_sets: &[scene.material_layout],

@@ -13,7 +13,7 @@
 //! the distance, and by a part of what a pixel's step changes depth by, because corners are rounded to parts of pixels too.
 
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline, StencilUse, VertexBuffer};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline, StencilUse, VertexBuffer};
 use crate::gpu::shader::techniques::inferred_lighting::light::shadow_volumes::VERT;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
 use crate::lights::shadow_casters::{CastingLight, ShadowCasters};
@@ -31,7 +31,7 @@ const VERTEX_BUFFERS: [VertexBuffer; 1] =
 
 /// Depth is reversed: less is farther. Devices round corners to a 256th of a pixel or finer, both here and in the geometry
 /// pass; this is some times as much.
-const SLOPE_BIAS: f32 = -1.0 / 32.0;
+const BIAS: DepthBias = DepthBias { slope: -1.0 / 32.0, ..DepthBias::NONE };
 
 /// The host's part, as reports name it, and what its resources' names begin with.
 pub fn pass() -> String {
@@ -90,7 +90,7 @@ impl ShadowVolumes {
             blending: Blending::Keep,
             depth_compare: vk::CompareOp::GREATER,
             depth_clamp: true,
-            depth_slope_bias: SLOPE_BIAS,
+            depth_bias: BIAS,
             stencil: Some(StencilUse::CountBehind),
             ..*light
         };

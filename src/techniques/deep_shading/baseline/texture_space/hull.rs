@@ -3,7 +3,7 @@
 
 use super::super::super::choices::Choices;
 use crate::error::Result;
-use crate::gpu::pipeline::{Blending, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::techniques::deep_shading::baseline::texture_space::hull::VERT;
 use crate::gpu::shader::techniques::deep_shading::hull::HULL_VERTICES;
@@ -46,7 +46,7 @@ impl Hulls {
                 depth_write: false,
                 depth_compare: vk::CompareOp::ALWAYS,
                 depth_clamp: false,
-                depth_slope_bias: 0.0,
+                depth_bias: DepthBias::NONE,
                 conservative_margin_px: None,
                 stencil: None,
                 foreign_sets: &[scene.material_layout],
