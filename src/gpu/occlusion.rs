@@ -44,6 +44,8 @@ impl Occlusion {
     }
 
     /// Samples of all draws, after the fence of the frame that drew them.
+    ///
+    /// Errors: the device is lost (exit code 4).
     pub fn sum(&self) -> Result<u64> {
         let mut samples = vec![0u64; self.draw_count as usize];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;

@@ -1,7 +1,7 @@
 //! The choices that the settings make, before there is a device: sizes, methods, the constants of the shaders.
 
+use super::blend_names;
 use super::encoding::{Packing, PackingFormat};
-use super::layer_names;
 use super::light::Volumes;
 use super::light::store::{Fresnel, Highlight, Store, Sums};
 use super::stipple::{self, Rules};
@@ -136,8 +136,8 @@ impl Choices {
         let largest = asked.unwrap_or(StippleSize::Four).stipple();
         let named = values.text("stipple-layers");
         let named_layers = match assignment {
-            Assignment::Static => layer_names::layers(inputs.scene, named, &largest)?,
-            _ if named == layer_names::NONE => BTreeMap::new(),
+            Assignment::Static => blend_names::layers(inputs.scene, named, &largest)?,
+            _ if named == blend_names::NONE => BTreeMap::new(),
             _ => {
                 let (assignment, error) = (assignment.name(), "layers are given out otherwise");
                 return Err(Error::request(format!("--stipple-layers with --assignment {assignment}: {error}"))
@@ -146,7 +146,7 @@ impl Choices {
         };
         // Where alpha is tested, BLEND surfaces are solid.
         let decals = values.text("decals");
-        let decals = layer_names::decals(inputs.scene, if tests_alpha { layer_names::NONE } else { decals })?;
+        let decals = blend_names::decals(inputs.scene, if tests_alpha { blend_names::NONE } else { decals })?;
         let packing: PackingFormat = values.choice("packing");
         if !decals.is_empty() && packing != PackingFormat::Fixed {
             let (packing, why) = (packing.name(), "normals in words of bits cannot be blended");

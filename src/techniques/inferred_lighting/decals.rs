@@ -27,14 +27,14 @@ pub fn pass() -> String {
 
 pub struct Decals {
     pipeline: GraphicsPipeline,
-    /// Farthest first.
+    /// Farthest first; at least one.
     calls: Vec<DrawCall>,
     depth_range_m: [f32; 2],
     depth_threshold: f32,
 }
 
 impl Decals {
-    /// `depth_range_m`: linear depth of the first step, and of all of them, metres.
+    /// `calls`: at least one. `depth_range_m`: linear depth of the first step, and of all of them, metres.
     pub fn new(
         gpu: &Arc<Gpu>,
         scene: &SceneGpu,
@@ -77,7 +77,6 @@ impl Decals {
             depth_threshold: self.depth_threshold,
             ..DecalParams::zeroed()
         };
-        let Some(first) = self.calls.first() else { return Ok(()) };
         let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
         cmd.pass(&pass(), traffic, |cmd| {
             cmd.barriers([
@@ -90,7 +89,7 @@ impl Decals {
             mesh::bind_streams(cmd, scene);
             let mut bound = mesh::bound(frame, scene);
             bound.push(("geometry_dsf", geometry.sampled(&geometry.dsf, Access::FragmentSample)));
-            cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&params(first.material)), &bound)?;
+            cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&params(self.calls[0].material)), &bound)?;
             let push = |material| cmd.push(&self.pipeline.interface, bytemuck::bytes_of(&params(material)));
             mesh::draw_with(cmd, &self.pipeline, scene, &self.calls, push);
             cmd.end_rendering();

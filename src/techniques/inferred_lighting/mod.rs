@@ -18,6 +18,7 @@
 mod aov;
 mod assignment;
 mod bench_stages;
+mod blend_names;
 mod choices;
 mod cull;
 mod decals;
@@ -25,7 +26,6 @@ pub mod encoding;
 mod footprint;
 mod frame;
 mod geometry;
-mod layer_names;
 mod light;
 mod material;
 mod motion;
@@ -97,7 +97,7 @@ impl Technique for InferredLighting {
             let of = "--packing fixed".to_owned();
             needs.push(Need { of, ability: Ability::FixedPairs, instead: "--packing words works without it" });
         }
-        if values.text("decals") != layer_names::NONE {
+        if values.text("decals") != blend_names::NONE {
             let of = "--decals".to_owned();
             let instead = "without it decals have layers of their own";
             needs.push(Need { of, ability: Ability::BlendFixedPairs, instead });

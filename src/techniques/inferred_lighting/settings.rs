@@ -1,9 +1,9 @@
 //! The settings of inferred lighting.
 
 use super::assignment::{Assignment, StippleSize};
+use super::blend_names;
 use super::choices::{Alpha, AlphaFilter, LightFetch, LightFilter};
 use super::encoding::{FIXED_LIMIT, PackingFormat};
-use super::layer_names;
 use super::light::Volumes;
 use super::light::store::{Fresnel, Highlight, Sums};
 use crate::settings::{
@@ -229,7 +229,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "stipple-layers",
         kind: Kind::Text("NAME=LAYER,...|none"),
-        default: layer_names::NONE,
+        default: blend_names::NONE,
         paper: "Kircher 2009, 4",
         help: "Layers of the stipple for --assignment static, 1 to 3 or 15, for BLEND surfaces by the name of their \
                node or material; these go before quincunx_stipple_layer in the extras of a file's nodes and materials",
@@ -238,7 +238,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "decals",
         kind: Kind::Text("NAME,...|none"),
-        default: layer_names::NONE,
+        default: blend_names::NONE,
         paper: "Kircher 2009, 5.2",
         help: "BLEND surfaces, by the name of their node or material, that lie on others: their normals are blended into \
                those, and they are lit with them instead of in a layer of the stipple; --packing fixed has channels \

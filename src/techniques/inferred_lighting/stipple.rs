@@ -2,10 +2,13 @@
 //!
 //! A stipple of side s has s * s layers; layer 0 is the solid surfaces' alone, the others are the BLEND surfaces'. Two that
 //! share a layer and overlap on screen fight for its texels: the nearer one gets them, the farther one is filtered from
-//! whatever is there. What is drawn double-sided counts as two, its backs and its fronts: the walls of a closed shape overlap. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours:
-//! a greedy colouring, nearest first, of the graph of draws that overlap on screen, each in the layer with whose draws it
-//! shares the least area, and then moves of single draws while they help. Memory meanwhile: a footprint a draw (528 bytes),
-//! and for each of 4096 cells 4 bytes a layer: 48 or 240 KiB.
+//! whatever is there. The paper assigns layers by hand or by depth and leaves the best assignment open; `overlap` is ours: a
+//! greedy colouring, nearest first, of the graph of draws that overlap on screen, each in the layer with whose draws it shares
+//! the least area, and then moves of single draws while they help. Backs and fronts of what is double-sided are two draws to it,
+//! because the walls of a closed shape overlap; by hand and by depth both get one layer. Memory meanwhile: a footprint for each
+//! of them (528 bytes), and for each of 4096 cells 4 bytes a layer: 48 or 240 KiB.
+//!
+//! Decals (decals.rs) get no layer.
 
 use super::assignment::Assignment;
 use super::footprint::{Footprint, SCREEN_CELLS};
@@ -26,7 +29,7 @@ pub struct StippledDraw {
     pub call: DrawCall,
     /// 1 to side * side - 1: which texel of each cell of the stipple is its, row-major. 0: it is a decal.
     pub layer: u32,
-    /// It reaches into the screen.
+    /// It has a layer and reaches into the screen.
     pub is_on_screen: bool,
 }
 
@@ -98,9 +101,9 @@ pub fn assign(scene: &Scene, view: &View, calls: Vec<DrawCall>, rules: Rules<'_>
     let given = Given::new(scene, view, &draws, rules);
     let mut layers = given.layers.into_iter().zip(&given.footprints);
     let stippled = |call: DrawCall| {
-        let layer = if is_decal(call.draw) { None } else { layers.next() };
-        let [layer, cells] = layer.map_or([0, 0], |(layer, footprint)| [layer, u32::from(!footprint.is_empty())]);
-        StippledDraw { call, layer, is_on_screen: cells > 0 }
+        let given = if is_decal(call.draw) { None } else { layers.next() };
+        let (layer, is_on_screen) = given.map_or((0, false), |(layer, footprint)| (layer, !footprint.is_empty()));
+        StippledDraw { call, layer, is_on_screen }
     };
     (calls.into_iter().map(stippled).collect(), given.shares)
 }

@@ -9,6 +9,7 @@ use crate::support::{self, Feature};
 use glam::{Vec3, vec3};
 use quincunx::picture::AovChannels;
 use quincunx::scene::{AlphaMode, Material, Scene};
+use quincunx::units::Extent;
 use serde_json::json;
 use std::collections::BTreeSet;
 
@@ -374,6 +375,8 @@ fn normals_of_a_decal_are_blended_into_those_of_what_it_lies_on() {
     assert!(ids.iter().all(|id| *id == ids[0]), "ids are the wall's");
     let picture = renderer.picture().unwrap();
     let plain = watched.picture(NAME, &both(&common, &[("packing", "fixed")]));
+    let AovChannels::Y(depths_m) = renderer.aov(stages[1]).unwrap().channels else { panic!("one channel") };
+    let places = super::places(&watched.session.scene, Extent::new(160, 120), &depths_m);
     let light = &watched.session.scene.lights[0];
     let mut seen = 0;
     for (pixel, (normal, found)) in normals.iter().zip(&picture.pixels).enumerate() {
@@ -384,10 +387,7 @@ fn normals_of_a_decal_are_blended_into_those_of_what_it_lies_on() {
             continue;
         }
         seen += 1;
-        let [x, y] = [pixel % 160, pixel / 160].map(|at| at as f32 + 0.5);
-        let per_px = (0.5f32 * 0.9).tan() / 60.0;
-        let place = 4.0 * vec3((x - 80.0) * per_px, (60.0 - y) * per_px, -1.0);
-        let to_light = light.position - place;
+        let to_light = light.position - places[pixel];
         let lux = light.intensity * expected.dot(to_light.normalize()) / to_light.length_squared();
         let albedo = vec3(0.8, 0.6, 0.2) * ALPHA + Vec3::splat(0.5) * (1.0 - ALPHA);
         let radiance = albedo * lux / std::f32::consts::PI;
