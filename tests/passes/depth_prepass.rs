@@ -72,6 +72,33 @@ fn of_surfaces_in_one_place_the_same_is_seen() {
     }
 }
 
+/// Triangles of one mesh that lie in one place: rasterisers that keep a picture of depth show the last one, by whatever passes.
+#[test]
+fn of_triangles_in_one_place_the_last_is_seen() {
+    let mut scene = scene::load("cornell", 1).unwrap();
+    for mesh in &mut scene.meshes {
+        let (vertices, corners) = (mesh.positions.len(), mesh.indices.len());
+        mesh.colors = vec![Vec4::ONE; vertices];
+        for vertex in 0..vertices {
+            mesh.repeat_vertex(vertex);
+        }
+        mesh.colors[vertices..].fill(vec4(1.0, 0.0, 0.0, 1.0));
+        mesh.indices.extend_from_within(..);
+        mesh.indices[corners..].iter_mut().for_each(|index| *index += vertices as u32);
+    }
+    let watched = Watched::with_scene(scene);
+    let mut ways: Vec<(&str, Changes<'_>)> = vec![("deferred", &[]), ("interleaved_deferred", &[])];
+    ways.extend(TECHNIQUES.iter().flat_map(|technique| [(*technique, &[ON] as Changes<'_>), (technique, &[OFF])]));
+    for (technique, changes) in ways {
+        let picture = watched.picture(technique, &both(&[SIZE, ("brdf", "lambert"), ("lights", "3")], changes));
+        // The lamp's own face is brighter.
+        let lit = |channel: usize| picture.pixels.iter().filter(|pixel| (1e-3..2.0).contains(&pixel[channel])).count();
+        let (red, green) = (lit(0), lit(1));
+        assert!(red > picture.pixels.len() / 2, "{technique}, {changes:?}: {red} pixels are red");
+        assert_eq!(green, 0, "{technique}, {changes:?}: pixels that are not");
+    }
+}
+
 /// Holes, vertex colours, glass and grates.
 #[test]
 fn real_maps_have_one_picture_too() {

@@ -3,8 +3,7 @@
 //! reads   the scene, the lights, their lists, the tree or the shadow maps, the depth buffer
 //! writes  the picture, RGBA32F, all samples; without a pre-pass the depth buffer
 //!
-//! Draws come backwards, so that the same picture is made with and without a pre-pass (depth_prepass.rs), where pixels have
-//! one sample.
+//! Where pixels have one sample the same picture is made with and without a pre-pass (depth_prepass.rs).
 
 use super::choices::ForwardChoices;
 use crate::error::Result;
@@ -106,23 +105,22 @@ impl Material {
             let clear = vk::ClearColorValue { float32: self.background.extend(0.0).to_array() };
             cmd.begin_rendering(color.description.extent, &[ColorTarget::new(color, Some(clear))], Some(depth));
             mesh::bind_streams(cmd, scene);
-            self.draw(cmd, &self.mask, scene, &bound, list.mask.iter().rev())?;
-            self.draw(cmd, &self.opaque, scene, &bound, list.opaque.iter().rev())?;
+            self.draw(cmd, &self.opaque, scene, &bound, &list.opaque)?;
+            self.draw(cmd, &self.mask, scene, &bound, &list.mask)?;
             cmd.end_rendering();
             Ok(())
         })
     }
 
-    fn draw<'a>(
+    fn draw(
         &self,
         cmd: &mut Commands,
         pipeline: &GraphicsPipeline,
         scene: &SceneGpu,
         bound: &[(&str, Bound<'_>)],
-        calls: impl Iterator<Item = &'a DrawCall>,
+        calls: &[DrawCall],
     ) -> Result<()> {
-        let mut calls = calls.peekable();
-        if calls.peek().is_none() {
+        if calls.is_empty() {
             return Ok(());
         }
         cmd.bind_graphics(pipeline, bytemuck::bytes_of(&MaterialParams::zeroed()), bound)?;

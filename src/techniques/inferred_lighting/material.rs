@@ -257,12 +257,12 @@ impl Material {
             if self.filter.kind.reads_normals() {
                 bound.push(("geometry_normal", geometry.sampled(&geometry.normal, Access::FragmentSample)));
             }
-            for (pipeline, calls) in [(&self.mask, &self.solid.mask), (&self.opaque, &self.solid.opaque)] {
-                let Some(first) = calls.last() else { continue };
+            for (pipeline, calls) in [(&self.opaque, &self.solid.opaque), (&self.mask, &self.solid.mask)] {
+                let Some(first) = calls.first() else { continue };
                 let first = self.params(scene, first.material);
                 cmd.bind_graphics(pipeline, bytemuck::bytes_of(&first), &bound)?;
                 let push = |material| cmd.push(&pipeline.interface, bytemuck::bytes_of(&self.params(scene, material)));
-                mesh::draw_with(cmd, pipeline, scene, calls.iter().rev(), push);
+                mesh::draw_with(cmd, pipeline, scene, calls, push);
             }
             if let Some(first) = self.stippled.first() {
                 let params = |stippled: &StippledDraw| InferredMaterialParams {
