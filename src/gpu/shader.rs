@@ -10,7 +10,7 @@ pub struct Shader {
     /// Extension and variant, such as `COMP_BUFFER`.
     pub variant: &'static str,
     pub stage: Stage,
-    /// SPIR-V 1.6, little-endian words.
+    /// SPIR-V 1.6, or 1.5 where the file asks for it, little-endian words.
     pub spirv: &'static [u8],
     pub bindings: &'static [Binding],
     /// The push-constant block, where there is one.

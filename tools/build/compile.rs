@@ -23,6 +23,8 @@ pub struct EntryPoint {
     axes: Vec<(String, Vec<String>)>,
     /// `// portable: yes`: must also pass naga at SPIR-V 1.3.
     pub portable: bool,
+    /// `// spirv: 1.5`: not 1.6, in which `gl_HelperInvocation` is volatile, which Mesa 22.3's lavapipe cannot read.
+    is_older: bool,
 }
 
 /// One value for each axis; empty where the file has no axis.
@@ -44,7 +46,7 @@ impl Variant {
 impl EntryPoint {
     fn parse(name: &str, stage: ShaderStage, text: &str) -> Self {
         let mut axes = Vec::new();
-        let mut portable = false;
+        let (mut portable, mut is_older) = (false, false);
         for line in text.lines().take_while(|line| line.starts_with("//") || line.trim().is_empty()) {
             if let Some(list) = line.strip_prefix("// variants:") {
                 for axis in list.split_whitespace() {
@@ -54,8 +56,9 @@ impl EntryPoint {
                 }
             }
             portable |= line.trim() == "// portable: yes";
+            is_older |= line.trim() == "// spirv: 1.5";
         }
-        Self { name: name.to_owned(), stage, axes, portable }
+        Self { name: name.to_owned(), stage, axes, portable, is_older }
     }
 
     /// Every combination of the axes' values.
@@ -118,9 +121,13 @@ impl Sources {
             .collect()
     }
 
-    /// SPIR-V 1.6 for Vulkan 1.3, as the driver gets it.
+    /// SPIR-V 1.6 for Vulkan 1.3, or what the file asks for, as the driver gets it.
     pub fn compile(&self, entry: &EntryPoint, variant: &Variant) -> Result<Vec<u32>, Faults> {
-        self.compile_for(entry, variant, VulkanVersion::Vulkan1_3, SpirvVersion::SPIRV1_6)
+        let (vulkan, spirv) = match entry.is_older {
+            true => (VulkanVersion::Vulkan1_2, SpirvVersion::SPIRV1_5),
+            false => (VulkanVersion::Vulkan1_3, SpirvVersion::SPIRV1_6),
+        };
+        self.compile_for(entry, variant, vulkan, spirv)
     }
 
     /// SPIR-V 1.3 for Vulkan 1.1, the newest that naga reads whole.

@@ -1,6 +1,7 @@
 // The material pass: full materials, lit by the L-buffer through a filter that distinguishes surfaces. Kircher 2009,
 // sections 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
 // variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals LIGHT=words|sampled COUNT=off|on
+// spirv: 1.5
 #version 460
 #include "frame.glsl"
 #include "resident.glsl"
