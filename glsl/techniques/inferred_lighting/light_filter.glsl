@@ -1,7 +1,8 @@
 // The L-buffer at a fragment, from the four samples around it: those of its surface by the discontinuity sensitive filter
 // (Kircher 2009, section 3), or by what other papers distinguish surfaces by. Of alpha surfaces, section 4, the samples
 // are one texel of each cell of a stipple. With GUIDE=normals the including shader declares `frame`; its axis LIGHT=words|sampled
-// says how the L-buffer is read.
+// says how the L-buffer is read. The shader's head says `// spirv: 1.5`, in which gl_HelperInvocation can be read everywhere
+// (docs/drivers.md).
 #ifndef INFERRED_LIGHTING_LIGHT_FILTER_GLSL
 #define INFERRED_LIGHTING_LIGHT_FILTER_GLSL
 
@@ -136,7 +137,7 @@ void add_part(inout Lighting sum, Lighting part, float weight) {
 // `weight_sum` is 0 where nothing does, and where the surface `is_needless`.
 //
 // Why a loop that begins at its end: software drivers run a branch that no lane takes, and leave a loop that none enters. As a
-// branch this took a third of a frame, and a quarter where lanes enter whose pixel the triangle does not cover.
+// branch this added a third to a frame, and as a loop that helper invocations enter nearly as much.
 Lighting ring_light(
     LightQuery query, bool is_needless, ivec2 base, vec2 fraction, ivec2 last, ivec2 extent, out float weight_sum
 ) {
