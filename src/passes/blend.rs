@@ -189,7 +189,7 @@ impl Blend {
                 blending: Blending::Over,
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
-                depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                depth_compare: mesh::DEPTH_COMPARE,
                 depth_clamp: false,
                 depth_bias: DECAL_BIAS,
                 conservative_margin_px: None,

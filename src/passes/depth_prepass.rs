@@ -3,7 +3,7 @@
 //! reads  the scene, of opaque surfaces positions alone      writes  a depth buffer, reversed, 4 B a sample
 //!
 //! The pass that shades draws its lists in the same order, nearest first, by "equal" with this one and by "nearer or as near"
-//! without it (`mesh::SOLID_COMPARE`). So it shows the same surface of several at the same depth: the last one drawn.
+//! without it (`mesh::DEPTH_COMPARE`). So it shows the same surface of several at the same depth: the last one drawn.
 
 use super::mesh;
 use crate::error::Result;
@@ -23,7 +23,7 @@ pub fn pass(technique: &str) -> String {
 
 /// How a pass over the same surfaces compares depths.
 pub fn compare(has_prepass: bool) -> vk::CompareOp {
-    if has_prepass { vk::CompareOp::EQUAL } else { mesh::SOLID_COMPARE }
+    if has_prepass { vk::CompareOp::EQUAL } else { mesh::DEPTH_COMPARE }
 }
 
 /// How it holds the depth buffer.

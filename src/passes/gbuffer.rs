@@ -299,7 +299,7 @@ impl GBufferPass {
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,
-                    depth_compare: mesh::SOLID_COMPARE,
+                    depth_compare: mesh::DEPTH_COMPARE,
                     depth_clamp: false,
                     depth_bias: DepthBias::NONE,
                     conservative_margin_px: None,

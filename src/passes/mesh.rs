@@ -10,9 +10,10 @@ use crate::resident::{DrawCall, DrawList, ExtendedAttributes, SceneGpu, Sides, V
 use ash::vk;
 use std::mem::offset_of;
 
-/// How passes over solid surfaces compare reversed depths. Of several surfaces in one place the last drawn is seen: so a pass
-/// that compares with `EQUAL` what a pre-pass left, in the same order, shows the same ones.
-pub const SOLID_COMPARE: vk::CompareOp = vk::CompareOp::GREATER_OR_EQUAL;
+/// How passes over triangles compare reversed depths, those of `deep_shading` and of shadow maps excepted. Of several surfaces
+/// in one place the last drawn is seen: so a pass that compares with `EQUAL` what a pre-pass left, in the same order, shows the
+/// same ones.
+pub const DEPTH_COMPARE: vk::CompareOp = vk::CompareOp::GREATER_OR_EQUAL;
 
 /// Layout of the vertex streams; the last is the extended one.
 const VERTEX_BUFFERS: [VertexBuffer; 3] = [

@@ -72,7 +72,7 @@ fn of_surfaces_in_one_place_the_same_is_seen() {
     }
 }
 
-/// Triangles of one mesh that lie in one place: rasterisers that keep a picture of depth show the last one, by whatever passes.
+/// Triangles of one mesh in one place: the last one is seen, in G-buffers and in what is shaded as it is drawn.
 #[test]
 fn of_triangles_in_one_place_the_last_is_seen() {
     let mut scene = scene::load("cornell", 1).unwrap();
@@ -87,7 +87,8 @@ fn of_triangles_in_one_place_the_last_is_seen() {
         mesh.indices[corners..].iter_mut().for_each(|index| *index += vertices as u32);
     }
     let watched = Watched::with_scene(scene);
-    let mut ways: Vec<(&str, Changes<'_>)> = vec![("deferred", &[]), ("interleaved_deferred", &[])];
+    let others = ["deferred", "interleaved_deferred", "interleaved_sampling"];
+    let mut ways: Vec<(&str, Changes<'_>)> = others.iter().map(|technique| (*technique, &[] as Changes<'_>)).collect();
     ways.extend(TECHNIQUES.iter().flat_map(|technique| [(*technique, &[ON] as Changes<'_>), (technique, &[OFF])]));
     for (technique, changes) in ways {
         let picture = watched.picture(technique, &both(&[SIZE, ("brdf", "lambert"), ("lights", "3")], changes));

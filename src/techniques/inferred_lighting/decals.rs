@@ -16,7 +16,6 @@ use crate::gpu::{Access, Buffer, ColorTarget, Commands, Gpu, Traffic};
 use crate::passes::{blend, mesh};
 use crate::resident::{DrawCall, SceneGpu};
 use crate::techniques::inferred_lighting::resources::NAME;
-use ash::vk;
 use bytemuck::Zeroable;
 use std::sync::Arc;
 
@@ -57,7 +56,7 @@ impl Decals {
                 blending: Blending::Over,
                 depth_format: Some(choices.depth_format()),
                 depth_write: false,
-                depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
+                depth_compare: mesh::DEPTH_COMPARE,
                 depth_clamp: false,
                 depth_bias: blend::DECAL_BIAS,
                 conservative_margin_px: None,

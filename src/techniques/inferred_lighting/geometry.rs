@@ -232,7 +232,7 @@ impl Geometry {
                     blending: Blending::Replace,
                     depth_format: Some(choices.depth_format()),
                     depth_write: true,
-                    depth_compare: if alpha == "blend" { vk::CompareOp::GREATER } else { mesh::SOLID_COMPARE },
+                    depth_compare: mesh::DEPTH_COMPARE,
                     depth_clamp: false,
                     depth_bias: if alpha == "blend" { blend::DECAL_BIAS } else { DepthBias::NONE },
                     conservative_margin_px: None,
