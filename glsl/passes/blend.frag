@@ -1,6 +1,6 @@
 // BLEND surfaces over the finished picture, back to front, lit forward by the punctual lights of their piece's list, and by the
 // virtual ones of their pixel. Pass: src/passes/blend.rs.
-// variants: VERTEX=plain|extended SHADOWS=traced|mapped
+// variants: VERTEX=plain|extended SHADOWS=traced|mapped SHADED=pixel|sample
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -43,8 +43,6 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lists[]; };
 
 #define LISTS_OBJECT
-// There may be several samples a pixel.
-#define INTERPOLATION centroid
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/lit.glsl"

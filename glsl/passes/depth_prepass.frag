@@ -1,5 +1,5 @@
 // MASK surfaces in the depth pre-pass: what alpha cuts out has no depth. Pass: src/passes/depth_prepass.rs.
-// variants: VERTEX=plain|extended
+// variants: VERTEX=plain|extended SHADED=pixel|sample
 #version 460
 #include "resident.glsl"
 
@@ -13,7 +13,6 @@ layout(push_constant) uniform Push { DepthPrepassParams params; };
 layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock placements[]; };
 #endif
 
-#define INTERPOLATION centroid
 #include "shading/material.glsl"
 
 void main() {

@@ -3,8 +3,8 @@
 // With the axis VERTEX=extended vertices have colours, and textures placements: `placements[]` is the including shader's.
 // Set 1 belongs to the material: src/resident/textures.rs makes one set each, with a white pixel where a texture is
 // missing. The including shader reads the material's block: from its push constants, or from `materials[]`. Where
-// pixels have several samples it defines INTERPOLATION as centroid: a pixel whose middle the triangle does not cover
-// must not be shaded beyond the triangle's edge.
+// pixels may have several samples it has the axis SHADED. Once a pixel: at a place on the triangle, because a pixel whose middle
+// it does not cover must not be shaded beyond its edge. Once a sample: there; that its inputs are a sample's makes it so.
 // Where it shades another place than its own it defines MATERIAL_PLACE, and writes what is otherwise interpolated
 // before it calls anything, with the changes of texture coordinates that choose levels.
 #ifndef SHADING_MATERIAL_GLSL
@@ -19,7 +19,11 @@ layout(set = 1, binding = 2) uniform sampler2D normal_texture;
 layout(set = 1, binding = 3) uniform sampler2D emissive_texture;
 layout(set = 1, binding = 4) uniform sampler2D occlusion_texture;
 
-#ifndef INTERPOLATION
+#if defined(SHADED_SAMPLE)
+#define INTERPOLATION sample
+#elif defined(SHADED_PIXEL)
+#define INTERPOLATION centroid
+#else
 #define INTERPOLATION
 #endif
 

@@ -309,6 +309,9 @@ pub struct Features {
     /// Occlusion queries count samples. False in caps files older than this field.
     #[serde(default)]
     pub occlusion_query_precise: bool,
+    /// Fragment shaders run once a sample. False in caps files older than this field.
+    #[serde(default)]
+    pub sample_rate_shading: bool,
     pub sampler_anisotropy: bool,
     pub storage_image_extended_formats: bool,
     pub shader_float16: bool,

@@ -79,6 +79,8 @@ abilities! {
     EightSamples:
         "8 samples a pixel in float colour and D32_SFLOAT attachments", "8 samples a pixel",
         |caps| has_samples(&caps.formats, 8);
+    /// Fragment shaders run once a sample.
+    SampleShading: "sampleRateShading", "sample shading", |caps| caps.features.sample_rate_shading;
     /// Geometry shaders.
     GeometryShader: "geometryShader", "geometry shaders", |caps| caps.features.geometry_shader;
     /// Vertex shaders choose the layer that is drawn into.

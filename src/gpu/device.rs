@@ -299,6 +299,7 @@ impl Gpu {
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
             .depth_clamp(caps.features.depth_clamp)
             .occlusion_query_precise(caps.features.occlusion_query_precise)
+            .sample_rate_shading(caps.features.sample_rate_shading)
             .pipeline_statistics_query(caps.features.pipeline_statistics)
             .geometry_shader(caps.features.geometry_shader)
             .shader_int64(caps.features.shader_int64_atomics);

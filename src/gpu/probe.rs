@@ -189,6 +189,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             fragment_stores_and_atomics: features.fragment_stores_and_atomics != 0,
             depth_clamp: features.depth_clamp != 0,
             occlusion_query_precise: features.occlusion_query_precise != 0,
+            sample_rate_shading: features.sample_rate_shading != 0,
             sampler_anisotropy: features.sampler_anisotropy != 0,
             storage_image_extended_formats: features.shader_storage_image_extended_formats != 0,
             shader_float16: features12.shader_float16 != 0,

@@ -12,6 +12,7 @@
 //! pass takes 15 ms instead of 104 on lavapipe.
 
 use super::mesh;
+use super::samples::Samples;
 use super::shadow_maps::{self, ShadowMaps};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
@@ -70,8 +71,7 @@ pub fn touches(depth: &str, picture: &str) -> [(String, Access); 2] {
 pub struct BlendTarget<'a> {
     /// `ObjectLists::pieces`.
     pub pieces: &'a [Vec<PieceLights>],
-    /// Samples a pixel.
-    pub samples: u32,
+    pub samples: Samples,
     /// Lights have shadow maps; the constants are those of `MapLayout::constants` too.
     pub has_shadow_maps: bool,
 }
@@ -79,7 +79,7 @@ pub struct BlendTarget<'a> {
 impl<'a> BlendTarget<'a> {
     /// One sample, no shadow maps.
     pub fn plain(lists: &'a ObjectLists) -> Self {
-        Self { pieces: &lists.pieces, samples: 1, has_shadow_maps: false }
+        Self { pieces: &lists.pieces, samples: Samples::ONE, has_shadow_maps: false }
     }
 }
 
@@ -181,11 +181,14 @@ impl Blend {
             &GraphicsDescription {
                 vertex: mesh::vertex_shader(scene),
                 geometry: None,
-                fragment: Some(variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), shadows])),
+                fragment: Some(variant(
+                    FRAG_VARIANTS,
+                    &[mesh::vertex_name(scene), shadows, target.samples.shaded_name()],
+                )),
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[PICTURE_FORMAT],
-                samples: target.samples,
+                samples: target.samples.count,
                 blending: Blending::Over,
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,

@@ -6,6 +6,7 @@
 //! without it (`mesh::DEPTH_COMPARE`). So it shows the same surface of several at the same depth: the last one drawn.
 
 use super::mesh;
+use super::samples::Samples;
 use crate::error::Result;
 use crate::gpu::pipeline::{Blending, Constants, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::passes::depth_prepass::{FRAG_VARIANTS, VERT};
@@ -78,7 +79,7 @@ impl DepthPrepass {
     /// `levels`: constants of the levels of textures, as the pass with the materials has them: holes are then where it has them.
     ///
     /// Errors: the driver refuses (exit code 4).
-    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, samples: u32, levels: Constants<'_>) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, samples: Samples, levels: Constants<'_>) -> Result<Self> {
         let pipeline = |(vertex, vertex_buffers), fragment, constants| {
             GraphicsPipeline::new(
                 gpu,
@@ -89,7 +90,7 @@ impl DepthPrepass {
                     constants,
                     vertex_buffers,
                     color_formats: &[],
-                    samples,
+                    samples: samples.count,
                     blending: Blending::Replace,
                     depth_format: Some(FORMAT),
                     depth_write: true,
@@ -102,7 +103,7 @@ impl DepthPrepass {
                 },
             )
         };
-        let mask = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene)]);
+        let mask = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), samples.shaded_name()]);
         let with_holes = (mesh::vertex_shader(scene), mesh::vertex_buffers(scene));
         Ok(Self {
             opaque: pipeline((&VERT, mesh::POSITIONS), None, &[])?,

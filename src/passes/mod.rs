@@ -14,5 +14,6 @@ pub mod gbuffer;
 pub mod mesh;
 pub mod next_run;
 pub mod resolve;
+pub mod samples;
 pub mod shadow_maps;
 pub mod texels;

@@ -4,26 +4,8 @@
 //! A pass of its own, so that its time is measured apart: software drivers copy either way. The mean is of linear
 //! light, and the samples are 32-bit floats, because lavapipe stores halves by cutting their last bits off.
 
-use crate::caps::{Ability, Need};
 use crate::error::Result;
 use crate::gpu::{Access, ColorTarget, Commands, Edge, Image, Traffic};
-use crate::settings::Values;
-
-/// Samples a pixel that `--msaa` asks for.
-pub fn samples(values: &Values) -> u32 {
-    values.integer("msaa") as u32
-}
-
-/// What `--msaa` needs of a device.
-pub fn needs(values: &Values) -> Option<Need> {
-    let samples = samples(values);
-    let (ability, instead) = match samples {
-        4 => (Ability::FourSamples, "--msaa 1 works everywhere"),
-        8 => (Ability::EightSamples, "--msaa 4 works on more devices, --msaa 1 everywhere"),
-        _ => return None,
-    };
-    Some(Need { of: format!("--msaa {samples}"), ability, instead })
-}
 
 /// What the pass touches: both pictures by their full names.
 pub fn touches(samples: &str, plain: &str) -> [(String, Access); 2] {

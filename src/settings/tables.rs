@@ -361,15 +361,28 @@ pub const LIGHT_LISTS: &[Setting] = &[Setting {
 }];
 
 /// Settings of what is drawn with several samples a pixel (`passes::resolve`).
-pub const MULTISAMPLE: &[Setting] = &[Setting {
-    key: "msaa",
-    kind: Kind::Choice(&["1", "4", "8"]),
-    default: "1",
-    paper: "Kircher 2009, 3",
-    help: "Samples of a pixel that are tested for coverage and depth and then averaged; each surface is shaded once a \
-           pixel",
-    ..Setting::changing(Changes::Samples)
-}];
+pub const MULTISAMPLE: &[Setting] = &[
+    Setting {
+        key: "msaa",
+        kind: Kind::Choice(&["1", "4", "8"]),
+        default: "1",
+        paper: "Kircher 2009, 3",
+        help: "Samples of a pixel that are tested for coverage and depth and then averaged; each surface is shaded \
+               once a pixel, or as --sample-shading says",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "sample-shading",
+        kind: Kind::Choice(&["off", "on"]),
+        default: "off",
+        paper: "Kircher 2009, 3",
+        help: "Shade each surface once for each sample of --msaa that it covers, at the sample's place: without the \
+               artefacts of one place for all of a pixel, and with holes of MASK surfaces as smooth as edges, at the \
+               price of as many more fragments",
+        unread: |values| Unread::with(values, "msaa", &["1"], "a pixel has one sample"),
+        ..Setting::changing(Changes::Samples)
+    },
+];
 
 /// Whether techniques that draw the scene with its materials draw depth first.
 pub const DEPTH_PREPASS: Setting = Setting {

@@ -4,4 +4,5 @@ mod blended;
 mod depth_prepass;
 mod filter;
 mod gbuffer;
+mod samples;
 mod shadow_maps;

@@ -20,7 +20,7 @@ pub const COMMANDS: [&str; 15] = [
     "cornell --technique deferred --size 33x17",
     "hall:triangles=8000 --technique forward --size 64x36 --direct-shadow map",
     "lamps --technique deferred --size 64x36 --cull tiled",
-    "fence --technique forward --size 64x36 --msaa 4",
+    "fence --technique forward --size 64x36 --msaa 4 --sample-shading on",
     "cornell --technique path_traced --size 33x17 --spp 2",
     "cornell --technique path_traced --size 33x17 --spp 2 --medium 0.05,0.01,0.3 --punctual off",
 ];

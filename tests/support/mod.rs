@@ -98,6 +98,8 @@ pub enum Feature {
     PipelineStatistics,
     /// The device counts the samples of a draw.
     PreciseOcclusion,
+    /// Fragment shaders run once a sample.
+    SampleShading,
     /// Pairs of 16-bit fractions are blended.
     BlendFixedPairs,
 }
@@ -112,6 +114,7 @@ impl Feature {
             Self::WideAtomics => caps.features.shader_int64_atomics,
             Self::PipelineStatistics => caps.features.pipeline_statistics,
             Self::PreciseOcclusion => caps.features.occlusion_query_precise,
+            Self::SampleShading => caps.features.sample_rate_shading,
             Self::BlendFixedPairs => caps.formats.fixed_pair_blend,
         }
     }
@@ -125,6 +128,7 @@ impl Feature {
             | Self::WideAtomics
             | Self::PipelineStatistics
             | Self::PreciseOcclusion
+            | Self::SampleShading
             | Self::BlendFixedPairs => true,
             Self::RayQuery => false,
         }
@@ -142,6 +146,7 @@ impl Feature {
             Self::WideAtomics => "shaderBufferInt64Atomics with shaderInt64".to_owned(),
             Self::PipelineStatistics => "pipelineStatisticsQuery".to_owned(),
             Self::PreciseOcclusion => "occlusionQueryPrecise".to_owned(),
+            Self::SampleShading => "sampleRateShading".to_owned(),
             Self::BlendFixedPairs => "R16G16_UNORM as blended colour attachment".to_owned(),
         }
     }

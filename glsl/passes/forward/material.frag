@@ -1,6 +1,6 @@
 // The material pass: a surface with its whole material under the lights of its object's list.
 // Pass: src/passes/forward/material.rs.
-// variants: ALPHA=opaque|mask VERTEX=plain|extended LIGHTS=uniform|storage SHADOWS=traced|mapped
+// variants: ALPHA=opaque|mask VERTEX=plain|extended LIGHTS=uniform|storage SHADOWS=traced|mapped SHADED=pixel|sample
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -36,7 +36,6 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lists[]; };
 
 #define LISTS_OBJECT
-#define INTERPOLATION centroid
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/lit.glsl"

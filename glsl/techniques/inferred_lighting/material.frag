@@ -1,6 +1,6 @@
 // The material pass: full materials, lit by the L-buffer through a filter that distinguishes surfaces. Kircher 2009,
 // sections 2.3, 3, 4. Pass: src/techniques/inferred_lighting/material.rs.
-// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals LIGHT=words|sampled COUNT=off|on
+// variants: ALPHA=opaque|mask|blend VERTEX=plain|extended GUIDE=ids|normals LIGHT=words|sampled COUNT=off|on SHADED=pixel|sample
 // spirv: 1.5
 #version 460
 #include "frame.glsl"
@@ -42,7 +42,6 @@ layout(std430, set = 0, binding = 8) readonly buffer Placements { PlacementBlock
 layout(std430, set = 0, binding = 2) buffer Rejections { uint rejected_counts[2]; };
 #endif
 
-#define INTERPOLATION centroid
 #include "shading/material.glsl"
 #include "techniques/inferred_lighting/light_filter.glsl"
 #include "techniques/inferred_lighting/highlight.glsl"

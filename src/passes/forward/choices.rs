@@ -8,6 +8,7 @@ use crate::lights::LightSet;
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend;
 use crate::passes::direct::{self, DirectSettings};
+use crate::passes::samples::Samples;
 use crate::passes::shadow_maps::MapLayout;
 use crate::plan::Requirements;
 use crate::resident::SceneStats;
@@ -27,8 +28,7 @@ pub struct ForwardChoices {
     /// Lights in a uniform buffer.
     pub is_uniform: bool,
     pub has_prepass: bool,
-    /// Samples a pixel.
-    pub samples: u32,
+    pub samples: Samples,
     /// With `--direct-shadow map`, where there are lights.
     pub maps: Option<MapLayout>,
 }
@@ -42,7 +42,7 @@ impl ForwardChoices {
         values: &Values,
         (scene, stats, lights): (&Scene, &SceneStats, &LightSet),
         (caps, requirements): (&Caps, Requirements<'_>),
-        samples: u32,
+        samples: Samples,
     ) -> Result<Self> {
         let (count, range) = (lights.lights.len(), caps.limits.max_uniform_buffer_range_bytes);
         let asked = values.unless_auto("light-buffer", Values::choice);

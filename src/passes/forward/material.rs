@@ -51,6 +51,7 @@ impl Material {
     ) -> Result<Self> {
         let ForwardChoices { samples, has_prepass, is_uniform, .. } = *choices;
         let lights = if is_uniform { "uniform" } else { "storage" };
+        let shaded = samples.shaded_name();
         let shadows = shadow_maps::axis(choices.maps.is_some());
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
@@ -58,11 +59,11 @@ impl Material {
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights, shadows])),
+                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights, shadows, shaded])),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
-                    samples,
+                    samples: samples.count,
                     blending: Blending::Replace,
                     depth_format: Some(depth_prepass::FORMAT),
                     depth_write: !has_prepass,

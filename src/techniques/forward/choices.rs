@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::passes::forward::ForwardChoices;
-use crate::passes::resolve;
+use crate::passes::samples::Samples;
 use crate::resident::Coverage;
 use crate::techniques::Inputs;
 use crate::techniques::forward::resources::NAME;
@@ -21,12 +21,12 @@ impl Choices {
         let of = (inputs.scene, inputs.stats, inputs.lights);
         let on = (inputs.caps, inputs.requirements);
         Ok(Self {
-            drawing: ForwardChoices::new(NAME, values, of, on, resolve::samples(values))?,
+            drawing: ForwardChoices::new(NAME, values, of, on, Samples::new(values))?,
             runs_per_side: values.integer("supersample") as u32,
         })
     }
 
     pub(super) fn coverage(&self) -> Coverage {
-        if self.drawing.samples * self.runs_per_side > 1 { Coverage::Anywhere } else { Coverage::Middle }
+        if self.drawing.samples.count * self.runs_per_side > 1 { Coverage::Anywhere } else { Coverage::Middle }
     }
 }

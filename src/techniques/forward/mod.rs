@@ -9,7 +9,8 @@
 //! - the samples of MSAA are 32-bit floats of linear light, averaged before any tone mapping
 //! - shadow maps (`--direct-shadow map`) are Clarberg and Munkberg's (2014, section 6); each run of `--supersample` draws
 //!   them again, as every frame does
-//! - holes of MASK surfaces are cut once a pixel: their edges stay as jagged as without MSAA
+//! - holes of MASK surfaces are cut where they are shaded: once a pixel, with edges as jagged as without MSAA, or with
+//!   `--sample-shading on` once a sample
 //!
 //! Equal to others: with `--msaa 1` it is `deferred` except for what that one's G-buffer rounds. `--light-lists none`,
 //! `--light-buffer storage` and, with one sample, `--depth-prepass off` are the plain ways to its own bits (with more a
@@ -37,7 +38,7 @@ use crate::lights::LightSet;
 use crate::passes::accumulate::Accumulate;
 use crate::passes::depth_prepass::DepthBegins;
 use crate::passes::forward::{self, ForwardScene, ListedLights, Targets};
-use crate::passes::resolve;
+use crate::passes::{resolve, samples};
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
@@ -78,7 +79,7 @@ impl Technique for Forward {
     }
 
     fn needs(&self, values: &Values, _: &Caps, has_blend: bool) -> Vec<Need> {
-        forward::needs(values, has_blend).chain(resolve::needs(values)).collect()
+        forward::needs(values, has_blend).chain(samples::needs(values)).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -115,7 +116,7 @@ impl Prepared for PreparedForward {
     }
 
     fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
-        let samples = self.choices.drawing.samples;
+        let samples = self.choices.drawing.samples.count;
         let why = format!("with --msaa {samples} a pixel has several depths; --msaa 1 makes it");
         Vec::from_iter((samples > 1).then_some((DEPTH_STAGE, why)))
     }
@@ -163,7 +164,8 @@ impl PreparedForward {
                 begins: DepthBegins::Far,
                 drawn: resources.image(resources::DRAWN),
             },
-            resolved: (drawing.samples > 1).then(|| resources.image(resources::RESOLVED)),
+            resolved: drawing.samples.are_many().then(|| resources.image(resources::RESOLVED)),
+            shaded_count: drawing.samples.shaded_count(),
             runs_per_side: *runs_per_side,
         }))
     }
@@ -175,6 +177,8 @@ struct ForwardFrame {
     targets: Targets,
     /// Where pixels have several samples.
     resolved: Option<Image>,
+    /// How often a run shades a pixel.
+    shaded_count: u32,
     runs_per_side: u32,
 }
 
@@ -215,13 +219,15 @@ impl Frame for ForwardFrame {
         }
     }
 
-    /// Lights that were evaluated for the solid surfaces that are seen: pixels of several samples count with the mean.
+    /// Lights that were evaluated for the solid surfaces that are seen: pixels of several samples count with the mean, and as
+    /// often as they are shaded.
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
         let (picture, last) = self.picture();
         let pixels = picture.description.extent.pixel_count() as f64;
         let texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&readback::image(gpu, picture, last)?);
-        let evaluated: f64 = texels.iter().map(|[.., lights]| f64::from(*lights)).sum();
-        let every = pixels * f64::from(self.drawing.light_count());
+        let runs = f64::from(self.shaded_count);
+        let evaluated = runs * texels.iter().map(|[.., lights]| f64::from(*lights)).sum::<f64>();
+        let every = runs * pixels * f64::from(self.drawing.light_count());
         Ok(BTreeMap::from([
             ("light_evaluations", evaluated),
             ("light_evaluations_culled", every - evaluated),

@@ -12,7 +12,7 @@ use ash::vk::ImageUsageFlags as Usage;
 /// Resources and passes of a frame.
 pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Result<Plan> {
     let Choices { drawing, runs_per_side } = choices;
-    let (samples, extent) = (drawing.samples, inputs.view.extent);
+    let (samples, extent) = (drawing.samples.count, inputs.view.extent);
     let (is_resolved, is_mean) = (samples > 1, *runs_per_side > 1);
     let mut plan = Plan::default();
     let of = (inputs.bvh, inputs.scene);

@@ -10,7 +10,7 @@ use crate::choice::choices;
 use crate::error::{Error, Result};
 use crate::lights::shadow_casters;
 use crate::passes::direct::ShadingSettings;
-use crate::passes::resolve;
+use crate::passes::samples::Samples;
 use crate::sampling::pattern::Pattern;
 use crate::settings::Values;
 use crate::settings::{Brdf, INSTRUMENT, PositionStorage};
@@ -98,8 +98,8 @@ pub struct Choices {
     pub tests_alpha: bool,
     stipple_size: StippleSize,
     pub stipple: Pattern,
-    /// Samples a pixel of the material pass.
-    pub samples: u32,
+    /// In the material pass.
+    pub samples: Samples,
     /// The material pass counts fragments that it finds no light for.
     pub is_counted: bool,
     /// The material pass shades what a pre-pass of its size sees.
@@ -193,7 +193,7 @@ impl Choices {
             tests_alpha,
             stipple_size,
             stipple,
-            samples: resolve::samples(values),
+            samples: Samples::new(values),
             is_counted: values
                 .unless_auto(INSTRUMENT.key, Values::is_on)
                 .unwrap_or_else(|| Ability::FragmentAtomics.is_there(inputs.caps)),

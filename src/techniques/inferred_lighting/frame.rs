@@ -82,7 +82,7 @@ impl InferredFrame {
         let direct = DirectGpu::new(gpu, resources, NAME, lights, choices.shading.culls(lights.len()), tree)?;
         let [first_m, last_m] = inputs.view.depth_range(&bounds);
         let depth_range_m = [first_m, last_m - first_m];
-        let coverage = if choices.samples > 1 { Coverage::Anywhere } else { Coverage::Middle };
+        let coverage = if choices.samples.are_many() { Coverage::Anywhere } else { Coverage::Middle };
         let mut lists = [
             inputs.draw_list_into(scene, Raster { extent: light_extent, coverage: Coverage::Middle }),
             inputs.draw_list(scene, coverage),

@@ -16,6 +16,7 @@ use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::passes::depth_prepass::{self, DepthBegins, DepthPrepass};
+use crate::passes::samples::Samples;
 use crate::passes::{blend, mesh, resolve};
 use crate::plan::{PICTURE_FORMAT, Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
@@ -57,7 +58,7 @@ pub fn plan(plan: &mut Plan, extent: Extent, samples: u32, is_counted: bool) {
 
 /// Plans its pass, the one before it and the one that resolves it.
 pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
-    let is_resolved = choices.samples > 1;
+    let is_resolved = choices.samples.are_many();
     let drawn = full(if is_resolved { "samples" } else { "color" });
     if choices.has_prepass {
         plan.pass(depth_prepass::pass(NAME), [(full("depth"), Access::DepthWrite)]);
@@ -92,8 +93,8 @@ pub struct FilterSettings {
     pub depth_threshold: f32,
     pub light_extent: Extent,
     pub stipple_side: u32,
-    /// Samples a pixel of the material pass.
-    pub samples: u32,
+    /// In the material pass.
+    pub samples: Samples,
     pub has_prepass: bool,
     pub is_counted: bool,
     /// A sampler reads the L-buffer's channels.
@@ -147,17 +148,21 @@ impl Material {
         let guide = if filter.kind.reads_normals() { "normals" } else { "ids" };
         let light = if filter.is_sampled { "sampled" } else { "words" };
         let count = if filter.is_counted { "on" } else { "off" };
+        let shaded = filter.samples.shaded_name();
         let pipeline = |alpha: &str| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
-                    fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), guide, light, count])),
+                    fragment: Some(variant(
+                        FRAG_VARIANTS,
+                        &[alpha, mesh::vertex_name(scene), guide, light, count, shaded],
+                    )),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[PICTURE_FORMAT],
-                    samples: filter.samples,
+                    samples: filter.samples.count,
                     blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
                     depth_format: Some(depth_prepass::FORMAT),
                     depth_write: alpha != "blend" && !filter.has_prepass,
@@ -181,7 +186,7 @@ impl Material {
             filter,
             background,
             color: resources.image(&full("color")),
-            samples: (filter.samples > 1).then(|| resources.image(&full("samples"))),
+            samples: filter.samples.are_many().then(|| resources.image(&full("samples"))),
             depth: resources.image(&full("depth")),
             rejections: filter.is_counted.then(|| resources.buffer(&full("rejections"))),
         })
@@ -217,7 +222,7 @@ impl Material {
             // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
             read_bytes: mesh::read_bytes(scene, self.solid.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
             written_bytes: extent.pixel_count()
-                * u64::from(self.filter.samples)
+                * u64::from(self.filter.samples.count)
                 * if self.prepass.is_some() { 16 } else { 20 },
             invocations: None,
         };

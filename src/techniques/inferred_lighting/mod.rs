@@ -43,7 +43,7 @@ use crate::gpu::Access;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::lights::LightSet;
 use crate::lights::shadow_casters::ShadowCasters;
-use crate::passes::{blend, cull as light_masks, direct, resolve};
+use crate::passes::{blend, cull as light_masks, direct, samples};
 use crate::plan::Plan;
 use crate::settings::{INSTRUMENT, MULTISAMPLE, Setting, Values};
 use crate::techniques::inferred_lighting::encoding::PackingFormat;
@@ -92,7 +92,7 @@ impl Technique for InferredLighting {
             let instead = "--instrument auto counts where a device can";
             needs.push(Need { of, ability: Ability::FragmentAtomics, instead });
         }
-        needs.extend(resolve::needs(values));
+        needs.extend(samples::needs(values));
         if values.is("packing", PackingFormat::Fixed) {
             let of = "--packing fixed".to_owned();
             needs.push(Need { of, ability: Ability::FixedPairs, instead: "--packing words works without it" });
@@ -190,7 +190,7 @@ impl Prepared for PreparedInferred {
         if !choices.casting_lights.is_empty() {
             shadow_volumes::plan(&mut plan, &self.casters);
         }
-        material::plan(&mut plan, inputs.view.extent, choices.samples, choices.is_counted);
+        material::plan(&mut plan, inputs.view.extent, choices.samples.count, choices.is_counted);
         if inputs.stats.has_blend && !choices.tests_alpha {
             // The texels that are left of BLEND draws are counted.
             plan.read_back(&geometry::filtered(false)[0].0);

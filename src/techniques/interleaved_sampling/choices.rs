@@ -7,6 +7,7 @@ use crate::frame::{LensPlace, Placement};
 use crate::lens::{Eyes, Lens, on_unit_disc};
 use crate::lights::LightSet;
 use crate::passes::forward::ForwardChoices;
+use crate::passes::samples::Samples;
 use crate::sampling::basis::Basis;
 use crate::sampling::pattern::{Dimension, Pattern};
 use crate::sampling::sampler::Places;
@@ -196,7 +197,7 @@ impl Choices {
                 values,
                 (inputs.scene, inputs.stats, soft.as_ref().map_or(inputs.lights, SoftLights::typical)),
                 (inputs.caps, inputs.requirements),
-                1,
+                Samples::ONE,
             )?,
             exposure,
             soft,
