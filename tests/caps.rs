@@ -21,7 +21,7 @@ const SCENE: &str = "cornell";
 const SIZE: &str = "96x54";
 
 /// A technique and settings that reach each choice that devices make (`auto`), and each kind of resource.
-const CASES: [&str; 22] = [
+const CASES: [&str; 23] = [
     "interleaved_deferred",
     "interleaved_deferred --split tile",
     "interleaved_deferred --split layered",
@@ -41,6 +41,7 @@ const CASES: [&str; 22] = [
     "forward",
     "forward --msaa 8",
     "forward --msaa 4 --sample-shading on",
+    "forward --msaa 4 --sample-format half",
     "forward --direct-shadow map",
     "path_traced",
     "path_traced --rays query",

@@ -46,6 +46,7 @@ layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lis
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/lit.glsl"
+#include "shading/sample.glsl"
 
 layout(location = 0) out vec4 out_color;
 
@@ -73,5 +74,5 @@ void main() {
     expect_done(vpl == end);
     vec3 radiance = lit.radiance + albedo_of(lit.surface) * received * (params.weight / PI);
     // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
-    out_color = vec4(nan_if_cut(radiance) * base_color.a, base_color.a);
+    out_color = vec4(as_sample(nan_if_cut(radiance)) * base_color.a, base_color.a);
 }

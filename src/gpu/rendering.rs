@@ -1,4 +1,4 @@
-//! Rendering: opened into whole images, one sample a pixel or several, which are averaged into a plain image where it ends.
+//! Rendering: opened into whole images, of one sample a pixel or several.
 
 use super::{Access, Commands, Image};
 use crate::units::Extent;
@@ -10,9 +10,6 @@ pub struct ColorTarget<'a> {
     pub image: &'a Image,
     /// What every sample holds before the draws; None: what is there.
     pub clear: Option<vk::ClearColorValue>,
-    /// Gets the mean of each pixel's samples when rendering ends. Of the same extent and format, which is one of floats,
-    /// with one sample; it stands in `Access::ColorWrite` as the attachment does.
-    pub resolve: Option<&'a Image>,
 }
 
 /// Which layers of its attachments a rendering draws into.
@@ -39,38 +36,17 @@ impl Layers {
 }
 
 impl<'a> ColorTarget<'a> {
-    /// A target that is not resolved.
     pub fn new(image: &'a Image, clear: Option<vk::ClearColorValue>) -> Self {
-        Self { image, clear, resolve: None }
-    }
-
-    /// Resolved into `plain`, which need not be cleared.
-    pub fn resolved(self, plain: &'a Image) -> Self {
-        Self { resolve: Some(plain), ..self }
+        Self { image, clear }
     }
 
     fn info(&self, layers: Layers) -> vk::RenderingAttachmentInfo<'static> {
-        let info = vk::RenderingAttachmentInfo::default()
+        vk::RenderingAttachmentInfo::default()
             .image_view(layers.view(self.image))
             .image_layout(Access::ColorWrite.layout())
             .load_op(load(self.clear.is_some()))
             .store_op(vk::AttachmentStoreOp::STORE)
-            .clear_value(vk::ClearValue { color: self.clear.unwrap_or_default() });
-        match self.resolve {
-            None => info,
-            Some(plain) => {
-                let (from, to) = (self.image.description, plain.description);
-                assert!(
-                    from.samples > 1 && to.samples == 1 && from.extent == to.extent && from.format == to.format,
-                    "{} ({from:?}) cannot be resolved into {} ({to:?})",
-                    self.image.name,
-                    plain.name
-                );
-                info.resolve_mode(vk::ResolveModeFlags::AVERAGE)
-                    .resolve_image_view(plain.view)
-                    .resolve_image_layout(Access::ColorWrite.layout())
-            }
-        }
+            .clear_value(vk::ClearValue { color: self.clear.unwrap_or_default() })
     }
 }
 
@@ -100,7 +76,6 @@ impl Commands {
     ) {
         for color in colors {
             self.check_attached(color.image, Access::ColorWrite);
-            color.resolve.inspect(|plain| self.check_attached(plain, Access::ColorWrite));
         }
         if let Some((image, _, access)) = depth {
             self.check_attached(image, access);

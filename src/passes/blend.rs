@@ -23,7 +23,7 @@ use crate::gpu::shader::structs::{BlendParams, LightBlock};
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, upload};
 use crate::lights::object_lists::{ObjectLights, ObjectLists, PieceLights};
-use crate::plan::{PICTURE_FORMAT, Plan, Resources};
+use crate::plan::{Plan, Resources};
 use crate::resident::{DrawCall, SceneGpu};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
@@ -187,7 +187,7 @@ impl Blend {
                 )),
                 constants,
                 vertex_buffers: mesh::vertex_buffers(scene),
-                color_formats: &[PICTURE_FORMAT],
+                color_formats: &[target.samples.format],
                 samples: target.samples.count,
                 blending: Blending::Over,
                 depth_format: Some(vk::Format::D32_SFLOAT),

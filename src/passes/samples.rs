@@ -1,7 +1,10 @@
-//! Samples of a pixel (`--msaa`), and how often what is drawn into them is shaded (`--sample-shading`).
+//! Samples of a pixel (`--msaa`), how often what is drawn into them is shaded (`--sample-shading`), and what they hold
+//! (`--sample-format`).
 
 use crate::caps::{Ability, Need};
-use crate::settings::Values;
+use crate::plan::PICTURE_FORMAT;
+use crate::settings::{SampleFormat, Values};
+use ash::vk;
 
 /// Samples of each pixel that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,16 +13,22 @@ pub struct Samples {
     /// Fragment shaders run once for each sample that is covered, at its place; else once for all of a pixel, at a place on the
     /// triangle.
     are_shaded: bool,
+    /// The format of the picture that they are drawn into.
+    pub format: vk::Format,
 }
 
 impl Samples {
     /// The middle of the pixel.
-    pub const ONE: Self = Self { count: 1, are_shaded: false };
+    pub const ONE: Self = Self { count: 1, are_shaded: false, format: PICTURE_FORMAT };
 
     /// What the settings ask for.
     pub fn new(values: &Values) -> Self {
         let count = values.integer("msaa") as u32;
-        Self { count, are_shaded: count > 1 && values.is_on("sample-shading") }
+        let format = match values.choice("sample-format") {
+            SampleFormat::Half if count > 1 => vk::Format::R16G16B16A16_SFLOAT,
+            _ => PICTURE_FORMAT,
+        };
+        Self { count, are_shaded: count > 1 && values.is_on("sample-shading"), format }
     }
 
     /// There is more than one.
@@ -32,6 +41,11 @@ impl Samples {
         if self.are_shaded { self.count } else { 1 }
     }
 
+    /// The constant of fragment shaders whose colours become samples.
+    pub fn constant(self) -> (&'static str, u32) {
+        ("SAMPLES_ARE_HALVES", u32::from(self.format != PICTURE_FORMAT))
+    }
+
     /// The axis SHADED of fragment shaders.
     pub fn shaded_name(self) -> &'static str {
         if self.are_shaded { "sample" } else { "pixel" }
@@ -40,7 +54,7 @@ impl Samples {
 
 /// What `--msaa` and `--sample-shading` need of a device.
 pub fn needs(values: &Values) -> impl Iterator<Item = Need> {
-    let Samples { count, are_shaded } = Samples::new(values);
+    let Samples { count, are_shaded, .. } = Samples::new(values);
     let counted = match count {
         4 => Some((Ability::FourSamples, "--msaa 1 works everywhere")),
         8 => Some((Ability::EightSamples, "--msaa 4 works on more devices, --msaa 1 everywhere")),

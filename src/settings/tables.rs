@@ -360,6 +360,14 @@ pub const LIGHT_LISTS: &[Setting] = &[Setting {
     ..Setting::changing(Changes::Nothing)
 }];
 
+choices! {
+    /// What holds a channel of a sample (`--sample-format`).
+    pub enum SampleFormat {
+        "float" => Float,
+        "half" => Half,
+    }
+}
+
 /// Settings of what is drawn with several samples a pixel (`passes::resolve`).
 pub const MULTISAMPLE: &[Setting] = &[
     Setting {
@@ -381,6 +389,15 @@ pub const MULTISAMPLE: &[Setting] = &[
                price of as many more fragments",
         unread: |values| Unread::with(values, "msaa", &["1"], "a pixel has one sample"),
         ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "sample-format",
+        kind: Kind::Choice(SampleFormat::WORDS),
+        default: "float",
+        help: "What holds a channel of a sample of --msaa: a float of 32 bits, or one of 16, in half the memory, up to \
+               65504 and rounded to 11 bits (lavapipe cuts what lies beyond them off); their mean has 32 bits",
+        unread: |values| Unread::with(values, "msaa", &["1"], "a pixel has one sample"),
+        ..Setting::changing(Changes::Picture)
     },
 ];
 

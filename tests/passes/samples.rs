@@ -1,4 +1,4 @@
-//! `--msaa` with `--sample-shading`: where a surface is shaded, and how often.
+//! `--msaa` with `--sample-shading`: where a surface is shaded, and how often; with `--sample-format`: what samples hold.
 
 use crate::support::square::{matt, square};
 use crate::support::watched::{Changes, Watched, both};
@@ -153,6 +153,49 @@ fn the_light_buffer_is_read_at_each_sample_s_place() {
             assert!((found[0] / expected - 1.0).abs() < 1e-4, "{samples:?}, pixel {x} {y}: {found:?} for {expected}");
         }
         assert!(most_apart > 0.01, "{most_apart}: too little to tell one from the other");
+    }
+}
+
+const HALVES: [(&str, &str); 2] = [("msaa", "4"), ("sample-format", "half")];
+
+/// A half float has 11 bits, which drivers round or cut.
+#[test]
+fn samples_of_half_the_bytes_are_within_a_step_of_half_floats() {
+    let watched = lit();
+    for (technique, samples) in
+        [("forward", "forward.material.color"), ("inferred_lighting", "inferred_lighting.material.samples")]
+    {
+        let render = |changes: Changes<'_>| {
+            let renderer = watched.render(technique, &both(&[SIZE], changes));
+            let planned = renderer.plan.resources.iter().find(|planned| planned.name == samples).unwrap();
+            (renderer.picture().unwrap().pixels, planned.bytes())
+        };
+        let ((floats, bytes), (halves, half_bytes)) = (render(&ONCE), render(&HALVES));
+        assert_eq!(half_bytes * 2, bytes, "{technique}");
+        assert_ne!(floats, halves, "{technique}");
+        for (float, half) in floats.as_flattened().iter().zip(halves.as_flattened()) {
+            assert!((float - half).abs() <= float / 1024.0, "{technique}: {half} for {float}");
+        }
+    }
+}
+
+/// Layers of 65504 add up to no more, and so never to a NaN below a layer that lets nothing through.
+#[test]
+fn what_is_brighter_than_a_half_float_holds_is_the_greatest() {
+    for (alpha, coverage) in [(AlphaMode::Opaque, 1.0), (AlphaMode::Blend, 0.5), (AlphaMode::Blend, 1.0)] {
+        let base_color = Vec4::new(0.0, 0.0, 0.0, coverage);
+        let mut scene = square(Material { alpha, emissive: Vec3::new(1e6, 3.0, 0.5), ..matt(base_color) });
+        let pane = scene.draws[0];
+        scene.draws.push(pane);
+        let watched = Watched::with_scene(scene);
+        let covered = 1.0 - (1.0 - coverage) * (1.0 - coverage);
+        for technique in TECHNIQUES {
+            for found in watched.picture(technique, &both(&[SIZE, ("ambient", "0")], &HALVES)).pixels {
+                let expected = [65504.0, 3.0, 0.5].map(|channel| channel * covered);
+                let apart = found.iter().zip(expected).map(|(found, expected)| (found / expected - 1.0).abs());
+                assert!(apart.fold(0.0, f32::max) < 1e-3, "{technique}, {alpha:?}: {found:?} for {expected:?}");
+            }
+        }
     }
 }
 

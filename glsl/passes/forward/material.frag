@@ -39,6 +39,7 @@ layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lis
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/lit.glsl"
+#include "shading/sample.glsl"
 
 // rgb: radiance; a: lights that were evaluated for it, which the report counts.
 layout(location = 0) out vec4 out_color;
@@ -56,5 +57,5 @@ void main() {
     }
     vec3 position_ws = inside_box(params.object, in_position_ws);
     Lit lit = lit_at(params.material, base_color.rgb, position_ws, params.object.first, params.object.count);
-    out_color = vec4(nan_if_cut(lit.radiance), float(params.object.count));
+    out_color = vec4(as_sample(nan_if_cut(lit.radiance)), as_sample(float(params.object.count)));
 }

@@ -7,6 +7,7 @@
 #include "resident.glsl"
 #include "shading/brdf.glsl"
 #include "nan.glsl"
+#include "shading/sample.glsl"
 
 struct InferredMaterialParams {
     // The draw's.
@@ -125,7 +126,7 @@ void main() {
     }
 #endif
     bool is_unlit = SURFACE_EXTRAS != 0u && (material.flags & MATERIAL_UNLIT) != 0u;
-    vec3 radiance = is_unlit ? base_color.rgb : lit(material, base_color.rgb);
+    vec3 radiance = as_sample(is_unlit ? base_color.rgb : lit(material, base_color.rgb));
 #ifdef ALPHA_BLEND
     // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
     out_color = vec4(radiance * base_color.a, base_color.a);

@@ -1,7 +1,7 @@
 //! Material pass: every solid surface that is seen, with its whole material, under the lights of its object's list.
 //! Shaders: mesh.vert, material.frag.
 //! reads   the scene, the lights, their lists, the tree or the shadow maps, the depth buffer
-//! writes  the picture, RGBA32F, all samples; without a pre-pass the depth buffer
+//! writes  the picture, all samples; without a pre-pass the depth buffer
 //!
 //! Where pixels have one sample the same picture is made with and without a pre-pass (depth_prepass.rs).
 
@@ -16,7 +16,6 @@ use crate::lights::object_lists::ObjectLights;
 use crate::passes::depth_prepass::{self, DepthBegins};
 use crate::passes::mesh;
 use crate::passes::shadow_maps::{self, ShadowMaps};
-use crate::plan::PICTURE_FORMAT;
 use crate::resident::{DrawCall, DrawList, SceneGpu};
 use ash::vk;
 use bytemuck::Zeroable;
@@ -62,7 +61,7 @@ impl Material {
                     fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights, shadows, shaded])),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
-                    color_formats: &[PICTURE_FORMAT],
+                    color_formats: &[samples.format],
                     samples: samples.count,
                     blending: Blending::Replace,
                     depth_format: Some(depth_prepass::FORMAT),

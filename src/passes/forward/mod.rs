@@ -164,7 +164,8 @@ impl Forward {
         };
         let [right, down] = of.pixels_per_texel.map(|pixels| (1.0 / pixels).to_bits());
         let steps = [("LEVEL_STEP_X", right), ("LEVEL_STEP_Y", down)];
-        let constants: Vec<_> = choices.light_constants().into_iter().chain(steps).collect();
+        let constants: Vec<_> =
+            choices.light_constants().into_iter().chain(steps).chain([choices.samples.constant()]).collect();
         let samples = choices.samples;
         let target = BlendTarget { pieces: &of.listed.lists.pieces, samples, has_shadow_maps: choices.maps.is_some() };
         let maps = choices.maps.as_ref();

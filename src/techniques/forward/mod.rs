@@ -6,7 +6,7 @@
 //!
 //! Differs from the paper, which says of its forward renderer no more than that it is one
 //! - lists are by the box around an object and the light's range; the floor of a hall is one object, under all its lights
-//! - the samples of MSAA are 32-bit floats of linear light, averaged before any tone mapping
+//! - the samples of MSAA are floats of linear light, of 32 bits (`--sample-format half`: 16), averaged before any tone mapping
 //! - shadow maps (`--direct-shadow map`) are Clarberg and Munkberg's (2014, section 6); each run of `--supersample` draws
 //!   them again, as every frame does
 //! - holes of MASK surfaces are cut where they are shaded: once a pixel, with edges as jagged as without MSAA, or with
@@ -38,7 +38,8 @@ use crate::lights::LightSet;
 use crate::passes::accumulate::Accumulate;
 use crate::passes::depth_prepass::DepthBegins;
 use crate::passes::forward::{self, ForwardScene, ListedLights, Targets};
-use crate::passes::{resolve, samples};
+use crate::passes::resolve::Resolve;
+use crate::passes::samples;
 use crate::picture::{Aov, AovChannels};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
@@ -164,7 +165,11 @@ impl PreparedForward {
                 begins: DepthBegins::Far,
                 drawn: resources.image(resources::DRAWN),
             },
-            resolved: drawing.samples.are_many().then(|| resources.image(resources::RESOLVED)),
+            resolve: if drawing.samples.are_many() {
+                Some(Resolve::new(gpu, drawing.samples, resources.image(resources::RESOLVED))?)
+            } else {
+                None
+            },
             shaded_count: drawing.samples.shaded_count(),
             runs_per_side: *runs_per_side,
         }))
@@ -176,7 +181,7 @@ struct ForwardFrame {
     accumulate: Option<Accumulate>,
     targets: Targets,
     /// Where pixels have several samples.
-    resolved: Option<Image>,
+    resolve: Option<Resolve>,
     /// How often a run shades a pixel.
     shaded_count: u32,
     runs_per_side: u32,
@@ -185,11 +190,12 @@ struct ForwardFrame {
 impl Frame for ForwardFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         self.drawing.record(cmd, NAME, frame, scene, &self.targets)?;
-        if let Some(plain) = &self.resolved {
-            resolve::record(cmd, NAME, self.targets.drawn.from(Access::ColorWrite), plain)?;
+        if let Some(resolve) = &self.resolve {
+            resolve.record(cmd, NAME, self.targets.drawn.from(Access::ColorWrite))?;
         }
         if let Some(accumulate) = &self.accumulate {
-            accumulate.record(cmd, NAME, frame, self.run_picture().from(Access::ColorWrite))?;
+            let (run, last) = self.run_picture();
+            accumulate.record(cmd, NAME, frame, run.from(last))?;
         }
         Ok(())
     }
@@ -215,7 +221,7 @@ impl Frame for ForwardFrame {
     fn picture(&self) -> (&Image, Access) {
         match &self.accumulate {
             Some(accumulate) => (&accumulate.color, Access::ComputeWrite),
-            None => (self.run_picture(), Access::ColorWrite),
+            None => self.run_picture(),
         }
     }
 
@@ -244,8 +250,11 @@ impl Frame for ForwardFrame {
 }
 
 impl ForwardFrame {
-    /// The plain picture of a run.
-    fn run_picture(&self) -> &Image {
-        self.resolved.as_ref().unwrap_or(&self.targets.drawn)
+    /// The plain picture of a run, and how it is last touched.
+    fn run_picture(&self) -> (&Image, Access) {
+        match &self.resolve {
+            Some(resolve) => (&resolve.color, Access::ComputeWrite),
+            None => (&self.targets.drawn, Access::ColorWrite),
+        }
     }
 }

@@ -12,25 +12,25 @@ use ash::vk::ImageUsageFlags as Usage;
 /// Resources and passes of a frame.
 pub fn plan(choices: &Choices, inputs: &Inputs<'_>, listed: &ListedLights) -> Result<Plan> {
     let Choices { drawing, runs_per_side } = choices;
-    let (samples, extent) = (drawing.samples.count, inputs.view.extent);
-    let (is_resolved, is_mean) = (samples > 1, *runs_per_side > 1);
+    let (samples, extent) = (drawing.samples, inputs.view.extent);
+    let (is_resolved, is_mean) = (samples.are_many(), *runs_per_side > 1);
     let mut plan = Plan::default();
     let of = (inputs.bvh, inputs.scene);
     forward::plan(&mut plan, NAME, drawing, listed, of)?;
-    // Images of several samples are only attached.
+    // The host cannot read several samples.
     let read = |usage: Usage| if is_resolved { Usage::empty() } else { usage };
     let usage = Usage::DEPTH_STENCIL_ATTACHMENT | read(Usage::TRANSFER_SRC);
-    plan.multisampled("depth", DEPTH, extent, depth_prepass::FORMAT, samples, usage);
+    plan.multisampled("depth", DEPTH, extent, depth_prepass::FORMAT, samples.count, usage);
     let plain = Usage::COLOR_ATTACHMENT | Usage::STORAGE;
     match (is_resolved, is_mean) {
         (false, false) => plan.picture(DRAWN, extent),
         (false, true) => plan.image("color", DRAWN, extent, PICTURE_FORMAT, plain),
-        (true, _) => plan.multisampled("color", DRAWN, extent, PICTURE_FORMAT, samples, Usage::COLOR_ATTACHMENT),
+        (true, _) => plan.multisampled("color", DRAWN, extent, samples.format, samples.count, resolve::DRAWN),
     }
     match (is_resolved, is_mean) {
         (false, _) => {}
         (true, false) => plan.picture(RESOLVED, extent),
-        (true, true) => plan.image("color", RESOLVED, extent, PICTURE_FORMAT, plain),
+        (true, true) => plan.image("color", RESOLVED, extent, PICTURE_FORMAT, Usage::STORAGE),
     }
     if is_mean {
         accumulate::plan(&mut plan, NAME, extent);

@@ -181,7 +181,7 @@ impl Frame for InferredFrame {
     }
 
     fn picture(&self) -> (&Image, Access) {
-        (&self.material.color, Access::ColorWrite)
+        self.material.picture()
     }
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {

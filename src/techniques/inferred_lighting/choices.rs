@@ -268,7 +268,7 @@ impl Choices {
     }
 
     /// Constants of the material pass.
-    pub fn material_constants(&self) -> [(&'static str, u32); 10] {
+    pub fn material_constants(&self) -> [(&'static str, u32); 11] {
         let [range, highlight] = self.l_buffer.store.constants();
         [
             self.fixed_constant(),
@@ -281,6 +281,7 @@ impl Choices {
             ("RINGS", self.rings),
             ("NORMAL_THRESHOLD", self.normal_threshold.to_bits()),
             ("CONE_RADIUS", self.cone_radius.to_bits()),
+            self.samples.constant(),
         ]
     }
 }

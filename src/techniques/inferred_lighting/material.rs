@@ -16,9 +16,10 @@ use crate::gpu::shader::techniques::inferred_lighting::material::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, Traffic, readback};
 use crate::passes::depth_prepass::{self, DepthBegins, DepthPrepass};
+use crate::passes::resolve::{self, Resolve};
 use crate::passes::samples::Samples;
-use crate::passes::{blend, mesh, resolve};
-use crate::plan::{PICTURE_FORMAT, Plan, Resources};
+use crate::passes::{blend, mesh};
+use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::inferred_lighting::resources::NAME;
 use crate::units::Extent;
@@ -36,18 +37,18 @@ fn full(what: &str) -> String {
 }
 
 /// Plans its images and its counters.
-pub fn plan(plan: &mut Plan, extent: Extent, samples: u32, is_counted: bool) {
+pub fn plan(plan: &mut Plan, extent: Extent, samples: Samples, is_counted: bool) {
     use vk::ImageUsageFlags as Usage;
     plan.picture(full("color"), extent);
-    if samples > 1 {
-        plan.multisampled("picture", full("samples"), extent, PICTURE_FORMAT, samples, Usage::COLOR_ATTACHMENT);
+    if samples.are_many() {
+        plan.multisampled("picture", full("samples"), extent, samples.format, samples.count, resolve::DRAWN);
     }
     plan.multisampled(
         "picture",
         full("depth"),
         extent,
         depth_prepass::FORMAT,
-        samples,
+        samples.count,
         Usage::DEPTH_STENCIL_ATTACHMENT,
     );
     if is_counted {
@@ -125,9 +126,10 @@ pub struct Material {
     stippled: Vec<StippledDraw>,
     filter: FilterSettings,
     background: Vec3,
-    pub color: Image,
-    /// With several a pixel.
-    samples: Option<Image>,
+    /// What is drawn into.
+    drawn: Image,
+    /// With several samples a pixel.
+    resolve: Option<Resolve>,
     depth: Image,
     /// Where they are counted.
     rejections: Option<Buffer>,
@@ -161,7 +163,7 @@ impl Material {
                     )),
                     constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
-                    color_formats: &[PICTURE_FORMAT],
+                    color_formats: &[filter.samples.format],
                     samples: filter.samples.count,
                     blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
                     depth_format: Some(depth_prepass::FORMAT),
@@ -176,6 +178,12 @@ impl Material {
                 },
             )
         };
+        let color = resources.image(&full("color"));
+        let (drawn, resolve) = if filter.samples.are_many() {
+            (resources.image(&full("samples")), Some(Resolve::new(gpu, filter.samples, color)?))
+        } else {
+            (color, None)
+        };
         Ok(Self {
             prepass: filter.has_prepass.then(|| DepthPrepass::new(gpu, scene, filter.samples, &[])).transpose()?,
             opaque: pipeline("opaque")?,
@@ -185,15 +193,15 @@ impl Material {
             stippled,
             filter,
             background,
-            color: resources.image(&full("color")),
-            samples: filter.samples.are_many().then(|| resources.image(&full("samples"))),
+            drawn,
+            resolve,
             depth: resources.image(&full("depth")),
             rejections: filter.is_counted.then(|| resources.buffer(&full("rejections"))),
         })
     }
 
     fn params(&self, scene: &SceneGpu, material: u32) -> InferredMaterialParams {
-        let (frame, light) = (self.color.description.extent, self.filter.light_extent);
+        let (frame, light) = (self.drawn.description.extent, self.filter.light_extent);
         InferredMaterialParams {
             material: scene.material_blocks[material as usize],
             first_depth_m: self.filter.depth_range_m[0],
@@ -215,15 +223,14 @@ impl Material {
         guides: FilterGuides<'_>,
         l_buffer: Edge<'_, Image>,
     ) -> Result<()> {
-        let extent = self.color.description.extent;
-        let drawn = self.samples.as_ref().unwrap_or(&self.color);
+        let extent = self.drawn.description.extent;
+        let drawn = &self.drawn;
         let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
             // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
             read_bytes: mesh::read_bytes(scene, self.solid.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
-            written_bytes: extent.pixel_count()
-                * u64::from(self.filter.samples.count)
-                * if self.prepass.is_some() { 16 } else { 20 },
+            written_bytes: drawn.description.bytes()
+                + if self.prepass.is_some() { 0 } else { self.depth.description.bytes() },
             invocations: None,
         };
         if let Some(prepass) = &self.prepass {
@@ -286,9 +293,17 @@ impl Material {
             cmd.end_rendering();
             Ok(())
         })?;
-        match &self.samples {
-            Some(samples) => resolve::record(cmd, NAME, samples.from(Access::ColorWrite), &self.color),
+        match &self.resolve {
+            Some(resolve) => resolve.record(cmd, NAME, self.drawn.from(Access::ColorWrite)),
             None => Ok(()),
+        }
+    }
+
+    /// The plain picture, and how it is last touched.
+    pub fn picture(&self) -> (&Image, Access) {
+        match &self.resolve {
+            Some(resolve) => (&resolve.color, Access::ComputeWrite),
+            None => (&self.drawn, Access::ColorWrite),
         }
     }
 

@@ -190,7 +190,7 @@ impl Prepared for PreparedInferred {
         if !choices.casting_lights.is_empty() {
             shadow_volumes::plan(&mut plan, &self.casters);
         }
-        material::plan(&mut plan, inputs.view.extent, choices.samples.count, choices.is_counted);
+        material::plan(&mut plan, inputs.view.extent, choices.samples, choices.is_counted);
         if inputs.stats.has_blend && !choices.tests_alpha {
             // The texels that are left of BLEND draws are counted.
             plan.read_back(&geometry::filtered(false)[0].0);
