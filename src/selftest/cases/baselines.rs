@@ -123,7 +123,12 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[],
         twin: Twin::Method(&[("supersample", "4")]),
-        methods: &[&[("msaa", "4")], &[("msaa", "8")]],
+        methods: &[
+            &[("msaa", "4")],
+            &[("msaa", "8")],
+            &[("msaa", "4"), ("sample-shading", "on")],
+            &[("msaa", "4"), ("sample-format", "half")],
+        ],
         must: Must::Near(EDGES),
     },
     Group {

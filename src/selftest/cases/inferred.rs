@@ -189,7 +189,12 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[],
         twin: Twin::Other("forward", &[("supersample", "4")]),
-        methods: &[&[("msaa", "4"), AT_FRAME_SIZE], &[("msaa", "8"), AT_FRAME_SIZE]],
+        methods: &[
+            &[("msaa", "4"), AT_FRAME_SIZE],
+            &[("msaa", "8"), AT_FRAME_SIZE],
+            &[("msaa", "4"), ("sample-shading", "on"), AT_FRAME_SIZE],
+            &[("msaa", "4"), ("sample-format", "half"), AT_FRAME_SIZE],
+        ],
         must: Must::Near(EDGES),
     },
 ];
