@@ -11,14 +11,11 @@
 #ifndef PASSES_GBUFFER_GLSL
 #define PASSES_GBUFFER_GLSL
 
+#include "halves.glsl"
 #include "passes/depth.glsl"
 
-// The greatest half float: what is brighter is held there instead of becoming infinite.
-const float HALF_MAX = 65504.0;
-
 uvec2 pack_halves(vec3 value, uint last16) {
-    // A minimum may take the other number for NaN, and what fails a picture would be a bright one.
-    precise vec3 held = mix(value, vec3(HALF_MAX), greaterThan(value, vec3(HALF_MAX)));
+    precise vec3 held = held_in_halves(value);
     return uvec2(packHalf2x16(held.xy), (packHalf2x16(vec2(held.z, 0.0)) & 0xffffu) | (last16 << 16));
 }
 

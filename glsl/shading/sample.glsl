@@ -3,16 +3,12 @@
 #ifndef SHADING_SAMPLE_GLSL
 #define SHADING_SAMPLE_GLSL
 
-// The samples are half floats, whose greatest is this.
-layout(constant_id = 104) const uint SAMPLES_ARE_HALVES = 0;
-const float MOST_SAMPLE = 65504.0;
+#include "halves.glsl"
 
-// A comparison and no min(), which may take NaN for the greater.
+layout(constant_id = 104) const uint SAMPLES_ARE_HALVES = 0;
+
 vec3 as_sample(vec3 radiance) {
-    if (SAMPLES_ARE_HALVES == 0u) {
-        return radiance;
-    }
-    return mix(radiance, vec3(MOST_SAMPLE), greaterThan(radiance, vec3(MOST_SAMPLE)));
+    return SAMPLES_ARE_HALVES != 0u ? held_in_halves(radiance) : radiance;
 }
 
 float as_sample(float number) {

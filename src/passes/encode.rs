@@ -2,7 +2,7 @@
 //! them back.
 
 use super::decode;
-use crate::gpu::shader::passes::gbuffer::HALF_MAX;
+use crate::gpu::shader::halves::HALF_MAX;
 use crate::gpu::shader::structs::FrameBlock;
 use crate::settings::PositionStorage;
 use glam::Vec3;

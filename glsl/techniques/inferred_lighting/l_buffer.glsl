@@ -8,10 +8,9 @@
 #ifndef INFERRED_LIGHTING_L_BUFFER_GLSL
 #define INFERRED_LIGHTING_L_BUFFER_GLSL
 
+#include "halves.glsl"
 #include "nan.glsl"
 
-// The greatest half float: what is brighter is held there instead of becoming infinite.
-const float MOST_LIGHT = 65504.0;
 // The greatest number with a common exponent that is not the code of NaN.
 const float MOST_SHARED = 65280.0;
 
@@ -76,24 +75,19 @@ vec4 unpack_fixed(uvec2 words) {
     return mix(vec4(codes) * (LIGHT_RANGE / LIGHT_STEPS), vec4(no_number()), equal(codes, uvec4(0xffffu)));
 }
 
-// NaN stays: a comparison with it is false.
-vec4 held_light(vec4 numbers) {
-    return mix(numbers, vec4(MOST_LIGHT), greaterThan(numbers, vec4(MOST_LIGHT)));
-}
-
 uvec2 pack_lighting(Lighting lighting) {
     if (HIGHLIGHT == HIGHLIGHT_RGB) {
         return uvec2(pack_shared(lighting.irradiance), pack_shared(lighting.highlight));
     }
     if (HIGHLIGHT == HIGHLIGHT_SPLIT) {
-        vec4 held = held_light(vec4(lighting.highlight.xy, vec2(0.0)));
+        vec4 held = held_in_halves(vec4(lighting.highlight.xy, vec2(0.0)));
         return uvec2(pack_shared(lighting.irradiance), packHalf2x16(held.xy));
     }
     vec4 numbers = vec4(lighting.irradiance, lighting.highlight.x);
     if (LIGHT_RANGE > 0.0) {
         return pack_fixed(numbers);
     }
-    vec4 held = held_light(numbers);
+    vec4 held = held_in_halves(numbers);
     return uvec2(packHalf2x16(held.rg), packHalf2x16(held.ba));
 }
 
