@@ -1,7 +1,7 @@
 // The mean of each pixel's samples (--msaa). Pass: src/passes/resolve.rs.
 #version 460
 
-layout(constant_id = 103) const uint SAMPLE_COUNT = 4;
+layout(constant_id = 77) const uint SAMPLE_COUNT = 4;
 
 layout(local_size_x = 64, local_size_y = 1) in;
 

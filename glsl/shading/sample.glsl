@@ -5,7 +5,7 @@
 
 #include "halves.glsl"
 
-layout(constant_id = 104) const uint SAMPLES_ARE_HALVES = 0;
+layout(constant_id = 78) const uint SAMPLES_ARE_HALVES = 0;
 
 vec3 as_sample(vec3 radiance) {
     return SAMPLES_ARE_HALVES != 0u ? held_in_halves(radiance) : radiance;
