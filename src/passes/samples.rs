@@ -1,5 +1,5 @@
 //! Samples of a pixel (`--msaa`), how often what is drawn into them is shaded (`--sample-shading`), and what they hold
-//! (`--sample-format`).
+//! (`--sample-format`). Kircher & Lawrance 2009, section 3, shades once a pixel; what each costs: docs/techniques/forward.md.
 
 use crate::caps::{Ability, Need};
 use crate::plan::PICTURE_FORMAT;
