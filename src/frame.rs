@@ -79,11 +79,17 @@ impl View {
 
     /// Clip space from world space: y down as in Vulkan, depth reversed.
     pub fn clip_from_world(&self) -> Mat4 {
-        let aspect = self.extent.width as f32 / self.extent.height as f32;
-        self.clip_from_view(aspect) * self.camera.world_from_view.inverse()
+        self.clip_from_view() * self.camera.world_from_view.inverse()
     }
 
-    fn clip_from_view(&self, picture_aspect: f32) -> Mat4 {
+    /// Clip-space units for a metre to the right and up in view space, before the division.
+    pub fn clip_scale(&self) -> Vec2 {
+        let clip_from_view = self.clip_from_view();
+        Vec2::new(clip_from_view.x_axis.x, clip_from_view.y_axis.y)
+    }
+
+    fn clip_from_view(&self) -> Mat4 {
+        let picture_aspect = self.extent.width as f32 / self.extent.height as f32;
         match self.camera.projection {
             // A camera with an aspect of its own keeps its vertical angle; the picture's shape decides the width.
             Projection::Perspective { y_fov, aspect: _, z_near, z_far } => {
@@ -182,11 +188,10 @@ impl View {
         if lens == LensPlace::MIDDLE && placement == Placement::WHOLE {
             return block;
         }
-        let aspect = self.extent.width as f32 / self.extent.height as f32;
         let placing =
             Mat4::from_translation(placement.shift.extend(0.0)) * Mat4::from_scale(placement.scale.extend(1.0));
         let view_from_world = lens.shear() * self.camera.world_from_view.inverse();
-        let clip_from_world = placing * (self.clip_from_view(aspect) * view_from_world);
+        let clip_from_world = placing * (self.clip_from_view() * view_from_world);
         let world_from_clip = clip_from_world.as_dmat4().inverse().as_mat4();
         let [right, up, back] = self.axes();
         let aside = right * lens.at_m.x + up * lens.at_m.y;

@@ -21,7 +21,7 @@ const SCENE: &str = "cornell";
 const SIZE: &str = "96x54";
 
 /// A technique and settings that reach each choice that devices make (`auto`), and each kind of resource.
-const CASES: [&str; 23] = [
+const CASES: [&str; 24] = [
     "interleaved_deferred",
     "interleaved_deferred --split tile",
     "interleaved_deferred --split layered",
@@ -30,6 +30,7 @@ const CASES: [&str; 23] = [
     "inferred_lighting",
     "inferred_lighting --msaa 4",
     "deep_shading",
+    "deep_shading --shade-by fragment",
     "deep_shading --visibility repeat-draw",
     "deep_shading --visibility stochastic",
     "deep_shading --visibility ray",
@@ -280,7 +281,7 @@ fn require_same_bytes(tried: &[Tried]) {
         // How work is shared out among threads takes no memory.
         let is_of_threads = |key: &str| ["texels", "cull-by"].contains(&key);
         let choices: Vec<_> = resolved.iter().filter(|(key, _)| !is_of_threads(key)).collect();
-        let key = format!("{case} {choices:?} {}", caps.features.draw_indirect_count);
+        let key = format!("{case} {choices:?}");
         let (expected, other) = *asked.entry(key).or_insert((bytes, name));
         assert_eq!(bytes, expected, "{case}: {name} and {other}");
     }
@@ -333,20 +334,20 @@ fn files_say_what_is_known_of_their_devices() {
     let has = |ability: fn(&Caps) -> bool| -> Vec<&str> {
         known::names().filter(|name| ability(&known::caps(name).unwrap())).collect()
     };
-    let gpus = ["amd-polaris10", "amd-navi21", "intel-arc-a770", "intel-iris-xe", "nvidia-rtx-2070"];
+    let gpus = ["amd-polaris10", "amd-navi21", "intel-arc-a770", "intel-iris-xe", "nvidia-h200", "nvidia-rtx-2070"];
     // Since Vega, Maxwell 2 and Gen 9; Polaris is before.
-    let conservative = ["amd-navi21", "intel-arc-a770", "intel-iris-xe", "nvidia-rtx-2070"];
+    let conservative = ["amd-navi21", "intel-arc-a770", "intel-iris-xe", "nvidia-h200", "nvidia-rtx-2070"];
     assert_eq!(has(|caps| caps.conservative.is_some_and(|rules| rules.draws_degenerate_triangles)), conservative);
     // RDNA 2, Xe-HPG and Turing have units for rays; lavapipe walks them.
     assert_eq!(
         has(|caps| caps.features.ray_query),
         ["lavapipe-25.0.7", "amd-navi21", "intel-arc-a770", "nvidia-rtx-2070"]
     );
-    assert_eq!(has(|caps| caps.limits.max_image_side_px > 16384), ["nvidia-rtx-2070"]);
+    assert_eq!(has(|caps| caps.limits.max_image_side_px > 16384), ["nvidia-h200", "nvidia-rtx-2070"]);
     assert_eq!(has(|caps| caps.formats.float_depth_sample_counts.contains(&8)), gpus);
     assert_eq!(
         has(|caps| caps.heaps.len() > 1),
-        ["amd-polaris10", "amd-navi21", "intel-arc-a770", "nvidia-rtx-2070", "least-1.3"]
+        ["amd-polaris10", "amd-navi21", "intel-arc-a770", "nvidia-h200", "nvidia-rtx-2070", "least-1.3"]
     );
     for name in gpus {
         let lacking: Vec<String> = ALL

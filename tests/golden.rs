@@ -203,6 +203,7 @@ fn chess_deep() {
         ("spp", "4"),
         ("direct-shadow", "map"),
         ("shadow-map-size", "256"),
+        ("shade-by", "fragment"),
         ("conservative", "vertex"),
     ];
     require_golden("chess_deep", "chess:triangles=12000", "deep_shading", &changes);

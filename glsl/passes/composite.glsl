@@ -29,7 +29,6 @@ layout(set = 0, binding = 43) uniform usampler2D gbuffer_emissive;
 #endif
 
 #include "bvh_walk.glsl"
-#include "shading/shade_lights.glsl"
 
 // What few materials say (shading/extras.glsl).
 uint extras_at(uvec2 pixel) {
@@ -48,14 +47,10 @@ vec3 emitted_at(uvec2 pixel) {
 #endif
 }
 
-// What a thread shades: TEXELS pixels of a column inside one tile, so that they have one light list, which is read once.
-Surface point_surface[TEXELS];
-vec3 point_position_ws[TEXELS];
-vec3 point_normal_ws[TEXELS];
-vec3 point_eye_ws[TEXELS];
-bool point_has_surface[TEXELS];
-// Radiance towards the eye from all punctual lights.
-vec3 point_direct[TEXELS];
+// A thread shades TEXELS pixels of a column inside one tile, so that they have one light list. Their radiance is that of all punctual
+// lights.
+#include "shading/lit_points.glsl"
+
 // Part of the ambient light that arrives; read where SURFACE_EXTRAS is 1 only.
 float point_openness[TEXELS];
 
@@ -75,7 +70,7 @@ void set_point(uint i, bool needs_position) {
     uvec2 normal_bits = normal_words(pixel);
     vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
     vec3 base_color = unpack_halves(texelFetch(gbuffer_color, ivec2(pixel), 0).rg);
-    point_has_surface[i] = is_in_frame(pixel_of_point(i)) && has_surface(normal_bits);
+    point_is_shaded[i] = is_in_frame(pixel_of_point(i)) && has_surface(normal_bits);
     point_surface[i] = Surface(base_color, roughness_metallic.y, roughness_metallic.x, DEFAULT_DIELECTRIC_F0);
     if (SURFACE_EXTRAS != 0u) {
         uint extras = extras_at(pixel);
@@ -98,29 +93,17 @@ vec3 ambient_of(uint i) {
     return reflected;
 }
 
-void add_light(LightBlock light) {
-    uint i = 0u;
-    for (; i < TEXELS; i++) {
-        if (point_has_surface[i]) {
-            precise vec3 sum = point_direct[i]
-                + shade_light(light, point_surface[i], point_position_ws[i], point_normal_ws[i], point_eye_ws[i]);
-            point_direct[i] = sum;
-        }
-    }
-    expect_done(i == TEXELS);
-}
-
 #include "shading/each_light.glsl"
 
 // All punctual lights, in the order of the list.
 void shade_points() {
     for (uint i = 0u; i < TEXELS; i++) {
-        point_direct[i] = vec3(0.0);
+        point_radiance[i] = vec3(0.0);
     }
     uvec2 last = uvec2(frame.width_px, frame.height_px) - 1u;
     add_each_light(frame, min(pixel_of_point(0u), last));
     for (uint i = 0u; i < TEXELS; i++) {
-        point_direct[i] = nan_if_cut(point_direct[i]);
+        point_radiance[i] = nan_if_cut(point_radiance[i]);
     }
 }
 

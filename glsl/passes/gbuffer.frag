@@ -54,7 +54,7 @@ void main() {
     out_emissive = pack_halves(emitted, extras);
 #endif
     vec2 metallic_roughness = metallic_roughness_at(material);
-    out_normal = pack_normal(normal_at(material), metallic_roughness.y, metallic_roughness.x);
+    out_normal = pack_normal(normal_at(material, to_eye(frame, in_position_ws)), metallic_roughness.y, metallic_roughness.x);
     out_color = pack_halves(base_color.rgb, in_material & 0xffffu);
 #if defined(POSITION_FLOAT)
     out_position = uvec4(floatBitsToUint(in_position_ws), 0u);

@@ -7,6 +7,7 @@
 
 #include "passes/cull.glsl"
 #include "shading/light.glsl"
+#include "shading/light_box.glsl"
 
 const uint THREADS = 64u;
 layout(local_size_x = 64) in;
@@ -14,30 +15,10 @@ layout(local_size_x = 64) in;
 layout(std430, set = 0, binding = 1) readonly buffer Lights { LightBlock lights[]; };
 layout(std430, set = 0, binding = 4) writeonly buffer LightMasks { uint light_masks[]; };
 
-// Around surface points; least beyond greatest where there are none.
-struct Box {
-    vec3 least;
-    vec3 greatest;
-};
-
-const Box NO_BOX = Box(vec3(1e30), vec3(-1e30));
-
 void include_pixel(inout Box box, uvec2 pixel) {
     if (has_surface_at(pixel)) {
-        vec3 position_ws = position_at(pixel);
-        box.least = min(box.least, position_ws);
-        box.greatest = max(box.greatest, position_ws);
+        include_point(box, position_at(pixel));
     }
-}
-
-bool is_touched(Box box, LightBlock light) {
-    vec3 center = light.position_ws.xyz;
-    vec3 away = max(max(box.least - center, center - box.greatest), vec3(0.0));
-    float range = light.intensity.w;
-    // A hair more than the range: rounding must never drop a light that the window still lets through.
-    bool touches = dot(away, away) <= range * range * 1.0001;
-    bool endless = is_directional(light) || range == 0.0;
-    return box.least.x <= box.greatest.x && (endless || touches);
 }
 
 #ifdef BY_INVOCATION

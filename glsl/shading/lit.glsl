@@ -18,7 +18,7 @@ struct Lit {
 Lit dark_at(MaterialBlock material, vec3 base_color) {
     Lit lit;
     vec2 metallic_roughness = metallic_roughness_at(material);
-    lit.normal_ws = normal_at(material);
+    lit.normal_ws = normal_at(material, to_eye(frame, in_position_ws));
     lit.surface = Surface(base_color, metallic_roughness.x, metallic_roughness.y, DEFAULT_DIELECTRIC_F0);
     float openness = 1.0;
     if (SURFACE_EXTRAS != 0u) {

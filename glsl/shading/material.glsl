@@ -146,8 +146,10 @@ uint extras_at(MaterialBlock material) {
     return pack_extras((material.flags >> MATERIAL_F0_SHIFT) & 0xffu, openness);
 }
 
-// Unit shading normal, on the viewer's side where the material is double-sided.
-vec3 normal_at(MaterialBlock material) {
+// Unit shading normal, on the viewer's side where the material is double-sided. What has none, as a mesh in the moment that a
+// scale turns it inside out, faces the eye: compilers may take it that no number is NaN, and would light NaN as they like.
+vec3 normal_at(MaterialBlock material, vec3 to_eye_ws) {
+    bool is_known = dot(in_normal_ws, in_normal_ws) > 0.0;
     vec3 normal = normalize(in_normal_ws);
     if ((material.flags & MATERIAL_NORMAL_TEXTURE) != 0u && in_tangent_ws.xyz != vec3(0.0)) {
         vec3 tangent = normalize(in_tangent_ws.xyz);
@@ -159,7 +161,8 @@ vec3 normal_at(MaterialBlock material) {
         normal = dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
     }
     bool turned = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u && !in_front_facing;
-    return turned ? -normal : normal;
+    vec3 front = turned ? -normal : normal;
+    return is_known ? front : to_eye_ws;
 }
 
 #endif

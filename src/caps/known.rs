@@ -17,6 +17,7 @@ const KNOWN: &[(&str, &str)] = known!(
     "amd-navi21",
     "intel-arc-a770",
     "intel-iris-xe",
+    "nvidia-h200",
     "nvidia-rtx-2070",
     "tiler-roadmap-2022",
     "least-1.3"

@@ -299,9 +299,6 @@ fn least_shared_memory_bytes() -> u32 {
 pub struct Features {
     pub geometry_shader: bool,
     pub layer_from_vertex_shader: bool,
-    /// A buffer says how many draws there are; absent from older files.
-    #[serde(default)]
-    pub draw_indirect_count: bool,
     pub fragment_stores_and_atomics: bool,
     /// False in caps files older than this field.
     #[serde(default)]

@@ -85,8 +85,6 @@ abilities! {
     GeometryShader: "geometryShader", "geometry shaders", |caps| caps.features.geometry_shader;
     /// Vertex shaders choose the layer that is drawn into.
     LayerFromVertex: "shaderOutputLayer", "layers from vertex shaders", |caps| caps.features.layer_from_vertex_shader;
-    /// A buffer says how many draws there are.
-    CountedDraws: "drawIndirectCount", "draws counted by buffers", |caps| caps.features.draw_indirect_count;
     /// Shaders calculate with floats of 16 bits.
     HalfFloats: "shaderFloat16", "16-bit floats", |caps| caps.features.shader_float16;
     /// Shaders keep the greatest of 64 bits in storage buffers.

@@ -6,10 +6,10 @@
 use super::access::AccessSet;
 use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
-use super::pipeline::{ComputePipeline, GraphicsPipeline};
+use super::pipeline::GraphicsPipeline;
 use super::statistics::Statistics;
 use super::timing::{Clock, Timestamps};
-use super::{Access, Buffer, Gpu, bands};
+use super::{Access, Buffer, Gpu};
 use crate::error::{Error, Result};
 use crate::gpu::barrier::{Barrier, Target};
 use crate::gpu::interface::Interface;
@@ -86,7 +86,7 @@ pub struct Commands {
     pub(super) limit: Option<Duration>,
     pool: vk::CommandPool,
     pub(super) pieces: Vec<Piece>,
-    descriptors: Descriptors,
+    pub(super) descriptors: Descriptors,
     pub(super) passes: Vec<RecordedPass>,
     pub(super) timestamps: Option<Timestamps>,
     pub(super) statistics: Option<Statistics>,
@@ -315,7 +315,7 @@ impl Commands {
     }
 
     /// Binds a set that was made for `interface` as set 0.
-    fn bind_set(&self, point: vk::PipelineBindPoint, interface: &Interface, set: Option<vk::DescriptorSet>) {
+    pub(super) fn bind_set(&self, point: vk::PipelineBindPoint, interface: &Interface, set: Option<vk::DescriptorSet>) {
         let Some(set) = set else { return };
         // SAFETY: the buffer is being recorded; the set was made for this layout and outlives the recorded frame.
         unsafe {
@@ -341,66 +341,8 @@ impl Commands {
         }
     }
 
-    /// Binds and dispatches `groups` workgroups.
-    pub fn dispatch(
-        &mut self,
-        pipeline: &ComputePipeline,
-        params: &[u8],
-        bound: &[(&str, Bound<'_>)],
-        groups: [u32; 3],
-    ) -> Result<()> {
-        let limit = self.gpu.caps.limits.max_workgroup_count;
-        if (0..3).any(|axis| groups[axis] > limit[axis]) {
-            let label = &pipeline.interface.label;
-            return Err(Error::request(format!("{label}: {groups:?} workgroups: this device allows {limit:?}")));
-        }
-        let set = self.descriptors.set(&pipeline.interface, bound)?;
-        if self.limit.is_none() || self.statistics.is_some() {
-            self.bind_compute(pipeline, params, set);
-            // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers.
-            unsafe { self.gpu.device.cmd_dispatch(self.buffer(), groups[0], groups[1], groups[2]) };
-            return Ok(());
-        }
-        for ([x, y, z], [width, height, depth]) in bands::bands(groups) {
-            if [x, y, z] != [0; 3] {
-                self.next_band()?;
-            }
-            self.bind_compute(pipeline, params, set);
-            // SAFETY: as above; the band lies in the dispatch, whose pipeline was made for bases.
-            unsafe { self.gpu.device.cmd_dispatch_base(self.buffer(), x, y, z, width, height, depth) };
-        }
-        Ok(())
-    }
-
-    /// Binds and dispatches as many workgroups as the device has written at the beginning of `groups`, whose last access
-    /// was `IndirectRead`. It is one submit whatever `Recording::limit` says: only the device knows what it could be cut
-    /// into.
-    pub fn dispatch_indirect(
-        &mut self,
-        pipeline: &ComputePipeline,
-        params: &[u8],
-        bound: &[(&str, Bound<'_>)],
-        groups: &Buffer,
-    ) -> Result<()> {
-        let set = self.descriptors.set(&pipeline.interface, bound)?;
-        self.bind_compute(pipeline, params, set);
-        // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers, and the buffer's shader keeps
-        // the numbers within the limits that every device has.
-        unsafe { self.gpu.device.cmd_dispatch_indirect(self.buffer(), groups.handle, 0) };
-        Ok(())
-    }
-
-    /// Binds what a dispatch needs: again in every command buffer.
-    fn bind_compute(&mut self, pipeline: &ComputePipeline, params: &[u8], set: Option<vk::DescriptorSet>) {
-        let point = vk::PipelineBindPoint::COMPUTE;
-        // SAFETY: the buffer is being recorded and the pipeline outlives the recorded frame.
-        unsafe { self.gpu.device.cmd_bind_pipeline(self.buffer(), point, pipeline.handle()) };
-        self.bind_set(point, &pipeline.interface, set);
-        self.push(&pipeline.interface, params);
-    }
-
     /// Goes on with the pass in another command buffer.
-    fn next_band(&mut self) -> Result<()> {
+    pub(super) fn next_band(&mut self) -> Result<()> {
         self.gpu.label(self.buffer(), None);
         self.end_buffer()?;
         self.next_piece()?;

@@ -307,8 +307,7 @@ impl Gpu {
             // Every device of Vulkan 1.3 has it.
             .buffer_device_address(true)
             .shader_output_layer(caps.features.layer_from_vertex_shader)
-            .shader_buffer_int64_atomics(caps.features.shader_int64_atomics)
-            .draw_indirect_count(caps.features.draw_indirect_count);
+            .shader_buffer_int64_atomics(caps.features.shader_int64_atomics);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
         let extension_names = probe::used_extensions(&instance, physical, &caps);

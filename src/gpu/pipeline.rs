@@ -87,6 +87,16 @@ impl ComputePipeline {
     ///
     /// Errors: the driver refuses (exit code 4).
     pub fn new(gpu: &Arc<Gpu>, shader: &Shader, constants: Constants<'_>) -> Result<Self> {
+        Self::with_sets(gpu, shader, constants, &[])
+    }
+
+    /// The same with sets from 1 on that were made elsewhere: `foreign`, their layouts.
+    pub fn with_sets(
+        gpu: &Arc<Gpu>,
+        shader: &Shader,
+        constants: Constants<'_>,
+        foreign: &[vk::DescriptorSetLayout],
+    ) -> Result<Self> {
         assert_constants_exist(&[shader], constants);
         let workgroup = shader.workgroup.map(|side| match side {
             Side::Fixed(value) => value,
@@ -102,7 +112,7 @@ impl ComputePipeline {
             "{}: a workgroup of {workgroup:?}: this device allows {most_size:?}, {most} in all",
             shader.label()
         );
-        let interface = Interface::new(gpu, &[shader], &[])?;
+        let interface = Interface::new(gpu, &[shader], foreign)?;
         let make = || Self::make(gpu, shader, constants, interface.layout);
         let stored = gpu.pipelines.get(&gpu.device, Recipe::compute(shader, constants), make)?;
         Ok(Self { stored, interface, workgroup })

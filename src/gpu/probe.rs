@@ -185,7 +185,6 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
         features: Features {
             geometry_shader: features.geometry_shader != 0,
             layer_from_vertex_shader: features12.shader_output_layer != 0,
-            draw_indirect_count: features12.draw_indirect_count != 0,
             fragment_stores_and_atomics: features.fragment_stores_and_atomics != 0,
             depth_clamp: features.depth_clamp != 0,
             occlusion_query_precise: features.occlusion_query_precise != 0,

@@ -47,12 +47,4 @@ impl Commands {
         // SAFETY: as above; the regions lie in both.
         unsafe { self.gpu().device.cmd_copy_buffer_to_image(self.buffer(), from, to, layout, &regions) };
     }
-
-    /// Copies a 32-bit word of `source`, made with TRANSFER_SRC, to the start of `target`, made with TRANSFER_DST.
-    pub fn copy_word(&mut self, source: &Buffer, word: u64, target: &Buffer) {
-        let region = vk::BufferCopy { src_offset: 4 * word, dst_offset: 0, size: 4 };
-        assert!(4 * (word + 1) <= source.bytes, "{}: no word {word} in {} bytes", source.name, source.bytes);
-        // SAFETY: as above; the region lies in both.
-        unsafe { self.gpu().device.cmd_copy_buffer(self.buffer(), source.handle, target.handle, &[region]) };
-    }
 }

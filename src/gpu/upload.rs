@@ -2,7 +2,7 @@
 
 use super::access::AccessSet;
 use super::commands::Submits;
-use super::{Access, Buffer, Commands, Gpu, Image};
+use super::{Access, Barrier, Buffer, Commands, Gpu, Image};
 use crate::error::Result;
 use crate::memory::kinds::Use;
 use ash::vk;
@@ -46,23 +46,33 @@ pub fn buffer_with(
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
     cmd.copy_buffer(&staging, target);
-    let mut last = AccessSet::from(Access::TransferWrite);
-    for reader in readers.into().iter() {
-        cmd.barriers([target.from(last).to(reader)]);
-        last = reader.into();
-    }
+    make_readable(&mut cmd, readers, |last, reader| target.from(last).to(reader));
     cmd.finish()?.run()?;
     Ok(())
 }
 
+/// Leaves what was copied readable by each of `readers`, by barriers that `to` makes from the last access and the next.
+fn make_readable(cmd: &mut Commands, readers: impl Into<AccessSet>, to: impl Fn(AccessSet, Access) -> Barrier) {
+    let mut last = AccessSet::from(Access::TransferWrite);
+    for reader in readers.into().iter() {
+        cmd.barriers([to(last, reader)]);
+        last = last.after(reader);
+    }
+}
+
 /// Fills the levels of `target` with what `fill` writes: finest first and one after the other, each with its layers. Leaves
-/// it readable as `access`.
-pub fn image(gpu: &Arc<Gpu>, target: &Image, access: Access, fill: impl FnOnce(&mut [u8])) -> Result<()> {
+/// it readable by `readers`, which have one layout.
+pub fn image(
+    gpu: &Arc<Gpu>,
+    target: &Image,
+    readers: impl Into<AccessSet>,
+    fill: impl FnOnce(&mut [u8]),
+) -> Result<()> {
     let staging = staging(gpu, &target.name, target.description.bytes(), fill)?;
     let mut cmd = Commands::begin(gpu, "upload", Submits::One)?;
     cmd.barriers([target.discard(Access::TransferWrite)]);
     cmd.copy_to_image(&staging, target);
-    cmd.barriers([target.from(Access::TransferWrite).to(access)]);
+    make_readable(&mut cmd, readers, |last, reader| target.from(last).to(reader));
     cmd.finish()?.run()?;
     Ok(())
 }

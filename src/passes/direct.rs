@@ -11,6 +11,7 @@ use crate::gpu::{Access, Barrier, Bound, Buffer, Edge, Gpu, upload};
 use crate::lights::LightSet;
 use crate::passes::cull;
 use crate::passes::texels::{LightLoad, Texels};
+use crate::passes::workgroup::workgroup;
 use crate::plan::{Plan, Resources};
 use crate::scene::{Material, Scene};
 use crate::settings::{Brdf, CullBy, CullChoice, DirectShadow, PositionStorage, Values};
@@ -159,7 +160,7 @@ impl ShadingSettings {
             position,
             cull,
             cull_by: CullBy::new(values, caps),
-            workgroup: values.pair("workgroup"),
+            workgroup: workgroup(values, caps),
             texels: Texels::new(values, caps),
         }
     }

@@ -17,3 +17,4 @@ pub mod resolve;
 pub mod samples;
 pub mod shadow_maps;
 pub mod texels;
+pub mod workgroup;

@@ -7,23 +7,29 @@
 //!
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
+mod clipped;
 mod clusters;
+mod disc;
 mod draw_call;
+mod draw_view;
 pub mod geometry;
 mod material_blocks;
 mod raster;
 mod relief;
 mod stats;
 pub mod structure;
+mod swept;
 mod textures;
 pub mod traced;
 mod visible;
 pub mod volume;
 
 pub use clusters::Cluster;
+pub use disc::LensDisc;
 pub use geometry::{Geometry, groups_of};
 pub use raster::{Coverage, Raster};
 pub use relief::advise;
+pub use swept::Sweep;
 pub use textures::Textures;
 pub use visible::DrawList;
 
@@ -118,8 +124,8 @@ impl SceneGpu {
         let textures = kept.map_or_else(|| Textures::new(gpu, scene, &stats).map(Arc::new), Ok)?;
         let geometry = Geometry::of(scene);
         // Vertex inputs, and what shaders fetch for themselves.
-        let vertices = Access::VertexRead | Access::GraphicsRead;
-        let shaders = AccessSet::from(Access::GraphicsRead);
+        let shaders = Access::GraphicsRead | Access::ComputeRead;
+        let vertices = shaders.with(Access::VertexRead);
         let mut sent = |name: &str, bytes: &[u8], accesses: AccessSet| -> Result<Arc<Buffer>> {
             let buffer = resources.buffer(name);
             upload::buffer(gpu, &buffer, bytes, accesses)?;

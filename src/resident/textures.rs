@@ -6,7 +6,7 @@
 use super::SceneStats;
 use crate::error::{Error, Result};
 use crate::gpu::sampler::Sampler;
-use crate::gpu::{Access, Gpu, Image, upload};
+use crate::gpu::{Access, AccessSet, Gpu, Image, upload};
 use crate::plan::{Plan, Resources, Sharing};
 use crate::resident::stats::distinct_images;
 use crate::scene::{self, ColorSpace, Scene, Texture, TextureSlot, Wrap, mipmaps};
@@ -17,6 +17,11 @@ use std::sync::Arc;
 
 /// Textures of a material, in the order of set 1's bindings.
 const TEXTURES_PER_MATERIAL: usize = TextureSlot::ALL.len();
+
+/// Who reads textures: all in one layout.
+fn readers() -> AccessSet {
+    Access::FragmentSample | Access::ComputeSample
+}
 
 /// Pictures in their colour spaces, with all levels.
 pub struct Textures {
@@ -43,11 +48,11 @@ impl Textures {
             let all = mipmaps::level_count(image.width, image.height);
             let levels = all - target.description.level_count..all;
             let fill = |bytes: &mut [u8]| mipmaps::write(image, *color_space, levels, bytes);
-            upload::image(gpu, &target, Access::FragmentSample, fill)?;
+            upload::image(gpu, &target, readers(), fill)?;
             images.push(target);
         }
         let white = resources.image("scene.textures.white");
-        upload::image(gpu, &white, Access::FragmentSample, |bytes| bytes.fill(255))?;
+        upload::image(gpu, &white, readers(), |bytes| bytes.fill(255))?;
         images.push(white);
         Ok(Self { sources, texture_limit_px: scene.texture_limit_px, images })
     }
@@ -155,7 +160,7 @@ fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATE
                 .binding(binding)
                 .descriptor_type(kind)
                 .descriptor_count(1)
-                .stage_flags(vk::ShaderStageFlags::FRAGMENT)
+                .stage_flags(vk::ShaderStageFlags::FRAGMENT | vk::ShaderStageFlags::COMPUTE)
         })
         .collect();
     let fail = |result| Error::device(format!("making the descriptor sets of {} materials: {result}", infos.len()));

@@ -12,18 +12,11 @@
 //! same order, in which what was left out has no say: the same bits on every device.
 
 use super::raster::{Coverage, Raster};
+use super::swept::{Sweep, SweptView};
 use super::{Cluster, ClusteredCalls, DrawCall, SceneGpu, Sides};
 use crate::frame::View;
-use crate::scene::{AlphaMode, Bounds, Projection, Scene};
+use crate::scene::{AlphaMode, Scene};
 use crate::settings::GeometryChoice;
-use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
-
-/// Rounding of a clip-space number that two products with a matrix made in 32 bits, as a part of the sum of its terms'
-/// magnitudes: eight roundings of 2^-24 each, doubled.
-const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
-
-/// Pixels by which a device may move a corner: Vulkan demands four bits below the pixel.
-const SNAP_PX: f64 = 1.0 / 16.0;
 
 /// The solid part of a scene as a view needs it: ranges of draws, nearest first, clusters that follow each other as one.
 #[derive(Default)]
@@ -35,8 +28,16 @@ pub struct DrawList {
 }
 
 impl DrawList {
-    pub fn new(scene: &Scene, resident: &SceneGpu, view: &View, raster: Raster, choice: GeometryChoice) -> Self {
-        Self::of(scene, &resident.clustered(&resident.calls), view, raster, choice)
+    /// `sweep`: from where and until when `view` sees, which is as the shutter opens.
+    pub fn new(
+        scene: &Scene,
+        resident: &SceneGpu,
+        view: &View,
+        raster: Raster,
+        choice: GeometryChoice,
+        sweep: Sweep<'_>,
+    ) -> Self {
+        Self::of(scene, &resident.clustered(&resident.calls), view, raster, choice, sweep)
     }
 
     /// What casts shadows into a map that is drawn from `view`: both sides of every triangle, as shadow rays meet both. `scene`:
@@ -45,21 +46,28 @@ impl DrawList {
         let both_sides = |call: &DrawCall| DrawCall { sides: Sides::Both, ..*call };
         let calls: Vec<DrawCall> = resident.calls.iter().map(both_sides).collect();
         let raster = Raster { extent: view.extent, coverage: Coverage::Middle };
-        Self::of(scene, &resident.clustered(&calls), view, raster, choice)
+        Self::of(scene, &resident.clustered(&calls), view, raster, choice, Sweep::default())
     }
 
-    fn of(scene: &Scene, clustered: &ClusteredCalls<'_>, view: &View, raster: Raster, choice: GeometryChoice) -> Self {
+    pub(super) fn of(
+        scene: &Scene,
+        clustered: &ClusteredCalls<'_>,
+        view: &View,
+        raster: Raster,
+        choice: GeometryChoice,
+        sweep: Sweep<'_>,
+    ) -> Self {
         let ClusteredCalls { calls, clusters, indices } = *clustered;
         let mut kept: Vec<(f64, DrawCall)> = Vec::new();
         let mut clusters_culled = 0;
         for call in calls.iter().filter(|call| call.alpha != AlphaMode::Blend) {
-            let draw_view = DrawView::new(scene, call, view, raster);
+            let swept = SweptView::new(scene, call, view, raster, sweep);
             for cluster in &clusters[call.clusters()] {
-                if choice == GeometryChoice::Culled && draw_view.sees_nothing_of(cluster, &indices[cluster.indices()]) {
+                if choice == GeometryChoice::Culled && swept.sees_nothing_of(cluster, &indices[cluster.indices()]) {
                     clusters_culled += 1;
                 } else {
                     let Cluster { first_index, index_count, bounds } = *cluster;
-                    kept.push((draw_view.distance(&bounds), DrawCall { first_index, index_count, ..*call }));
+                    kept.push((swept.open.distance(&bounds), DrawCall { first_index, index_count, ..*call }));
                 }
             }
         }
@@ -98,165 +106,14 @@ impl DrawList {
     }
 }
 
-/// A view of one draw.
-struct DrawView<'a> {
-    positions: &'a [Vec3],
-    sides: Sides,
-    mirrored: bool,
-    coverage: Coverage,
-    extent_px: DVec2,
-    clip_from_object: DMat4,
-    /// The same from the magnitudes of all numbers: what rounding is a part of.
-    magnitude_from_object: DMat4,
-    world_from_object: DMat4,
-    eye_ws: DVec3,
-    /// Direction of view of an orthographic camera, which has no eye.
-    forward_ws: Option<DVec3>,
-}
-
-/// A point in clip space and how far rounding may have moved each of its coordinates.
-#[derive(Clone, Copy)]
-struct Clipped {
-    at: DVec4,
-    error: DVec4,
-    /// How far a picture that is moved moves x and y: all points alike, which turns no triangle round.
-    reach: DVec2,
-}
-
-impl Clipped {
-    /// Distances to the six planes that clip, each times something positive; inside is 0 and above.
-    fn inside(&self) -> [f64; 6] {
-        let [x, y, z, w] = self.at.to_array();
-        // Depth is reversed: w at the near plane, 0 at the far one, which an infinite one never reaches.
-        [w + x, w - x, w + y, w - y, w - z, z]
-    }
-
-    /// By how much each of them may be wrong.
-    fn errors(&self) -> [f64; 6] {
-        let [x, y, z, w] = self.error.to_array();
-        let [x, y] = [x + self.reach.x, y + self.reach.y];
-        [w + x, w + x, w + y, w + y, w + z, z]
-    }
-}
-
-impl<'a> DrawView<'a> {
-    fn new(scene: &'a Scene, call: &DrawCall, view: &View, raster: Raster) -> Self {
-        let draw = &scene.draws[call.draw as usize];
-        let (clip_from_world, world_from_object) =
-            (view.clip_from_world().as_dmat4(), draw.world_from_object.as_dmat4());
-        let magnitudes = |m: DMat4| DMat4::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs(), m.w_axis.abs());
-        let forward_ws = match view.camera.projection {
-            Projection::Perspective { .. } => None,
-            Projection::Orthographic { .. } => Some(-view.camera.world_from_view.z_axis.truncate().as_dvec3()),
-        };
-        Self {
-            positions: &scene.meshes[draw.mesh].positions,
-            sides: call.sides,
-            mirrored: call.mirrored,
-            coverage: raster.coverage,
-            extent_px: DVec2::new(f64::from(raster.extent.width), f64::from(raster.extent.height)),
-            clip_from_object: clip_from_world * world_from_object,
-            magnitude_from_object: magnitudes(clip_from_world) * magnitudes(world_from_object),
-            world_from_object,
-            eye_ws: view.eye().as_dvec3(),
-            forward_ws,
-        }
-    }
-
-    fn clipped(&self, position: Vec3) -> Clipped {
-        let position = position.as_dvec3().extend(1.0);
-        self.point(self.clip_from_object * position, ROUNDING * (self.magnitude_from_object * position.abs()))
-    }
-
-    fn point(&self, at: DVec4, error: DVec4) -> Clipped {
-        let reach = match self.coverage {
-            Coverage::Middle => DVec2::ZERO,
-            // Half a pixel.
-            Coverage::Anywhere => at.w.abs() / self.extent_px,
-        };
-        Clipped { at, error, reach }
-    }
-
-    /// True: no triangle of the cluster can make a fragment. `indices`: the cluster's.
-    fn sees_nothing_of(&self, cluster: &Cluster, indices: &[u32]) -> bool {
-        let corners = cluster.bounds.corners().map(|corner| self.clipped(corner));
-        if outside_one_plane(&corners) {
-            return true;
-        }
-        if self.sides != Sides::Fronts {
-            return false;
-        }
-        // No point of the box has a greater one than the worst corner.
-        let error = corners.into_iter().fold(DVec4::ZERO, |most, corner| most.max(corner.error));
-        indices.chunks_exact(3).all(|triangle| {
-            let corners = [0, 1, 2].map(|corner| {
-                let position = self.positions[triangle[corner] as usize];
-                self.point(self.clip_from_object * position.as_dvec3().extend(1.0), error)
-            });
-            outside_one_plane(&corners) || self.faces_away(&corners)
-        })
-    }
-
-    /// True: the triangle's back is seen, or it is too small to hold a pixel's middle, where middles count. Every corner
-    /// must be inside the planes that clip: what is clipped falls into thin pieces, which a device may snap to another facing.
-    fn faces_away(&self, corners: &[Clipped; 3]) -> bool {
-        let surely_inside = |corner: &Clipped| {
-            let errors = corner.errors();
-            corner.inside().iter().zip(errors).all(|(inside, error)| *inside > error)
-        };
-        if !corners.iter().all(surely_inside) {
-            return false;
-        }
-        let least_w = corners.iter().map(|corner| corner.at.w).fold(f64::INFINITY, f64::min);
-        let error = corners[0].error;
-        // Pixels by which rounding and snapping move a corner along one axis at most.
-        let moved = self.extent_px.max_element() * (ROUNDING + (error.x.max(error.y) + error.w) / least_w) + SNAP_PX;
-        let [a, b, c] =
-            corners.map(|corner| (DVec2::new(corner.at.x, corner.at.y) / corner.at.w * 0.5 + 0.5) * self.extent_px);
-        let (ab, ac) = (b - a, c - a);
-        // Clockwise in a picture whose y points down is the back, and a mirror turns it round.
-        let back = if self.mirrored { -ab.perp_dot(ac) } else { ab.perp_dot(ac) };
-        // Each edge may change by twice what a corner moves, along both axes.
-        let change = 2.0 * std::f64::consts::SQRT_2 * moved;
-        if back > change * (ab.length() + ac.length() + change) {
-            return true;
-        }
-        if self.coverage == Coverage::Anywhere {
-            return false;
-        }
-        // Too small to know its side: no fragment either where it holds no pixel's middle.
-        let (low, high) = (a.min(b).min(c) - moved - 0.5, a.max(b).max(c) + moved - 0.5);
-        low.ceil().cmpgt(high.floor()).any()
-    }
-
-    /// Metres from the eye, or from its plane, to the nearest point of the box's own box in world space.
-    fn distance(&self, bounds: &Bounds) -> f64 {
-        let corners = bounds.corners().map(|corner| self.world_from_object.transform_point3(corner.as_dvec3()));
-        match self.forward_ws {
-            Some(forward) => {
-                corners.iter().map(|corner| forward.dot(*corner - self.eye_ws)).fold(f64::INFINITY, f64::min)
-            }
-            None => {
-                let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
-                let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
-                self.eye_ws.clamp(low, high).distance(self.eye_ws)
-            }
-        }
-    }
-}
-
-/// True: for one plane, all points are surely outside of it.
-fn outside_one_plane(points: &[Clipped]) -> bool {
-    (0..6).any(|plane| points.iter().all(|point| point.inside()[plane] < -point.errors()[plane]))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::clipped::Clipped;
     use super::super::geometry::Geometry;
     use super::*;
-    use crate::scene::{Camera, Draw, Material, Mesh};
+    use crate::scene::{Camera, Draw, Material, Mesh, Projection};
     use crate::units::Extent;
-    use glam::{Mat4, Quat};
+    use glam::{DVec2, DVec4, Mat4, Quat, Vec3};
     use proptest::prelude::*;
 
     /// A square from -1 to 1 that bulges by `height` towards +z, where its front is: four clusters.
@@ -284,7 +141,7 @@ mod tests {
         let geometry = Geometry::of(scene);
         let calls = geometry.calls(scene);
         let clustered = ClusteredCalls { calls: &calls, clusters: &geometry.clusters, indices: &geometry.indices };
-        DrawList::of(scene, &clustered, view, Raster { extent: view.extent, coverage }, choice)
+        DrawList::of(scene, &clustered, view, Raster { extent: view.extent, coverage }, choice, Sweep::default())
     }
 
     fn view(eye: Vec3, at: Vec3, projection: Projection) -> View {

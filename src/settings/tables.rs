@@ -200,8 +200,10 @@ pub const BRDF: Setting = Setting {
 pub const WORKGROUP: Setting = Setting {
     key: "workgroup",
     kind: Kind::Pair { min: 1, max: 256 },
-    default: "64x1",
-    help: "Width and height of compute workgroups, in invocations",
+    auto: true,
+    default: "auto",
+    help: "Width and height of compute workgroups, in invocations; auto: 64x1 on software drivers, 16x16 on GPUs that \
+           allow it; the same picture",
     ..Setting::changing(Changes::Nothing)
 };
 

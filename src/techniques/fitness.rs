@@ -4,6 +4,7 @@
 use super::Technique;
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
+use crate::passes::workgroup::workgroup;
 use crate::settings::{Kind, Values, WORKGROUP};
 use crate::techniques::settings_of;
 
@@ -22,7 +23,7 @@ pub struct Fitness {
 /// the scene has BLEND surfaces.
 pub fn require(technique: &dyn Technique, values: &Values, caps: &Caps, has_blend: bool) -> Result<()> {
     if reads_workgroup(technique) {
-        require_workgroup(values.pair(WORKGROUP.key), caps).map_err(|error| error.within(technique.name()))?;
+        require_workgroup(workgroup(values, caps), caps).map_err(|error| error.within(technique.name()))?;
     }
     match unmet(technique, values, caps, has_blend).first() {
         Some(need) => Err(need.refusal(caps).within(technique.name())),

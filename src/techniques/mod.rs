@@ -35,7 +35,7 @@ use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
 use crate::picture::Aov;
 use crate::plan::{Plan, Requirements, Resources};
-use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats};
+use crate::resident::{Coverage, DrawList, Raster, SceneGpu, SceneStats, Sweep};
 use crate::sampling::pattern::Pattern;
 use crate::scene::Scene;
 use crate::settings::{COMMON, DirectShadow, EMISSIVE, INSTRUMENT, Setting, Values};
@@ -81,7 +81,7 @@ impl Inputs<'_> {
 
     /// The same, drawn into images of another extent than the picture's.
     fn draw_list_into(&self, scene: &SceneGpu, raster: Raster) -> DrawList {
-        DrawList::new(self.scene, scene, self.view, raster, self.values.choice("geometry"))
+        DrawList::new(self.scene, scene, self.view, raster, self.values.choice("geometry"), Sweep::default())
     }
 }
 

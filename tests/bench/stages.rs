@@ -32,7 +32,7 @@ type Changes = &'static [(&'static str, &'static str)];
 
 /// Settings of other methods, whose passes a stage of a technique names too.
 const OTHERS: &[(&str, &str, Changes)] = &[
-    ("deep_shading", "shade", &[("lists", "none")]),
+    ("deep_shading", "shade", &[("shade-by", "fragment")]),
     ("deep_shading", "shade", &[("shading", "indirect-gbuffer")]),
     ("inferred_lighting", "light", &[("volumes", "quad")]),
 ];

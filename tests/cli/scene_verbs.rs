@@ -138,10 +138,10 @@ fn export_writes_a_whole_glb_or_nothing() {
     let program = Program::new();
     let path = program.path("box.glb");
     let said = program.run(&["scene", "export", "cornell", "-o", &path]).fine().out;
-    assert!(said.contains("32 triangles"), "{said}");
+    assert!(said.contains("38 triangles"), "{said}");
     let bytes = std::fs::read(&path).unwrap();
     assert_eq!(bytes, encoded("cornell"));
-    assert_eq!(inspected(&program, &path)["triangles"], 32);
+    assert_eq!(inspected(&program, &path)["triangles"], 38);
     let other = program.path("other.glb");
     program.run(&["scene", "export", "lamps:objects=3,lights=2", "-o", &other, "--seed", "9"]).fine();
     assert_ne!(std::fs::read(&other).unwrap(), encoded("lamps:objects=3,lights=2"));

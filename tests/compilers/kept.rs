@@ -26,7 +26,7 @@ const MEASURED: [&str; 28] = [
     "deep_shading --spp 4 --aperture 0.1 --lists linked",
     "deep_shading --spp 4 --aperture 0.1 --lists none",
     "deep_shading --spp 4 --aperture 0.1 --visibility stochastic",
-    "deep_shading --spp 4 --aperture 0.1 --conservative geometry",
+    "deep_shading --spp 4 --aperture 0.1 --shade-by fragment --conservative geometry",
     "deep_shading --spp 4 --aperture 0.1 --shading ssaa",
     "deep_shading --spp 4 --aperture 0.1 --shading msaa",
     "deep_shading --spp 4 --aperture 0.1 --shading indirect-gbuffer",

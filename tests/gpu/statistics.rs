@@ -10,6 +10,7 @@ use quincunx::session::Renderer;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
+const FRAGMENT: (&str, &str) = ("shade-by", "fragment");
 const DEEP: &str = "deep_shading";
 /// Neither side is a multiple of a workgroup's, of a block of pixels or of 2.
 const SIZE: (&str, &str) = ("size", "97x55");
@@ -71,12 +72,14 @@ fn shaders_count_no_more_executions_than_the_device() {
     let watched = Watched::open("fence:lights=6");
     let common = both(&[SIZE], &[("spp", "4"), ("camera", "rotor"), ("aperture", "0.1"), ("focus", "4")]);
     for (pass, changes) in [
-        ("shade", &[("conservative", "geometry")][..]),
-        ("shade", &[("conservative", "vertex")]),
+        ("shade", &[FRAGMENT, ("conservative", "geometry")][..]),
+        ("shade", &[FRAGMENT, ("conservative", "vertex")]),
         ("baseline.ssaa", &[("shading", "ssaa")]),
         ("baseline.msaa", &[("shading", "msaa"), ("visibility", "stochastic")]),
     ] {
-        if changes == [("conservative", "geometry")] && !has(&watched.session.gpu.caps, Feature::GeometryShader) {
+        if changes == [FRAGMENT, ("conservative", "geometry")]
+            && !has(&watched.session.gpu.caps, Feature::GeometryShader)
+        {
             continue;
         }
         let (counters, counted) = of(&watched, &both(&common, changes));
@@ -87,11 +90,11 @@ fn shaders_count_no_more_executions_than_the_device() {
         let triangles = counters["triangles_drawn"] as u64;
         match changes {
             // A hull of each triangle comes out of the geometry shader, or none.
-            [("conservative", "geometry")] => {
+            [_, ("conservative", "geometry")] => {
                 assert_eq!(counted["geometry_shader_invocations"], triangles);
                 assert!(counted["geometry_shader_primitives"] > 0, "{counted:?}");
             }
-            [("conservative", "vertex")] => {
+            [_, ("conservative", "vertex")] => {
                 assert_eq!(counted["input_assembly_vertices"] % triangles, 0, "{counted:?}");
                 assert!(counted["input_assembly_vertices"] > 3 * triangles, "{counted:?}");
             }

@@ -17,7 +17,7 @@ const METHODS: [&str; 19] = [
     "cornell --technique deep_shading --size 48x32 --spp 4 --aperture 0.05 --compaction off",
     "cornell --technique deep_shading --size 48x32 --spp 4 --aperture 0.05 --lists none",
     "cornell --technique deep_shading --size 48x32 --spp 4 --aperture 0.05 --shading indirect-gbuffer",
-    "cornell --technique deep_shading --size 48x32 --spp 4 --conservative vertex",
+    "cornell --technique deep_shading --size 48x32 --spp 4 --shade-by fragment --conservative vertex",
     "cornell --technique deep_shading --size 48x32 --spp 4 --visibility stochastic --shutter 0,0.1",
     "cornell --technique deep_shading --size 48x32 --spp 4 --visibility ray --lists direct",
     "fence:lights=6 --technique deep_shading --size 96x54 --spp 2 --camera rotor --shutter 0,0.1 --shading msaa --pass-samples 1",

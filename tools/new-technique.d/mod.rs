@@ -20,10 +20,11 @@ use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
 use crate::passes::direct::{self, DirectGpu, DirectSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
+use crate::passes::workgroup;
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, SceneGpu};
-use crate::settings::{LIGHT_LISTS, PositionStorage, Setting, Values};
+use crate::settings::{LIGHT_LISTS, PositionStorage, Setting, Values, WORKGROUP};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -87,14 +88,16 @@ impl Technique for NewTechnique {
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let direct = DirectSettings::new(inputs.values, inputs.lights, inputs.scene);
+        let workgroup = workgroup::workgroup(inputs.values, inputs.caps);
         let lights = direct::light_blocks(inputs.lights, inputs.values);
         let blended = blend::lists(inputs.scene, &lights, inputs.values, inputs.caps)?;
-        Ok(Box::new(PreparedNewTechnique { direct, lights, blended }))
+        Ok(Box::new(PreparedNewTechnique { direct, workgroup, lights, blended }))
     }
 }
 
 struct PreparedNewTechnique {
     direct: DirectSettings,
+    workgroup: [u32; 2],
     lights: Vec<LightBlock>,
     /// The lists of what blends.
     blended: ObjectLists,
@@ -121,7 +124,7 @@ impl Prepared for PreparedNewTechnique {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        BTreeMap::new()
+        BTreeMap::from([(WORKGROUP.key, workgroup::text(self.workgroup))])
     }
 
     fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
@@ -150,7 +153,7 @@ impl PreparedNewTechnique {
         let list = inputs.draw_list(scene, Coverage::Middle);
         Ok(Box::new(NewTechniqueFrame {
             gbuffer_pass: GBufferPass::new(gpu, scene, list, POSITION, has_emissive)?,
-            shade: Shade::new(gpu, inputs.values, &self.direct, POSITION, has_emissive)?,
+            shade: Shade::new(gpu, inputs.values, self.workgroup, &self.direct, POSITION, has_emissive)?,
             blend: Blend::new(
                 gpu,
                 scene,

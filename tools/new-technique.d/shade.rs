@@ -19,12 +19,12 @@ impl Shade {
     pub fn new(
         gpu: &Arc<Gpu>,
         values: &Values,
+        [width, height]: [u32; 2],
         direct: &DirectSettings,
         position: PositionStorage,
         has_emissive: bool,
     ) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[position.name(), emissive_name(has_emissive), "none"]);
-        let [width, height] = values.pair("workgroup");
         let scale = values.number("light-scale") as f32;
         let own = [("WORKGROUP_X", width), ("WORKGROUP_Y", height), ("LIGHT_SCALE", scale.to_bits())];
         let constants = [&own[..], &direct.light_constants()].concat();

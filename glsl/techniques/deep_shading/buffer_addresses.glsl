@@ -28,6 +28,8 @@ struct BufferAddressBlock {
     uvec2 entry_radiances;
     uvec2 sample_colors;
     uvec2 sample_vectors;
+    uvec2 layer_means;
+    uvec2 entry_order;
 };
 
 // Threads of one dispatch read what others wrote.

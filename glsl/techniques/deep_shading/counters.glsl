@@ -2,7 +2,7 @@
 #ifndef DEEP_SHADING_COUNTERS_GLSL
 #define DEEP_SHADING_COUNTERS_GLSL
 
-// Colours that compaction has given out, or entries of a compact geometry buffer: they need this one.
+// Colours that compaction or the host has given out, or entries of a compact geometry buffer: they need this one.
 const uint COUNTED_COLORS = 0u;
 // Samples without a list: those before it have their colours from the end on.
 const uint COUNTED_STRAYS = 1u;
@@ -43,8 +43,11 @@ const uint COUNTED_FORGOTTEN = 17u;
 const uint COUNTED_OTHER_CHARTS = 18u;
 // Pixels of shading space that triangles were drawn at, before any look-up.
 const uint COUNTED_DRAWN = 19u;
-// 1 where there are strays, else 0: the draw count of what draws them, of which there may be no great number.
-const uint COUNTED_ANY_STRAY = 20u;
-const uint COUNTER_COUNT = 21u;
+// Entries that have a material's place in the order (entries/spans.comp).
+const uint COUNTED_ORDERED = 20u;
+// Evaluations of a light at an entry, modulo 2^32, and how often that number went around.
+const uint COUNTED_EVALUATIONS = 21u;
+const uint COUNTED_EVALUATIONS_CARRIED = 22u;
+const uint COUNTER_COUNT = 23u;
 
 #endif

@@ -73,10 +73,8 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
     }
 #if defined(FETCH_OWN)
     uint where = own;
-#elif defined(FETCH_ADDRESS)
+#elif defined(FETCH_ADDRESS) || defined(FETCH_DIRECT)
     uint where = address_of(own);
-#elif defined(FETCH_DIRECT)
-    uint where = address_of(own) & ~ADDRESS_STRAY;
 #elif defined(FETCH_POINTER)
     uint pointer = pointer_of(own);
     if (pointer != 0u && (pointer & POINTER_OWNS) == 0u) {
@@ -89,8 +87,11 @@ vec4 sample_at(uvec2 pixel, uint first, uint index) {
 #endif
     uvec2 words = where < sample_total(deep) ? kept_color(where) : uvec2(0u);
     vec4 color = vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
-    bool fails = MISSING_FAILS != 0u && color.a == 0.0;
-    return fails ? vec4(vec3(no_number()), 0.0) : color;
+    if (color.a == 0.0) {
+        // What it holds else is an entry that waits, or none.
+        color.rgb = vec3(MISSING_FAILS != 0u ? no_number() : 0.0);
+    }
+    return color;
 #endif
 }
 

@@ -13,9 +13,15 @@ struct DrawnRangeBlock {
     // As of DrawnParams.
     uint vertex_offset;
     uint primitive_offset;
+    uint flags;
 };
 
+// NUMBERED_IN_ORDER: as they are drawn.
+#ifdef NUMBERED_IN_ORDER
+layout(std430, set = 0, binding = 33) readonly buffer OrderedRanges { DrawnRangeBlock ranges[]; };
+#else
 layout(std430, set = 0, binding = 33) readonly buffer DrawnRanges { DrawnRangeBlock ranges[]; };
+#endif
 
 // Sets `params` to the draw of the triangle of this number: the last one that begins there or before. Returns the triangle's place.
 uint find_draw(uint number) {
@@ -30,6 +36,7 @@ uint find_draw(uint number) {
     params.draw = ranges[first].draw;
     params.vertex_offset = ranges[first].vertex_offset;
     params.primitive_offset = ranges[first].primitive_offset;
+    params.flags = ranges[first].flags;
     return number - ranges[first].number_offset;
 }
 

@@ -61,8 +61,6 @@ const uint NO_SHADING_PIXEL = 0xffffffffu;
 
 // In place of an address: the sample sees nothing.
 const uint NO_ADDRESS = 0xffffffffu;
-// A bit of the host's addresses: no list has the sample.
-const uint ADDRESS_STRAY = 0x80000000u;
 
 #include "techniques/deep_shading/warp.glsl"
 
@@ -106,6 +104,12 @@ uint sample_total(DeepBlock deep) {
 // Index of a sample in those buffers: layer by layer, row by row.
 uint sample_index(DeepBlock deep, uvec3 at) {
     return (at.z * deep.layer_height_px + at.y) * deep.layer_width_px + at.x;
+}
+
+// Where the sample of an index is: pixel of a layer, and the layer.
+uvec3 sample_place(DeepBlock deep, uint index) {
+    uint row = index / deep.layer_width_px;
+    return uvec3(index % deep.layer_width_px, row % deep.layer_height_px, row / deep.layer_height_px);
 }
 
 #endif

@@ -14,9 +14,9 @@ void main() {
             continue;
         }
         vec4 value = vec4(frame.background.rgb, 0.0);
-        if (point_has_surface[i]) {
+        if (point_is_shaded[i]) {
             precise vec3 radiance = emitted_at(pixel) + ambient_of(i);
-            radiance += point_direct[i];
+            radiance += point_radiance[i];
             value = vec4(radiance, 1.0);
         }
         imageStore(color, ivec2(pixel), value);

@@ -36,6 +36,6 @@ void main() {
     if (alpha < LEAST_ALPHA || !dsf_has_surface(word) || off_m > depth_slack_m(depth_m, params.depth_threshold, range_m)) {
         discard;
     }
-    vec4 normal = channels_of(pack_view_normal(view_from_world(frame, normal_at(material))));
+    vec4 normal = channels_of(pack_view_normal(view_from_world(frame, normal_at(material, to_eye(frame, in_position_ws)))));
     out_normal = vec4(normal.xy * alpha, 0.0, alpha);
 }

@@ -65,7 +65,7 @@ vec2 motion_px() {
     }
     precise vec2 now = in_clip.xy / in_clip.w;
     precise vec2 earlier = in_earlier_clip.xy / in_earlier_clip.w;
-    vec2 moved = (now - earlier) * 0.5 * vec2(frame.width_px, frame.height_px);
+    precise vec2 moved = (now - earlier) * 0.5 * vec2(frame.width_px, frame.height_px);
     return clamp(moved, vec2(-MOST_MOTION_PX), vec2(MOST_MOTION_PX));
 }
 #endif
@@ -86,7 +86,7 @@ void main() {
         discard;
     }
 #endif
-    out_normal = target_of(pack_view_normal(view_from_world(frame, normal_at(material))));
+    out_normal = target_of(pack_view_normal(view_from_world(frame, normal_at(material, to_eye(frame, in_position_ws)))));
     float depth_m = linear_depth(frame, in_position_ws);
     out_dsf = target_of(pack_dsf(depth_m, vec2(params.first_depth_m, params.depth_range_m), in_ids.y));
 #ifdef EXTRAS_ON

@@ -67,7 +67,7 @@ Lighting lighting_here(MaterialBlock material) {
 #endif
 #ifdef GUIDE_NORMALS
     query.position_ws = in_position_ws;
-    query.normal_ws = normal_at(material);
+    query.normal_ws = normal_at(material, to_eye(frame, in_position_ws));
 #endif
     FilteredLight result = filtered_light(query);
 #ifdef COUNT_ON

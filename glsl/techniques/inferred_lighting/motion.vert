@@ -21,9 +21,12 @@ void main() {
     uint first = 3u * uint(gl_VertexIndex);
     vec3 earlier = vec3(earlier_positions[first], earlier_positions[first + 1u], earlier_positions[first + 2u]);
     vec4 earlier_ws = earlier_world_from_object[gl_InstanceIndex] * vec4(earlier, 1.0);
-    // By one formula from the same numbers: what stands still has a difference of exactly 0.
+    // What stands still has a difference of exactly 0. One formula of the same numbers is not enough on an H200, whose
+    // compiler may take the first from `write_vertex`, which need not be precise.
+    bool rests = earlier == position && earlier_camera.clip_from_world == frame.clip_from_world
+        && earlier_world_from_object[gl_InstanceIndex] == draws[gl_InstanceIndex].world_from_object;
     precise vec4 now_clip = frame.clip_from_world * (draws[gl_InstanceIndex].world_from_object * vec4(position, 1.0));
     precise vec4 earlier_clip = earlier_camera.clip_from_world * earlier_ws;
     out_clip = now_clip;
-    out_earlier_clip = earlier_clip;
+    out_earlier_clip = rests ? now_clip : earlier_clip;
 }

@@ -59,13 +59,13 @@ void main() {
             continue;
         }
         vec4 value = vec4(frame.background.rgb, 0.0);
-        if (point_has_surface[i]) {
+        if (point_is_shaded[i]) {
             Surface surface = point_surface[i];
             vec3 received = unpack_halves(received_at(i, pixel));
             precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
             radiance += ambient_of(i);
             if (direct_full) {
-                radiance += point_direct[i];
+                radiance += point_radiance[i];
             }
             value = vec4(radiance, 1.0);
         }

@@ -15,6 +15,7 @@ const FEW: (&str, &str) = ("spp", "2");
 const LENS: (&str, &str) = ("aperture", "0.2");
 const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
 const RAY: (&str, &str) = ("visibility", "ray");
+const FRAGMENT: (&str, &str) = ("shade-by", "fragment");
 const ALONE: Twin = Twin::Method(&[("lists", "none")]);
 
 const SAMPLES: Bounds = Bounds {
@@ -36,16 +37,27 @@ const SHARED: Bounds = Bounds {
 const LISTS: &[Settings] = &[
     &[("lists", "linked")],
     &[("compaction", "off")],
-    &[("zmax", "off")],
     &[("address-buffer", "off")],
-    &[("shaded-triangles", "all")],
     &[("compaction", "off"), ("duplicates", "tolerated")],
-    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")],
+    &[("compaction", "off"), ("address-buffer", "off")],
+    &[("texels", "1")],
+    &[("texels", "4"), ("cull-lights", "off")],
+    &[("texels", "16"), ("cull-lights", "on")],
     &[("list-access", "descriptors")],
     &[("list-access", "addresses")],
     &[("list-access", "addresses"), ("compaction", "off"), ("address-buffer", "off")],
     &[("shading", "indirect-gbuffer")],
     &[("shading", "indirect-gbuffer"), ("shading-cache", "64")],
+];
+
+/// Where fragments shade, not entries.
+const DRAWN: &[Settings] = &[
+    &[],
+    &[("compaction", "off")],
+    &[("zmax", "on")],
+    &[("shaded-triangles", "all")],
+    &[("list-access", "addresses")],
+    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "on")],
 ];
 
 /// What makes a triangle as large as the pixels that it touches. The device's own method runs here and where it is
@@ -73,10 +85,19 @@ pub const GROUPS: &[Group] = &[
         must: Must::Equal(ROUNDING),
     },
     Group {
+        name: "drawn",
+        technique: NAME,
+        place: CORNELL,
+        common: &[FEW, LENS, FRAGMENT],
+        twin: ALONE,
+        methods: DRAWN,
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
         name: "conservative",
         technique: NAME,
         place: CORNELL,
-        common: &[FEW, LENS],
+        common: &[FEW, LENS, FRAGMENT],
         twin: ALONE,
         methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
@@ -85,7 +106,7 @@ pub const GROUPS: &[Group] = &[
         name: "conservative-sharp",
         technique: NAME,
         place: HALL,
-        common: &[FEW],
+        common: &[FEW, FRAGMENT],
         twin: ALONE,
         methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
@@ -94,7 +115,7 @@ pub const GROUPS: &[Group] = &[
         name: "conservative-lens",
         technique: NAME,
         place: HALL,
-        common: &[FEW, LENS, ("guard-band", "8"), ("shading-scale", "0.5")],
+        common: &[FEW, LENS, ("guard-band", "8"), ("shading-scale", "0.5"), FRAGMENT],
         twin: ALONE,
         methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
@@ -103,7 +124,7 @@ pub const GROUPS: &[Group] = &[
         name: "control",
         technique: NAME,
         place: LAMPS,
-        common: &[FEW, LENS],
+        common: &[FEW, LENS, FRAGMENT],
         twin: Twin::Nothing,
         methods: &[&[("conservative", "none")]],
         must: Must::LackSamples,
@@ -115,10 +136,13 @@ pub const GROUPS: &[Group] = &[
         common: &[FEW, ("camera", "rotor"), ("shutter", "0,0.1")],
         twin: ALONE,
         methods: &[
-            &[("conservative", "geometry")],
-            &[("conservative", "vertex")],
-            &[("conservative", "hardware")],
+            &[],
+            &[FRAGMENT, ("conservative", "geometry")],
+            &[FRAGMENT, ("conservative", "vertex")],
+            &[FRAGMENT, ("conservative", "hardware")],
             &[EVERYTHING[0]],
+            // Nobody filters as many samples as are asked for, unless that is asked for, too.
+            &[("reconstruct", "off")],
         ],
         must: Must::Equal(ROUNDING),
     },
@@ -137,7 +161,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, LENS, ("shading-warp", "foveated")],
         twin: ALONE,
-        methods: &[&[("conservative", "geometry")], &[("conservative", "vertex")]],
+        methods: &[&[], &[FRAGMENT, ("conservative", "geometry")], &[FRAGMENT, ("conservative", "vertex")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
@@ -146,7 +170,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[FEW, ("stereo", "0.1")],
         twin: ALONE,
-        methods: &[&[], &[("conservative", "vertex")]],
+        methods: &[&[], &[FRAGMENT, ("conservative", "vertex")]],
         must: Must::Equal(ROUNDING),
     },
     Group {

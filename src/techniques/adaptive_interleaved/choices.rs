@@ -13,6 +13,7 @@ use crate::gpu::shader::{Shader, variant};
 use crate::lights::object_lists::ObjectLists;
 use crate::passes::blend;
 use crate::passes::direct::{self, DirectSettings};
+use crate::passes::workgroup::workgroup;
 use crate::scene::Medium;
 use crate::settings::{Brdf, DirectShadow, PositionStorage};
 use crate::techniques::Inputs;
@@ -138,7 +139,7 @@ impl Choices {
             lights,
             extent,
             position: values.choice("position"),
-            workgroup: values.pair("workgroup"),
+            workgroup: workgroup(values, inputs.caps),
             tile_px: [tile_x, tile_y],
             trace: values.choice("trace"),
             refine: values.choice("refine"),

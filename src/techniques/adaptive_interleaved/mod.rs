@@ -72,13 +72,13 @@ use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lights::LightSet;
-use crate::passes::{blend, direct, gbuffer};
+use crate::passes::{blend, direct, gbuffer, workgroup};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
 use crate::sampling::pairs;
 use crate::sampling::pattern::Pattern;
-use crate::settings::{LIGHT_LISTS, Setting, Values};
+use crate::settings::{LIGHT_LISTS, Setting, Values, WORKGROUP};
 use crate::shading::medium::Medium;
 use buffers::Shared;
 use choices::Choices;
@@ -216,6 +216,7 @@ impl Prepared for PreparedAdaptive {
         let mut resolved =
             BTreeMap::from([("emissive", emissive.to_owned()), ("vpl-clamp", format!("{}", self.choices.vpl_clamp_m))]);
         resolved.insert("medium", Medium::text(self.choices.medium));
+        resolved.insert(WORKGROUP.key, workgroup::text(self.choices.workgroup));
         let listed: Vec<&str> = self.choices.components.iter().map(|choice| choice.component.name()).collect();
         resolved.insert("components", listed.join(","));
         let id = self.choices.components.iter().find(|choice| choice.component == Component::Id);

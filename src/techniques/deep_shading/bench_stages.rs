@@ -55,7 +55,7 @@ pub const STAGES: &[BenchStage] = &[
     BenchStage {
         name: "shade",
         summary: "Passes that shade what is listed, and samples that are not, in nanoseconds a shaded surface",
-        passes: &["shade", "strays", "brute", "indirect.shade"],
+        passes: &["entries", "shade", "strays", "indirect.gbuffer", "indirect.shade"],
         work: Work::Counted(&[INVOCATIONS]),
         made_with: &[],
         fused_by: None,
@@ -78,9 +78,12 @@ pub const STAGES: &[BenchStage] = &[
         made_with: &[("reconstruct", "on"), ("aperture", "0.02")],
         fused_by: None,
         left_out: |values| {
-            let why = match values.is_on("reconstruct") {
-                true => "--reconstruct on filters nothing where nothing is blurred: --aperture and --shutter blur",
-                false => "--reconstruct off filters nothing",
+            let why = match values.unless_auto("reconstruct", Values::is_on) {
+                Some(false) => "--reconstruct off filters nothing",
+                Some(true) => {
+                    "--reconstruct on filters nothing where nothing is blurred: --aperture and --shutter blur"
+                }
+                _ => "--reconstruct auto filters nothing where nothing is blurred or --spp is given",
             };
             Some(why.to_owned())
         },

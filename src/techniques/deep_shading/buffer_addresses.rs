@@ -78,7 +78,7 @@ pub fn require_fitting(choices: &Choices, inputs: &Inputs<'_>) -> Result<()> {
 }
 
 /// The buffers, by their names in the plan, and where in `block` shaders find the address of each.
-pub(super) fn addresses(block: &mut BufferAddressBlock) -> [(&'static str, &mut [u32; 2]); 15] {
+pub(super) fn addresses(block: &mut BufferAddressBlock) -> [(&'static str, &mut [u32; 2]); 17] {
     let [places, normals, base_colors, radiances] = resources::ENTRIES.map(|(name, _)| name);
     [
         (BEGINS, &mut block.begins),
@@ -96,6 +96,8 @@ pub(super) fn addresses(block: &mut BufferAddressBlock) -> [(&'static str, &mut 
         (radiances, &mut block.entry_radiances),
         (resources::SAMPLE_COLORS, &mut block.sample_colors),
         (resources::SAMPLE_VECTORS, &mut block.sample_vectors),
+        (resources::LAYER_MEANS, &mut block.layer_means),
+        (resources::ORDER, &mut block.entry_order),
     ]
 }
 

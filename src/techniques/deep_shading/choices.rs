@@ -3,7 +3,6 @@
 use super::mid_exposure::MidExposure;
 use super::space::ShadingSpace;
 use super::tuples::TupleTable;
-use crate::caps::Ability;
 use crate::error::Result;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::DeepBlock;
@@ -11,6 +10,7 @@ use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::passes::direct::DirectSettings;
 use crate::passes::shadow_maps::MapLayout;
+use crate::passes::texels::Texels;
 use crate::settings::{GeometryChoice, Values};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
@@ -19,20 +19,24 @@ use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::is_looped;
+use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading::Shading;
+use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources;
 use crate::techniques::deep_shading::resources::{
     BEGIN_BYTES, COLOR_BYTES, LINEAR_COUNT, NAME, NEAREST_BYTES, NODE_BYTES, ROW_ID_BYTES,
 };
+use crate::techniques::deep_shading::sample_count;
 use crate::units::Extent;
 
 /// How lists are made and read. Without lists all are false but `tolerates_duplicates`.
+#[derive(Clone, Copy)]
 pub struct ListChoices {
     /// The host inserts into them, and samples have no SPIDs.
     pub is_direct: bool,
-    /// The device draws strays only where there are some.
-    pub has_stray_count: bool,
+    /// A compute shader shades what they have, entry by entry.
+    pub has_entries: bool,
     pub tolerates_duplicates: bool,
     pub is_compacted: bool,
     pub has_zmax: bool,
@@ -84,6 +88,10 @@ pub struct Choices {
     /// Shaders reach buffers with an entry a sample, or more, by their addresses.
     pub is_by_address: bool,
     pub geometry: GeometryChoice,
+    /// Entries that a thread shades one after the other.
+    pub texels: u32,
+    /// Lights are left out that reach none of them.
+    culls_lights: bool,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
 }
@@ -93,16 +101,15 @@ impl Choices {
     /// code 2).
     pub fn new(inputs: &Inputs<'_>) -> Result<Self> {
         let values = inputs.values;
-        let samples = values.integer("spp") as u32;
-        let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
-        let table = TupleTable::from_settings(values)?;
-        let has_lists = shading == Shading::Deep && !values.is("lists", Lists::None);
+        let shade_by = ShadeBy::of(values);
+        let has_lists = shade_by.is_some();
         let is_direct = has_lists && values.is("lists", Lists::Direct);
         require_direct(values)?;
         require_straight(values)?;
         require_spids(values)?;
         require_both(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
+        let is_by_fragment = shade_by == Some(ShadeBy::Fragment);
         let lens = if values.number("aperture").max(values.number("stereo")) > 0.0 {
             Lens::new(values, inputs.view, inputs.scene, inputs.bvh.whole(inputs.scene)?)
         } else {
@@ -112,16 +119,27 @@ impl Choices {
         let (scene, lights) =
             mid_exposure.as_ref().map_or((inputs.scene, inputs.lights), |middle| (&middle.scene, &middle.lights));
         let maps = MapLayout::new(values, lights, scene, inputs.stats, inputs.caps, inputs.requirements);
-        let visibility = shading.visibility(values)?;
-        let table = TupleTable { eyes: lens.map_or(1, |lens| lens.places().len() as u32), ..table };
+        let is_blurred = lens.is_some_and(|lens| lens.radius > 0.0) || mid_exposure.is_some();
+        let eyes = lens.map_or(1, |lens| lens.places().len() as u32);
+        let samples = sample_count::samples(values, is_blurred, inputs.view.extent.pixel_count() * u64::from(eyes));
+        let table = TupleTable { eyes, ..TupleTable::from_settings(values, samples, is_blurred)? };
+        let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
+        let visibility = shading.visibility(values, inputs.caps)?;
         let space =
             ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
         let cache_entries = values.unless_auto("shading-cache", Values::integer);
+        let direct = DirectSettings::new(values, inputs.lights, inputs.scene);
+        let texels = match shading {
+            Shading::Deep => Texels::new(values, inputs.caps).of_column(direct.load(inputs.lights.lights.len())),
+            _ => 1,
+        };
         let mut choices = Self {
             shading,
+            texels,
+            culls_lights: values.is_on("cull-lights") && inputs.lights.lights.iter().any(|light| light.range.is_some()),
             maps: maps.map_err(|error| error.within(NAME))?,
-            direct: DirectSettings::new(values, inputs.lights, inputs.scene),
+            direct,
             visibility,
             raster: RasterChoices {
                 layer_from: LayerFrom::of(values, inputs.caps),
@@ -137,20 +155,19 @@ impl Choices {
             space,
             blur: BlurChoices {
                 is_moving: mid_exposure.is_some(),
-                is_reconstructed: values.is_on("reconstruct")
-                    && (lens.is_some_and(|lens| lens.radius > 0.0) || mid_exposure.is_some()),
+                is_reconstructed: is_blurred && is_reconstructed(values, eyes),
                 lens,
                 mid_exposure,
             },
             has_lists,
             lists: ListChoices {
                 is_direct,
-                has_stray_count: has_lists && !is_direct && Ability::CountedDraws.is_there(inputs.caps),
+                has_entries: has_lists && !is_by_fragment,
                 tolerates_duplicates: values.is("duplicates", Duplicates::Tolerated),
                 is_compacted,
-                has_zmax: has_lists && values.is_on("zmax"),
+                has_zmax: is_by_fragment && values.is_on("zmax"),
                 has_addresses: has_lists && values.is_on("address-buffer"),
-                has_marks: has_lists && !is_direct && values.is("shaded-triangles", ShadedTriangles::Listed),
+                has_marks: is_by_fragment && values.is("shaded-triangles", ShadedTriangles::Listed),
             },
             cache_entries: cache_entries.unwrap_or(samples_of_set),
             is_counted: values.unless_auto("instrument", Values::is_on).unwrap_or(true),
@@ -187,15 +204,15 @@ impl Choices {
         self.visibility != Visibility::Ray && !self.raster.is_looped
     }
 
-    /// Something is seen from elsewhere than the camera shows it from.
-    pub fn is_blurred(&self) -> bool {
-        self.blur.lens.is_some() || self.blur.is_moving
+    /// Fragments shade what lists have.
+    pub fn is_by_fragment(&self) -> bool {
+        self.has_lists && !self.lists.has_entries
     }
 
-    /// The name of the pass that shades samples where they are seen: all of them, or strays, which blur brings in from
-    /// outside shading space, and rounding where triangles are huge, edge-on or cut by the near plane.
-    pub fn brute_pass(&self) -> &'static str {
-        if self.has_lists { "strays" } else { "brute" }
+    /// The name of the pass that shades entries: all of them, or those of strays alone, which blur brings in from outside shading
+    /// space, and rounding where triangles are huge, edge-on or cut by the near plane.
+    pub fn entries_pass(&self) -> &'static str {
+        if self.is_by_fragment() { "strays" } else { "shade" }
     }
 
     /// By how much what must hold a triangle is drawn too large, pixels: `snap_px` of snap.glsl.
@@ -227,12 +244,15 @@ impl Choices {
             ("HAS_LENS", u32::from(self.blur.lens.is_some_and(|lens| lens.reach() > 0.0))),
             ("TOLERATES_DUPLICATES", u32::from(self.lists.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(self.lists.is_compacted)),
+            ("HAS_LIST_ENTRIES", u32::from(self.lists.has_entries)),
             ("IS_COUNTED", u32::from(self.is_counted)),
+            ("TEXELS", self.texels),
+            ("CULLS_LIGHTS", u32::from(self.culls_lights)),
             ("HAS_PADDING", u32::from(self.raster.has_padding)),
             ("SUB_PIXEL_BITS", self.sub_pixel_bits()),
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("CACHE_ENTRIES", self.cache_entries as u32),
-            ("MISSING_FAILS", u32::from(self.raster.conservative != Conservative::Plain)),
+            ("MISSING_FAILS", u32::from(!(self.is_by_fragment() && self.raster.conservative == Conservative::Plain))),
             ("PASS_SAMPLES", self.shading.pass_samples()),
             ("TEXTURE_SIDE_BITS", self.shading.texture_side_bits()),
         ]);
@@ -243,6 +263,21 @@ impl Choices {
 /// The technique's constants that one of these shaders has.
 pub fn constants_of(choices: &Choices, shaders: &[Option<&Shader>]) -> Vec<(&'static str, u32)> {
     crate::gpu::shader::constants_of(&choices.constants(), shaders)
+}
+
+/// Whether colours are filtered where something is blurred: `--reconstruct`, `auto` resolved.
+///
+/// Few samples show as a pattern and many as copies of what is sharp; many sets of them come to the mean itself. Who says how many
+/// samples there are may want to see them as they are.
+fn is_reconstructed(values: &Values, eyes: u32) -> bool {
+    let helps = || {
+        values.unless_auto("spp", Values::integer).is_none()
+            && eyes == 1
+            && values.integer("accumulate") == 1
+            && values.is("shading", ShadingKind::Deep)
+            && !values.is("lists", Lists::Direct)
+    };
+    values.unless_auto("reconstruct", Values::is_on).unwrap_or_else(helps)
 }
 
 /// Entries of the longest buffer that has as many a pixel of shading space.
@@ -271,7 +306,8 @@ pub fn longest_bytes(choices: &Choices, frame: Extent) -> u64 {
         Shading::IndirectGbuffer => choices.cache_entries * resources::CACHE_BYTES,
         Shading::Ssaa | Shading::Msaa { .. } | Shading::TextureSpace(_) => 0,
     };
-    others.max(choices.samples_of(frame) * sample_bytes(choices))
+    let means = if choices.blur.is_reconstructed { frame.pixel_count() * resources::MEANS_BYTES } else { 0 };
+    others.max(means).max(choices.samples_of(frame) * sample_bytes(choices))
 }
 
 /// `--list-access`, `auto` resolved: whether addresses are taken.

@@ -16,12 +16,17 @@ pub fn require_both(values: &Values) -> Result<()> {
     }
     let why = match values.choice("shading") {
         ShadingKind::Msaa => "--shading msaa: it draws a pixel's samples at once, which are one eye's",
-        _ if values.is_on("reconstruct") => "--reconstruct on: it filters what one eye sees",
+        _ if asks_for_filter(values) => "--reconstruct on: it filters what one eye sees",
         _ => return Ok(()),
     };
     Err(Error::request(format!("--stereo {} with {why}", values.text("stereo")))
         .within(NAME)
         .note("--stereo-eyes left and --stereo-eyes right have the picture of one eye each"))
+}
+
+/// `--reconstruct on`; `auto` leaves out what cannot be.
+fn asks_for_filter(values: &Values) -> bool {
+    values.unless_auto("reconstruct", Values::is_on) == Some(true)
 }
 
 /// Errors: samples have no SPIDs, from which their blur is found (exit code 2).
@@ -32,7 +37,7 @@ pub fn require_spids(values: &Values) -> Result<()> {
             format!("--reconstruct on with --{setting} {kind}: samples have no SPIDs, which their blur is found from");
         Err(Error::request(why).within(NAME).note(format!("--{setting} {instead} keeps them")))
     };
-    match (values.is_on("reconstruct"), values.choice("shading"), values.choice("lists")) {
+    match (asks_for_filter(values), values.choice("shading"), values.choice("lists")) {
         (false, ..) => Ok(()),
         (true, ShadingKind::Deep, Lists::Direct) => refused("lists", "linked"),
         (true, ShadingKind::Deep, _) => Ok(()),

@@ -3,10 +3,10 @@
 use super::touched::TouchedEntries;
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::counters::{
-    COUNTED_COLORS, COUNTED_CROWDED, COUNTED_DIGEST, COUNTED_DRAWN, COUNTED_DUPLICATES, COUNTED_FORGOTTEN,
-    COUNTED_LISTED, COUNTED_LONGEST, COUNTED_MISSING, COUNTED_NODES, COUNTED_OTHER_CHARTS, COUNTED_OVERFLOWS,
-    COUNTED_PIXELS, COUNTED_ROW_IDS, COUNTED_SAMPLES, COUNTED_SHADED, COUNTED_STRAYS, COUNTED_TESTS,
-    COUNTED_TESTS_CARRIED, COUNTED_TESTS_HIT, COUNTER_COUNT,
+    COUNTED_COLORS, COUNTED_CROWDED, COUNTED_DIGEST, COUNTED_DRAWN, COUNTED_DUPLICATES, COUNTED_EVALUATIONS,
+    COUNTED_EVALUATIONS_CARRIED, COUNTED_FORGOTTEN, COUNTED_LISTED, COUNTED_LONGEST, COUNTED_MISSING, COUNTED_NODES,
+    COUNTED_ORDERED, COUNTED_OTHER_CHARTS, COUNTED_OVERFLOWS, COUNTED_PIXELS, COUNTED_ROW_IDS, COUNTED_SAMPLES,
+    COUNTED_SHADED, COUNTED_STRAYS, COUNTED_TESTS, COUNTED_TESTS_CARRIED, COUNTED_TESTS_HIT, COUNTER_COUNT,
 };
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use std::collections::BTreeMap;
@@ -54,13 +54,12 @@ impl FrameCounts {
     }
 
     /// Counters of lists in shading space.
-    pub fn of_lists(&self) -> [(&'static str, f64); 11] {
+    pub fn of_lists(&self) -> [(&'static str, f64); 10] {
         let crowded = self.number(COUNTED_CROWDED);
         [
             ("samples_outside_shading_space", self.number(COUNTED_STRAYS) - crowded),
             ("samples_of_full_lists", crowded),
             ("samples_without_colour", self.number(COUNTED_MISSING)),
-            ("shading_pixels_drawn", self.number(COUNTED_DRAWN)),
             ("listed_primitives", self.number(COUNTED_LISTED)),
             ("listed_again", self.number(COUNTED_DUPLICATES)),
             ("listed_digest", self.number(COUNTED_DIGEST)),
@@ -69,6 +68,19 @@ impl FrameCounts {
             ("lists", self.number(COUNTED_PIXELS)),
             ("lists_beyond_16", self.number(COUNTED_OVERFLOWS)),
         ]
+    }
+
+    /// Counters of shading space where fragments shade in it.
+    pub fn of_fragments(&self) -> [(&'static str, f64); 1] {
+        [("shading_pixels_drawn", self.number(COUNTED_DRAWN))]
+    }
+
+    /// Evaluations of so many lights, where a compute shader shades.
+    pub fn of_lights(&self, lights: u64) -> [(&'static str, f64); 2] {
+        let carried = self.word(COUNTED_EVALUATIONS_CARRIED) << 32;
+        let evaluated = self.word(COUNTED_EVALUATIONS) + carried;
+        let all = self.word(COUNTED_SHADED) * lights;
+        [("light_evaluations", evaluated as f64), ("light_evaluations_culled", (all - evaluated) as f64)]
     }
 
     /// Counters of a compact geometry buffer.
@@ -101,6 +113,7 @@ impl FrameCounts {
             row_ids: self.word(COUNTED_ROW_IDS),
             addresses: self.word(COUNTED_SAMPLES),
             begins,
+            ordered: self.word(COUNTED_ORDERED),
         }
     }
 }

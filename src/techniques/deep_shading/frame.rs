@@ -18,13 +18,14 @@ use super::stereo::{self, RightEye};
 use super::visibility::ray::TracedSamples;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::lens::Lens;
 use crate::passes::accumulate::Accumulate;
 use crate::picture::{Aov, AovChannels};
 use crate::plan::Resources;
-use crate::resident::{DrawList, SceneGpu};
+use crate::resident::{DrawList, LensDisc, SceneGpu, Sweep};
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, SPIDS, full};
+use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, ORDER, SPIDS, full};
 use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::techniques::{Frame, Inputs, Run};
 use std::collections::BTreeMap;
@@ -83,6 +84,7 @@ pub struct DeepFrame {
     counters: Buffer,
     color: Image,
     right: Option<RightEye>,
+    light_count: u64,
 }
 
 impl DeepFrame {
@@ -97,10 +99,13 @@ impl DeepFrame {
     ) -> Result<Self> {
         let HostTables { mut primitives, traced, atlases } = host;
         let frame = inputs.view.extent;
-        let list = primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, choices.is_blurred());
+        let closing = choices.blur.mid_exposure.as_ref().map(|middle| &middle.closing.view);
+        let disc = |lens: Lens| LensDisc { aside_m: lens.middle(), radius_m: lens.reach(), focus_m: lens.focus };
+        let sweep = Sweep { lens: choices.blur.lens.map(disc), closing: inputs.scene.closing.as_deref().zip(closing) };
+        let list = primitives::drawn(inputs.scene, scene, inputs.view, choices.geometry, sweep);
         primitives.set_order(scene, &list);
         let reconstruct = match choices.blur.is_reconstructed {
-            true => Some(Reconstruct::new(gpu, resources, scene, &choices, &primitives)?),
+            true => Some(Reconstruct::new(gpu, resources, &choices)?),
             false => None,
         };
         let shader = match choices.shading {
@@ -123,6 +128,7 @@ impl DeepFrame {
             accumulate: if choices.run_count > 1 { Some(Accumulate::new(gpu, NAME, resources)?) } else { None },
             counters: resources.buffer(&full(COUNTERS)),
             color: resources.image(&full(COLOR)),
+            light_count: choices.lights(inputs).lights.len() as u64,
             right: RightEye::new(gpu, resources, &choices)?,
             choices,
             primitives,
@@ -169,20 +175,15 @@ impl Frame for DeepFrame {
         let eyes: Vec<&Image> = [color].into_iter().chain(right.iter().map(|right| &right.color)).collect();
         let mut bound = self.scene.bound(frame, scene);
         self.scene.record_maps(cmd, scene)?;
-        if let ShadingPasses::Separate(_, addresses) = &self.shader {
-            bound.push(addresses.bound());
+        if let ShadingPasses::Separate(separate, addresses) = &self.shader {
+            bound.extend([addresses.bound(), separate.draw_ranges()]);
         }
         let (table, extent) = (&self.choices.table, color.description.extent);
         let inputs = DrawInputs { scene, list, primitives, table, frame: extent, bound: &bound };
         match &self.shader {
             ShadingPasses::Separate(separate, _) => {
                 let shaded = separate.record(cmd, &self.scene, inputs, counters)?;
-                // Entries of a compact geometry buffer are shaded by a compute shader, all else by fragments.
-                let counted = match shaded {
-                    SampleColors::Pointed { .. } => Access::ComputeWrite,
-                    _ => Access::FragmentWrite,
-                };
-                self.resolve.record(cmd, &bound, shaded, counters.from(counted), &eyes)?;
+                self.resolve.record(cmd, &bound, shaded, counters.from(Access::ComputeWrite), &eyes)?;
                 if let Some(reconstruct) = &self.reconstruct {
                     reconstruct.record(cmd, &bound, shaded.read_by_compute(), color.from(Access::ComputeWrite))?;
                 }
@@ -233,7 +234,7 @@ impl Frame for DeepFrame {
     fn explained_nan(&self) -> Option<[String; 2]> {
         let conservative = self.choices.raster.conservative.name();
         let (what, help) = match self.choices.shading {
-            Shading::Deep if self.choices.has_lists => (
+            Shading::Deep if self.choices.is_by_fragment() => (
                 format!(
                     "a sample that finds no colour is NaN: --conservative {conservative} did not draw the pixel that it needs"
                 ),
@@ -260,13 +261,17 @@ impl Frame for DeepFrame {
         let counted = self.counted(gpu)?;
         let mut counters = counted.report(pixels, has_tests);
         match self.choices.shading {
-            Shading::Deep => counters.extend(counted.of_lists()),
+            Shading::Deep => {
+                counters.extend(counted.of_lists());
+                if self.choices.is_by_fragment() {
+                    counters.extend(counted.of_fragments());
+                } else {
+                    counters.extend(counted.of_lights(self.light_count));
+                }
+            }
             Shading::IndirectGbuffer => counters.extend(counted.of_entries()),
             Shading::TextureSpace(_) => counters.extend(counted.of_textures()),
             Shading::Ssaa | Shading::Msaa { .. } => {}
-        }
-        if let Some(direct) = self.separate().and_then(SeparateShading::host_lists) {
-            counters.extend(direct.stray_counts());
         }
         Ok(counters)
     }
@@ -278,12 +283,13 @@ impl Frame for DeepFrame {
             ShadingPasses::Separate(..) if self.choices.shading == Shading::IndirectGbuffer => {
                 Ok(indirect::touched_bytes(&self.counted(gpu)?))
             }
-            // Without lists colours are cleared whole, and what the host inserts is copied whole.
-            ShadingPasses::Separate(..) if !self.choices.has_lists || self.choices.lists.is_direct => {
-                Ok(BTreeMap::new())
-            }
             ShadingPasses::Separate(..) => {
-                Ok(self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes())
+                let mut touched = self.counted(gpu)?.entries(self.choices.space.extent.pixel_count()).bytes();
+                if !self.choices.has_lists || self.choices.lists.is_direct {
+                    // Without lists all places of colours are written, and what the host inserts is copied whole.
+                    touched.retain(|name, _| *name == full(ORDER));
+                }
+                Ok(touched)
             }
         }
     }

@@ -13,16 +13,16 @@
 //! - list: the triangles to be shaded at one pixel of shading space, in nodes that are linked or, once compacted,
 //!   sorted in a row
 //! - stray: a sample that no list has, because shading space has no place for it or its list is full
+//! - entry: what is shaded once, a triangle at a pixel of shading space, or where a stray sees it
 //! - hull: the polygon around every pixel which a triangle touches (`--conservative`)
-//! - entry: what `--shading indirect-gbuffer` has of a list's node, a triangle at a pixel of shading space with its
-//!   material
 //! - atlas, chart: a mesh's own texture coordinates, and a connected part of them (`--shading texture-space`)
 //!
 //! Passes: shadow_maps (with `--direct-shadow map`), visibility (each sample's SPID), lists (insertion by
-//! compare-exchange), lists.compact, lists.address, shade (one conservative pass over shading space, which shades what
-//! the lists have), strays or brute (`--lists none`), resolve (box filter), with `--reconstruct on` reconstruct.samples
-//! (motion and depth), reconstruct.layers and reconstruct.filter, count (`--instrument on`), accumulate (`--accumulate`
-//! above 1).
+//! compare-exchange), lists.compact, lists.address, entries (sorts what lists have, and strays, by material), shade,
+//! resolve (box filter), with `--reconstruct on` reconstruct.samples (motion and depth), reconstruct.bins, reconstruct.layers,
+//! reconstruct.means and reconstruct.filter, count (`--instrument on`), accumulate (`--accumulate` above 1). With
+//! `--shade-by fragment` shade is one conservative pass over shading space, and strays follow it; with `--lists none`
+//! entries.samples takes the place of the lists.
 //!
 //! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve
 //! and accumulate, or those of `indirect-gbuffer`
@@ -30,8 +30,8 @@
 //! - `msaa`: stochastic multisampling (McGuire et al. 2010), a triangle shaded once for those of a pixel's samples that
 //!   see it, `--pass-samples` of them at a time
 //! - `indirect-gbuffer`: decoupled deferred shading (Liktor and Dachsbacher 2012): the same samples find what is shaded
-//!   in a cache and point to it in a compact geometry buffer (indirect/mod.rs); passes visibility, indirect.gbuffer,
-//!   indirect.shade
+//!   in a cache and point to it in a compact geometry buffer (indirect/mod.rs); passes visibility, indirect.memoise,
+//!   entries, indirect.gbuffer, indirect.shade
 //! - `texture-space`: adaptive texture-space shading (Andersson et al. 2014): draw by draw a texture is shaded and then
 //!   drawn with (baseline/texture_space/mod.rs)
 //!
@@ -48,8 +48,9 @@
 //! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and
 //!   counted; so are samples that see more in a pixel than the 1024 triangles that a list holds, so that work grows
 //!   with samples alone
-//! - shading space is drawn with triangles that lists have, which insertion marks (`--shaded-triangles all` is the
-//!   paper's way)
+//! - a compute shader shades what lists have, as entries (`--shade-by fragment` is the paper's way: nothing has to be drawn
+//!   where a colour is a function of triangle and pixel); where fragments do, shading space is drawn with triangles that
+//!   lists have, which insertion marks (`--shaded-triangles all` is the paper's way)
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
 //! - `--visibility stochastic` tests the tuples of the interleaved kinds, so that both see the same samples: all of a
 //!   pixel's in a loop, the nearest kept by 64-bit atomics (the paper has images of 8 samples a pixel and their depth
@@ -66,12 +67,12 @@
 
 mod baseline;
 mod bench_stages;
-mod brute;
 mod buffer_addresses;
 mod choices;
 mod contradictions;
 mod count;
 mod counters;
+mod entries;
 mod eyes;
 mod frame;
 mod indirect;
@@ -84,34 +85,34 @@ mod plan;
 mod primitives;
 mod ranges;
 mod reconstruct;
-mod redraw;
 mod resolve;
 mod resources;
 mod rivals;
 mod sample_colors;
+mod sample_count;
 mod scene;
 mod separate;
 mod settings;
 mod shade;
 mod space;
 mod stereo;
-mod stray_draws;
 mod touched;
 mod tuples;
 mod visibility;
 
 use super::bench_stage::BenchStage;
-use super::{HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, straight_light};
+use super::{Figures, HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, notes, straight_light};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::lights::LightSet;
 use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::Plan;
-use crate::settings::{INSTRUMENT, SHADOW_MAPS, Setting, Values};
+use crate::settings::{INSTRUMENT, SHADOW_MAPS, Setting, TEXELS, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
+use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::resources::{NAME, full};
 use baseline::texture_space::atlases::Atlases;
@@ -154,11 +155,8 @@ impl Technique for DeepShading {
 
     fn needs(&self, values: &Values, caps: &Caps, _: bool) -> Vec<Need> {
         let need = |of: &str, ability, instead| Need { of: of.to_owned(), ability, instead };
-        let mut needs = vec![
-            need("the visibility pass", Ability::FloatDepth, ""),
-            need("the shading pass", Ability::FragmentAtomics, ""),
-        ];
-        let visibility: Visibility = values.choice("visibility");
+        let mut needs = vec![need("the visibility pass", Ability::FloatDepth, "")];
+        let visibility = Visibility::of(values, caps);
         let shading: ShadingKind = values.choice("shading");
         let has_layers = ShadingKind::OF_SPACE.contains(&shading);
         if has_layers && visibility.is_layered() {
@@ -179,7 +177,17 @@ impl Technique for DeepShading {
             let instead = "--sample-tests layers works without it";
             needs.push(need("--sample-tests loop", Ability::WideAtomics, instead));
         }
+        if ShadeBy::of(values) == Some(ShadeBy::Fragment) {
+            needs.push(need("--shade-by fragment", Ability::FragmentAtomics, "--shade-by compute works without it"));
+        } else if !has_layers {
+            let of = format!("--shading {}", shading.name());
+            needs.push(need(&of, Ability::FragmentAtomics, "--shading deep works without it"));
+        } else if visibility.has_polygons() {
+            let instead = "--visibility repeat-frame works without it";
+            needs.push(need("--visibility stochastic", Ability::FragmentAtomics, instead));
+        }
         match Conservative::of(values, caps) {
+            // Read with fragments alone, and a device has it or not whatever else is asked.
             _ if shading != ShadingKind::Deep => {}
             Conservative::Geometry => {
                 let instead = "--conservative vertex works without it";
@@ -206,6 +214,10 @@ impl Technique for DeepShading {
 
     fn rivals(&self) -> Vec<Rival> {
         rivals::rivals()
+    }
+
+    fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
+        Vec::from_iter(notes::direct_light(figures, None))
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {
@@ -237,11 +249,18 @@ impl Prepared for PreparedDeep {
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let Choices { shading, table, visibility, raster, blur, .. } = &self.choices;
         let mut resolved = BTreeMap::from([
+            ("spp", table.samples.to_string()),
             ("tuples", table.tuples_of_eye().to_string()),
-            ("conservative", raster.conservative.name().to_owned()),
+            ("visibility", visibility.name().to_owned()),
         ]);
+        if self.choices.is_by_fragment() {
+            resolved.insert("conservative", raster.conservative.name().to_owned());
+        }
+        if *shading == Shading::Deep {
+            resolved.insert(TEXELS.key, self.choices.texels.to_string());
+        }
         if let Shading::Msaa { pass_samples } = shading {
-            resolved.extend([("pass-samples", pass_samples.to_string()), ("visibility", "stochastic".to_owned())]);
+            resolved.insert("pass-samples", pass_samples.to_string());
         }
         if *shading == Shading::IndirectGbuffer {
             resolved.insert("shading-cache", self.choices.cache_entries.to_string());
@@ -257,18 +276,13 @@ impl Prepared for PreparedDeep {
         if *visibility == Visibility::Stochastic && matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
             resolved.insert("sample-tests", sample_tests_name(raster.is_looped).to_owned());
         }
-        if !self.choices.lists.has_marks {
-            resolved.insert("shaded-triangles", "all".to_owned());
-        }
         if matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
             resolved.insert("list-access", list_access_name(self.choices.is_by_address).to_owned());
         }
         if let Some(lens) = blur.lens {
             resolved.insert("focus", format!("{}", lens.focus));
         }
-        if !blur.is_reconstructed {
-            resolved.insert("reconstruct", "off".to_owned());
-        }
+        resolved.insert("reconstruct", if blur.is_reconstructed { "on" } else { "off" }.to_owned());
         resolved
     }
 

@@ -2,7 +2,7 @@
 
 use super::choices::Choices;
 use super::visibility::looped;
-use super::{indirect, reconstruct, stereo, stray_draws};
+use super::{entries, indirect, reconstruct, stereo};
 use crate::gpu::Access;
 use crate::plan::Plan;
 use crate::techniques::deep_shading::modes::shading::Shading;
@@ -26,8 +26,9 @@ fn links(choices: &Choices, access: Access) -> Touches {
 pub fn plan(plan: &mut Plan, choices: &Choices) {
     if choices.lists.is_direct {
         let copied = [BEGINS, NODES, ADDRESSES, COLORS, COUNTERS].into_iter();
-        let copied =
-            copied.chain(choices.lists.is_compacted.then_some(LINEAR)).chain(choices.lists.has_zmax.then_some(ZMAX));
+        let copied = copied.chain(choices.lists.is_compacted.then_some(LINEAR));
+        let copied = copied.chain(choices.lists.has_zmax.then_some(ZMAX));
+        let copied = copied.chain(choices.lists.has_marks.then_some(MARKS));
         let accesses = [Access::TransferWrite, Access::ComputeWrite];
         plan.pass(full("lists"), copied.flat_map(|name| accesses.map(|access| touch(name, access))));
     } else {
@@ -40,7 +41,12 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         indirect::plan_passes(plan, choices);
         return;
     }
-    if choices.has_lists {
+    if !choices.has_lists {
+        let touches = [touch(SPIDS, Access::ComputeSample), touch(COLORS, Access::ComputeWrite)];
+        plan.pass(full(entries::samples::PASS), touches);
+    }
+    entries::plan_sort(plan);
+    if choices.is_by_fragment() {
         let mut shaded = links(choices, Access::GraphicsRead);
         shaded.extend(choices.lists.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
         shaded.extend(choices.lists.has_marks.then(|| touch(MARKS, Access::GraphicsRead)));
@@ -48,7 +54,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
     }
-    plan.pass(full(choices.brute_pass()), brute(choices));
+    plan.pass(full(choices.entries_pass()), shaded_entries(choices));
     let written = [touch(COUNTERS, Access::ComputeWrite)].into_iter().chain(stereo::resolved(choices));
     plan.pass(full("resolve"), shaded(choices).into_iter().chain(written));
     if choices.blur.is_reconstructed {
@@ -103,20 +109,11 @@ fn insertion(plan: &mut Plan, choices: &Choices) {
     }
 }
 
-fn brute(choices: &Choices) -> Touches {
-    let mut brute = match choices.lists.is_direct {
-        true => vec![touch(ADDRESSES, Access::GraphicsRead)],
-        false => vec![touch(SPIDS, Access::FragmentSample)],
-    };
-    brute.extend((!choices.visibility.has_polygons()).then(|| touch(DEPTH, Access::DepthTest)));
-    brute.extend(match choices.has_lists {
-        true => links(choices, Access::GraphicsRead),
-        false => vec![touch(COLORS, Access::TransferWrite)],
-    });
-    brute.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
-    brute.extend(choices.lists.has_stray_count.then(stray_draws::touches).into_iter().flatten());
-    brute.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
-    brute
+fn shaded_entries(choices: &Choices) -> Touches {
+    let mut shaded = entries::read().to_vec();
+    shaded.extend(choices.maps.iter().filter_map(|maps| maps.read_by(NAME, Access::ComputeSample)));
+    shaded.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
+    shaded
 }
 
 /// What says which colours samples have.

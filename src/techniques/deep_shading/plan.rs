@@ -8,7 +8,7 @@ use super::counters;
 use super::lists::direct;
 use super::tuples::TupleTable;
 use super::visibility::{looped, ray};
-use super::{buffer_addresses, indirect, passes, reconstruct, stereo, stray_draws};
+use super::{buffer_addresses, entries, indirect, passes, ranges, reconstruct, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -54,9 +54,11 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     let run = if choices.blur.is_reconstructed { reconstruct::COLOR } else { COLOR };
     if choices.blur.is_reconstructed {
         stored(&mut plan, COLOR, extent);
-        reconstruct::plan(&mut plan, choices, extent, inputs.stats.draw_count);
+        reconstruct::plan(&mut plan, choices, extent);
     }
     if matches!(choices.shading, Shading::Deep | Shading::IndirectGbuffer) {
+        entries::plan(&mut plan, choices.samples_of(extent), inputs.scene.materials.len());
+        ranges::plan(&mut plan, full(ranges::BY_ID), inputs.stats.draw_count);
         buffer_addresses::plan(&mut plan, choices.is_by_address);
     }
     if choices.run_count > 1 {
@@ -114,6 +116,9 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
     let samples = choices.samples_of(inputs.view.extent);
     let shading_pixels = choices.space.extent.pixel_count();
     plan.buffer("deep_shading_buffer", full(COLORS), samples * COLOR_BYTES);
+    if choices.lists.is_direct {
+        direct::plan(plan, COLORS, samples * COLOR_BYTES);
+    }
     if choices.has_lists {
         let mut list = |group, name: &str, bytes| {
             plan.buffer(group, full(name), bytes);
@@ -132,20 +137,19 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
         if choices.lists.has_zmax {
             list("auxiliary", ZMAX, shading_pixels * 4);
         }
+        if choices.lists.has_marks {
+            list("listed_triangles", MARKS, inputs.scene.triangle_count().div_ceil(32) * 4);
+        }
         if choices.lists.has_zmax && !choices.lists.is_direct {
             let depths = layers(choices, inputs, SHADING_DEPTH_FORMAT, attached(choices));
             plan.push("auxiliary", full(SHADING_DEPTHS), depths);
         }
-        if choices.lists.has_marks {
-            let words = inputs.scene.triangle_count().div_ceil(32);
-            plan.buffer("listed_triangles", full(MARKS), words * 4);
+        if choices.lists.is_direct {
+            direct::plan(plan, COUNTERS, counters::COUNT * 4);
         }
         if choices.is_counted {
             plan.buffer("counters", full(LENGTHS), shading_pixels * 4);
         }
-    }
-    if choices.lists.has_stray_count {
-        stray_draws::plan(plan, inputs.stats.draw_count);
     }
 }
 

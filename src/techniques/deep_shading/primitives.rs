@@ -3,9 +3,10 @@
 use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::shader::structs::DrawnParams;
+use crate::gpu::shader::techniques::deep_shading::entries::waiting::ENTRY_STRAY;
 use crate::gpu::shader::techniques::deep_shading::scene_buffers::{DRAWN_BLENDED, DRAWN_DOUBLE_SIDED, DRAWN_MIRRORED};
 use crate::passes::blend;
-use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu, Sides};
+use crate::resident::{Coverage, DrawCall, DrawList, Raster, SceneGpu, Sides, Sweep};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::GeometryChoice;
 use bytemuck::Zeroable;
@@ -36,9 +37,9 @@ impl Primitives {
             offset
         });
         let offsets = offsets.collect();
-        // One id means that there is none.
-        if count >= u64::from(u32::MAX) {
-            return Err(Error::request(format!("{}: {count} triangles, and ids are 32 bits", scene.name)));
+        // A bit of an entry's words says that it is a stray.
+        if count > u64::from(ENTRY_STRAY) {
+            return Err(Error::request(format!("{}: {count} triangles, and ids are 31 bits", scene.name)));
         }
         Ok(Self { orders: vec![0; scene.draws.len()], ordered: Vec::new(), offsets, count })
     }
@@ -100,11 +101,10 @@ pub fn of_tuple(params: DrawnParams, tuple: u32) -> DrawnParams {
 
 /// What is drawn: solid surfaces, and with an alpha test those that have one, BLEND ones last.
 ///
-/// `is_blurred`: a triangle that the middle of the lens does not see may be seen from its rim, or at another time.
-pub fn drawn(scene: &Scene, resident: &SceneGpu, view: &View, choice: GeometryChoice, is_blurred: bool) -> DrawList {
-    let choice = if is_blurred { GeometryChoice::All } else { choice };
+/// `sweep`: what the middle of the lens does not see may be seen from its rim, or at another time.
+pub fn drawn(scene: &Scene, resident: &SceneGpu, view: &View, choice: GeometryChoice, sweep: Sweep<'_>) -> DrawList {
     let raster = Raster { extent: view.extent, coverage: Coverage::Anywhere };
-    let mut list = DrawList::new(scene, resident, view, raster, choice);
+    let mut list = DrawList::new(scene, resident, view, raster, choice, sweep);
     list.mask.extend(blend::back_to_front(resident, view));
     list
 }

@@ -4,11 +4,27 @@
 use super::primitives::Primitives;
 use crate::error::Result;
 use crate::gpu::shader::structs::DrawnRangeBlock;
-use crate::gpu::{AccessSet, Buffer, Gpu, upload};
-use crate::plan::Plan;
+use crate::gpu::{Access, AccessSet, Buffer, Gpu, upload};
+use crate::plan::{Plan, Resources};
 use crate::resident::{DrawCall, SceneGpu};
+use crate::techniques::deep_shading::resources::full;
 use bytemuck::Zeroable;
 use std::sync::Arc;
+
+/// Ranges by the ids of triangles.
+pub const BY_ID: &str = "draws.by_id";
+
+/// The buffer of ranges by ids, filled.
+///
+/// Errors: memory for the upload (exit code 4).
+pub fn by_id(gpu: &Arc<Gpu>, resources: &mut Resources, scene: &SceneGpu, primitives: &Primitives) -> Result<Buffer> {
+    let mut calls = scene.calls.clone();
+    calls.sort_by_key(|call| call.draw);
+    let buffer = resources.buffer(&full(BY_ID));
+    let id = |draw, first_index| primitives.id(draw, first_index);
+    write(gpu, &buffer, scene, primitives, calls.iter(), id, Access::ComputeRead)?;
+    Ok(buffer)
+}
 
 /// Plans a block for each of `draws`. `name`: the buffer's full one.
 pub fn plan(plan: &mut Plan, name: String, draws: u64) {
@@ -36,6 +52,7 @@ pub fn write<'a>(
             draw: call.draw,
             vertex_offset: params.vertex_offset,
             primitive_offset: params.primitive_offset,
+            flags: params.flags,
         }
     };
     let mut blocks: Vec<_> = calls.map(block).collect();

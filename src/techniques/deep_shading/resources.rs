@@ -1,6 +1,8 @@
 //! The technique's name, the names, formats and sizes of what it holds.
 
 use crate::gpu::shader::techniques::deep_shading::nodes;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::blur::LAYER_COUNT;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::layer_mean::MEAN_PAIRS;
 use crate::plan::Plan;
 use crate::units::Extent;
 use ash::vk::{Format, ImageUsageFlags as Usage};
@@ -43,6 +45,10 @@ pub const NODE_BYTES: u64 = 8;
 pub const COLOR_BYTES: u64 = 8;
 pub const ADDRESS_BYTES: u64 = 4;
 
+/// In which order entries are shaded, and the bytes of one's place.
+pub const ORDER: &str = "entries.order";
+pub const ORDER_BYTES: u64 = 4;
+
 /// A picture that is not the last one.
 pub fn stored(plan: &mut Plan, name: &str, frame: Extent) {
     plan.image("color", full(name), frame, crate::plan::PICTURE_FORMAT, Usage::STORAGE);
@@ -65,10 +71,14 @@ pub const POINTER_BYTES: u64 = 4;
 pub const CACHE_BYTES: u64 = 4;
 pub const SAMPLE_COLORS: &str = "reconstruct.samples.colors";
 pub const SAMPLE_VECTORS: &str = "reconstruct.samples.vectors";
+pub const LAYER_MEANS: &str = "reconstruct.means";
 
 /// Bytes of a sample in each of two buffers: half floats of red, green, blue and the circle of confusion; and two
 /// half floats of motion with a depth.
 pub const SAMPLE_BYTES: u64 = 8;
+
+/// Bytes of a pixel's layers.
+pub const MEANS_BYTES: u64 = 8 * MEAN_PAIRS as u64 * LAYER_COUNT as u64;
 
 /// nearest.glsl's words.
 pub const NEAREST_BYTES: u64 = 8;

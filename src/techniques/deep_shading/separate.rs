@@ -1,9 +1,12 @@
 //! Visibility first, then shading of what it has seen: figure 3, from samples to their colours, and the counting of
 //! lists after the resolve.
 
-use super::brute::BruteForce;
 use super::choices::Choices;
 use super::count::Count;
+use super::entries::order::EntryOrder;
+use super::entries::samples::SampleEntries;
+use super::entries::shade::ShadeEntries;
+use super::entries::sort::Sort;
 use super::indirect::Indirect;
 use super::lists::address::Address;
 use super::lists::compact::Compact;
@@ -12,6 +15,7 @@ use super::lists::insert::Insert;
 use super::lists::{self, Lists, ListsEdge};
 use super::pass_inputs::{DrawInputs, ShadingEdges};
 use super::primitives::Primitives;
+use super::ranges;
 use super::sample_colors::SampleColors;
 use super::scene::DeepScene;
 use super::shade::Shade;
@@ -24,16 +28,25 @@ use crate::plan::Resources;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::visibility::samples::{Samples, SeenSamples};
+use crate::techniques::deep_shading::visibility::samples::Samples;
 use crate::units::Extent;
 use std::sync::Arc;
 
-/// What builds the deep shading buffer and shades it.
+/// What builds the deep shading buffer.
 struct ListShading {
     lists: Lists,
     insertion: Insertion,
-    shade: Shade,
+    /// With `--shade-by fragment`: what the lists have.
+    by_fragment: Option<Shade>,
+    /// The rest: all of it, or strays alone.
+    shade: ShadeEntries,
     count: Option<Count>,
+}
+
+/// What shades each sample by itself.
+struct SampleShading {
+    entries: SampleEntries,
+    shade: ShadeEntries,
 }
 
 /// What puts triangles into lists.
@@ -57,17 +70,21 @@ enum TriangleFinder {
     HostLists,
 }
 
-/// What shades samples that are in no list.
-enum Unlisted {
-    BruteForce(Box<BruteForce>),
-    /// All of them.
-    Indirect(Box<Indirect>),
+/// How samples come to what is shaded for them.
+enum Source {
+    Lists(Box<ListShading>),
+    /// Each has it for itself.
+    Samples(Box<SampleShading>),
+    Cache(Box<Indirect>),
 }
 
 pub struct SeparateShading {
     finder: TriangleFinder,
-    list_shading: Option<ListShading>,
-    unlisted: Unlisted,
+    source: Source,
+    sort: Sort,
+    order: EntryOrder,
+    /// Ranges of triangles' ids by draw.
+    draw_ranges: Buffer,
     colors: Buffer,
     visibility: Visibility,
     space: Extent,
@@ -99,7 +116,9 @@ impl SeparateShading {
                 SampleRasterizer::new(gpu, scene, resources, choices, primitives)?,
             ),
         };
-        let list_shading = if choices.has_lists {
+        let source = if choices.shading == Shading::IndirectGbuffer {
+            Source::Cache(Box::new(Indirect::new(gpu, scene, resources, choices, frame)?))
+        } else if choices.has_lists {
             let address = choices.lists.is_compacted && choices.lists.has_addresses;
             let insertion = match host_lists {
                 Some(direct) => Insertion::Host(direct),
@@ -109,24 +128,23 @@ impl SeparateShading {
                     address: if address { Some(Address::new(gpu, choices)?) } else { None },
                 })),
             };
-            Some(ListShading {
+            Source::Lists(Box::new(ListShading {
                 lists: Lists::new(resources, choices),
                 insertion,
-                shade: Shade::new(gpu, scene, choices)?,
+                by_fragment: if choices.is_by_fragment() { Some(Shade::new(gpu, scene, choices)?) } else { None },
+                shade: ShadeEntries::new(gpu, scene, choices)?,
                 count: if choices.is_counted { Some(Count::new(gpu, resources, choices)?) } else { None },
-            })
+            }))
         } else {
-            None
-        };
-        let unlisted = if choices.shading == Shading::IndirectGbuffer {
-            Unlisted::Indirect(Box::new(Indirect::new(gpu, scene, resources, choices, frame)?))
-        } else {
-            Unlisted::BruteForce(Box::new(BruteForce::new(gpu, scene, resources, choices, frame)?))
+            let shade = ShadeEntries::new(gpu, scene, choices)?;
+            Source::Samples(Box::new(SampleShading { entries: SampleEntries::new(gpu, choices)?, shade }))
         };
         Ok(Self {
             finder,
-            list_shading,
-            unlisted,
+            source,
+            sort: Sort::new(gpu, choices, frame, scene.material_blocks.len())?,
+            order: EntryOrder::new(resources),
+            draw_ranges: ranges::by_id(gpu, resources, scene, primitives)?,
             colors: lists::colors(resources),
             visibility: choices.visibility,
             space: choices.space.extent,
@@ -142,28 +160,40 @@ impl SeparateShading {
     }
 
     /// Lists that the host has made.
-    pub fn host_lists(&self) -> Option<&HostInsertion> {
-        match &self.list_shading.as_ref()?.insertion {
+    fn host_lists(&self) -> Option<&HostInsertion> {
+        match &self.list_shading()?.insertion {
             Insertion::Host(direct) => Some(direct),
             Insertion::Device(_) => None,
         }
     }
 
+    fn list_shading(&self) -> Option<&ListShading> {
+        match &self.source {
+            Source::Lists(list_shading) => Some(list_shading),
+            Source::Samples(_) | Source::Cache(_) => None,
+        }
+    }
+
+    /// Ranges of draws by the ids of triangles, as shaders call them.
+    pub fn draw_ranges(&self) -> (&'static str, Bound<'_>) {
+        ("DrawnRanges", Bound::Buffer(&self.draw_ranges))
+    }
+
     pub fn count(&self) -> Option<&Count> {
-        self.list_shading.as_ref()?.count.as_ref()
+        self.list_shading()?.count.as_ref()
     }
 
     /// The buffers of lists, of a compact geometry buffer, and of colours.
     pub fn buffers(&self) -> impl Iterator<Item = &Buffer> {
-        let list_shading = self.list_shading.iter();
+        let list_shading = self.list_shading().into_iter();
         let lists = list_shading.flat_map(|list_shading| {
             list_shading.lists.all().chain(list_shading.count.iter().map(|count| &count.lengths))
         });
-        let indirect = match &self.unlisted {
-            Unlisted::Indirect(indirect) => Some(indirect.buffers()),
-            Unlisted::BruteForce(_) => None,
+        let indirect = match &self.source {
+            Source::Cache(indirect) => Some(indirect.buffers()),
+            Source::Lists(_) | Source::Samples(_) => None,
         };
-        lists.chain(indirect.into_iter().flatten()).chain([&self.colors])
+        lists.chain(indirect.into_iter().flatten()).chain([&self.colors, &self.order.order])
     }
 
     /// Puts what the host has made of a run where the frame takes it from.
@@ -191,58 +221,86 @@ impl SeparateShading {
                 visibility::record(cmd, rasterizer, inputs, samples, counters, self.visibility)?;
             }
         }
-        let brute = match &self.unlisted {
-            Unlisted::BruteForce(brute) => brute,
-            Unlisted::Indirect(indirect) => {
-                let samples = self.samples().expect("there are no lists");
-                let edges = self.untouched(deep, counters.from(Access::FragmentWrite));
-                indirect.record(cmd, inputs, as_written(samples), edges)?;
-                return Ok(SampleColors::Pointed {
-                    samples: samples.from(samples.written | Access::FragmentSample),
-                    pointers: indirect.entries.pointers.from(Access::FragmentWrite),
-                    colors: self.colors.from(Access::ComputeWrite),
-                });
+        match &self.source {
+            Source::Lists(list_shading) => self.record_lists(cmd, deep, inputs, list_shading, counters),
+            Source::Samples(alone) => {
+                alone.entries.record(cmd, inputs.bound, self.seen(), &self.colors)?;
+                self.record_entries(cmd, deep, inputs, counters.from(Access::FragmentWrite), &alone.shade, None)?;
+                Ok(self.separate(None))
             }
-        };
-        let colors = self.colors.from(Access::FragmentWrite);
-        let Some(list_shading) = &self.list_shading else {
-            let edges = self.untouched(deep, counters.from(Access::FragmentWrite));
-            brute.record(cmd, inputs, self.samples().map(as_written), None, edges)?;
-            let samples = self.samples().map(|samples| samples.from(samples.written | Access::FragmentSample));
-            return Ok(SampleColors::Separate { samples, lists: None, colors });
-        };
+            Source::Cache(indirect) => {
+                let seen = self.seen();
+                let edges = ShadingEdges {
+                    colors: self.colors.from(AccessSet::UNTOUCHED),
+                    counters: counters.from(Access::FragmentWrite),
+                    maps: deep.maps_from(Access::DepthWrite),
+                };
+                indirect.record(cmd, inputs, seen, (&self.sort, &self.order), edges)?;
+                Ok(SampleColors::Pointed {
+                    samples: seen.resource.from(Access::ComputeSample),
+                    pointers: indirect.compact.pointers.from(Access::ComputeWrite),
+                    colors: self.colors.from(Access::ComputeWrite),
+                })
+            }
+        }
+    }
+
+    /// What samples see, as visibility leaves it. Not with `--lists direct`, where the host's lists alone say it.
+    fn seen(&self) -> Edge<'_, Samples> {
+        let samples = self.samples().expect("the host has not inserted them");
+        samples.from(samples.written)
+    }
+
+    /// Samples with colours beside them, after compute shaders have read SPIDs.
+    fn separate<'a>(&'a self, lists: Option<ListsEdge<'a>>) -> SampleColors<'a> {
+        let samples = self.samples().map(|samples| samples.from(Access::ComputeSample));
+        SampleColors::Separate { samples, lists, colors: self.colors.from(Access::ComputeWrite) }
+    }
+
+    /// Insertion, and shading of what it has listed and of strays.
+    fn record_lists<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        deep: &DeepScene,
+        inputs: DrawInputs<'_>,
+        list_shading: &'a ListShading,
+        counters: &Buffer,
+    ) -> Result<SampleColors<'a>> {
         let mut lists = self.record_insertion(cmd, list_shading, inputs.bound, counters)?;
-        let edges = ShadingEdges {
-            colors: self.colors.from(Access::ComputeWrite),
+        let by_fragment = list_shading.by_fragment.as_ref().map(|shade| (shade, lists));
+        let counted = counters.from(Access::ComputeWrite);
+        self.record_entries(cmd, deep, inputs, counted, &list_shading.shade, by_fragment)?;
+        if by_fragment.is_some() {
+            // Compute shaders touch the links after draws have read them: what wrote them was waited for by the draws alone.
+            lists.links = lists.links.after(Access::GraphicsRead).with(Access::ComputeWrite);
+        }
+        Ok(self.separate(Some(lists)))
+    }
+
+    /// Entries wait in the places of colours. `by_fragment`: what shades the triangles of lists, so that strays alone are left.
+    fn record_entries(
+        &self,
+        cmd: &mut Commands,
+        deep: &DeepScene,
+        inputs: DrawInputs<'_>,
+        counters: Edge<'_, Buffer>,
+        shade: &ShadeEntries,
+        by_fragment: Option<(&Shade, ListsEdge<'_>)>,
+    ) -> Result<()> {
+        let waiting = self.colors.from(Access::ComputeWrite);
+        self.sort.record(cmd, inputs.bound, &self.order, waiting, counters)?;
+        let (colors, counters) = (&self.colors, counters.resource);
+        let mut edges = ShadingEdges {
+            colors: colors.from(Access::ComputeRead),
             counters: counters.from(Access::ComputeWrite),
             maps: deep.maps_from(Access::DepthWrite),
         };
-        list_shading.shade.record(cmd, inputs, lists, edges)?;
-        lists.links = lists.links.after(Access::GraphicsRead);
-        // Compute shaders have read SPIDs first: what wrote them was waited for by those alone.
-        let seen = self.samples().map(|samples| SeenSamples {
-            spids: samples.from(Access::ComputeSample | samples.written),
-            ..as_written(samples)
-        });
-        let edges = ShadingEdges {
-            colors,
-            counters: counters.from(Access::FragmentWrite),
-            maps: deep.maps_from(Access::FragmentSample),
-        };
-        brute.record(cmd, inputs, seen, Some(lists), edges)?;
-        // Compute shaders touch the links after draws have read them: what wrote them was waited for by the draws alone.
-        lists.links = lists.links.with(Access::ComputeWrite);
-        if seen.is_none() {
-            lists.addresses = lists.addresses.with(Access::GraphicsRead);
+        if let Some((fragments, lists)) = by_fragment {
+            fragments.record(cmd, inputs, lists, edges)?;
+            let [colors, counters] = [colors, counters].map(|buffer| buffer.from(Access::FragmentWrite));
+            edges = ShadingEdges { colors, counters, maps: deep.maps_from(Access::FragmentSample) };
         }
-        let samples = self.samples().map(|samples| samples.from(Access::ComputeSample | Access::FragmentSample));
-        Ok(SampleColors::Separate { samples, lists: Some(lists), colors })
-    }
-
-    /// Before the only pass that shades.
-    fn untouched<'a>(&'a self, deep: &'a DeepScene, counters: Edge<'a, Buffer>) -> ShadingEdges<'a> {
-        let colors = self.colors.from(AccessSet::UNTOUCHED);
-        ShadingEdges { colors, counters, maps: deep.maps_from(Access::DepthWrite) }
+        shade.record(cmd, inputs, &self.order, edges)
     }
 
     /// Returns the lists as insertion leaves them.
@@ -262,8 +320,8 @@ impl SeparateShading {
                 return Ok(written);
             }
         };
-        let samples = self.samples().expect("the host has not inserted them");
-        let seen = samples.from(samples.written);
+        let seen = self.seen();
+        let samples = seen.resource;
         insert.record(cmd, bound, seen, lists, colors, counters.from(Access::FragmentWrite))?;
         if let Some(compact) = compact {
             let [colors, counters] = [colors, counters].map(|buffer| buffer.from(Access::ComputeWrite));
@@ -287,10 +345,4 @@ impl SeparateShading {
             _ => Ok(()),
         }
     }
-}
-
-/// Samples as visibility leaves them.
-fn as_written(samples: &Samples) -> SeenSamples<'_> {
-    let depth = samples.depth.as_ref().map(|depth| depth.from(Access::DepthWrite));
-    SeenSamples { spids: samples.from(samples.written), depth }
 }

@@ -3,13 +3,14 @@
 use crate::sampling::sampler::Sampler;
 use crate::settings::{
     APERTURE, BRDF, Changes, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES,
-    Setting, Unread, Values,
+    Setting, TEXELS, Unread, Values,
 };
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
+use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::modes::warp::Warp;
@@ -80,12 +81,15 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "visibility",
         kind: Kind::Choice(Visibility::WORDS),
-        default: "repeat-frame",
+        auto: true,
+        default: "auto",
         paper: "Clarberg 2014, 4.2",
         help: "How samples find the triangle that they see: the frame is drawn once for each tuple (repeat-frame); \
                each draw is (repeat-draw); each draw has an instance for each tuple (instancing); a geometry shader \
                makes a triangle for each tuple (replicate); a polygon around each triangle's blur is drawn, and a \
-               shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples",
+               shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples; auto: \
+               instancing on software drivers that write layers, with --shading deep and indirect-gbuffer, stochastic with \
+               msaa, else repeat-frame",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -105,9 +109,9 @@ pub const SETTINGS: &[Setting] = &[
         auto: true,
         default: "auto",
         paper: "Clarberg 2014, 4.2",
-        help: "Stage that makes the polygon around a triangle's blur with --visibility stochastic (and around strays \
-               with ray): a geometry shader, once for the polygon, or vertex shaders, each corner for itself; the same \
-               samples; auto: geometry where the device can",
+        help: "Stage that makes the polygon around a triangle's blur with --visibility stochastic: a geometry shader, once \
+               for the polygon, or vertex shaders, each corner for itself; the same samples; auto: geometry where the \
+               device can",
         unread: |values| {
             Unread::unless(
                 values,
@@ -142,9 +146,20 @@ pub const SETTINGS: &[Setting] = &[
         key: "spp",
         symbol: "n",
         kind: Kind::Integer { min: 1, max: 64 },
-        default: "8",
-        paper: "Clarberg 2014, 6",
-        help: "Samples a pixel in one set of buffers, for each eye with --stereo",
+        auto: true,
+        default: "auto",
+        paper: "8: Clarberg 2014, 6",
+        help: "Samples a pixel in one set of buffers, for each eye with --stereo; auto: 32 where something is blurred, 8 \
+               where nothing is, or the largest power of two that --sample-memory holds; of --tuples, if that is given, a divisor",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "sample-memory",
+        kind: Kind::Bytes,
+        default: "2GiB",
+        help: "Most bytes that --spp auto takes samples for, reckoned at 64 for each, which is the most that lists and the \
+               filter hold of one; none: no bound",
+        unread: |values| Unread::unless(values, "spp", &["auto"], "it says how many samples there are"),
         ..Setting::changing(Changes::Samples)
     },
     Setting {
@@ -155,7 +170,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         paper: "Clarberg 2014, 4.2",
         help: "Number of tuples, places in a pixel, on the lens and in time, that all samples share, spread over a \
-               table of N/n pixels; a multiple of --spp; for each eye with --stereo; auto: four times --spp",
+               table of N/n pixels; a multiple of --spp; for each eye with --stereo; auto: --spp, all in every pixel, \
+               doubled where something is blurred, to at most 32 and four times --spp",
         ..Setting::changing(Changes::Samples)
     },
     Setting {
@@ -235,6 +251,26 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Nothing)
     },
     Setting {
+        key: "shade-by",
+        kind: Kind::Choice(ShadeBy::WORDS),
+        default: "compute",
+        paper: "fragment: Clarberg 2014, 4.4",
+        help: "What shades the triangles of lists: a compute shader, which goes through them material by material \
+               (compute); or the fragments of a conservative pass over shading space, which find themselves in a list, as in \
+               the paper (fragment); the same picture",
+        unread: without_lists,
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting { unread: without_lists, ..TEXELS },
+    Setting {
+        key: "cull-lights",
+        kind: Kind::Choice(&["on", "off"]),
+        default: "on",
+        help: "Leave out lights whose range ends before all that a compute thread shades (--texels); the same picture",
+        unread: without_lists,
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
         key: "list-access",
         kind: Kind::Choice(ListAccess::WORDS),
         auto: true,
@@ -269,11 +305,11 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "zmax",
         kind: Kind::Choice(&["on", "off"]),
-        default: "on",
-        paper: "Clarberg 2014, 3.1",
+        default: "off",
+        paper: "on: Clarberg 2014, 3.1",
         help: "Leave out, before a list is read, triangles that lie behind all that samples saw at that pixel of \
-               shading space; the same picture",
-        unread: without_lists,
+               shading space, by a depth more for each sample; the same picture, and on software drivers not sooner",
+        unread: without_fragments,
         ..Setting::changing(Changes::Nothing)
     },
     Setting {
@@ -292,11 +328,11 @@ pub const SETTINGS: &[Setting] = &[
         default: "auto",
         paper: "Clarberg 2014, 4.4",
         help: "How every pixel that a triangle touches gets drawn: its hull is drawn, from a geometry shader \
-               (geometry) or from vertex shaders (vertex), or the device rasterises conservatively (hardware, which \
-               has not been seen to run yet); the same picture, or an error that says how many samples have no colour; \
+               (geometry) or from vertex shaders (vertex), or the device rasterises conservatively (hardware); the same \
+               picture, or an error that says how many samples have no colour; \
                auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
                triangle covers, to measure what the others cost and how much has no colour then",
-        unread: without_lists,
+        unread: without_fragments,
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -305,17 +341,19 @@ pub const SETTINGS: &[Setting] = &[
         default: "listed",
         paper: "all: Clarberg 2014, 4.4",
         help: "Triangles that are drawn into shading space: those that are in a list, for which insertion marks one \
-               bit each (listed), or all of the scene, as in the paper and with --lists direct (all); the same picture",
-        unread: without_lists,
+               bit each (listed), or all of the scene, as in the paper (all); the same picture",
+        unread: without_fragments,
         ..Setting::changing(Changes::Nothing)
     },
     Setting {
         key: "reconstruct",
         kind: Kind::Choice(&["on", "off"]),
-        default: "off",
-        paper: "Clarberg 2014, 4.5",
+        auto: true,
+        default: "auto",
+        paper: "on: Clarberg 2014, 4.5",
         help: "Filter what is blurred, in layers of depth, as far as its blur allows (not the paper's filter); off: \
-               take the mean of each pixel's own samples",
+               take the mean of each pixel's own samples; auto: on with --spp auto and \
+               --shading deep, without --lists direct, --accumulate and the picture of both eyes",
         ..Setting::changing(Changes::Picture)
     },
 ];
@@ -330,6 +368,11 @@ fn without_space(values: &Values) -> Option<Unread> {
 
 fn without_lists(values: &Values) -> Option<Unread> {
     Unread::unless(values, "shading", &[ShadingKind::Deep], "it has no lists")
+}
+
+fn without_fragments(values: &Values) -> Option<Unread> {
+    without_lists(values)
+        .or_else(|| Unread::unless(values, "shade-by", &[ShadeBy::Fragment], "it draws nothing into shading space"))
 }
 
 fn without_textures(values: &Values) -> Option<Unread> {

@@ -2,7 +2,8 @@
 //! 25 MB" of the deep shading buffer at 1.5 executions a pixel). Pointers to lists are cleared, so they are touched whole.
 
 use crate::techniques::deep_shading::resources::{
-    ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ROW_ID_BYTES, full,
+    ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR_BYTES, COLORS, LINEAR, NODE_BYTES, NODES, ORDER, ORDER_BYTES,
+    ROW_ID_BYTES, full,
 };
 use std::collections::BTreeMap;
 
@@ -19,6 +20,8 @@ pub struct TouchedEntries {
     pub addresses: u64,
     /// Entries for shading pixels.
     pub begins: u64,
+    /// Entries that a compute shader shaded.
+    pub ordered: u64,
 }
 
 impl TouchedEntries {
@@ -31,6 +34,7 @@ impl TouchedEntries {
             of(COLORS, self.colors, COLOR_BYTES),
             of(LINEAR, self.row_ids, ROW_ID_BYTES),
             of(ADDRESSES, self.addresses, ADDRESS_BYTES),
+            of(ORDER, self.ordered, ORDER_BYTES),
         ])
     }
 }

@@ -19,14 +19,18 @@ use crate::sampling::sobol;
 use crate::settings::Values;
 use crate::techniques::NamedPattern;
 use crate::techniques::deep_shading::resources::NAME;
+use crate::techniques::deep_shading::sample_count;
 use crate::units::Extent;
 
 /// Patterns that the settings choose.
 pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
     name: "tuples",
-    summary: "Places in a pixel, on the lens and in time at which all samples are taken, over a table of pixels",
+    summary: "Places in a pixel, on the lens and in time at which all samples of a blurred picture are taken, over a table of pixels",
     keys: &["spp", "tuples", "sampler", "seed"],
-    make: |values| Ok(TupleTable::from_settings(values)?.pattern(values.integer("seed") as u32, 0)),
+    make: |values| {
+        let samples = sample_count::up_to(values, sample_count::BLURRED);
+        Ok(TupleTable::from_settings(values, samples, true)?.pattern(values.integer("seed") as u32, 0))
+    },
 }];
 
 /// How samples are spread over pixels.
@@ -42,12 +46,11 @@ pub struct TupleTable {
 }
 
 impl TupleTable {
-    /// The table of `--spp` and `--tuples`, for one eye.
+    /// The table of `--tuples` and as many samples a pixel, for one eye.
     ///
-    /// Errors: `--tuples` is no multiple of `--spp` (exit code 2).
-    pub fn from_settings(values: &Values) -> Result<Self> {
-        let samples = values.integer("spp") as u32;
-        let tuples = values.unless_auto("tuples", Values::integer).map_or(4 * samples, |tuples| tuples as u32);
+    /// Errors: `--tuples` is no multiple of `samples` (exit code 2).
+    pub fn from_settings(values: &Values, samples: u32, is_blurred: bool) -> Result<Self> {
+        let tuples = sample_count::tuples(values, samples, is_blurred);
         if !tuples.is_multiple_of(samples) {
             return Err(Error::request(format!("--tuples {tuples}: it must be a multiple of --spp {samples}"))
                 .within(NAME)

@@ -20,10 +20,11 @@ use crate::passes::cull;
 use crate::passes::cull::{Cull, CullLights};
 use crate::passes::direct::{self, DirectGpu, ShadingSettings};
 use crate::passes::gbuffer::{self, GBuffer, GBufferPass};
+use crate::passes::workgroup;
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::{Coverage, SceneGpu};
-use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values};
+use crate::settings::{LIGHT_LISTS, SHADING, Setting, Values, WORKGROUP};
 use shade::Shade;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -125,7 +126,11 @@ impl Prepared for PreparedDeferred {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let texels = self.settings.texels.of_column(self.settings.direct.load(self.lights.len()));
-        BTreeMap::from([("cull-by", self.settings.cull_by.name().to_owned()), ("texels", texels.to_string())])
+        BTreeMap::from([
+            ("cull-by", self.settings.cull_by.name().to_owned()),
+            ("texels", texels.to_string()),
+            (WORKGROUP.key, workgroup::text(self.settings.workgroup)),
+        ])
     }
 
     fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {

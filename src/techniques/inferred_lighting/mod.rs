@@ -43,9 +43,9 @@ use crate::gpu::Access;
 use crate::gpu::shader::structs::{FrameBlock, LightBlock};
 use crate::lights::LightSet;
 use crate::lights::shadow_casters::ShadowCasters;
-use crate::passes::{blend, cull as light_masks, direct, samples};
+use crate::passes::{blend, cull as light_masks, direct, samples, workgroup};
 use crate::plan::Plan;
-use crate::settings::{INSTRUMENT, MULTISAMPLE, Setting, Values};
+use crate::settings::{INSTRUMENT, MULTISAMPLE, Setting, Values, WORKGROUP};
 use crate::techniques::inferred_lighting::encoding::PackingFormat;
 use crate::techniques::inferred_lighting::light::store::Sums;
 use crate::techniques::inferred_lighting::resources::{NAME, light_frame};
@@ -240,6 +240,7 @@ impl Prepared for PreparedInferred {
             ("light-size", self.choices.light_extent.to_string()),
             ("stipple", self.choices.stipple_name().to_owned()),
             ("texels", texels.to_string()),
+            (WORKGROUP.key, workgroup::text(shading.workgroup)),
         ])
     }
 

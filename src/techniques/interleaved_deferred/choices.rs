@@ -11,8 +11,9 @@ use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Filter, Kernel, StopBits};
+use crate::passes::workgroup;
 use crate::sampling::pattern::Pattern;
-use crate::settings::{PositionStorage, Values};
+use crate::settings::{PositionStorage, Values, WORKGROUP};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Bytes;
@@ -204,6 +205,7 @@ impl Choices {
             ("cull-by", self.shading.cull_by.name().to_owned()),
             ("sigma", format!("{}", self.kernel.sigma)),
             ("texels", self.list_texels().to_string()),
+            (WORKGROUP.key, workgroup::text(self.shading.workgroup)),
         ]);
         if let Some(copies) = self.split.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };

@@ -53,7 +53,7 @@ use crate::passes::depth_prepass::DepthBegins;
 use crate::passes::forward::{self, Forward, ForwardScene, ListedLights, Targets};
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
-use crate::resident::{Coverage, DrawList, Raster, SceneGpu};
+use crate::resident::{Coverage, DrawList, Raster, SceneGpu, Sweep};
 use crate::settings::{FORWARD, GeometryChoice, LIGHT_LISTS, SHADOW_MAPS, Setting, VOLUME_PLACE, Values};
 use choices::{Choices, Effect};
 use combine::Combine;
@@ -197,7 +197,7 @@ impl PreparedInterleaved {
         // What one place of the lens, or one moment, does not see another may.
         let is_other = choices.lens.is_some() || choices.exposure.is_some();
         let geometry = if is_other { GeometryChoice::All } else { inputs.values.choice("geometry") };
-        let list = DrawList::new(inputs.scene, scene, inputs.view, raster, geometry);
+        let list = DrawList::new(inputs.scene, scene, inputs.view, raster, geometry, Sweep::default());
         let of = ForwardScene {
             scene: inputs.scene,
             view: inputs.view,

@@ -60,7 +60,7 @@ use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lens::Lens;
 use crate::lights::LightSet;
 use crate::lights::emitters::{self, Emitters};
-use crate::passes::direct;
+use crate::passes::{direct, workgroup};
 use crate::picture::Aov;
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
@@ -68,7 +68,7 @@ use crate::resident::traced::{Layout, Rays, Reads};
 use crate::resident::volume::PlacedVolume;
 use crate::scene::{AlphaMode, Light, Material, Medium};
 use crate::settings::written::SettingValue;
-use crate::settings::{Brdf, Setting, TREE, VOLUME_PLACE, Values};
+use crate::settings::{Brdf, Setting, StackPlace, TREE, VOLUME_PLACE, Values, WORKGROUP};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::{AmbientVisibility, PixelPlace, RaySource, Transport};
 use airlight::Air;
@@ -143,7 +143,7 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
     let rays = if values.is("rays", RaySource::Query) {
         Rays::Query { is_opaque: !is_tested(inputs) }
     } else {
-        let threads = values.pair("workgroup").iter().product();
+        let threads = workgroup_of(inputs).iter().product();
         let walk = Walk::from_values(values);
         Rays::Tree(Nodes::new(bvh, walk, threads, limits).map_err(|error| error.within(NAME))?)
     };
@@ -152,6 +152,16 @@ fn layout(inputs: &Inputs<'_>, bvh: &Bvh) -> Result<Layout> {
         occlusion: values.is("ambient-visibility", AmbientVisibility::Off) && inputs.lights.ambient != Vec3::ZERO,
     };
     Layout::new(inputs.scene, bvh, rays, reads, limits.max_storage_buffer_range_bytes)
+}
+
+/// `--workgroup`, `auto` resolved: stacks that share workgroup memory want room for every thread's.
+fn workgroup_of(inputs: &Inputs<'_>) -> [u32; 2] {
+    let (values, caps) = (inputs.values, inputs.caps);
+    let is_chosen = values.unless_auto(WORKGROUP.key, Values::pair).is_some();
+    if !is_chosen && values.is("stack", StackPlace::Shared) && !caps.identity.is_software() {
+        return [8, 8];
+    }
+    workgroup::workgroup(values, caps)
 }
 
 /// The scene has MASK or BLEND surfaces.
@@ -245,7 +255,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         walk_landings: is_walked.then_some(bounces - 1),
         brdf: values.choice::<Brdf>("brdf") as u32,
         extras: inputs.scene.drawn_materials().any(Material::has_extras),
-        workgroup: values.pair("workgroup"),
+        workgroup: workgroup_of(inputs),
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),
         is_tested: is_tested(inputs),
         air,
@@ -307,6 +317,7 @@ impl Prepared for PreparedPaths {
             ("medium", Medium::text(self.choices.medium)),
             ("spp", self.sample_count.to_string()),
             ("vpl-clamp", format!("{}", self.choices.params.least_squared.sqrt())),
+            (WORKGROUP.key, workgroup::text(self.choices.workgroup)),
         ]);
         if let Some(nodes) = self.layout.nodes() {
             resolved.insert("stack", nodes.stack.name().to_owned());

@@ -116,10 +116,9 @@ fn multisampled_panes_are_the_lists_to_the_bit() {
 }
 
 /// As the lists' own test: four sets of as many samples halve the error of independent ones. What more samples cannot mend is
-/// multisampling's one depth for all samples of a fragment: where the room's lamp hangs just below the ceiling, and boxes meet
-/// the floor, some see the wrong one of the two, in 20 of 4096 pixels by more than 0.004. Of the other 99 in 100 half of
-/// the lists' own error at so many samples may be left: four samples are shaded at the place of one, of smooth light.
-/// Light beyond white is cut: what is next to a lamp has no bound.
+/// multisampling's one depth for all samples of a fragment: where boxes meet the floor, some see the wrong one of the two. Of
+/// the 99 in 100 pixels that differ least half of the lists' own error at so many samples may be left: four samples are
+/// shaded at the place of one, of smooth light. Light beyond white is cut: what is next to a lamp has no bound.
 #[test]
 fn blur_comes_to_what_path_tracing_sees() {
     let light = [("size", "64x64"), ("brdf", "lambert"), ("aperture", "0.15")];
@@ -239,6 +238,8 @@ fn settings_that_a_baseline_does_not_read_are_refused() {
         (&[SSAA, ("lists", "none")][..], "--lists none with --shading ssaa"),
         (&[MSAA, ("compaction", "off")], "--compaction off with --shading msaa"),
         (&[MSAA, ("conservative", "vertex")], "--conservative vertex with --shading msaa"),
+        (&[("conservative", "vertex")], "--conservative vertex with --shade-by compute"),
+        (&[("zmax", "on")], "--zmax on with --shade-by compute"),
         (&[SSAA, ("guard-band", "0")], "--guard-band 0 with --shading ssaa"),
         (&[SSAA, ("pass-samples", "4")], "--pass-samples 4 with --shading ssaa"),
         (&[MSAA, ("visibility", "instancing")], "--visibility instancing with --shading msaa"),

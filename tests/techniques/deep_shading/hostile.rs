@@ -2,6 +2,7 @@
 //! in one pixel; and lenses so wide that nothing stays where it was. Every sample that sees something has its colour, which is
 //! the one it has by itself, and what shading space has no place for is counted.
 
+use super::FRAGMENT;
 use crate::support::gltf_file::{GltfFile, U32};
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
@@ -45,11 +46,11 @@ type Counters = BTreeMap<&'static str, f64>;
 /// rounding: their colours are numbers.
 #[track_caller]
 fn require_whole(watched: &Watched, common: Changes<'_>) -> Counters {
-    let mut plain = vec![("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")];
+    let mut plain = vec![FRAGMENT, ("compaction", "off"), ("address-buffer", "off"), ("zmax", "on")];
     // The other one than `auto` chooses.
     plain.extend(has(&watched.session.gpu.caps, Feature::GeometryShader).then_some(("conservative", "vertex")));
     let mut first = None;
-    for (visibility, methods) in [("repeat-frame", &[&[][..], &plain][..]), ("stochastic", &[&[]])] {
+    for (visibility, methods) in [("repeat-frame", &[&[][..], &[FRAGMENT], &plain][..]), ("stochastic", &[&[]])] {
         let common = both(&[SIZE, ("spp", "4"), ("tuples", "8"), ("visibility", visibility)], common);
         let counted = |method: Changes<'_>| {
             let renderer = watched.render(DEEP, &both(&common, method));

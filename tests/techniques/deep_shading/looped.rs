@@ -1,6 +1,7 @@
 //! Stochastic rasterisation that tests all samples of a pixel in a loop and keeps the nearest by 64-bit atomics sees (to the bit,
 //! on software drivers) what a layer a tuple with depth tests sees, its oracle: alpha, motion, two eyes and surfaces in one place included.
 
+use super::FRAGMENT;
 use crate::support::difference::{require_same, require_same_numbers};
 use crate::support::moving::moving;
 use crate::support::watched::{Changes, Watched, both};
@@ -29,7 +30,11 @@ fn require_one_picture(watched: &Watched, changes: Changes<'_>) {
         let renderer = watched.render_stages(DEEP, &both(&changes, &[way]), &[stage]);
         assert_eq!(renderer.resolved["sample-tests"], way.1);
         let counters = renderer.measured_counters().unwrap();
-        let pairs = ["listed_digest", "samples_seen", "shader_invocations"].map(|key| counters.get(key).copied());
+        let mut pairs = ["listed_digest", "samples_seen", "shader_invocations"].map(|key| counters.get(key).copied());
+        if counters.get("shading_samples_forgotten").is_some_and(|forgotten| *forgotten > 0.0) {
+            // Where eight samples have the places of a ninth, who was the first decides what is shaded again.
+            pairs[2] = None;
+        }
         (watched.integers(&renderer, stage), pairs, renderer.picture().unwrap())
     });
     assert!(looped.0.iter().filter(|id| **id != u32::MAX).count() > looped.0.len() / 4, "{changes:?}");
@@ -47,7 +52,10 @@ fn a_loop_sees_what_layers_see_sharp_and_under_a_lens() {
     let size = ("size", "97x55");
     require_one_picture(&watched, &[size]);
     require_one_picture(&watched, &[size, ("aperture", "0.3"), ("focus", "6"), ("polygon-from", "vertex")]);
-    require_one_picture(&watched, &[size, ("spp", "3"), ("tuples", "45"), ("zmax", "off"), ("accumulate", "2")]);
+    require_one_picture(
+        &watched,
+        &[size, ("spp", "3"), ("tuples", "45"), FRAGMENT, ("zmax", "on"), ("accumulate", "2")],
+    );
     let filtered = [size, ("aperture", "0.1"), ("reconstruct", "on"), ("lists", "none")];
     require_one_picture(&watched, &filtered);
 }

@@ -1,6 +1,7 @@
 //! The reconstruction of deep shading: less error from few samples where something is blurred, the same bits where nothing is;
 //! one colour stays one colour, and what is sharp takes nothing from what is behind it.
 
+use super::FRAGMENT;
 use crate::support::boxes::{camera, panel, rectangle};
 use crate::support::choices::words_but;
 use crate::support::difference::{require_same, rmse};
@@ -9,6 +10,7 @@ use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
 use glam::Vec3;
+use quincunx::picture::Picture;
 use quincunx::scene::{Material, Scene};
 use std::collections::BTreeMap;
 
@@ -30,7 +32,7 @@ const METHODS: [Changes<'_>; 4] = [
     &[("lists", "none")],
     &[("list-access", "addresses")],
     &[("address-buffer", "off")],
-    &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off"), ("instrument", "off")],
+    &[FRAGMENT, ("compaction", "off"), ("address-buffer", "off"), ("zmax", "on"), ("instrument", "off")],
 ];
 
 #[test]
@@ -70,6 +72,63 @@ fn eight_samples_have_less_error_than_the_mean_of_many_more() {
         let most = if has(&watched.session.gpu.caps, Feature::ExactPositions) { errors[1] } else { errors[0] };
         assert!(far.iter().all(|far| *far < least * errors[0] && *far < most), "{name}: {far:?}, {errors:?}");
     }
+}
+
+/// Root mean square of what two by two pixels of a picture differ in from their mean (Haar's details of the finest level), of
+/// luminance-like sums of channels.
+fn details(picture: impl Fn(usize, usize) -> f64, [width, height]: [usize; 2]) -> f64 {
+    let mut sum = 0.0;
+    for (x, y) in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| (2 * x, 2 * y))) {
+        let [a, b, c, d] = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| picture(x + dx, y + dy));
+        sum += [a - b + c - d, a + b - c - d, a - b - c + d].map(|detail| 0.25 * detail * detail).iter().sum::<f64>();
+    }
+    (sum / (width / 2 * (height / 2)) as f64).sqrt()
+}
+
+/// The pattern of the table of tuples: 2x2 pixels that have other tuples each. Against many samples of other tuples, which the
+/// judged ones are not among.
+#[test]
+fn the_pattern_of_the_table_is_gone() {
+    let side = [96, 54];
+    let blurred =
+        |lens: [&'static str; 2]| [SIZE, ("spp", "8"), ("tuples", "32"), ("aperture", lens[0]), ("focus", lens[1])];
+    let cases = [
+        ("lens", Watched::open("hall:triangles=8000"), blurred(["0.8", "5"]), 0.64),
+        ("motion", Watched::with_scene(passing()), blurred(["0", "4"]), 0.305),
+        ("motion and lens", Watched::with_scene(passing()), blurred(["0.1", "4"]), 0.335),
+    ];
+    for (name, watched, common, most) in cases {
+        let of = |changes: Changes<'_>| watched.picture(DEEP, &both(&common, changes));
+        let reference = of(&[("accumulate", "24"), ("seed", "77"), ("reconstruct", "off")]);
+        let sum = |pixel: &[f32; 3]| pixel.iter().map(|channel| f64::from(channel.min(1.0))).sum::<f64>();
+        let error = |picture: &Picture| {
+            let difference = |x: usize, y: usize| {
+                let [own, should] = [picture, &reference].map(|picture| sum(&picture.pixels[y * side[0] + x]));
+                own - should
+            };
+            details(difference, side)
+        };
+        let [mean, filtered] = [("reconstruct", "off"), ("reconstruct", "on")].map(|is| error(&of(&[is])));
+        println!("{name}: details of the error {mean} of the mean, {filtered} filtered");
+        assert!(filtered < most * mean, "{name}: {filtered}, {mean}");
+    }
+}
+
+/// Filters of what moves are longer than two pixels, which the table of tuples has; the panel's way is from the 20th to the 77th.
+#[test]
+fn nothing_is_drawn_beyond_its_way() {
+    let watched = Watched::with_scene(passing());
+    let [mean, filtered] =
+        ["off", "on"].map(|is| watched.picture(DEEP, &[SIZE, ("spp", "8"), ("reconstruct", is)]).pixels);
+    let mut changed = 0;
+    for (index, (mean, filtered)) in mean.iter().zip(&filtered).enumerate() {
+        if (17..79).contains(&(index % 96)) {
+            changed += usize::from(mean != filtered);
+        } else {
+            assert_eq!(mean, filtered, "{}, {}", index % 96, index / 96);
+        }
+    }
+    assert!(changed > 500, "{changed} pixels are filtered");
 }
 
 /// The integral itself, by another way to it: paths through the same lens while the same shutter is open. Colours that no light
@@ -215,8 +274,80 @@ fn a_sharp_picture_is_the_mean_and_costs_nothing_more() {
     assert_eq!(on["memory"]["planned_bytes"], off["memory"]["planned_bytes"]);
 }
 
-/// Two buffers of eight bytes a sample, whatever the table of tuples pads; 96 bytes a tile of 16x16 pixels; 16 a draw; and the
-/// mean, from which the picture is made. The last ones are longer than the device binds.
+/// What a user gets who says nothing of samples, and what the settings say of it.
+#[test]
+fn a_blurred_picture_has_all_tuples_in_every_pixel_and_is_filtered() {
+    let program = Program::new();
+    let resolved = |settings: &[&str]| {
+        let common = ["render", "cornell", "--technique", DEEP, "--size", "32x32", "--json", "--quiet"];
+        let json = program.run(&[&common, settings].concat()).fine().json();
+        ["spp", "tuples", "reconstruct"].map(|key| json["settings"][key].to_string().trim_matches('"').to_owned())
+    };
+    let blurred = |settings: &[&str]| resolved(&[&["--aperture", "0.2"], settings].concat());
+    assert_eq!(resolved(&[]), ["8", "8", "off"]);
+    assert_eq!(blurred(&[]), ["32", "32", "on"]);
+    // 32x32 pixels of 64 bytes a sample.
+    assert_eq!(blurred(&["--sample-memory", "512KiB"]), ["8", "32", "on"]);
+    assert_eq!(blurred(&["--sample-memory", "524287"]), ["4", "16", "on"]);
+    assert_eq!(blurred(&["--accumulate", "2"]), ["32", "32", "off"]);
+    assert_eq!(blurred(&["--lists", "direct", "--visibility", "ray"]), ["32", "32", "off"]);
+    assert_eq!(blurred(&["--stereo", "0.1"]), ["32", "32", "off"]);
+    assert_eq!(blurred(&["--spp", "8"]), ["8", "32", "off"]);
+    assert_eq!(blurred(&["--tuples", "12"]), ["12", "12", "on"]);
+    let unread = ["render", "cornell", "--technique", DEEP, "--spp", "8", "--sample-memory", "1GiB"];
+    program.fails(&unread, 2, &["--sample-memory", "--spp"]);
+}
+
+/// What `--sample-memory` reckons is the most that any buffers have: by the difference that samples make, beside tiles and pixels.
+#[test]
+fn a_sample_takes_at_most_as_many_bytes_as_are_reckoned() {
+    let program = Program::new();
+    let planned = |settings: &[&str], spp: &str| {
+        let common =
+            ["memory", "cornell", "--technique", DEEP, "--plan", "--size", "640x360", "--aperture", "0.1", "--json"];
+        let json = program.run(&[&common, settings, &["--spp", spp, "--tuples", "32"]].concat()).fine().json();
+        json["techniques"][0]["memory"]["groups"]
+            .as_object()
+            .unwrap()
+            .values()
+            .map(|bytes| bytes.as_u64().unwrap())
+            .sum::<u64>()
+    };
+    let fragment = ["--shade-by", "fragment", "--zmax", "on"];
+    let mut most = 0;
+    for settings in [
+        &["--reconstruct", "on"][..],
+        &[&fragment[..], &["--reconstruct", "on"]].concat(),
+        &[&fragment[..], &["--reconstruct", "on", "--visibility", "stochastic"]].concat(),
+        &[&fragment[..], &["--lists", "direct", "--visibility", "ray"]].concat(),
+    ] {
+        let bytes = (planned(settings, "16") - planned(settings, "8")) as f64 / (8.0 * 640.0 * 360.0);
+        println!("{settings:?}: {bytes} bytes a sample");
+        assert!(bytes <= 64.0, "{settings:?}: {bytes}");
+        most = most.max(bytes.ceil() as u64);
+    }
+    assert!(most > 48, "{most}");
+}
+
+/// Against many samples of other tuples: less error than the paper's 8 of 32 have, filtered or not.
+#[test]
+fn the_default_has_less_error_than_eight_samples_of_thirty_two_tuples() {
+    for (name, watched, common) in [
+        ("lens", Watched::open("hall:triangles=8000"), LENS),
+        ("motion and lens", Watched::with_scene(passing()), &[SIZE, ("aperture", "0.4"), ("focus", "4")]),
+    ] {
+        let of = |changes: Changes<'_>| watched.picture(DEEP, &both(common, changes));
+        let reference = of(&[("spp", "8"), ("accumulate", "64"), ("seed", "77")]);
+        let [default, mean, filtered] =
+            [&[][..], &[("spp", "8")], &[("spp", "8"), ON]].map(|changes| rmse(&of(changes), &reference));
+        println!("{name}: {default} by default, {mean} of 8 samples, {filtered} filtered");
+        assert!(default < 0.9 * filtered.min(mean), "{name}: {default}, {filtered}, {mean}");
+    }
+}
+
+/// Two buffers of eight bytes a sample, whatever the table of tuples pads; 33 bins of 48 bytes and 96 more a tile of 16x16
+/// pixels; four layers of 24 bytes a pixel; and the mean, from which the picture is made. The last ones are longer than the device
+/// binds.
 #[test]
 fn memory_is_planned_to_the_byte() {
     let program = Program::new();
@@ -232,11 +363,11 @@ fn memory_is_planned_to_the_byte() {
         [("1280x720", 1280 * 720, 80 * 45), ("161x91", 161 * 91, 11 * 6), ("2048x1152", 2048 * 1152, 128 * 72)]
     {
         let ((off, all_off), (on, all_on)) = (planned(size, "off"), planned(size, "on"));
-        let own = 2 * 8 * 8 * pixels + 96 * tiles;
+        let own = 2 * 8 * 8 * pixels + (33 * 48 + 96) * tiles + 4 * 24 * pixels;
         assert_eq!(on["reconstruction"], own, "{size}");
         // Groups have images as the driver pads them.
         assert_eq!(on["color"], off["picture"], "{size}");
-        assert_eq!(all_on - all_off, own + 16 * pixels + 20 * 8, "{size}");
+        assert_eq!(all_on - all_off, own + 16 * pixels, "{size}");
         for group in ["frame_buffer", "deep_shading_buffer", "auxiliary"] {
             assert_eq!(on[group], off[group], "{size}: {group}");
         }

@@ -1,6 +1,7 @@
 //! Two eyes that share one deep shading buffer: each has the bits of shading every sample by itself, what lies in the plane in
 //! focus is in one place of both pictures and the rest as far apart as similar triangles say, and what both see is shaded once.
 
+use super::FRAGMENT;
 use crate::support::boxes::{camera, panel, point_light, rectangle};
 use crate::support::difference::require_same;
 use crate::support::moving::moving;
@@ -61,7 +62,7 @@ fn every_method_shades_both_eyes_as_every_sample_by_itself_would_be() {
     let watched = Watched::open("cornell");
     let common =
         [("size", "49x29"), ("spp", "2"), ("tuples", "8"), ("stereo", "0.2"), ("aperture", "0.05"), ("focus", "3")];
-    let plain: Changes<'_> = &[("compaction", "off"), ("address-buffer", "off"), ("zmax", "off")];
+    let plain: Changes<'_> = &[FRAGMENT, ("compaction", "off"), ("address-buffer", "off"), ("zmax", "on")];
     let indirect: Changes<'_> = &[("shading", "indirect-gbuffer")];
     require_one_pair(&watched, &common, &[&[], plain, indirect, &[("list-access", "addresses")]]);
     require_one_pair(&watched, &both(&common, &[("visibility", "ray")]), &[&[("lists", "direct")]]);
@@ -245,7 +246,7 @@ fn memory_is_planned_for_both_eyes() {
     let planned = |stereo: &str, sets: &str| -> BTreeMap<String, u64> {
         let arguments =
             ["memory", "cornell", "--technique", DEEP, "--plan", "--size", "256x128", "--spp", "2", "--json"];
-        let settings = ["--stereo", stereo, "--accumulate", sets];
+        let settings = ["--stereo", stereo, "--accumulate", sets, "--shade-by", "fragment", "--zmax", "on"];
         let json = program.run(&[&arguments[..], &settings].concat()).fine().json();
         serde_json::from_value(json["techniques"][0]["memory"]["groups"].clone()).unwrap()
     };

@@ -21,11 +21,8 @@ REPLACES_WORDS(replace_cached, cache)
 // Places that a shading sample may stand at, in a row.
 const uint CACHE_WAYS = 8u;
 
-// Twin of sample_index.
 uvec2 spid_of(uint index) {
-    uint row = index / deep.layer_width_px;
-    uvec3 at = uvec3(index % deep.layer_width_px, row % deep.layer_height_px, row / deep.layer_height_px);
-    return texelFetch(spids, ivec3(at), 0).xy;
+    return texelFetch(spids, ivec3(sample_place(deep, index)), 0).xy;
 }
 
 // The sample that has the entry of `spid`: `own`, the asking one, if no sample had it.

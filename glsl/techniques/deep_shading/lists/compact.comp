@@ -4,8 +4,14 @@
 #include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/entries/waiting.glsl"
 
-layout(local_size_x = 64) in;
+// As in insert.comp.
+layout(constant_id = 104) const uint HAS_LIST_ENTRIES = 0;
+
+// Squares: colours that are given out one after the other lie side by side, which lights may leave out together
+// (entries/shade.comp).
+layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, set = 0, binding = 2) readonly buffer Deep { DeepBlock deep; };
 layout(std430, set = 0, binding = 20) buffer Begins { uint begins[]; };
@@ -31,7 +37,7 @@ WRITES_WORDS(set_row_id, linear)
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
-    if (at.x >= deep.shading_width_px) {
+    if (at.x >= deep.shading_width_px || at.y >= deep.shading_height_px) {
         return;
     }
     uint pixel = at.y * deep.shading_width_px + at.x;
@@ -71,8 +77,18 @@ void main() {
         set_row_id(pixel * LINEAR_COUNT + count, LINEAR_END);
     }
     uint first = atomicAdd(counters[COUNTED_COLORS], count);
+    uint packed_pixel = at.x | at.y << 16;
+    uint next = rest;
     for (uint color = 0u; color < count; color++) {
-        set_color(first + color, uvec2(0u));
+        uint primitive = 0u;
+        if (color < LINEAR_COUNT) {
+            primitive = row_id(pixel * LINEAR_COUNT + color);
+        } else {
+            uvec2 held = node_of(next - 1u);
+            primitive = held.x;
+            next = held.y;
+        }
+        set_color(first + color, HAS_LIST_ENTRIES != 0u ? entry_in_list(packed_pixel, primitive) : NO_ENTRY);
     }
     // Its id lies in the row: the node can carry what belongs to the list.
     set_node(list - 1u, uvec2(first, rest));

@@ -5,11 +5,15 @@
 #include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/space.glsl"
 #include "techniques/deep_shading/counters.glsl"
+#include "techniques/deep_shading/entries/waiting.glsl"
 
 // 1: nodes inserted meanwhile are not checked, so a triangle may be listed twice, as in the paper.
 layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
 // 1: colours are given out by compaction, those of strays from their end on.
 layout(constant_id = 93) const uint IS_COMPACTED = 0;
+
+// 1: a compute shader shades what lists have, which waits for it (entries/waiting.glsl).
+layout(constant_id = 104) const uint HAS_LIST_ENTRIES = 0;
 
 // As in shade.frag.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
@@ -98,17 +102,20 @@ void main() {
         return;
     }
     uvec2 spid = texelFetch(spids, ivec3(at), 0).xy;
+    uint own = sample_index(deep, at);
     if (spid.x == NO_PRIMITIVE) {
+        if (IS_COMPACTED == 0u) {
+            set_color(own, NO_ENTRY);
+        }
         return;
     }
-    uint own = sample_index(deep, at);
     uint color = NO_PRIMITIVE;
     if (spid.y != NO_SHADING_PIXEL) {
         uint pixel = (spid.y >> 16) * deep.shading_width_px + (spid.y & 0xffffu);
         color = insert(pixel, spid.x, own);
-        if (IS_COMPACTED == 0u && color == own) {
-            // Alpha says whether it is shaded.
-            set_color(own, uvec2(0u));
+        if (IS_COMPACTED == 0u) {
+            bool waits = HAS_LIST_ENTRIES != 0u && color == own;
+            set_color(own, waits ? entry_in_list(spid.y, spid.x) : NO_ENTRY);
         }
         if (color == NO_PRIMITIVE) {
             atomicAdd(counters[COUNTED_CROWDED], 1u);
@@ -126,14 +133,13 @@ void main() {
     if (color == NO_PRIMITIVE) {
         color = own;
         uint stray = atomicAdd(counters[COUNTED_STRAYS], 1u);
-        counters[COUNTED_ANY_STRAY] = 1u;
         if (IS_COMPACTED != 0u) {
             color = sample_total(deep) - 1u - stray;
         }
         // Its node serves no list: it says where the colour is.
         set_node(own, uvec2(color, 0u));
         has_written = true;
-        set_color(color, uvec2(0u));
+        set_color(color, entry_of_sample(spid, own));
     }
 #ifdef ADDRESSES_ON
     set_address(own, color);

@@ -26,7 +26,7 @@ layout(location = 5) out vec2 out_uv_1;
 #endif
 layout(location = 6) flat out uint out_tuple;
 
-// The passes over one tuple must agree on depth to the bit.
+// Several pipelines place triangles of one tuple: they must agree on depth to the bit.
 invariant gl_Position;
 
 void main() {

@@ -1,5 +1,5 @@
 // Corners as the ends of the exposure and as a tuple see them (section 4.2; appendix A, pass 1): every kind of visibility must
-// put a triangle into the same place, whichever stage does it, and the passes over one tuple agree on depth to the bit.
+// put a triangle into the same place, whichever stage does it, and strays must be found where their samples saw them.
 // After scene_buffers.glsl.
 #ifndef DEEP_SHADING_SEEN_GLSL
 #define DEEP_SHADING_SEEN_GLSL

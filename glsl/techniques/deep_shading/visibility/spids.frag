@@ -3,6 +3,7 @@
 // variants: DEPTH=none|shading
 #version 460
 #define DRAW_OF_TRIANGLE
+#define NUMBERED_IN_ORDER
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"

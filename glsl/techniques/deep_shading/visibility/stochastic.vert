@@ -14,7 +14,7 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 
 #include "techniques/deep_shading/visibility/polygon_out.glsl"
 
-// Samples that one pass over the polygons has seen must be found by the next.
+// Several pipelines place the polygons: they must agree on depth to the bit.
 invariant gl_Position;
 
 void main() {

@@ -1,64 +1,53 @@
-//! Samples find their shading samples in the cache, and what has no entry yet gets one, with what its material says (Liktor &
-//! Dachsbacher 2012). Shaders: those before fragments of visibility, gbuffer.frag, cache.glsl.
-//! reads   the scene, visibility.spids, visibility.depth
-//! writes  indirect.pointers, indirect.cache, indirect.places, .normals, .base_colors, .radiances
+//! What materials say of the entries, into the compact geometry buffer. Shader: gbuffer.comp.
+//! reads   shade.colors, entries.order, the scene, the tuples
+//! writes  indirect.places, indirect.normals, indirect.base_colors, indirect.radiances
 
 use super::super::choices::Choices;
+use super::super::entries::order::EntryOrder;
 use super::super::pass_inputs::DrawInputs;
-use super::super::redraw::{self, TriangleRedraw};
-use super::entries::Entries;
+use super::compact::Entries;
 use crate::error::Result;
-use crate::gpu::shader::techniques::deep_shading::indirect::gbuffer::FRAG_VARIANTS;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::shader::techniques::deep_shading::indirect::gbuffer::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::passes::mesh;
-use crate::plan::Resources;
 use crate::resident::SceneGpu;
+use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::resources::full;
-use crate::techniques::deep_shading::visibility::samples::SeenSamples;
-use crate::units::Extent;
 use std::sync::Arc;
 
-pub struct Gbuffer(TriangleRedraw);
+pub const PASS: &str = "indirect.gbuffer";
+
+pub struct Gbuffer {
+    pipeline: ComputePipeline,
+}
 
 impl Gbuffer {
-    /// `frame`: its extent.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        scene: &SceneGpu,
-        resources: &mut Resources,
-        choices: &Choices,
-        frame: Extent,
-    ) -> Result<Self> {
-        let fragment = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene), redraw::axis(choices)]);
-        Ok(Self(TriangleRedraw::new(gpu, scene, resources, choices, frame, fragment)?))
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+        let shader = variant(COMP_VARIANTS, &[mesh::vertex_name(scene)]);
+        let constants = constants_of(choices, &[Some(shader)]);
+        Ok(Self { pipeline: ComputePipeline::with_sets(gpu, shader, &constants, &[scene.material_layout])? })
     }
 
+    /// `colors`: where entries wait.
     pub fn record(
         &self,
         cmd: &mut Commands,
         inputs: DrawInputs<'_>,
-        seen: SeenSamples<'_>,
+        order: &EntryOrder,
         entries: &Entries,
-        counters: Edge<'_, Buffer>,
+        colors: Edge<'_, Buffer>,
     ) -> Result<()> {
-        let traffic = Traffic {
-            read_bytes: self.0.read_bytes(cmd.gpu(), inputs, Some(seen)),
-            // Entries are counted after the frame.
-            written_bytes: entries.pointers.bytes,
-            invocations: None,
-        };
-        cmd.pass(&full("indirect.gbuffer"), traffic, |cmd| {
-            let cleared = [&entries.pointers, &entries.cache];
-            cmd.barriers(cleared.map(|buffer| buffer.discard(Access::TransferWrite)));
-            cleared.iter().for_each(|buffer| cmd.clear(buffer));
-            cmd.barriers(cleared.map(|buffer| buffer.from(Access::TransferWrite).to(Access::FragmentWrite)));
-            cmd.barriers(entries.entries.iter().map(|buffer| buffer.discard(Access::FragmentWrite)));
-            cmd.barriers([counters.to(Access::FragmentWrite)]);
+        // Entries are counted after the frame.
+        let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
+        cmd.pass(&full(PASS), traffic, |cmd| {
+            cmd.barriers(entries.entries.iter().map(|buffer| buffer.discard(Access::ComputeWrite)));
+            cmd.barriers([colors.to(Access::ComputeRead)]);
             let mut bound = inputs.bound.to_vec();
             bound.extend(entries.bound());
-            bound.push(("Counters", Bound::Buffer(counters.resource)));
-            self.0.record(cmd, inputs, Some(seen), bound)
+            bound.push(("Colors", Bound::Buffer(colors.resource)));
+            order.dispatch(cmd, &self.pipeline, inputs, bound)
         })
     }
 }

@@ -4,7 +4,7 @@
 
 use super::super::choices::Choices;
 use super::super::pass_inputs::ShadingEdges;
-use super::entries::Entries;
+use super::compact::Entries;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::indirect::shade::COMP_VARIANTS;
@@ -33,7 +33,6 @@ impl Shade {
         })
     }
 
-    /// Nothing has touched the colours.
     pub fn record(
         &self,
         cmd: &mut Commands,
@@ -47,7 +46,7 @@ impl Shade {
         cmd.pass(&full("indirect.shade"), traffic, |cmd| {
             cmd.barriers(maps.and_then(|maps| maps.to(Access::ComputeSample)));
             cmd.barriers(made.to(Access::ComputeRead));
-            cmd.barriers([colors.resource.discard(Access::ComputeWrite), counters.to(Access::ComputeWrite)]);
+            cmd.barriers([colors, counters].map(|edge| edge.to(Access::ComputeWrite)));
             let mut bound = bound.to_vec();
             bound.extend(made.resource.bound());
             bound.extend(

@@ -32,9 +32,11 @@ impl Address {
         let (samples, lists) = (seen.resource, compacted.lists);
         let spids = &samples.spids;
         let addresses = lists.addresses.as_ref().expect("only with --address-buffer on");
-        let count = spids.description.extent.pixel_count() * u64::from(spids.description.layers());
-        let traffic =
-            Traffic { read_bytes: spids.description.bytes(), written_bytes: addresses.bytes, invocations: Some(count) };
+        let traffic = Traffic {
+            read_bytes: spids.description.bytes(),
+            written_bytes: addresses.bytes,
+            invocations: Some(samples.count()),
+        };
         cmd.pass(&full("lists.address"), traffic, |cmd| {
             cmd.barriers(compacted.links_to(Access::ComputeRead));
             cmd.barriers([seen.spids_to(Access::ComputeSample)]);
@@ -42,8 +44,7 @@ impl Address {
             let mut bound = bound.to_vec();
             bound.extend(lists.bound());
             bound.push(("spids", samples.sampled(spids, Access::ComputeSample)));
-            let extent = spids.description.extent;
-            let groups = self.pipeline.groups([extent.width, extent.height, spids.description.layers()]);
+            let groups = self.pipeline.groups(samples.threads());
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })
     }

@@ -1,6 +1,6 @@
 //! Compaction: sorts each list, drops what it holds twice, and puts its first 16 triangles and its colours in rows.
 //! Shader: compact.comp.
-//! reads and writes  lists.begins, lists.nodes      writes  lists.linear; begins alphas of colours at 0
+//! reads and writes  lists.begins, lists.nodes      writes  lists.linear; in places of colours entries that wait
 
 use super::super::choices::Choices;
 use super::ListsEdge;

@@ -1,6 +1,6 @@
 //! Insertion: each sample's triangle at the head of its list, by compare-exchange, unless the list has it. Shader: insert.comp.
 //! reads   visibility.spids, visibility.shading_depths
-//! writes  lists.begins, lists.nodes, lists.zmax, lists.marks, and addresses as they are without compaction; begins alphas of colours at 0
+//! writes  lists.begins, lists.nodes, lists.zmax, lists.marks, and addresses as they are without compaction; in places of colours entries that wait
 
 use super::super::choices::Choices;
 use super::Lists;
@@ -25,6 +25,7 @@ impl Insert {
         let constants = [
             ("TOLERATES_DUPLICATES", u32::from(choices.lists.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(choices.lists.is_compacted)),
+            ("HAS_LIST_ENTRIES", u32::from(choices.lists.has_entries)),
             ("IS_COUNTED", u32::from(choices.is_counted)),
             ("BY_ADDRESS", u32::from(choices.is_by_address)),
             ("HAS_FENCES", u32::from(!gpu.caps.identity.barriers_end_threads())),
@@ -53,7 +54,7 @@ impl Insert {
                 .flatten()
                 .map(|buffer| buffer.bytes)
                 .sum(),
-            invocations: Some(spids.description.extent.pixel_count() * u64::from(spids.description.layers())),
+            invocations: Some(samples.count()),
         };
         cmd.pass(&full("lists"), traffic, |cmd| {
             let cleared = [Some(&lists.begins), lists.zmax.as_ref(), lists.marks.as_ref()];
@@ -74,8 +75,7 @@ impl Insert {
             ]);
             let depths = samples.shading_depths();
             bound.extend(depths.map(|image| ("shading_depths", samples.sampled(image, Access::ComputeSample))));
-            let extent = spids.description.extent;
-            let groups = self.pipeline.groups([extent.width, extent.height, spids.description.layers()]);
+            let groups = self.pipeline.groups(samples.threads());
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })
     }

@@ -21,7 +21,7 @@ choices! {
 impl Conservative {
     /// `--conservative`, `auto` resolved.
     pub fn of(values: &Values, caps: &Caps) -> Self {
-        // Never the device's own: there was no device on which to check that it leaves no sample without a colour.
+        // Never the device's own: one GPU has tried it, which left no sample without a colour, but not on hostile triangles.
         let best = if caps.features.geometry_shader { Self::Geometry } else { Self::Vertex };
         values.unless_auto("conservative", Values::choice).unwrap_or(best)
     }

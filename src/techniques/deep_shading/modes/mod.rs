@@ -8,6 +8,7 @@ pub mod pass_samples;
 pub mod polygon_from;
 pub mod pool_size;
 pub mod sample_tests;
+pub mod shade_by;
 pub mod shading;
 pub mod shading_kind;
 pub mod visibility;

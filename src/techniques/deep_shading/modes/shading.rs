@@ -46,8 +46,8 @@ impl Shading {
     /// How samples find what they see.
     ///
     /// Errors: what is drawn sample by sample has no such kind (exit code 2).
-    pub fn visibility(self, values: &Values) -> Result<Visibility> {
-        let visibility: Visibility = values.choice("visibility");
+    pub fn visibility(self, values: &Values, caps: &Caps) -> Result<Visibility> {
+        let visibility = Visibility::of(values, caps);
         let goes_with_all = matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic);
         match self {
             Self::Deep | Self::IndirectGbuffer => Ok(visibility),

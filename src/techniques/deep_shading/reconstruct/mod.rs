@@ -8,37 +8,45 @@
 //!   part of it. A sample's circle of confusion and its way on the screen give the filter's ellipse (blur.glsl)
 //! - depth layers of a tile (Munkberg et al. 2014; Vaidyanathan et al. 2015): what is filtered together must be blurred alike, so
 //!   that a tile's samples are parted by depth into up to four layers; each is filtered for its colour and for the part that it
-//!   hides of what lies behind it, and they are put over each other from front to back (layers.comp, filter.comp)
+//!   hides of what lies behind it, and they are put over each other from front to back. A tile's samples are counted by depth
+//!   (bins.comp), its own bins and those around it cut into layers (layers.comp), each pixel's samples of a layer summed up
+//!   (means.comp), and these sums filtered (filter.comp)
+//! - all tuples of the table: where some of a pixel's samples see a layer and others see past it, filters are at least as wide
+//!   as the table of tuples, so that its pattern does not show; and a layer that none of the tuples around a pixel see stays out
+//!   of it, so that nothing is drawn beyond the blur
 //!
 //! Colours and parts are ratios of sums with the same weights: one colour stays one colour, and nothing gets darker. A pixel
 //! whose layers are sharp has the bits of the resolve. Filters end after 16 pixels: blur with a radius over 32 pixels, or a way
 //! of over 56, keeps noise.
 
+pub(super) mod bins;
 pub(super) mod filter;
 mod filter_buffers;
 pub(super) mod layers;
+pub(super) mod means;
 pub(super) mod samples;
 
 use super::choices::Choices;
-use super::primitives::Primitives;
-use super::ranges;
 use super::sample_colors::{SampleColors, fetch};
 use crate::error::Result;
-use crate::gpu::shader::structs::TileBlock;
+use crate::gpu::shader::structs::{BinBlock, TileBlock};
 use crate::gpu::shader::techniques::deep_shading::reconstruct::blur::TILE_PX;
+use crate::gpu::shader::techniques::deep_shading::reconstruct::depth_bins::BIN_COUNT;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image};
 use crate::plan::{Plan, Resources};
-use crate::resident::SceneGpu;
-use crate::techniques::deep_shading::reconstruct::filter_buffers::{FilterBuffers, RANGES};
-use crate::techniques::deep_shading::resources::{SAMPLE_BYTES, SAMPLE_COLORS, SAMPLE_VECTORS, full};
+use crate::techniques::deep_shading::reconstruct::filter_buffers::{BINS, FilterBuffers, TILES};
+use crate::techniques::deep_shading::resources::{
+    LAYER_MEANS, MEANS_BYTES, SAMPLE_BYTES, SAMPLE_COLORS, SAMPLE_VECTORS, full,
+};
 use crate::units::Extent;
+use bins::Bins;
 use filter::Filter;
 use layers::Layers;
+use means::Means;
 use samples::Gather;
 use std::sync::Arc;
 
 pub const COLOR: &str = "reconstruct.filter.color";
-const TILES: &str = "reconstruct.layers.tiles";
 
 /// Tiles across and down.
 fn tiles(frame: Extent) -> [u32; 2] {
@@ -46,29 +54,34 @@ fn tiles(frame: Extent) -> [u32; 2] {
 }
 
 /// Everything but the picture. `draws` of the scene.
-pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent, draws: u64) {
+pub fn plan(plan: &mut Plan, choices: &Choices, frame: Extent) {
     let bytes = frame.pixel_count() * u64::from(choices.table.samples) * SAMPLE_BYTES;
-    ranges::plan(plan, full(RANGES), draws);
     plan.buffer("reconstruction", full(SAMPLE_COLORS), bytes);
     plan.buffer("reconstruction", full(SAMPLE_VECTORS), bytes);
     let [across, down] = tiles(frame).map(u64::from);
+    plan.buffer("reconstruction", full(BINS), across * down * u64::from(BIN_COUNT) * size_of::<BinBlock>() as u64);
     plan.buffer("reconstruction", full(TILES), across * down * size_of::<TileBlock>() as u64);
+    plan.buffer("reconstruction", full(LAYER_MEANS), frame.pixel_count() * MEANS_BYTES);
 }
 
 /// The passes, after the resolve. `shaded`: what that one reads; `resolved`: what it leaves.
 pub fn plan_passes(plan: &mut Plan, shaded: Vec<(String, Access)>, resolved: &str) {
     let both = |access| [SAMPLE_COLORS, SAMPLE_VECTORS].map(|name| (full(name), access));
     plan.pass(full(samples::PASS), shaded.into_iter().chain(both(Access::ComputeWrite)));
-    let tiles = |access| (full(TILES), access);
-    plan.pass(full(layers::PASS), both(Access::ComputeRead).into_iter().chain([tiles(Access::ComputeWrite)]));
+    let [bins, tiles, means] = [BINS, TILES, LAYER_MEANS].map(|name| move |access| (full(name), access));
+    plan.pass(full(bins::PASS), both(Access::ComputeRead).into_iter().chain([bins(Access::ComputeWrite)]));
+    plan.pass(full(layers::PASS), [bins(Access::ComputeRead), tiles(Access::ComputeWrite)]);
+    let summed = [tiles(Access::ComputeRead), means(Access::ComputeWrite)];
+    plan.pass(full(means::PASS), both(Access::ComputeRead).into_iter().chain(summed));
     let pictures = [(full(resolved), Access::ComputeRead), (full(COLOR), Access::ComputeWrite)];
-    let filtered = both(Access::ComputeRead).into_iter().chain([tiles(Access::ComputeRead)]).chain(pictures);
-    plan.pass(full(filter::PASS), filtered);
+    plan.pass(full(filter::PASS), [means(Access::ComputeRead), tiles(Access::ComputeRead)].into_iter().chain(pictures));
 }
 
 pub struct Reconstruct {
     gather: Gather,
+    bins: Bins,
     layers: Layers,
+    means: Means,
     filter: Filter,
     buffers: FilterBuffers,
     /// The picture.
@@ -77,29 +90,21 @@ pub struct Reconstruct {
 
 impl Reconstruct {
     /// Errors: memory for the upload (exit code 4).
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        resources: &mut Resources,
-        scene: &SceneGpu,
-        choices: &Choices,
-        primitives: &Primitives,
-    ) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         Ok(Self {
-            gather: Gather::new(gpu, resources, scene, primitives, choices, fetch(choices))?,
+            gather: Gather::new(gpu, choices, fetch(choices))?,
+            bins: Bins::new(gpu, choices)?,
             layers: Layers::new(gpu, choices)?,
+            means: Means::new(gpu, choices)?,
             filter: Filter::new(gpu, choices)?,
-            buffers: FilterBuffers {
-                colors: resources.buffer(&full(SAMPLE_COLORS)),
-                vectors: resources.buffer(&full(SAMPLE_VECTORS)),
-                tiles: resources.buffer(&full(TILES)),
-            },
+            buffers: FilterBuffers::new(resources),
             color: resources.image(&full(COLOR)),
         })
     }
 
-    /// The buffers with one entry for each sample.
-    pub fn buffers(&self) -> [&Buffer; 2] {
-        [&self.buffers.colors, &self.buffers.vectors]
+    /// The buffers with entries for each sample or pixel.
+    pub fn buffers(&self) -> [&Buffer; 3] {
+        [&self.buffers.colors, &self.buffers.vectors, &self.buffers.means]
     }
 
     /// `resolved`: the picture without the filter.
@@ -112,9 +117,10 @@ impl Reconstruct {
     ) -> Result<()> {
         let (buffers, extent) = (&self.buffers, resolved.resource.description.extent);
         self.gather.record(cmd, bound, shaded, buffers, extent)?;
-        self.layers.record(cmd, bound, buffers.from(Access::ComputeWrite), tiles(extent))?;
-        let cut = buffers.tiles.from(Access::ComputeWrite);
-        self.filter.record(cmd, bound, buffers.from(Access::ComputeRead), cut, resolved, &self.color)
+        self.bins.record(cmd, bound, buffers, tiles(extent))?;
+        self.layers.record(cmd, bound, buffers, tiles(extent))?;
+        self.means.record(cmd, bound, buffers, extent)?;
+        self.filter.record(cmd, bound, buffers, resolved, &self.color)
     }
 }
 

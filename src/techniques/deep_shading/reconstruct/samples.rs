@@ -6,18 +6,14 @@
 //! Differs from the paper: visibility leaves no motion vectors; a SPID and a tuple determine them, whichever pass found
 //! the SPID.
 
-use super::super::primitives::Primitives;
-use super::super::ranges;
 use super::super::sample_colors::SampleColors;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::reconstruct::samples::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Traffic};
-use crate::plan::Resources;
-use crate::resident::SceneGpu;
+use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
 use crate::techniques::deep_shading::choices::{Choices, constants_of};
-use crate::techniques::deep_shading::reconstruct::filter_buffers::{FilterBuffers, RANGES};
+use crate::techniques::deep_shading::reconstruct::filter_buffers::FilterBuffers;
 use crate::techniques::deep_shading::resources::full;
 use crate::units::Extent;
 use std::sync::Arc;
@@ -26,30 +22,14 @@ pub const PASS: &str = "reconstruct.samples";
 
 pub struct Gather {
     pipeline: ComputePipeline,
-    ranges: Buffer,
 }
 
 impl Gather {
     /// `fetch`: how colours are found, as the resolve has it.
-    ///
-    /// Errors: memory for the upload (exit code 4).
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        resources: &mut Resources,
-        scene: &SceneGpu,
-        primitives: &Primitives,
-        choices: &Choices,
-        fetch: &str,
-    ) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, choices: &Choices, fetch: &str) -> Result<Self> {
         let shader = variant(COMP_VARIANTS, &[fetch]);
         let constants = constants_of(choices, &[Some(shader)]);
-        let mut calls = scene.calls.clone();
-        // As ids count them.
-        calls.sort_by_key(|call| call.draw);
-        let buffer = resources.buffer(&full(RANGES));
-        let id = |draw, first_index| primitives.id(draw, first_index);
-        ranges::write(gpu, &buffer, scene, primitives, calls.iter(), id, Access::ComputeRead)?;
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, ranges: buffer })
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
 
     pub fn record(
@@ -72,7 +52,6 @@ impl Gather {
             let mut bound = bound.to_vec();
             bound.extend(shaded.bound());
             bound.extend(buffers.bound());
-            bound.push(("DrawnRanges", Bound::Buffer(&self.ranges)));
             let groups = self.pipeline.groups([frame.width, frame.height, 1]);
             cmd.dispatch(&self.pipeline, &[], &self.pipeline.interface.own(&bound), groups)
         })

@@ -1,5 +1,6 @@
-//! Shade: all triangles once over shading space, every pixel that they touch; what the lists have is shaded and stored
-//! (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of the methods.
+//! Shade, with `--shade-by fragment`: all triangles once over shading space, every pixel that they touch; what the lists have
+//! is shaded and stored (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of
+//! the methods.
 //! reads   the scene, its lights, the lists, lists.zmax, lists.marks
 //! writes  shade.colors   buffer, 8 B a sample: RGBA16F
 

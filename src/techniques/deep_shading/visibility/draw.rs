@@ -62,29 +62,14 @@ pub fn draw<'a>(
     calls: impl IntoIterator<Item = &'a DrawCall>,
     repeats: &Repeats,
 ) {
-    draw_by(cmd, pipeline, stages.sides, inputs, calls, repeats, |call| {
-        let [count, first] = stages.vertices(call);
-        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-        unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
-    });
-}
-
-/// The same for a caller that draws the vertices of a call itself: `draw`, for each of its repeats.
-pub fn draw_by<'a>(
-    cmd: &Commands,
-    pipeline: &GraphicsPipeline,
-    sides: Option<Sides>,
-    inputs: DrawInputs<'_>,
-    calls: impl IntoIterator<Item = &'a DrawCall>,
-    repeats: &Repeats,
-    mut draw: impl FnMut(&DrawCall),
-) {
     let DrawInputs { scene, primitives, .. } = inputs;
-    mesh::for_each(cmd, pipeline, scene, sides, calls, |call| {
+    mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
         let params = primitives.params(scene, call);
+        let [count, first] = stages.vertices(call);
         for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {
             cmd.push(&pipeline.interface, bytemuck::bytes_of(&primitives::of_tuple(params, tuple)));
-            draw(call);
+            // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
+            unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
         }
     });
 }

@@ -46,6 +46,16 @@ impl Samples {
         self.shading_depths.as_ref()
     }
 
+    /// A thread each: size of a layer, and layers.
+    pub fn threads(&self) -> [u32; 3] {
+        let extent = self.spids.description.extent;
+        [extent.width, extent.height, self.spids.description.layers()]
+    }
+
+    pub fn count(&self) -> u64 {
+        self.threads().into_iter().map(u64::from).product()
+    }
+
     pub(super) fn bytes(&self) -> u64 {
         let images = [Some(&self.spids), self.depth.as_ref(), self.shading_depths.as_ref()];
         images.into_iter().flatten().map(|image| image.description.bytes()).sum()
@@ -63,14 +73,6 @@ impl Samples {
         let depth = self.depth.as_ref().map(|depth| (depth, Some(0.0), Access::DepthWrite));
         cmd.begin_layers(self.spids.description.extent, layers, &targets, depth);
     }
-}
-
-/// What says which triangle a sample sees, for passes that draw the triangles again.
-#[derive(Clone, Copy)]
-pub struct SeenSamples<'a> {
-    pub spids: Edge<'a, Samples>,
-    /// Where samples have a depth buffer.
-    pub depth: Option<Edge<'a, Image>>,
 }
 
 impl Edge<'_, Samples> {

@@ -59,7 +59,7 @@ impl Spids {
         samples: &Samples,
     ) -> Result<()> {
         let mut bound = bound.to_vec();
-        bound.push(("DrawnRanges", Bound::Buffer(&self.ranges)));
+        bound.push(("OrderedRanges", Bound::Buffer(&self.ranges)));
         let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
         for tuple in 0..samples.spids.description.layers() {
             samples.begin(cmd, Layers::One(tuple));

@@ -34,13 +34,13 @@ impl Visibility {
     }
 }
 
-/// Before fragments: whatever draws the samples' triangles again needs the same stages, as drivers may round otherwise after a
-/// geometry shader. `repeats`: of the same visibility.
+/// Before fragments. `repeats`: of the same visibility, which draws.
 pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> SampleStages {
     match choices.visibility {
         Visibility::RepeatFrame => SampleStages::sharp(draw::vertex_shader(scene, repeats, "none"), None),
         Visibility::RepeatDraw | Visibility::Instancing => choices.raster.layer_from.stages(scene, repeats),
         Visibility::Replicate => replicate::stages(scene, repeats),
-        Visibility::Stochastic | Visibility::Ray => stochastic::stages(choices, "layer"),
+        Visibility::Stochastic => stochastic::stages(choices, "layer"),
+        Visibility::Ray => unreachable!("rays draw nothing"),
     }
 }

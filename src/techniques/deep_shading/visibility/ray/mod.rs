@@ -91,7 +91,9 @@ impl TracedSamples {
             tracer.trace(run)
         });
         let sets = if choices.lists.is_direct {
-            TracedSets::Lists(traced.map(|hits| Ok(HostLists::of(&hits?, choices))).collect::<Result<_>>()?)
+            TracedSets::Lists(
+                traced.map(|hits| Ok(HostLists::of(&hits?, choices, primitives.count))).collect::<Result<_>>()?,
+            )
         } else {
             TracedSets::Samples(traced.collect::<Result<_>>()?)
         };
