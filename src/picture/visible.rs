@@ -10,8 +10,8 @@ const LENGTHS: [[u8; 3]; 8] =
     [[0, 0, 0], [0, 0, 160], [0, 220, 255], [60, 220, 60], [255, 240, 0], [255, 140, 0], [220, 0, 0], [255, 255, 255]];
 
 /// The stage as light that a PNG shows: normals from -1..1 to 0..1, irradiance as a white surface would show it, depths as a part
-/// of the greatest, vectors around grey and as a part of the longest, a colour for each id and for each length of a list, other
-/// whole numbers as they are: flags are white.
+/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, of an object or a triangle, and for each
+/// length of a list, other whole numbers as they are: flags are white.
 pub fn visible(aov: &Aov, extent: Extent) -> Picture {
     let is = |ending: &str| aov.name.ends_with(ending);
     let pixels = match &aov.channels {
@@ -26,7 +26,7 @@ pub fn visible(aov: &Aov, extent: Extent) -> Picture {
             values.iter().map(|value| [value / most; 3]).collect()
         }
         AovChannels::Y(values) => values.iter().map(|value| [*value; 3]).collect(),
-        AovChannels::YU32(values) if is(".id") => values.iter().map(|id| color_of(*id)).collect(),
+        AovChannels::YU32(values) if is(".id") || is("spids") => values.iter().map(|id| color_of(*id)).collect(),
         AovChannels::YU32(values) if is("lengths") => values.iter().map(|length| color_of_length(*length)).collect(),
         AovChannels::YU32(values) => values.iter().map(|value| [*value as f32; 3]).collect(),
     };
@@ -75,11 +75,15 @@ mod tests {
         let depths = shown("geometry.dsf.depth", AovChannels::Y(vec![0.0, 20.0, 80.0]));
         assert_eq!(depths, [[0.0; 3], [0.25; 3], [1.0; 3]]);
         assert_eq!(shown("depth", AovChannels::Y(vec![0.0; 3])), [[0.0; 3]; 3]);
-        let ids = shown("geometry.dsf.id", AovChannels::YU32(vec![0x0100, 0x0101, 0x0200]));
-        for (a, b) in [(0, 1), (1, 2), (0, 2)] {
-            let away = ids[a].iter().zip(&ids[b]).map(|(a, b)| (a - b).abs()).fold(0f32, f32::max);
-            assert!(away > 0.1, "{ids:?}");
+        for name in ["geometry.dsf.id", "visibility.spids"] {
+            let ids = shown(name, AovChannels::YU32(vec![0x0100, 0x0101, 0x0200]));
+            for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+                let away = ids[a].iter().zip(&ids[b]).map(|(a, b)| (a - b).abs()).fold(0f32, f32::max);
+                assert!(away > 0.1, "{ids:?}");
+            }
         }
+        // No triangle.
+        assert_eq!(shown("visibility.spids", AovChannels::YU32(vec![u32::MAX; 3])), [[0.0; 3]; 3]);
         let moved = shown("geometry.motion", AovChannels::Rgb(vec![[0.0; 3], [4.0, -2.0, 0.0], [-4.0, 0.0, 0.0]]));
         assert_eq!(moved, [[0.5; 3], [1.0, 0.25, 0.5], [0.0, 0.5, 0.5]]);
         assert_eq!(shown("discontinuity.flags", AovChannels::YU32(vec![0, 1, 7])), [[0.0; 3], [1.0; 3], [7.0; 3]]);
