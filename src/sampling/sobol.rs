@@ -6,7 +6,7 @@
 //! and again, shuffled and scrambled by another seed each time. Any 2^k points from the start on are a (0, k, 2)-net.
 
 /// All bits of `value`, well mixed (the finalizer of MurmurHash3).
-fn mixed(value: u32) -> u32 {
+pub fn mixed(value: u32) -> u32 {
     let value = (value ^ (value >> 16)).wrapping_mul(0x85eb_ca6b);
     let value = (value ^ (value >> 13)).wrapping_mul(0xc2b2_ae35);
     value ^ (value >> 16)

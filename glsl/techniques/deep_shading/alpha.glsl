@@ -4,7 +4,7 @@
 #ifndef DEEP_SHADING_ALPHA_GLSL
 #define DEEP_SHADING_ALPHA_GLSL
 
-#include "techniques/deep_shading/mixed.glsl"
+#include "sampling/sobol.glsl"
 
 // 0 to 1 without 1, another for each sample, draw and run: layers over each other must not let the same samples pass.
 // A product with a power of two is exact on every device, and the same in each shader that asks; a quotient need not be.

@@ -28,7 +28,7 @@ WRITES_SECONDS(set_next, nodes)
 WRITES_WORDS(set_length, lengths)
 
 #include "techniques/deep_shading/nodes.glsl"
-#include "techniques/deep_shading/mixed.glsl"
+#include "sampling/sobol.glsl"
 #ifdef LISTS_LINKED
 #include "techniques/deep_shading/lists/sorted.glsl"
 #endif

@@ -52,7 +52,16 @@ struct TupleBlock {
     float time;
     // Where on the disk the middle of the eye's lens is, on the first axis; that lens touches the disk's rim. 0: it is the disk.
     float eye;
+    // In its pixel, each of 0 to 1: what `shift` is of.
+    vec2 place_px;
+    // The two numbers of 0 to 1 that the place on the lens is of: its radius squared, and its turn.
+    vec2 lens_unit;
 };
+
+// The middle of the lens when the shutter opens, for what is not of a layer.
+TupleBlock whole_frame_tuple() {
+    return TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0.0, vec2(0.5), vec2(0.0));
+}
 
 // Where no surface is.
 const uint NO_PRIMITIVE = 0xffffffffu;

@@ -15,6 +15,7 @@ const FEW: (&str, &str) = ("spp", "2");
 const LENS: (&str, &str) = ("aperture", "0.2");
 const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
 const RAY: (&str, &str) = ("visibility", "ray");
+const SAME_SAMPLES: (&str, &str) = ("pixel-samples", "shared");
 const FRAGMENT: (&str, &str) = ("shade-by", "fragment");
 const ALONE: Twin = Twin::Method(&[("lists", "none")]);
 
@@ -194,7 +195,23 @@ pub const GROUPS: &[Group] = &[
         place: LAMPS,
         common: &[FEW, LENS],
         twin: Twin::Method(&[("visibility", "repeat-frame")]),
-        methods: &[&[STOCHASTIC, ("sample-tests", "layers"), ("polygon-from", "vertex")], &[RAY]],
+        methods: &[
+            &[STOCHASTIC, SAME_SAMPLES, ("sample-tests", "layers"), ("polygon-from", "vertex")],
+            &[RAY, SAME_SAMPLES],
+        ],
+        must: Must::Near(SAMPLES),
+    },
+    Group {
+        name: "own-samples",
+        technique: NAME,
+        place: LAMPS,
+        common: &[FEW, LENS, ("pixel-samples", "own")],
+        twin: Twin::Method(&[RAY]),
+        methods: &[
+            &[STOCHASTIC, ("sample-tests", "layers"), ("coverage-test", "full")],
+            &[STOCHASTIC, ("sample-tests", "layers"), ("coverage-test", "reduced")],
+            &[STOCHASTIC, ("sample-tests", "loop"), ("coverage-test", "reduced")],
+        ],
         must: Must::Near(SAMPLES),
     },
     Group {

@@ -15,8 +15,10 @@ use crate::settings::{GeometryChoice, Values};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
+use crate::techniques::deep_shading::modes::coverage_test::CoverageTest;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
+use crate::techniques::deep_shading::modes::pixel_samples::PixelSamples;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::is_looped;
 use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
@@ -52,6 +54,8 @@ pub struct RasterChoices {
     pub conservative: Conservative,
     /// Stochastic rasterisation tests all samples of a pixel at once.
     pub is_looped: bool,
+    /// By what it tests them.
+    coverage_test: CoverageTest,
     /// Layers that are drawn together reach beyond the frame.
     pub has_padding: bool,
     /// Sub-pixel precision to which the rasteriser snaps corners, in bits.
@@ -76,6 +80,7 @@ pub struct Choices {
     pub visibility: Visibility,
     pub raster: RasterChoices,
     pub table: TupleTable,
+    pub pixel_samples: PixelSamples,
     /// Sets of samples that the picture is the mean of.
     pub run_count: u32,
     pub space: ShadingSpace,
@@ -125,6 +130,7 @@ impl Choices {
         let table = TupleTable { eyes, ..TupleTable::from_settings(values, samples, is_blurred)? };
         let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
         let visibility = shading.visibility(values, inputs.caps)?;
+        let pixel_samples = PixelSamples::of(values, visibility)?;
         let space =
             ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
@@ -147,10 +153,12 @@ impl Choices {
                 conservative: Conservative::of(values, inputs.caps),
                 is_looped: matches!(shading, Shading::Deep | Shading::IndirectGbuffer)
                     && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
+                coverage_test: values.choice("coverage-test"),
                 has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
                 sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,
             },
             table,
+            pixel_samples,
             run_count: values.integer("accumulate") as u32,
             space,
             blur: BlurChoices {
@@ -253,6 +261,8 @@ impl Choices {
             ("BY_ADDRESS", u32::from(self.is_by_address)),
             ("CACHE_ENTRIES", self.cache_entries as u32),
             ("MISSING_FAILS", u32::from(!(self.is_by_fragment() && self.raster.conservative == Conservative::Plain))),
+            ("HAS_OWN_SAMPLES", u32::from(self.pixel_samples == PixelSamples::Own)),
+            ("HAS_REDUCED_TEST", u32::from(self.raster.coverage_test == CoverageTest::Reduced)),
             ("PASS_SAMPLES", self.shading.pass_samples()),
             ("TEXTURE_SIDE_BITS", self.shading.texture_side_bits()),
         ]);

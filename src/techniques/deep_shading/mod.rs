@@ -52,9 +52,10 @@
 //!   where a colour is a function of triangle and pixel); where fragments do, shading space is drawn with triangles that
 //!   lists have, which insertion marks (`--shaded-triangles all` is the paper's way)
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
-//! - `--visibility stochastic` tests the tuples of the interleaved kinds, so that both see the same samples: all of a
-//!   pixel's in a loop, the nearest kept by 64-bit atomics (the paper has images of 8 samples a pixel and their depth
-//!   test), or a layer a tuple where the device has none (`--sample-tests`)
+//! - `--visibility stochastic` tests all of a pixel's samples in a loop, the nearest kept by 64-bit atomics (the paper has
+//!   images of 8 samples a pixel and their depth test), or draws a layer a tuple where the device has none
+//!   (`--sample-tests`); a pixel's own samples are those of a tuple of the interleaved kinds with other binary digits, or
+//!   with `--pixel-samples shared` these very samples
 //! - `--visibility ray` walks a tree of the project's own; with `--lists direct` the host makes the lists, too, and no
 //!   SPID is kept
 //! - the reconstruction is a filter of our choice; motion vectors come from SPIDs after visibility (reconstruct/mod.rs)
@@ -247,11 +248,12 @@ impl Prepared for PreparedDeep {
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
-        let Choices { shading, table, visibility, raster, blur, .. } = &self.choices;
+        let Choices { shading, table, pixel_samples, visibility, raster, blur, .. } = &self.choices;
         let mut resolved = BTreeMap::from([
             ("spp", table.samples.to_string()),
             ("tuples", table.tuples_of_eye().to_string()),
             ("visibility", visibility.name().to_owned()),
+            ("pixel-samples", pixel_samples.name().to_owned()),
         ]);
         if self.choices.is_by_fragment() {
             resolved.insert("conservative", raster.conservative.name().to_owned());

@@ -6,8 +6,10 @@ use crate::settings::{
     Setting, TEXELS, Unread, Values,
 };
 use crate::techniques::deep_shading::modes::conservative::Conservative;
+use crate::techniques::deep_shading::modes::coverage_test::CoverageTest;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
 use crate::techniques::deep_shading::modes::lists::{Duplicates, ListAccess, Lists, ShadedTriangles};
+use crate::techniques::deep_shading::modes::pixel_samples::PixelSamples;
 use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
@@ -141,6 +143,32 @@ pub const SETTINGS: &[Setting] = &[
             )
         },
         ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "coverage-test",
+        kind: Kind::Choice(CoverageTest::WORDS),
+        default: "reduced",
+        paper: "Clarberg 2014, 4.2",
+        help: "How --visibility stochastic tests a sample against a triangle: by corners that are placed as for all else (full); \
+               or by corners of which the transform is done once for all samples of a pixel (reduced, after Laine and Karras \
+               2011); the same picture, but for samples on edges themselves",
+        unread: |values| {
+            let is_tested = values.is("shading", ShadingKind::Msaa);
+            let why = "what is drawn is not tested";
+            if is_tested { None } else { Unread::unless(values, "visibility", &[Visibility::Stochastic], why) }
+        },
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "pixel-samples",
+        kind: Kind::Choice(PixelSamples::WORDS),
+        auto: true,
+        default: "auto",
+        paper: "Clarberg 2014, 4.2",
+        help: "Whether pixels that have the same tuples have the same samples (shared), or each has samples of its own, tuples \
+               whose digits a hash of the pixel turns (own): noise in place of a pattern, with --visibility stochastic and ray; \
+               auto: own with these",
+        ..Setting::changing(Changes::Samples)
     },
     Setting {
         key: "spp",

@@ -137,6 +137,21 @@ impl TupleTable {
         basis.expect("every pixel has as many samples").pattern()
     }
 
+    /// What a sample of `tuple` has in `pixel` of the frame, where pixels have samples of their own: own_samples.glsl's twin.
+    pub fn of_pixel(&self, frame: Extent, tuple: &TupleBlock, pixel: [u32; 2]) -> TupleBlock {
+        let seed = sobol::pixel_seed(pixel, 0);
+        let turned = |number: f32, purpose: u32| turned(number, sobol::pair_seed(seed, purpose));
+        let place = [turned(tuple.place_px[0], 0), turned(tuple.place_px[1], 1)];
+        let lens_unit = [turned(tuple.lens_unit[0], 2), turned(tuple.lens_unit[1], 3)];
+        let layer = self.layer(frame);
+        let sides = [self.cells[0] * layer.width, self.cells[1] * layer.height];
+        let shift =
+            [0, 1].map(|axis| tuple.shift[axis] - 2.0 * (place[axis] - tuple.place_px[axis]) / sides[axis] as f32);
+        let [x, y] = on_unit_disc(lens_unit).to_array().map(|place| (1.0 - tuple.eye.abs()) * place);
+        let time = turned(tuple.time, 4);
+        TupleBlock { shift, lens: [tuple.eye + x, y], time, place_px: place, lens_unit, ..*tuple }
+    }
+
     /// Those of one eye whose lens is the unit disk.
     fn of_eye(&self, frame: Extent, seed: u32, run: u32) -> Vec<TupleBlock> {
         let layer = self.layer(frame);
@@ -158,10 +173,18 @@ impl TupleTable {
                 lens: on_unit_disc([u, v]).to_array(),
                 time,
                 eye: 0.0,
+                place_px: sample.place_px,
+                lens_unit: [u, v],
             }
         };
         self.pattern(seed, run).placed().map(block).collect()
     }
+}
+
+/// A number of 0 to 1 without 1, in steps of 2^-24, with other binary digits.
+fn turned(number: f32, turn: u32) -> f32 {
+    const STEPS: f32 = 16_777_216.0;
+    ((number * STEPS) as u32 ^ (turn >> 8)) as f32 / STEPS
 }
 
 #[cfg(test)]
@@ -229,6 +252,55 @@ mod tests {
             assert_eq!(cell.iter().filter(|tuple| tuple.time < 0.5).count(), 4);
         }
         assert_ne!(tuples, table.tuples(frame, 7, 1, &[0.0]));
+    }
+
+    /// Eight samples stay one in each eighth, on each axis; of all pixels they are everywhere, and no pixel has its neighbour's.
+    #[test]
+    fn a_pixel_s_own_samples_are_as_evenly_spread_as_the_tuples() {
+        let (table, frame) = (TupleTable::new(8, 32), Extent::new(64, 64));
+        let tuples = table.tuples(frame, 7, 0, &[0.0]);
+        let numbers = |tuple: &TupleBlock| {
+            let ([x, y], [u, v]) = (tuple.place_px, tuple.lens_unit);
+            [x, y, u, v, tuple.time]
+        };
+        let mut sums = [0.0; 5];
+        let mut before = None;
+        for pixel in (0..64).flat_map(|y| (0..64).map(move |x| [x, y])) {
+            let cell = (pixel[1] % 2 * 2 + pixel[0] % 2) as usize;
+            let own = tuples[8 * cell..][..8].iter().map(|tuple| table.of_pixel(frame, tuple, pixel));
+            let own: Vec<[f32; 5]> = own.map(|tuple| numbers(&tuple)).collect();
+            for axis in 0..5 {
+                let mut eighths: Vec<u32> = own.iter().map(|numbers| (8.0 * numbers[axis]) as u32).collect();
+                eighths.sort_unstable();
+                assert_eq!(eighths, [0, 1, 2, 3, 4, 5, 6, 7], "{pixel:?}, {axis}");
+                sums[axis] += own.iter().map(|numbers| f64::from(numbers[axis])).sum::<f64>();
+            }
+            assert_ne!(before.replace(own.clone()), Some(own), "{pixel:?}");
+        }
+        let means = sums.map(|sum| sum / f64::from(8 * 64 * 64));
+        assert!(means.iter().all(|mean| (mean - 0.5).abs() < 0.001), "{means:?}");
+    }
+
+    /// What the transform puts into the middle of a layer's pixel is the sample's own place, and its lens one on the disk.
+    #[test]
+    fn a_pixel_s_own_sample_lies_in_the_middle_of_its_layer_s_pixel() {
+        let (table, frame) = (TupleTable::new(4, 16), Extent::new(30, 17));
+        let layer = table.layer(frame);
+        for (index, tuple) in table.tuples(frame, 1, 0, &[0.0]).iter().enumerate() {
+            let cell = [index as u32 / 4 % 2, index as u32 / 8];
+            for at in [[0, 0], [3, 2], [14, 7]] {
+                let pixel = [0, 1].map(|axis| at[axis] * 2 + cell[axis]);
+                let own = table.of_pixel(frame, tuple, pixel);
+                for axis in 0..2 {
+                    let side = [layer.width, layer.height][axis];
+                    let middle = 2.0 * (at[axis] as f32 + 0.5) / side as f32 - 1.0;
+                    let ndc = (middle - own.shift[axis]) / own.scale[axis];
+                    let place = (ndc + 1.0) * 0.5 * [frame.width, frame.height][axis] as f32 - pixel[axis] as f32;
+                    assert!((place - own.place_px[axis]).abs() < 1e-4, "{place} for {}", own.place_px[axis]);
+                }
+                assert!((own.lens[0].hypot(own.lens[1]).powi(2) - own.lens_unit[0]).abs() < 1e-5);
+            }
+        }
     }
 
     /// Lenses of a quarter of the disk's radius that touch its rim.

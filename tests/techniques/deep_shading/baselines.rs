@@ -69,7 +69,7 @@ fn one_sample_in_the_middle_is_forward_shading() {
 #[test]
 fn one_sample_in_the_middle_has_the_textures_of_the_lists() {
     let watched = Watched::open("hall:triangles=8000");
-    let common = [SIZE, ("spp", "1"), ("tuples", "1")];
+    let common = [SIZE, ("spp", "1"), ("tuples", "1"), ("pixel-samples", "shared")];
     let deep = watched.picture(DEEP, &common);
     for visibility in visibilities(SSAA.1) {
         let supersampled = watched.picture(DEEP, &both(&common, &[SSAA, ("visibility", visibility)]));

@@ -5,6 +5,7 @@ mod baselines;
 mod entries;
 mod hostile;
 mod looped;
+mod own_samples;
 mod reconstruct;
 mod rivals;
 mod samplers;

@@ -151,7 +151,7 @@ fn eight_samples_come_nearer_to_what_paths_see() {
 #[test]
 fn every_kind_of_visibility_comes_to_one_picture_as_far_as_its_samples_agree() {
     for (watched, common) in [(Watched::open("hall:triangles=8000"), LENS), (Watched::with_scene(passing()), FLAT)] {
-        let common = both(common, &[("size", "65x37"), ("spp", "2")]);
+        let common = both(common, &[("size", "65x37"), ("spp", "2"), ("pixel-samples", "shared")]);
         let picture = |kind, reconstruct| {
             watched.picture(DEEP, &both(&common, &[("visibility", kind), ("reconstruct", reconstruct)]))
         };

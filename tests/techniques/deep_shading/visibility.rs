@@ -1,4 +1,4 @@
-//! Stochastic rasterisation and rays see the very samples of interleaved rasterisation: what differs lies on edges, which the
+//! Stochastic rasterisation and rays of the same samples see what interleaved rasterisation does: what differs lies on edges, which the
 //! rasteriser places to a 256th of a layer's pixel and their tests to a float. Lists and strays give the same bits as
 //! without them.
 
@@ -14,8 +14,9 @@ const DEEP: &str = "deep_shading";
 const SIZE: (&str, &str) = ("size", "161x91");
 const STOCHASTIC: (&str, &str) = ("visibility", "stochastic");
 const RAY: (&str, &str) = ("visibility", "ray");
+const SHARED: (&str, &str) = ("pixel-samples", "shared");
 /// A sample a pixel, so that the stage has all of them.
-const SAMPLES: [(&str, &str); 3] = [SIZE, ("spp", "1"), ("tuples", "16")];
+const SAMPLES: [(&str, &str); 4] = [SIZE, ("spp", "1"), ("tuples", "16"), SHARED];
 
 /// The fence's rotor turns by a quarter of a turn.
 fn rotor(spec: &str) -> Watched {
@@ -153,7 +154,7 @@ fn tests_grow_with_the_aperture() {
     // middles of pixels.
     let ways = [("layers", 1.12 + 0.03 * placing_steps(&watched.session.gpu.caps)), ("auto", 1.3)];
     for (way, most) in ways {
-        let common = both(&[SIZE, ("spp", "4"), ("sample-tests", way)], &[STOCHASTIC]);
+        let common = both(&[SIZE, ("spp", "4"), ("sample-tests", way), SHARED], &[STOCHASTIC]);
         let counted: Vec<[f64; 2]> = ["0", "0.1", "0.2", "0.4"]
             .iter()
             .map(|aperture| {
@@ -182,7 +183,7 @@ fn what_passes_the_eye_is_not_tested_everywhere() {
         let layered = 7.0 + placing_steps(&watched.session.gpu.caps);
         for (way, most) in [("layers", layered), ("auto", 16.0)] {
             let changes = [SIZE, ("camera", camera), ("spp", "2"), ("aperture", "0.1"), ("brdf", "lambert")];
-            let changes = both(&changes, &[STOCHASTIC, ("sample-tests", way)]);
+            let changes = both(&changes, &[STOCHASTIC, ("sample-tests", way), SHARED]);
             let counters = watched.render(DEEP, &changes).measured_counters().unwrap();
             let [tests, hits] = ["sample_tests", "sample_tests_hit"].map(|key| counters[key]);
             println!("{spec}, {way}: {tests} tests, {hits} hits");

@@ -10,12 +10,7 @@
 // Samples a pixel of the attachments.
 layout(constant_id = 98) const uint PASS_SAMPLES = 1;
 
-layout(location = 1) flat in uint in_primitive;
 // As in msaa.vert.
-layout(location = 2) flat in vec4 in_open[3];
-layout(location = 5) flat in vec4 in_close[3];
-layout(location = 8) flat in vec3 in_open_depth;
-layout(location = 9) flat in vec3 in_close_depth;
 layout(location = 10) flat in vec2 in_along;
 layout(location = 11) flat in vec4 in_range;
 
@@ -25,7 +20,10 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/visibility/polygon_in.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
+#define STOCHASTIC_FRAME run
 #include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/baseline/box.glsl"
 #ifdef ALPHA_TESTED
@@ -50,25 +48,21 @@ void main() {
     uint covered = 0u;
     float depths[MOST_PASS_SAMPLES];
     Place shaded;
+    Turns turns = turns_of(pixel);
+    Swept swept = swept_triangle();
     for (uint index = 0u; index < PASS_SAMPLES; index++) {
-        vec4 corners[3];
-        for (uint corner = 0u; corner < 3u; corner++) {
-            Seen open = Seen(in_open[corner], in_open_depth[corner]);
-            Seen close = Seen(in_close[corner], in_close_depth[corner]);
-            corners[corner] = layer_corner(open, close, tuples[first + index]);
-        }
+        TupleBlock tuple = turned_tuple(tuples[first + index], turns);
         vec2 at = vec2(layer_px) + 0.5;
         vec3 weights;
         // A driver may have cut what it draws into pieces, each of which runs the pixel with samples of its own.
         bool is_own = (gl_SampleMaskIn[0] & (1 << index)) != 0;
-        if (!is_own || !is_hit(corners, at, weights)) {
+        if (!is_own || !is_hit(swept, tuple, pixel, at, weights, depths[index])) {
             continue;
         }
         if (covered == 0u) {
-            shaded = hit_place(corners, at, weights);
+            shaded = hit_place(tuple, at, weights);
         }
         covered |= 1u << index;
-        depths[index] = hit_depth(corners, weights);
     }
     count_tests();
     if (covered == 0u) {

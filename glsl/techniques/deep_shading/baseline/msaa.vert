@@ -83,7 +83,7 @@ void main() {
     out_close_depth = vec3(seen[3].depth, seen[4].depth, seen[5].depth);
     out_primitive = params.primitive_offset + triangle;
     vec2 frame_px = vec2(frame.width_px, frame.height_px);
-    TupleBlock whole_frame = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0.0);
+    TupleBlock whole_frame = whole_frame_tuple();
     Bound bound = bound_of(seen, whole_frame, frame_px, 0.0);
     Box upright = box_of(bound, vec2(1.0, 0.0));
     if (bound.count == 0u || is_outside(upright, frame_px)) {

@@ -5,13 +5,23 @@
 #ifndef DEEP_SHADING_SAMPLE_PLACE_GLSL
 #define DEEP_SHADING_SAMPLE_PLACE_GLSL
 
-layout(location = 1) flat in uint in_primitive;
+#if defined(VISIBILITY_STOCHASTIC) || defined(ALPHA_TESTED)
+// surface.glsl calls the middle of the exposure `frame`.
+layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
+#endif
 #ifdef VISIBILITY_STOCHASTIC
-layout(location = 2) flat in vec4 in_corners[3];
-
+#include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/visibility/polygon_in.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
+
+layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
+
+#define STOCHASTIC_FRAME run
 #include "techniques/deep_shading/visibility/hit.glsl"
 #else
+layout(location = 1) flat in uint in_primitive;
 layout(location = 2) in vec3 in_weights;
 #ifdef ALPHA_OPAQUE
 // What writes into buffers, as counting does, is else tested after it has run.
@@ -19,23 +29,23 @@ layout(early_fragment_tests) in;
 #endif
 #endif
 #ifdef ALPHA_TESTED
-// surface.glsl calls the middle of the exposure `frame`.
-layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
-
 #include "techniques/deep_shading/alpha.glsl"
 #endif
 
 // Whether the sample has hit the triangle. `place`: with rates of a pixel of the frame. Writes the depth that the shader says.
 bool is_placed(out Place place) {
 #ifdef VISIBILITY_STOCHASTIC
+    uvec2 pixel = pixel_of_sample(uvec3(gl_FragCoord.xy, params.tuple));
+    TupleBlock tuple = turned_tuple(tuples[run.sample_index * deep.tuple_count + params.tuple], turns_of(pixel));
     vec3 weights;
-    bool has_hit = is_hit(in_corners, gl_FragCoord.xy, weights);
+    float depth;
+    bool has_hit = is_hit(swept_triangle(), tuple, pixel, gl_FragCoord.xy, weights, depth);
     count_tests();
     if (!has_hit) {
         return false;
     }
-    place = hit_place(in_corners, gl_FragCoord.xy, weights);
-    gl_FragDepth = hit_depth(in_corners, weights);
+    place = hit_place(tuple, gl_FragCoord.xy, weights);
+    gl_FragDepth = depth;
 #else
     place.weights = inside_weights(in_weights);
     place.right = dFdx(in_weights);

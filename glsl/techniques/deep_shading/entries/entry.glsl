@@ -10,6 +10,7 @@
 #include "techniques/deep_shading/counters.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 #include "techniques/deep_shading/entries/waiting.glsl"
 
 layout(std430, set = 0, binding = 39) readonly buffer BufferAddresses { BufferAddressBlock buffer_addresses; };
@@ -46,7 +47,7 @@ uint own_place(uint i) {
 // Weights of the corners of `triangle`, of the index buffer, where a sample sees it: the same whatever has found out that it does.
 vec3 seen_weights(uint triangle, uint index) {
     uvec3 at = sample_place(deep, index);
-    TupleBlock tuple = tuples[seen_frame.sample_index * deep.tuple_count + at.z];
+    TupleBlock tuple = turned_tuple(tuples[seen_frame.sample_index * deep.tuple_count + at.z], at);
     Seen seen[6];
     see_triangle(triangle, seen);
     vec4 corners[3];

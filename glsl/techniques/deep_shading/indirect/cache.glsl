@@ -9,7 +9,7 @@
 #ifndef DEEP_SHADING_CACHE_GLSL
 #define DEEP_SHADING_CACHE_GLSL
 
-#include "techniques/deep_shading/mixed.glsl"
+#include "sampling/sobol.glsl"
 
 layout(constant_id = 99) const uint CACHE_ENTRIES = 1;
 

@@ -11,6 +11,7 @@
 #include "techniques/deep_shading/ranges.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 #include "techniques/deep_shading/reconstruct/blur.glsl"
 
 layout(local_size_x = 64) in;
@@ -78,7 +79,8 @@ void main() {
         if (fetched.a >= 0.0) {
             uvec3 at = uvec3(pixel / table, first + index);
             uint primitive = texelFetch(spids, ivec3(at), 0).x;
-            blur = blur_of_sample(primitive, at.xy, tuples[frame.sample_index * deep.tuple_count + at.z]);
+            TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + at.z];
+            blur = blur_of_sample(primitive, at.xy, turned_tuple(tuple, turns_of(pixel)));
         }
         uint entry = entry_of(frame_px, pixel, index);
         set_colors(entry, packed_colors(fetched.rgb, blur));

@@ -15,19 +15,23 @@ vec2 from_sample(vec4 corner, vec2 at) {
     return from;
 }
 
-// Whether the sample at `at` (pixels) sees the triangle, from either side, between the near plane and the far one. Corners: xy
-// homogeneous pixels, z depth, w. Neighbours compute the areas at their edge from the same corners, which differ by the sign
-// alone: no sample falls between them, and one on the edge itself is in both. Where it does, `weights` are the corners' and as
-// place_at would have them, which looks for the nearest place besides; `is_front`: counter-clockwise.
-bool covers(vec4 a, vec4 b, vec4 c, vec2 at, out vec3 weights, out bool is_front) {
-    vec3 areas = areas_of(from_sample(a, at), from_sample(b, at), from_sample(c, at));
+// Whether areas are those of a sample in the triangle, from either side. Neighbours compute the areas at their edge from the same
+// corners, which differ by the sign alone: no sample falls between them, and one on the edge itself is in both.
+bool is_inside(vec3 areas) {
+    return all(greaterThanEqual(areas, vec3(0.0))) || all(lessThanEqual(areas, vec3(0.0)));
+}
+
+// What corners have at a place between them: weights of sum 1, as place_at would have them, which looks for the nearest place
+// besides. Numbers only where the triangle is not edge-on.
+vec3 covered_weights(vec3 areas) {
     precise float area = areas.x + areas.y + areas.z;
     precise vec3 parts = areas / area;
-    weights = parts;
-    is_front = area < 0.0;
-    bool is_inside = all(greaterThanEqual(areas, vec3(0.0))) || all(lessThanEqual(areas, vec3(0.0)));
-    vec2 depth = covered_depth(a, b, c, parts);
-    return is_inside && area != 0.0 && depth.y > 0.0 && depth.x >= 0.0 && depth.x <= depth.y;
+    return parts;
+}
+
+// Whether what has this depth and w lies between the near plane and the far one.
+bool is_between_planes(vec2 depth) {
+    return depth.y > 0.0 && depth.x >= 0.0 && depth.x <= depth.y;
 }
 
 #endif

@@ -1,10 +1,16 @@
-// A sample's test against a triangle as its tuple sees it: whether it lies in it and sees a side that is drawn (section 4.2).
+// A sample's test against the triangle of a polygon: whether it lies in it and sees a side that is drawn (section 4.2).
 //
 // Nearly all tests miss: what only a hit needs stands apart from them.
 //
-// After scene_buffers.glsl, counting.glsl and covers.glsl.
+// After scene_buffers.glsl, counting.glsl, polygon_in.glsl and covers.glsl; the including shader declares the frame's block by the
+// name STOCHASTIC_FRAME.
 #ifndef DEEP_SHADING_HIT_GLSL
 #define DEEP_SHADING_HIT_GLSL
+
+#include "techniques/deep_shading/visibility/reduced.glsl"
+
+// 1: by reduced.glsl; 0: corners are placed in full before each test.
+layout(constant_id = 108) const uint HAS_REDUCED_TEST = 0;
 
 // Counts of this invocation: all invocations add to the same words.
 uint tests_done = 0u;
@@ -26,30 +32,55 @@ void count_tests() {
 #endif
 }
 
-// `count_tests` counts it later. `corners`: as `covers` takes them, of the layer; `at`: the sample in it. `weights` are the
-// corners' where it is true.
-bool is_hit(vec4 corners[3], vec2 at, out vec3 weights) {
+// The triangle in the layer of the sample's tuple, as the sample sees it.
+void place_corners(TupleBlock tuple, out vec4 corners[3]) {
+    for (uint corner = 0u; corner < 3u; corner++) {
+        corners[corner] = layer_corner(open_corner(corner), close_corner(corner), tuple);
+    }
+}
+
+// `count_tests` counts it later. `swept`: swept_triangle; `tuple`: the sample's own; `pixel`: the frame's, `at`: the sample in its
+// layer. Where it is true, `weights` are the corners' and `depth` the sample's.
+bool is_hit(Swept swept, TupleBlock tuple, uvec2 pixel, vec2 at, out vec3 weights, out float depth) {
     tests_done++;
-    bool is_front;
-    if (!covers(corners[0], corners[1], corners[2], at, weights, is_front)) {
+    vec3 areas;
+    vec2 depth_and_w;
+    if (HAS_REDUCED_TEST != 0u) {
+        areas = reduced_areas(swept, tuple, vec2(pixel));
+        weights = covered_weights(areas);
+        depth_and_w = reduced_depth(swept, tuple, weights);
+    } else {
+        vec4 corners[3];
+        place_corners(tuple, corners);
+        areas = areas_of(from_sample(corners[0], at), from_sample(corners[1], at), from_sample(corners[2], at));
+        weights = covered_weights(areas);
+        depth_and_w = covered_depth(corners[0], corners[1], corners[2], weights);
+    }
+    precise float area = areas.x + areas.y + areas.z;
+    depth = depth_and_w.x / depth_and_w.y;
+    if (!is_inside(areas) || area == 0.0 || !is_between_planes(depth_and_w)) {
         return false;
     }
     tests_hit++;
-    bool is_seen_front = is_front != ((params.flags & DRAWN_MIRRORED) != 0u);
+    bool is_seen_front = (area < 0.0) != ((params.flags & DRAWN_MIRRORED) != 0u);
     return is_seen_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;
 }
 
+// Weights of the corners where the sample sees the triangle, by the full test: whichever test has found it, it is shaded in one place.
+vec3 placed_weights(TupleBlock tuple, vec2 at) {
+    vec4 corners[3];
+    place_corners(tuple, corners);
+    return covered_weights(
+        areas_of(from_sample(corners[0], at), from_sample(corners[1], at), from_sample(corners[2], at)));
+}
+
 // Where the sample has hit such a triangle, with rates of the layer's pixels.
-Place hit_place(vec4 corners[3], vec2 at, vec3 weights) {
+Place hit_place(TupleBlock tuple, vec2 at, vec3 weights) {
+    vec4 corners[3];
+    place_corners(tuple, corners);
     vec3 w = vec3(corners[0].w, corners[1].w, corners[2].w);
     return place_of(
         from_sample(corners[0], at), from_sample(corners[1], at), from_sample(corners[2], at), w, weights, vec2(0.0));
-}
-
-// What a sample's depth is at a place of such a triangle.
-float hit_depth(vec4 corners[3], vec3 weights) {
-    vec2 depth = covered_depth(corners[0], corners[1], corners[2], weights);
-    return depth.x / depth.y;
 }
 
 #endif

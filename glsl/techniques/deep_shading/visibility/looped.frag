@@ -13,18 +13,14 @@
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/nearest.glsl"
-
-// Written by polygon_out.glsl.
-layout(location = 1) flat in uint in_primitive;
-layout(location = 2) flat in vec4 in_open[3];
-layout(location = 5) flat in vec4 in_close[3];
-layout(location = 8) flat in vec3 in_open_depth;
-layout(location = 9) flat in vec3 in_close_depth;
+#include "techniques/deep_shading/visibility/polygon_in.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
 layout(std430, set = 0, binding = 20) buffer Nearest { uint64_t nearest[]; };
 
+#define STOCHASTIC_FRAME frame
 #include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/visibility/place_alpha.glsl"
 
@@ -38,26 +34,22 @@ void main() {
     vec2 at = vec2(layer_px) + 0.5;
     // `params.tuple`: the first of the eye.
     uint first = params.tuple + (cell.y * table.x + cell.x) * deep.sample_count;
+    Turns turns = turns_of(pixel);
+    Swept swept = swept_triangle();
     for (uint index = 0u; index < deep.sample_count; index++) {
         uint own = first + index;
-        TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + own];
-        vec4 corners[3];
-        for (uint corner = 0u; corner < 3u; corner++) {
-            Seen open = Seen(in_open[corner], in_open_depth[corner]);
-            Seen close = Seen(in_close[corner], in_close_depth[corner]);
-            corners[corner] = layer_corner(open, close, tuple);
-        }
+        TupleBlock tuple = turned_tuple(tuples[frame.sample_index * deep.tuple_count + own], turns);
         vec3 weights;
-        if (!is_hit(corners, at, weights)) {
+        float depth;
+        if (!is_hit(swept, tuple, pixel, at, weights, depth)) {
             continue;
         }
 #ifdef ALPHA_TESTED
-        place_alpha(hit_place(corners, at, weights), 3u * triangle);
+        place_alpha(hit_place(tuple, at, weights), 3u * triangle);
         if (!is_seen(base_color_at(params.material).a, layer_px, tuple_number(deep, frame.sample_index, own))) {
             continue;
         }
 #endif
-        float depth = hit_depth(corners, weights);
         if (depth > 0.0) {
             uvec2 words = nearest_words(depth, triangle + params.order_offset);
             atomicMax(nearest[sample_index(deep, uvec3(layer_px, own))], packUint2x32(words));

@@ -8,6 +8,7 @@
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/bound.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 
 layout(triangles) in;
 // BOUND_MOST_SIDES.

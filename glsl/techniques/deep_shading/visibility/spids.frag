@@ -12,6 +12,7 @@
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/nearest.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 
 // The layer: its tuple.
 layout(location = 0) flat in uint in_instance;
@@ -37,7 +38,8 @@ void main() {
         return;
     }
     uint triangle = find_draw(nearest_order(words));
-    TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + in_instance];
+    TupleBlock shared_tuple = tuples[frame.sample_index * deep.tuple_count + in_instance];
+    TupleBlock tuple = turned_tuple(shared_tuple, uvec3(pixel, in_instance));
     Seen seen[6];
     see_triangle(triangle, seen);
     vec4 corners[3];
@@ -46,9 +48,9 @@ void main() {
         corners[corner] = layer_corner(seen[corner], seen[corner + 3u], tuple);
         canonical_corners[corner] = canonical_of(seen[corner], seen[corner + 3u]);
     }
-    vec3 weights;
-    bool is_front;
-    covers(corners[0], corners[1], corners[2], gl_FragCoord.xy, weights, is_front);
+    vec2 at = gl_FragCoord.xy;
+    vec3 areas = areas_of(from_sample(corners[0], at), from_sample(corners[1], at), from_sample(corners[2], at));
+    vec3 weights = covered_weights(areas);
     vec4 canonical = canonical_between(canonical_corners, weights);
     out_spid = uvec2(triangle + params.primitive_offset, shading_pixel(deep, canonical));
 #ifdef DEPTH_SHADING

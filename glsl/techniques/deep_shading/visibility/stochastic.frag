@@ -7,16 +7,16 @@
 #include "techniques/deep_shading/place.glsl"
 #include "techniques/deep_shading/counting.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
+#include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
+#include "techniques/deep_shading/visibility/polygon_in.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 
-layout(location = 1) flat in uint in_primitive;
-layout(location = 2) flat in vec4 in_corners[3];
-layout(location = 7) flat in vec4 in_canonical_corners[3];
-
-#include "techniques/deep_shading/visibility/hit.glsl"
-
-#ifdef ALPHA_TESTED
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
-#endif
+layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
+
+#define STOCHASTIC_FRAME frame
+#include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/visibility/place_alpha.glsl"
 
 // As in sample.frag.
@@ -28,20 +28,28 @@ layout(location = 1) out uint out_shading_depth;
 void main() {
     // A layer has one sample a pixel, in its middle: the tuple's shift has put it there.
     vec2 at = gl_FragCoord.xy;
+    uvec3 sample_at = uvec3(uvec2(at), params.tuple);
+    uvec2 pixel = pixel_of_sample(sample_at);
+    TupleBlock tuple = turned_tuple(tuples[frame.sample_index * deep.tuple_count + params.tuple], turns_of(pixel));
     vec3 weights;
-    bool has_hit = is_hit(in_corners, at, weights);
+    float depth;
+    bool has_hit = is_hit(swept_triangle(), tuple, pixel, at, weights, depth);
     count_tests();
     if (!has_hit) {
         discard;
     }
 #ifdef ALPHA_TESTED
-    place_alpha(hit_place(in_corners, at, weights), 3u * (in_primitive - params.primitive_offset));
+    place_alpha(hit_place(tuple, at, weights), 3u * (in_primitive - params.primitive_offset));
     if (!is_seen(base_color_at(params.material).a, uvec2(at), tuple_number(deep, frame.sample_index, params.tuple))) {
         discard;
     }
 #endif
-    gl_FragDepth = hit_depth(in_corners, weights);
-    vec4 canonical = canonical_between(in_canonical_corners, weights);
+    gl_FragDepth = depth;
+    vec4 canonical_corners[3];
+    for (uint corner = 0u; corner < 3u; corner++) {
+        canonical_corners[corner] = canonical_of(open_corner(corner), close_corner(corner));
+    }
+    vec4 canonical = canonical_between(canonical_corners, placed_weights(tuple, at));
     out_spid = uvec2(in_primitive, shading_pixel(deep, canonical));
 #ifdef DEPTH_SHADING
     out_shading_depth = shading_depth(canonical);

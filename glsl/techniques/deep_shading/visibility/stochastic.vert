@@ -8,6 +8,7 @@
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
 #include "techniques/deep_shading/visibility/bound.glsl"
+#include "techniques/deep_shading/own_samples.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };

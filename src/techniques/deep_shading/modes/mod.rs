@@ -2,9 +2,11 @@
 //! The work that a choice stands for lies with the pass that does it.
 
 pub mod conservative;
+pub mod coverage_test;
 pub mod layer_from;
 pub mod lists;
 pub mod pass_samples;
+pub mod pixel_samples;
 pub mod polygon_from;
 pub mod pool_size;
 pub mod sample_tests;

@@ -43,6 +43,11 @@ impl Visibility {
         self == Self::Stochastic
     }
 
+    /// Whether each sample is looked at by itself, wherever in its pixel, on the lens and in time it is.
+    pub fn tests_samples(self) -> bool {
+        matches!(self, Self::Stochastic | Self::Ray)
+    }
+
     /// How samples come into their layers.
     pub fn writes(self) -> Access {
         if self == Self::Ray { Access::TransferWrite } else { Access::ColorWrite }

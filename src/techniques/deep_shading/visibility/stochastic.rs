@@ -1,12 +1,16 @@
 //! Stochastic rasterisation: polygons around triangles' blur, every sample in them tested by the fragment shader (Clarberg &
-//! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl, stochastic.frag, covers.glsl.
+//! Munkberg 2014, section 4.2, "Stochastic Rasterization"). Shaders: stochastic.vert, bound.glsl, stochastic.frag, covers.glsl,
+//! reduced.glsl, own_samples.glsl.
 //!
 //! A polygon is drawn into each tuple's layer, where a pixel is a sample, or once for all of an eye (looped.rs).
 //! Polygons come from a geometry shader, as in the paper (polygon.rs), or from vertex shaders, each of which makes the polygon for
 //! itself.
 //!
-//! Differs from the paper: samples of a layer share their time and their place on the lens, so that both kinds of visibility see
-//! the very same samples; polygons' sides touch the hull of the blur instead of walking around it.
+//! Samples of a layer are at other places of their pixels, of the lens and in time (`--pixel-samples own`), or at their tuple's,
+//! so that both kinds of visibility see the very same samples (`shared`). They are tested by their corners, placed as for all else,
+//! or by fewer products (`--coverage-test reduced`).
+//!
+//! Differs from the paper: polygons' sides touch the hull of the blur instead of walking around it.
 
 use super::super::choices::Choices;
 use super::polygon;

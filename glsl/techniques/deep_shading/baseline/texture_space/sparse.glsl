@@ -17,9 +17,9 @@ vec4 determinants(vec3 a, vec3 b, vec3 c, vec3 a_close, vec3 b_close, vec3 c_clo
         return vec4(dot(a, open));
     }
     vec3 close = cross(b_close, c_close);
-    vec3 mixed = cross(b, c_close) + cross(b_close, c);
+    vec3 both = cross(b, c_close) + cross(b_close, c);
     return vec4(
-        dot(a, open), (dot(a_close, open) + dot(a, mixed)) / 3.0, (dot(a_close, mixed) + dot(a, close)) / 3.0,
+        dot(a, open), (dot(a_close, open) + dot(a, both)) / 3.0, (dot(a_close, both) + dot(a, close)) / 3.0,
         dot(a_close, close));
 }
 
@@ -34,7 +34,7 @@ bool may_be_seen(Seen seen[6], vec2 frame_px) {
         return near_count < 6u;
     }
     // Before the eye all that it covers lies in the hull of what the lens sees of its corners at both ends (bound.glsl).
-    TupleBlock whole_frame = TupleBlock(vec2(1.0), vec2(0.0), vec2(0.0), 0.0, 0u);
+    TupleBlock whole_frame = whole_frame_tuple();
     vec2 least = vec2(3.0e38);
     vec2 greatest = vec2(-3.0e38);
     for (uint index = 0u; index < 6u; index++) {

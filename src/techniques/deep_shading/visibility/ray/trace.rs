@@ -8,9 +8,11 @@ use super::tree::{End, Ray, RayHit, SweptTree, corners_ws};
 use crate::error::Result;
 use crate::gpu::shader::structs::{DeepBlock, TupleBlock};
 use crate::interrupt;
+use crate::sampling::sobol;
 use crate::scene::{AlphaMode, Projection, Scene};
 use crate::shading::material::{MeshPoint, base_color_at};
 use crate::techniques::Inputs;
+use crate::techniques::deep_shading::modes::pixel_samples::PixelSamples;
 use crate::units::Extent;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -41,6 +43,7 @@ pub struct Tracer<'a> {
     deep: DeepBlock,
     ends: [End; 2],
     table: TupleTable,
+    pixel_samples: PixelSamples,
     eyes: Vec<f32>,
     space: ShadingSpace,
     frame: Extent,
@@ -64,6 +67,7 @@ impl<'a> Tracer<'a> {
             deep,
             ends,
             table: choices.table,
+            pixel_samples: choices.pixel_samples,
             eyes: choices.eyes(),
             space: choices.space,
             frame: inputs.view.extent,
@@ -90,7 +94,7 @@ impl<'a> Tracer<'a> {
             }
             for (x, seen) in (0..inside.width).zip(seen) {
                 let number = self.table.number(run, tuple);
-                let ray = self.ray(&tuples[tuple as usize], layer, [x, y]);
+                let ray = self.ray(&self.tuple_at(&tuples[tuple as usize], tuple, [x, y]), layer, [x, y]);
                 let met = self.tree.first(&ray, self.depths, |met| self.is_seen(met, [x, y], number));
                 if let Some(met) = met {
                     *seen = self.entry(&met);
@@ -100,6 +104,17 @@ impl<'a> Tracer<'a> {
         })?;
         let (spids, shading_depths) = seen.into_iter().unzip();
         Ok(Hits { spids, shading_depths })
+    }
+
+    /// What the sample of `tuple` has at a layer's pixel: the tuple's, or the frame's pixel's own.
+    fn tuple_at(&self, shared: &TupleBlock, tuple: u32, [x, y]: [u32; 2]) -> TupleBlock {
+        let [width, height] = self.table.cells;
+        let cell = tuple / self.table.samples;
+        let pixel = [x * width + cell % width, y * height + cell / width % height];
+        match self.pixel_samples {
+            PixelSamples::Shared => *shared,
+            PixelSamples::Own => self.table.of_pixel(self.frame, shared, pixel),
+        }
     }
 
     /// Through the middle of a layer's pixel (visibility/seen.glsl's clip_of, solved for what it maps there).
@@ -161,12 +176,9 @@ impl<'a> Tracer<'a> {
 
 /// alpha.glsl's.
 fn alpha_threshold([x, y]: [u32; 2], number: u32, draw: u32) -> f32 {
-    let mut bits = x.wrapping_mul(0x9e37_79b1)
+    let bits = x.wrapping_mul(0x9e37_79b1)
         ^ y.wrapping_mul(0x85eb_ca77)
         ^ number.wrapping_mul(0xc2b2_ae3d)
         ^ draw.wrapping_mul(0x27d4_eb2f);
-    bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
-    bits = (bits ^ (bits >> 12)).wrapping_mul(0x297a_2d39);
-    bits ^= bits >> 15;
-    (bits >> 8) as f32 / 16_777_216.0
+    (sobol::mixed(bits) >> 8) as f32 / 16_777_216.0
 }
