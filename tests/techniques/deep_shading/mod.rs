@@ -6,6 +6,7 @@ mod entries;
 mod hostile;
 mod looped;
 mod own_samples;
+mod rates;
 mod reconstruct;
 mod rivals;
 mod samplers;
