@@ -17,7 +17,7 @@ struct Turns {
     uint time;
 };
 
-// Middle of a lens: half a turn back, so that the angle is one that every device is exact for.
+// Devices need not know sines of angles beyond half a turn well: a place on the lens is turned from the side opposite.
 const float HALF_TURN = 3.14159265;
 
 // `pixel`: of the frame.

@@ -1,7 +1,7 @@
 // A sample's test against a moving triangle under a lens by as few products as it takes: the triangle's own transform is done once
 // for all samples of a pixel, and a sample moves corners along their ways, shears them by its place on the lens and looks at them
 // from where it is in the frame (section 4.2, which names Laine and Karras 2011, "Efficient Triangle Coverage Tests for Stochastic
-// Rasterization", whose test in five dimensions takes about 25 fused multiply-adds; this one takes 38 and a division).
+// Rasterization", whose test in five dimensions takes about 25 fused multiply-adds; here the edges take 30, and six subtractions).
 //
 // After polygon_in.glsl and covers.glsl; the including shader declares the frame's block by the name STOCHASTIC_FRAME.
 #ifndef DEEP_SHADING_REDUCED_GLSL
