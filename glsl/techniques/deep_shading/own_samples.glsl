@@ -1,6 +1,6 @@
 // Where a sample lies in its pixel, on the lens and in time: where its tuple does, or, where pixels have samples of their own
-// (`--pixel-samples own`), there with its binary digits turned by a hash of the pixel. Turned alike, those of a pixel stay as evenly
-// spread as they were, and no two pixels have the same. The host's twin: tuples.rs.
+// (`--pixel-samples own`), there with its binary digits turned by a hash of the pixel. Turned alike, those of a pixel stay as
+// evenly spread as they were, and no two pixels have the same. The host's twin: tuples.rs.
 //
 // After space.glsl; the including shader declares `deep`.
 #ifndef DEEP_SHADING_OWN_SAMPLES_GLSL

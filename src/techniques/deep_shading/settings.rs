@@ -89,9 +89,9 @@ pub const SETTINGS: &[Setting] = &[
         help: "How samples find the triangle that they see: the frame is drawn once for each tuple (repeat-frame); \
                each draw is (repeat-draw); each draw has an instance for each tuple (instancing); a geometry shader \
                makes a triangle for each tuple (replicate); a polygon around each triangle's blur is drawn, and a \
-               shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples but for --pixel-samples; auto: \
-               instancing on software drivers that write layers, with --shading deep and indirect-gbuffer, stochastic with \
-               msaa, else repeat-frame",
+               shader tests the samples of its pixels (stochastic); or the host casts rays (ray); the same samples but for \
+               --pixel-samples; auto: instancing on software drivers that write layers, with --shading deep and \
+               indirect-gbuffer, stochastic with msaa, else repeat-frame",
         ..Setting::changing(Changes::Picture)
     },
     Setting {

@@ -96,10 +96,21 @@ impl TupleTable {
         frame.width.is_multiple_of(self.cells[0]) && frame.height.is_multiple_of(self.cells[1])
     }
 
+    /// Where in the table the pixels of a tuple lie, of either eye.
+    fn cell_of(&self, tuple: u32) -> [u32; 2] {
+        let cell = tuple / self.samples;
+        [cell % self.cells[0], cell / self.cells[0] % self.cells[1]]
+    }
+
+    /// The pixel of the frame that a pixel of a tuple's layer is.
+    pub fn pixel_of(&self, tuple: u32, [x, y]: [u32; 2]) -> [u32; 2] {
+        let [column, row] = self.cell_of(tuple);
+        [x * self.cells[0] + column, y * self.cells[1] + row]
+    }
+
     /// How much of a tuple's layer lies in the frame, from its first pixel on.
     pub fn inside(&self, frame: Extent, tuple: u32) -> Extent {
-        let cell = tuple / self.samples;
-        let [x, y] = [cell % self.cells[0], cell / self.cells[0] % self.cells[1]];
+        let [x, y] = self.cell_of(tuple);
         let count = |side: u32, first: u32, cells: u32| side.saturating_sub(first).div_ceil(cells);
         Extent::new(count(frame.width, x, self.cells[0]), count(frame.height, y, self.cells[1]))
     }
@@ -287,9 +298,8 @@ mod tests {
         let (table, frame) = (TupleTable::new(4, 16), Extent::new(30, 17));
         let layer = table.layer(frame);
         for (index, tuple) in table.tuples(frame, 1, 0, &[0.0]).iter().enumerate() {
-            let cell = [index as u32 / 4 % 2, index as u32 / 8];
             for at in [[0, 0], [3, 2], [14, 7]] {
-                let pixel = [0, 1].map(|axis| at[axis] * 2 + cell[axis]);
+                let pixel = table.pixel_of(index as u32, at);
                 let own = table.of_pixel(frame, tuple, pixel);
                 for axis in 0..2 {
                     let side = [layer.width, layer.height][axis];

@@ -23,7 +23,6 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 #include "techniques/deep_shading/visibility/polygon_in.glsl"
 #include "techniques/deep_shading/own_samples.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
-#define STOCHASTIC_FRAME run
 #include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/baseline/box.glsl"
 #ifdef ALPHA_TESTED
@@ -49,7 +48,7 @@ void main() {
     float depths[MOST_PASS_SAMPLES];
     Place shaded;
     Turns turns = turns_of(pixel);
-    Swept swept = swept_triangle();
+    Swept swept = swept_triangle(run.width_px, run.height_px);
     for (uint index = 0u; index < PASS_SAMPLES; index++) {
         TupleBlock tuple = turned_tuple(tuples[first + index], turns);
         vec2 at = vec2(layer_px) + 0.5;

@@ -18,7 +18,6 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock run; };
 
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
 
-#define STOCHASTIC_FRAME run
 #include "techniques/deep_shading/visibility/hit.glsl"
 #else
 layout(location = 1) flat in uint in_primitive;
@@ -39,7 +38,7 @@ bool is_placed(out Place place) {
     TupleBlock tuple = turned_tuple(tuples[run.sample_index * deep.tuple_count + params.tuple], turns_of(pixel));
     vec3 weights;
     float depth;
-    bool has_hit = is_hit(swept_triangle(), tuple, pixel, gl_FragCoord.xy, weights, depth);
+    bool has_hit = is_hit(swept_triangle(run.width_px, run.height_px), tuple, pixel, gl_FragCoord.xy, weights, depth);
     count_tests();
     if (!has_hit) {
         return false;

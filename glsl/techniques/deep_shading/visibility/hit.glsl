@@ -2,8 +2,7 @@
 //
 // Nearly all tests miss: what only a hit needs stands apart from them.
 //
-// After scene_buffers.glsl, counting.glsl, polygon_in.glsl and covers.glsl; the including shader declares the frame's block by the
-// name STOCHASTIC_FRAME.
+// After scene_buffers.glsl, counting.glsl, triangle.glsl, polygon_in.glsl and covers.glsl.
 #ifndef DEEP_SHADING_HIT_GLSL
 #define DEEP_SHADING_HIT_GLSL
 
@@ -66,7 +65,7 @@ bool is_hit(Swept swept, TupleBlock tuple, uvec2 pixel, vec2 at, out vec3 weight
     return is_seen_front || (params.flags & DRAWN_DOUBLE_SIDED) != 0u;
 }
 
-// Weights of the corners where the sample sees the triangle, by the full test: whichever test has found it, it is shaded in one place.
+// Weights of the corners where the sample sees the triangle, by the full test: whichever has found it, it is shaded in one place.
 vec3 placed_weights(TupleBlock tuple, vec2 at) {
     vec4 corners[3];
     place_corners(tuple, corners);

@@ -20,7 +20,6 @@ layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; }
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
 layout(std430, set = 0, binding = 20) buffer Nearest { uint64_t nearest[]; };
 
-#define STOCHASTIC_FRAME frame
 #include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/visibility/place_alpha.glsl"
 
@@ -35,7 +34,7 @@ void main() {
     // `params.tuple`: the first of the eye.
     uint first = params.tuple + (cell.y * table.x + cell.x) * deep.sample_count;
     Turns turns = turns_of(pixel);
-    Swept swept = swept_triangle();
+    Swept swept = swept_triangle(frame.width_px, frame.height_px);
     for (uint index = 0u; index < deep.sample_count; index++) {
         uint own = first + index;
         TupleBlock tuple = turned_tuple(tuples[frame.sample_index * deep.tuple_count + own], turns);

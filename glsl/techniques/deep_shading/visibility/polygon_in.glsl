@@ -1,7 +1,7 @@
 // What a fragment of a polygon around a triangle's blur knows of the triangle: its corners at both ends of the exposure, from which
 // the fragment places them as each of its samples sees them (section 4.2).
 //
-// After scene_buffers.glsl; the including shader includes seen.glsl and triangle.glsl where it has `frame`.
+// After seen.glsl.
 #ifndef DEEP_SHADING_POLYGON_IN_GLSL
 #define DEEP_SHADING_POLYGON_IN_GLSL
 

@@ -3,7 +3,7 @@
 // from where it is in the frame (section 4.2, which names Laine and Karras 2011, "Efficient Triangle Coverage Tests for Stochastic
 // Rasterization", whose test in five dimensions takes about 25 fused multiply-adds; here the edges take 30, and six subtractions).
 //
-// After polygon_in.glsl and covers.glsl; the including shader declares the frame's block by the name STOCHASTIC_FRAME.
+// After polygon_in.glsl and covers.glsl.
 #ifndef DEEP_SHADING_REDUCED_GLSL
 #define DEEP_SHADING_REDUCED_GLSL
 
@@ -14,19 +14,20 @@ struct Swept {
     vec4 change[3];
     vec3 open_z;
     vec3 change_z;
+    vec2 half_frame_px;
 };
 
-vec4 frame_corner(vec4 clip, float depth) {
-    vec2 half_frame = 0.5 * vec2(STOCHASTIC_FRAME.width_px, STOCHASTIC_FRAME.height_px);
-    precise vec4 corner = vec4(half_frame * (clip.xy + clip.w), clip.w, depth);
+vec4 frame_corner(Seen seen, vec2 half_frame_px) {
+    precise vec4 corner = vec4(half_frame_px * (seen.clip.xy + seen.clip.w), seen.clip.w, seen.depth);
     return corner;
 }
 
-Swept swept_triangle() {
+Swept swept_triangle(uint width_px, uint height_px) {
     Swept swept;
+    swept.half_frame_px = 0.5 * vec2(width_px, height_px);
     for (uint corner = 0u; corner < 3u; corner++) {
-        swept.open[corner] = frame_corner(in_open[corner], in_open_depth[corner]);
-        precise vec4 change = frame_corner(in_close[corner], in_close_depth[corner]) - swept.open[corner];
+        swept.open[corner] = frame_corner(open_corner(corner), swept.half_frame_px);
+        precise vec4 change = frame_corner(close_corner(corner), swept.half_frame_px) - swept.open[corner];
         swept.change[corner] = change;
         swept.open_z[corner] = in_open[corner].z;
         precise float change_z = in_close[corner].z - in_open[corner].z;
@@ -38,8 +39,7 @@ Swept swept_triangle() {
 // What edges span with the sample, as areas_of. `pixel`: of the frame.
 vec3 reduced_areas(Swept swept, TupleBlock tuple, vec2 pixel) {
     precise vec2 at = pixel + tuple.place_px;
-    vec2 half_frame = 0.5 * vec2(STOCHASTIC_FRAME.width_px, STOCHASTIC_FRAME.height_px);
-    precise vec2 shear = half_frame * deep.lens * tuple.lens;
+    precise vec2 shear = swept.half_frame_px * deep.lens * tuple.lens;
     precise vec2 shear_per_metre = shear * deep.inverse_focus;
     vec2 from[3];
     for (uint corner = 0u; corner < 3u; corner++) {

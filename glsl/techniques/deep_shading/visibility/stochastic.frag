@@ -15,7 +15,6 @@
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
 layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
 
-#define STOCHASTIC_FRAME frame
 #include "techniques/deep_shading/visibility/hit.glsl"
 #include "techniques/deep_shading/visibility/place_alpha.glsl"
 
@@ -33,7 +32,7 @@ void main() {
     TupleBlock tuple = turned_tuple(tuples[frame.sample_index * deep.tuple_count + params.tuple], turns_of(pixel));
     vec3 weights;
     float depth;
-    bool has_hit = is_hit(swept_triangle(), tuple, pixel, at, weights, depth);
+    bool has_hit = is_hit(swept_triangle(frame.width_px, frame.height_px), tuple, pixel, at, weights, depth);
     count_tests();
     if (!has_hit) {
         discard;

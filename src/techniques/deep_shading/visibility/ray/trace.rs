@@ -107,13 +107,10 @@ impl<'a> Tracer<'a> {
     }
 
     /// What the sample of `tuple` has at a layer's pixel: the tuple's, or the frame's pixel's own.
-    fn tuple_at(&self, shared: &TupleBlock, tuple: u32, [x, y]: [u32; 2]) -> TupleBlock {
-        let [width, height] = self.table.cells;
-        let cell = tuple / self.table.samples;
-        let pixel = [x * width + cell % width, y * height + cell / width % height];
+    fn tuple_at(&self, shared: &TupleBlock, tuple: u32, at: [u32; 2]) -> TupleBlock {
         match self.pixel_samples {
             PixelSamples::Shared => *shared,
-            PixelSamples::Own => self.table.of_pixel(self.frame, shared, pixel),
+            PixelSamples::Own => self.table.of_pixel(self.frame, shared, self.table.pixel_of(tuple, at)),
         }
     }
 
