@@ -99,7 +99,7 @@ fn a_stages_work_is_counted_in_its_unit() {
             let render = ["render", "cornell", "--size", "32x16", "--json", "-o", "a.png"];
             let report = program.run(&[&render[..], more].concat()).fine().json();
             let reported = report["counters"][counter].as_f64().unwrap();
-            // Of two threads that find a list without their triangle at once, one may write a node that goes into no list.
+            // Two threads that find a list without their triangle at once may write a node that goes into no list.
             let chance = if stage == "lists" { 0.05 * reported } else { 0.0 };
             assert!((reported - work.round()).abs() <= chance, "{stage}: {reported}, {work}");
         }
