@@ -18,8 +18,10 @@ mod structs;
 #[path = "tools/build/table.rs"]
 mod table;
 
+use compile::{EntryPoint, Variant};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What went wrong, each line as cargo shows it: path:line:column: message.
 type Faults = Vec<String>;
@@ -60,31 +62,19 @@ fn generate(root: &Path, out: &Path) -> Result<(), Faults> {
     let sources = compile::Sources::read(root)?;
     let structs = structs::Structs::find(&sources)?;
     let constants = constants::Constants::find(&sources)?;
-    let mut table = table::Table::default();
     let mut faults = Faults::new();
+    let mut variants = Vec::new();
     for entry in sources.entry_points() {
-        if let Err(fault) = mirrored(&entry.name) {
-            faults.push(fault);
-            continue;
+        match mirrored(&entry.name) {
+            Ok(()) => variants.extend(entry.variants().into_iter().map(|variant| (entry.clone(), variant))),
+            Err(fault) => faults.push(fault),
         }
-        for variant in entry.variants() {
-            match sources.compile(&entry, &variant) {
-                Ok(words) => {
-                    let file = format!("{}{}.spv", entry.name.replace('/', "."), variant.suffix().to_lowercase());
-                    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-                    std::fs::write(out.join(&file), bytes).map_err(|error| vec![format!("writing {file}: {error}")])?;
-                    match table::Row::reflect(&entry, &variant, &words, file) {
-                        Ok(row) => table.rows.push(row),
-                        Err(fault) => faults.push(format!("glsl/{}:1:1: {fault}", entry.name)),
-                    }
-                }
-                Err(mut more) => faults.append(&mut more),
-            }
-            if entry.portable
-                && let Err(fault) = structs::portable(&sources, &entry, &variant)
-            {
-                faults.push(format!("glsl/{}:1:1: marked portable, but naga says: {fault}", entry.name));
-            }
+    }
+    let mut table = table::Table::default();
+    for made in side_by_side(&variants, |(entry, variant)| row(&sources, entry, variant, out)) {
+        match made {
+            Ok(row) => table.rows.push(row),
+            Err(mut more) => faults.append(&mut more),
         }
     }
     if !faults.is_empty() {
@@ -92,6 +82,40 @@ fn generate(root: &Path, out: &Path) -> Result<(), Faults> {
     }
     let text = table::write(&table, &structs, &constants);
     std::fs::write(out.join("shaders.rs"), text).map_err(|error| vec![format!("writing shaders.rs: {error}")])
+}
+
+/// Writes a variant's SPIR-V; what it binds.
+fn row(sources: &compile::Sources, entry: &EntryPoint, variant: &Variant, out: &Path) -> Result<table::Row, Faults> {
+    let words = sources.compile(entry, variant)?;
+    let file = format!("{}{}.spv", entry.name.replace('/', "."), variant.suffix().to_lowercase());
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    std::fs::write(out.join(&file), bytes).map_err(|error| vec![format!("writing {file}: {error}")])?;
+    let at_entry = |fault: String| vec![format!("glsl/{}:1:1: {fault}", entry.name)];
+    let row = table::Row::reflect(entry, variant, &words, file).map_err(at_entry)?;
+    if entry.portable {
+        structs::portable(sources, entry, variant)
+            .map_err(|fault| at_entry(format!("marked portable, but naga says: {fault}")))?;
+    }
+    Ok(row)
+}
+
+/// What `work` makes of each, in their order: on as many threads as the machine has, because glslang takes one.
+fn side_by_side<T: Sync, R: Send>(all: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let turns = || {
+        let turn = || {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            all.get(index).map(|item| (index, work(item)))
+        };
+        std::iter::from_fn(turn).collect::<Vec<_>>()
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut made: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let started: Vec<_> = (0..threads).map(|_| scope.spawn(turns)).collect();
+        started.into_iter().flat_map(|thread| thread.join().expect("no thread of a build panics")).collect()
+    });
+    made.sort_by_key(|(index, _)| *index);
+    made.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Drop the first folder and the extension, and a shader and its pass have the same path.

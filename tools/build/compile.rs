@@ -15,6 +15,7 @@ pub struct Sources {
 }
 
 /// A file with a `main`.
+#[derive(Clone)]
 pub struct EntryPoint {
     /// Path from glsl/, with its extension.
     pub name: String,
