@@ -27,9 +27,11 @@ const uint MATERIAL_EMISSIVE_TEXTURE = 8u;
 const uint MATERIAL_DOUBLE_SIDED = 16u;
 const uint MATERIAL_OCCLUSION_TEXTURE = 32u;
 const uint MATERIAL_UNLIT = 64u;
-// Above the bits, a byte each: the code of the dielectric F0, and the strength of occlusion.
+// Above the bits, a byte each: the code of the dielectric F0, the strength of occlusion, and readings of a texture along a slant,
+// at most, less one.
 const uint MATERIAL_F0_SHIFT = 8u;
 const uint MATERIAL_OCCLUSION_SHIFT = 16u;
+const uint MATERIAL_ANISOTROPY_SHIFT = 24u;
 
 struct MaterialBlock {
     vec4 base_color;

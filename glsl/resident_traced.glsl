@@ -10,7 +10,8 @@ layout(constant_id = 63) const uint HAS_TANGENTS = 1;
 layout(constant_id = 64) const uint HAS_EXTENDED = 1;
 // Texel buffers that hold anything.
 layout(constant_id = 65) const uint TEXEL_BUFFERS = 1;
-// 1: buffers hold every level of a picture, and rays read the one that their cone's width asks for; 0: the finest alone.
+// 0: buffers hold the finest level of a picture alone. Else they hold every level, and rays read the one that their cone's width
+// asks for, so many times along its longer axis at most (--anisotropy).
 layout(constant_id = 68) const uint TEXTURE_CONE = 0;
 
 // 1: rays read occlusion maps.

@@ -17,10 +17,10 @@ use crate::reference::ReferenceRequest;
 use crate::report::notes;
 use crate::report::run::{AovRow, DeviceRow, ImageRow, Passes, Program, RunReport, SCHEMA, SceneRow, Times};
 use crate::resident::SceneStats;
-use crate::scene::{self, AnimationChoice, Model, Scene};
+use crate::scene::{self, AnimationChoice, Model, Scene, Texturing};
 use crate::session::{Renderer, Session, require_triangle};
 use crate::settings::written::{SettingValue, WrittenSettings, written};
-use crate::settings::{Values, earlier_s, exposure_s, raw_volume_size, readers, volume_name};
+use crate::settings::{Gutters, Values, earlier_s, exposure_s, raw_volume_size, readers, volume_name};
 use crate::techniques::{self, Technique, settings_of, stages, timed};
 use crate::volume::{self, Volume, VolumeRequest};
 use crate::whole_file::write_whole;
@@ -314,12 +314,14 @@ impl Job {
     }
 
     /// `scene` with its textures as the request asks for them on a device of `caps`.
-    pub fn with_texture_limit(&self, mut scene: Scene, caps: &Caps) -> Scene {
+    pub fn with_texturing(&self, mut scene: Scene, caps: &Caps) -> Scene {
         let budget_bytes = self.values.bytes("memory-budget");
-        scene.texture_limit_px = match self.values.unless_auto("texture-limit", Values::integer) {
+        let limit_px = match self.values.unless_auto("texture-limit", Values::integer) {
             Some(limit_px) => limit_px as u32,
             None => SceneStats::fitting_limit_px(&scene, caps, budget_bytes),
         };
+        let fills_gutters = self.values.is("texture-gutters", Gutters::Fill);
+        scene.texturing = Texturing { limit_px, fills_gutters, anisotropy: self.values.integer("anisotropy") as u32 };
         scene
     }
 
@@ -330,7 +332,7 @@ impl Job {
         // Named as the request names it.
         require_triangle(&scene, &self.scene)?;
         let gpu = Gpu::open(request)?;
-        let scene = self.with_texture_limit(scene, &gpu.caps);
+        let scene = self.with_texturing(scene, &gpu.caps);
         Session::on(gpu, scene)
     }
 
@@ -454,7 +456,7 @@ fn open_volume(values: &Values) -> Result<Option<Volume>> {
 /// As reports and rows have them: with what `auto` and percentages came to.
 pub(crate) fn settings(session: &Session, renderer: &Renderer, values: &Values) -> WrittenSettings {
     let mut resolved = renderer.resolved.clone();
-    resolved.insert("texture-limit", session.scene.texture_limit_px.to_string());
+    resolved.insert("texture-limit", session.scene.texturing.limit_px.to_string());
     written(values, &resolved)
 }
 

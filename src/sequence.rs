@@ -128,7 +128,7 @@ impl Job {
             let shown = match session.take() {
                 None => self.open_session(&self.device_request(), scene)?,
                 Some(session) => {
-                    let scene = self.with_texture_limit(scene, &session.gpu.caps);
+                    let scene = self.with_texturing(scene, &session.gpu.caps);
                     session.at_moment(scene, values.number("tree-growth"))?
                 }
             };

@@ -95,7 +95,7 @@ impl Session {
     ///
     /// Errors: as `showing`.
     pub fn at_moment(self, scene: Scene, tree_growth: f64) -> Result<Self> {
-        if scene.hash == self.scene.hash && scene.texture_limit_px == self.scene.texture_limit_px {
+        if scene.hash == self.scene.hash && scene.texturing == self.scene.texturing {
             return Ok(self);
         }
         require_triangle(&scene, &scene.name)?;

@@ -9,7 +9,7 @@ use crate::support::program::{Program, quincunx};
 use crate::support::watched::Watched;
 use crate::support::{driver, shared_scenes};
 use quincunx::picture::{Picture, image_file};
-use quincunx::scene::{AnimationChoice, Scene};
+use quincunx::scene::{AnimationChoice, Scene, Texturing};
 use serde_json::json;
 
 /// A triangle with a picture on it that crosses the frame within a second.
@@ -79,7 +79,11 @@ fn textures_stay_between_the_moments_of_a_model() {
     let file = moving_file();
     let [model, other] = [file.model(&AnimationChoice::All).unwrap(), file.model(&AnimationChoice::All).unwrap()];
     let moment = |time_s: f64| model.pose(time_s).unwrap();
-    let limited = |scene: Scene| Scene { texture_limit_px: 4, ..scene };
+    let limited = |scene: Scene| Scene { texturing: Texturing { limit_px: 4, ..scene.texturing }, ..scene };
+    let kept = |scene: Scene| {
+        let texturing = Texturing { fills_gutters: false, ..scene.texturing };
+        Scene { texturing, ..scene }
+    };
     let hash = |watched: &Watched| watched.hash("deferred", &[("size", "32x18")]);
     let mut watched = Watched::with_scene(moment(0.0));
     let mut seen = vec![hash(&watched)];
@@ -89,6 +93,7 @@ fn textures_stay_between_the_moments_of_a_model() {
         (limited(moment(0.75)), false),
         (limited(moment(0.5)), true),
         (moment(0.5), false),
+        (kept(moment(0.5)), false),
         // Equal, and read again.
         (other.pose(0.75).unwrap(), false),
     ] {

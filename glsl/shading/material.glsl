@@ -12,6 +12,7 @@
 
 #include "resident.glsl"
 #include "shading/extras.glsl"
+#include "shading/slanted.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color_texture;
 layout(set = 1, binding = 1) uniform sampler2D metallic_roughness_texture;
@@ -50,7 +51,7 @@ vec2 in_uv_1_down;
 #else
 #define UV_CHANGE(which, way) uv_change(which, in_uv_##way, in_uv_##way)
 #endif
-#define TEXEL(name, which) textureGrad(name, uv_of(which), UV_CHANGE(which, right), UV_CHANGE(which, down))
+#define ISOTROPIC(name, which) textureGrad(name, uv_of(which), UV_CHANGE(which, right), UV_CHANGE(which, down))
 
 #else
 
@@ -71,17 +72,17 @@ layout(location = 6) INTERPOLATION in vec2 in_uv_1;
 // are only some of the picture's pixels.
 layout(constant_id = 75) const float LEVEL_STEP_X = 1.0;
 layout(constant_id = 76) const float LEVEL_STEP_Y = 1.0;
-#define STEP_RIGHT(in_coordinates) (dFdx(in_coordinates) * LEVEL_STEP_X)
-#define STEP_DOWN(in_coordinates) (dFdy(in_coordinates) * LEVEL_STEP_Y)
+#define STEP_right(in_coordinates) (dFdx(in_coordinates) * LEVEL_STEP_X)
+#define STEP_down(in_coordinates) (dFdy(in_coordinates) * LEVEL_STEP_Y)
 #ifdef VERTEX_EXTENDED
 // Changes are those of what is interpolated, which a quad's helper lanes have too. What they read of a buffer, as the placement
 // is, may be 0 (lavapipe), and changes of what is made of it nonsense along each triangle's edge.
-#define TEXEL(name, which) \
-    textureGrad(name, uv_of(which), uv_change(which, STEP_RIGHT(in_uv), STEP_RIGHT(in_uv_1)), \
-        uv_change(which, STEP_DOWN(in_uv), STEP_DOWN(in_uv_1)))
+#define UV_CHANGE(which, way) uv_change(which, STEP_##way(in_uv), STEP_##way(in_uv_1))
+#define ISOTROPIC(name, which) textureGrad(name, uv_of(which), UV_CHANGE(which, right), UV_CHANGE(which, down))
 #else
-#define TEXEL(name, which) \
-    (LEVEL_STEP_X == 1.0 && LEVEL_STEP_Y == 1.0 ? texture(name, in_uv) : textureGrad(name, in_uv, STEP_RIGHT(in_uv), STEP_DOWN(in_uv)))
+#define UV_CHANGE(which, way) STEP_##way(in_uv)
+#define ISOTROPIC(name, which) \
+    (LEVEL_STEP_X == 1.0 && LEVEL_STEP_Y == 1.0 ? texture(name, in_uv) : textureGrad(name, in_uv, STEP_right(in_uv), STEP_down(in_uv)))
 #endif
 
 #endif
@@ -107,6 +108,20 @@ vec2 uv_change(uint which, vec2 change, vec2 change_1) {
     return change;
 #endif
 }
+
+// `most`: readings along the longer axis of what the pixel shows.
+vec4 texel_along(sampler2D picture, vec2 uv, vec2 right, vec2 down, uint most) {
+    Readings readings = readings_of(right, down, vec2(textureSize(picture, 0)), most);
+    vec4 sum = vec4(0.0);
+    for (float index = 0.0; index < readings.count; index++) {
+        sum += textureGrad(picture, uv + place_of(readings, index), readings.longest / readings.count, vec2(0.0));
+    }
+    return sum / readings.count;
+}
+
+#define TEXEL(name, which) (material.flags >> MATERIAL_ANISOTROPY_SHIFT == 0u \
+    ? ISOTROPIC(name, which) \
+    : texel_along(name, uv_of(which), UV_CHANGE(which, right), UV_CHANGE(which, down), 1u + (material.flags >> MATERIAL_ANISOTROPY_SHIFT)))
 
 vec4 base_color_at(MaterialBlock material) {
     vec4 color = material.base_color;

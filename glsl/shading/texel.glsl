@@ -7,6 +7,7 @@
 #define SHADING_TEXEL_GLSL
 
 #include "resident_traced.glsl"
+#include "shading/slanted.glsl"
 
 int wrapped(uint wrap, int at, int size) {
     if (wrap == WRAP_CLAMP) {
@@ -72,30 +73,27 @@ TexelsBlock level_of(TexelsBlock texels, int level) {
     return texels;
 }
 
-// The level of which a texel is as wide as the ray's cone. `footprint`: the cone's width where it meets the surface, in
-// units of the UV set.
-float level_at(TexelsBlock texels, float footprint) {
-    float turned = abs(texels.u.x * texels.v.y - texels.u.y * texels.v.x);
-    float width_px = footprint * sqrt(turned * float(texels.width_px) * float(texels.height_px));
+// Where a ray's cone meets a surface, in units of both UV sets: xy of the first, zw of the second.
+struct Footprint {
+    // How long it is there, by the UV set's mean scale; of TEXTURE_CONE 1.
+    vec2 widths;
+    // Two diameters of the ellipse that the plane cuts out of it, at a right angle on the surface; of TEXTURE_CONE above 1.
+    vec4 along;
+    vec4 across;
+};
+
+// The finest level, whatever ray comes.
+const Footprint FINEST = Footprint(vec2(0.0), vec4(0.0), vec4(0.0));
+
+// The level of which a texel is so wide. `width_px`: in texels of the finest.
+float level_at(TexelsBlock texels, float width_px) {
     float last = float(findMSB(max(texels.width_px, texels.height_px)));
     float level = clamp(log2(max(width_px, 1e-30)), 0.0, last);
     // As Vulkan rounds.
     return (texels.flags & TEXELS_BETWEEN_LEVELS) != 0u ? level : max(ceil(level - 0.5), 0.0);
 }
 
-// `uvs`: the two UV sets of the point; `footprints`: the cone's width in units of each, of TEXTURE_CONE. Bilinear, or nearest
-// where the sampler says so.
-vec4 texel_of(TexelsBlock texels, vec4 uvs, vec2 footprints) {
-    if (texels.width_px == 0u) {
-        return vec4(1.0);
-    }
-    bool is_second = texels.u.w > 0.5;
-    vec2 uv = is_second ? uvs.zw : uvs.xy;
-    vec2 place = vec2(dot(texels.u.xy, uv) + texels.u.z, dot(texels.v.xy, uv) + texels.v.z);
-    float level = 0.0;
-    if (TEXTURE_CONE != 0u && (texels.flags & TEXELS_LEVELS) != 0u) {
-        level = level_at(texels, is_second ? footprints.y : footprints.x);
-    }
+vec4 filtered_at(TexelsBlock texels, vec2 place, float level) {
     if (TEXTURE_CONE == 0u || level <= 0.0) {
         return filtered(texels, place, (texels.flags & TEXELS_NEAREST) != 0u);
     }
@@ -104,6 +102,44 @@ vec4 texel_of(TexelsBlock texels, vec4 uvs, vec2 footprints) {
     vec4 value = filtered(finer, place, is_nearest);
     float between = fract(level);
     return between > 0.0 ? mix(value, filtered(level_of(finer, 1), place, is_nearest), between) : value;
+}
+
+// What a step of the texture's UV set is on its picture, whose sides are 1.
+vec2 step_of(TexelsBlock texels, vec4 in_both_sets) {
+    vec2 in_set = texels.u.w > 0.5 ? in_both_sets.zw : in_both_sets.xy;
+    return vec2(dot(texels.u.xy, in_set), dot(texels.v.xy, in_set));
+}
+
+vec4 filtered_along(TexelsBlock texels, vec2 place, Footprint footprint) {
+    vec2 size_px = vec2(texels.width_px, texels.height_px);
+    vec2 along = step_of(texels, footprint.along);
+    Readings readings = readings_of(along, step_of(texels, footprint.across), size_px, TEXTURE_CONE);
+    float level = level_at(texels, readings.width_px);
+    vec4 sum = vec4(0.0);
+    for (float index = 0.0; index < readings.count; index++) {
+        sum += filtered_at(texels, place + place_of(readings, index), level);
+    }
+    return sum / readings.count;
+}
+
+// `uvs`: the two UV sets of the point. Bilinear, or nearest where the sampler says so.
+vec4 texel_of(TexelsBlock texels, vec4 uvs, Footprint footprint) {
+    if (texels.width_px == 0u) {
+        return vec4(1.0);
+    }
+    bool is_second = texels.u.w > 0.5;
+    vec2 uv = is_second ? uvs.zw : uvs.xy;
+    vec2 place = vec2(dot(texels.u.xy, uv) + texels.u.z, dot(texels.v.xy, uv) + texels.v.z);
+    float level = 0.0;
+    if (TEXTURE_CONE != 0u && (texels.flags & TEXELS_LEVELS) != 0u) {
+        if (TEXTURE_CONE != 1u) {
+            return filtered_along(texels, place, footprint);
+        }
+        float turned = abs(texels.u.x * texels.v.y - texels.u.y * texels.v.x);
+        float width = is_second ? footprint.widths.y : footprint.widths.x;
+        level = level_at(texels, width * sqrt(turned * float(texels.width_px) * float(texels.height_px)));
+    }
+    return filtered_at(texels, place, level);
 }
 
 #endif

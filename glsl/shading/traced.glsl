@@ -53,32 +53,47 @@ Corners corners_of(TracedTriangleBlock triangle, uint index, vec2 barycentric) {
     return point;
 }
 
-// The finest level, whatever ray comes.
-const vec2 FINEST = vec2(0.0);
-
-vec4 textured(vec4 factor, TexelsBlock texels, vec4 uvs, vec2 footprints) {
-    return HAS_TEXTURES != 0u ? factor * texel_of(texels, uvs, footprints) : factor;
+vec4 textured(vec4 factor, TexelsBlock texels, vec4 uvs, Footprint footprint) {
+    return HAS_TEXTURES != 0u ? factor * texel_of(texels, uvs, footprint) : factor;
 }
 
-// Twice the area of a triangle in a UV set.
-float uv_area(vec2 a, vec2 b, vec2 c) {
-    vec2 first = b - a;
-    vec2 second = c - a;
+// Twice the area of a triangle in a UV set, by two of its edges.
+float uv_area(vec2 first, vec2 second) {
     return abs(first.x * second.y - first.y * second.x);
 }
 
-// Width of a cone in units of both UV sets, where it meets a triangle. `width`: across the ray, metres; `slope`: cosine between
-// the ray and the plane's normal; `area`: twice the triangle's, square metres. Akenine-Moeller et al. 2019.
-vec2 footprints_of(TracedTriangleBlock triangle, uint index, float width, float slope, float area) {
+// Where a cone meets a triangle. `plane`: its corners where the ray meets them; `width`: across the ray, metres. The widths are of
+// Akenine-Moeller et al. 2019, the axes are those of the cone's cut with the plane.
+Footprint footprint_of(BvhTriangleBlock plane, TracedTriangleBlock triangle, uint index, vec3 direction_ws, float width) {
     vec3 v = triangle.v_material.xyz;
     vec2 first = vec2(triangle.corners[0].w, v.x);
-    vec2 second = vec2(triangle.corners[1].w, v.y);
-    vec2 areas = vec2(uv_area(first, second, vec2(triangle.corners[2].w, v.z)), 0.0);
+    vec4 edge1 = vec4(vec2(triangle.corners[1].w, v.y) - first, 0.0, 0.0);
+    vec4 edge2 = vec4(vec2(triangle.corners[2].w, v.z) - first, 0.0, 0.0);
     if (HAS_EXTENDED != 0u) {
         TracedExtendedBlock more = extended[index];
-        areas.y = uv_area(more.uvs_01.xy, more.uvs_01.zw, more.uv_2.xy);
+        edge1.zw = more.uvs_01.zw - more.uvs_01.xy;
+        edge2.zw = more.uv_2.xy - more.uvs_01.xy;
     }
-    return sqrt(areas / max(area, 1e-30)) * (width / max(abs(slope), 1e-4));
+    vec3 normal = cross(plane.edge1.xyz, plane.edge2.xyz);
+    float area = max(length(normal), 1e-30);
+    normal /= area;
+    float slope = dot(normal, direction_ws);
+    float long_width = width / max(abs(slope), 1e-4);
+    Footprint footprint = FINEST;
+    footprint.widths = sqrt(vec2(uv_area(edge1.xy, edge2.xy), uv_area(edge1.zw, edge2.zw)) / area) * long_width;
+    if (TEXTURE_CONE != 1u) {
+        vec3 tilt = direction_ws - normal * slope;
+        // Seen from straight above any direction is as good.
+        tilt = dot(tilt, tilt) > 1e-12 ? normalize(tilt) : normalize(plane.edge1.xyz);
+        vec3 along = tilt * long_width;
+        vec3 across = cross(normal, tilt) * width;
+        // Steps in the plane as parts of the edges, of the dual basis.
+        vec3 of_edge1 = cross(plane.edge2.xyz, normal) / area;
+        vec3 of_edge2 = cross(normal, plane.edge1.xyz) / area;
+        footprint.along = edge1 * dot(along, of_edge1) + edge2 * dot(along, of_edge2);
+        footprint.across = edge1 * dot(across, of_edge1) + edge2 * dot(across, of_edge2);
+    }
+    return footprint;
 }
 
 // How much of a ray this point stops, 0 to 1.
@@ -123,10 +138,9 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws, floa
     point.position_ws = plane.corner.xyz + plane.edge1.xyz * barycentric.x + plane.edge2.xyz * barycentric.y;
     vec3 plane_ws = normalize(cross(plane.edge1.xyz, plane.edge2.xyz));
     point.plane_ws = dot(plane_ws, direction_ws) < 0.0 ? plane_ws : -plane_ws;
-    vec2 footprints = FINEST;
+    Footprint footprint = FINEST;
     if (TEXTURE_CONE != 0u) {
-        float area = length(cross(plane.edge1.xyz, plane.edge2.xyz));
-        footprints = footprints_of(triangle, index, cone_width, dot(plane_ws, direction_ws), area);
+        footprint = footprint_of(plane, triangle, index, direction_ws, cone_width);
     }
     bool is_front = is_front_of(plane, direction_ws);
     bool is_double_sided = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
@@ -147,16 +161,16 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws, floa
         if (tangent.xyz != vec3(0.0)) {
             vec3 along = normalize(tangent.xyz);
             vec3 bitangent = cross(normal, along) * tangent.w;
-            vec3 mapped = texel_of(traced.normal, corners.uvs, footprints).xyz * 2.0 - 1.0;
+            vec3 mapped = texel_of(traced.normal, corners.uvs, footprint).xyz * 2.0 - 1.0;
             mapped.xy *= material.emissive.a;
             vec3 bent = along * mapped.x + bitangent * mapped.y + normal * mapped.z;
             normal = dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
         }
     }
     point.normal_ws = is_double_sided && !is_front ? -normal : normal;
-    vec3 base_color = textured(material.base_color * corners.color, traced.base_color, corners.uvs, footprints).rgb;
+    vec3 base_color = textured(material.base_color * corners.color, traced.base_color, corners.uvs, footprint).rgb;
     vec4 factors = vec4(1.0, material.roughness, material.metallic, 1.0);
-    vec4 metallic_roughness = textured(factors, traced.metallic_roughness, corners.uvs, footprints);
+    vec4 metallic_roughness = textured(factors, traced.metallic_roughness, corners.uvs, footprint);
     point.surface = Surface(base_color, metallic_roughness.b, metallic_roughness.g, DEFAULT_DIELECTRIC_F0);
     point.is_unlit = (material.flags & MATERIAL_UNLIT) != 0u;
     point.is_back = !is_front && !is_double_sided;
@@ -169,7 +183,7 @@ SurfacePoint surface_point(uint index, vec2 barycentric, vec3 direction_ws, floa
     point.openness = 1.0;
     if (HAS_OCCLUSION != 0u && (material.flags & MATERIAL_OCCLUSION_TEXTURE) != 0u) {
         float strength = float((material.flags >> MATERIAL_OCCLUSION_SHIFT) & 0xffu) / 255.0;
-        point.openness += strength * (texel_of(traced.occlusion, corners.uvs, footprints).r - 1.0);
+        point.openness += strength * (texel_of(traced.occlusion, corners.uvs, footprint).r - 1.0);
     }
     if (MOVES != 0u) {
         // Chances are by the area when the shutter opens.

@@ -163,7 +163,7 @@ pub fn changed<'a, 'b>(
 
 /// All variants share a device and a scene: what is settled with those cannot differ.
 fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
-    for key in ["allocation", "memory-budget", "texture-limit"] {
+    for key in ["allocation", "memory-budget", "texture-limit", "texture-gutters", "anisotropy"] {
         let text = values.text(key);
         if text != job.values.text(key) {
             return Err(Error::request(format!(

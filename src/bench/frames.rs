@@ -92,7 +92,7 @@ impl VariantSequence {
             let within = |error: Error| error.within(format!("frame {frame}"));
             let values = frames.values(&self.job, frame, None)?;
             let started = Instant::now();
-            let scene = self.job.with_texture_limit(scene_of(model, &values).map_err(within)?, &gpu.caps);
+            let scene = self.job.with_texturing(scene_of(model, &values).map_err(within)?, &gpu.caps);
             let posed = Instant::now();
             let shown = match kept.take() {
                 // A sequence begins with a tree of its own, whatever was shown before.

@@ -53,7 +53,7 @@ impl Recipe {
             "technique": technique.name(),
             "estimator": technique.estimator_version(),
             "scene": scene.hash,
-            "texture_limit_px": scene.texture_limit_px,
+            "texturing": format!("{:?}", scene.texturing),
             "camera": [camera.world_from_view.to_cols_array().to_vec(), format!("{:?}", camera.projection)],
             "size": view.extent.to_string(),
             "lights": format!("{:?}", lights.lights),

@@ -1,16 +1,20 @@
 //! Materials as shaders read them: glsl/resident.glsl's blocks.
 
 use crate::gpu::shader::resident::{
-    MATERIAL_BASE_COLOR_TEXTURE, MATERIAL_DOUBLE_SIDED, MATERIAL_EMISSIVE_TEXTURE, MATERIAL_F0_SHIFT,
-    MATERIAL_METALLIC_ROUGHNESS_TEXTURE, MATERIAL_NORMAL_TEXTURE, MATERIAL_OCCLUSION_SHIFT, MATERIAL_OCCLUSION_TEXTURE,
-    MATERIAL_UNLIT,
+    MATERIAL_ANISOTROPY_SHIFT, MATERIAL_BASE_COLOR_TEXTURE, MATERIAL_DOUBLE_SIDED, MATERIAL_EMISSIVE_TEXTURE,
+    MATERIAL_F0_SHIFT, MATERIAL_METALLIC_ROUGHNESS_TEXTURE, MATERIAL_NORMAL_TEXTURE, MATERIAL_OCCLUSION_SHIFT,
+    MATERIAL_OCCLUSION_TEXTURE, MATERIAL_UNLIT,
 };
 use crate::gpu::shader::structs::{MaterialBlock, PlacementBlock};
 use crate::scene::{AlphaMode, Material, Placement, Scene, TextureSlot};
 use crate::shading::brdf;
 
-/// Factors and flags of one material.
-pub fn block(material: &Material) -> MaterialBlock {
+/// Factors and flags of one of the scene's materials.
+pub fn block(scene: &Scene, material: &Material) -> MaterialBlock {
+    let textures = TextureSlot::ALL.into_iter().filter_map(|slot| material.texture(slot));
+    // A picture that is seen at its finest level alone is seen where a pixel's middle falls.
+    let has_levels = { textures }.all(|texture| scene.textures[texture].sampler.mip_linear.is_some());
+    let anisotropy = if has_levels { scene.texturing.anisotropy } else { 1 };
     let bit = |present: bool, bit: u32| if present { bit } else { 0 };
     MaterialBlock {
         base_color: material.base_color.to_array(),
@@ -31,7 +35,8 @@ pub fn block(material: &Material) -> MaterialBlock {
             | bit(material.occlusion_texture.is_some(), MATERIAL_OCCLUSION_TEXTURE)
             | bit(material.unlit, MATERIAL_UNLIT)
             | brdf::code_of_f0(material.dielectric_f0) << MATERIAL_F0_SHIFT
-            | ((material.occlusion_strength * 255.0).round() as u32) << MATERIAL_OCCLUSION_SHIFT,
+            | ((material.occlusion_strength * 255.0).round() as u32) << MATERIAL_OCCLUSION_SHIFT
+            | (anisotropy - 1) << MATERIAL_ANISOTROPY_SHIFT,
     }
 }
 

@@ -146,7 +146,8 @@ impl SceneGpu {
         };
         let indices = sent("scene.indices", bytemuck::cast_slice(&geometry.indices), vertices)?;
         let draws = sent("scene.draws", bytemuck::cast_slice(&draw_blocks(scene)), shaders)?;
-        let blocks: Vec<MaterialBlock> = scene.materials.iter().map(material_blocks::block).collect();
+        let blocks: Vec<MaterialBlock> =
+            scene.materials.iter().map(|material| material_blocks::block(scene, material)).collect();
         let materials = sent("scene.materials", bytemuck::cast_slice(&blocks), shaders)?;
         let MaterialSets { samplers, layout, pool, sets } = MaterialSets::new(gpu, scene, &textures)?;
         let mut calls = geometry.calls(scene);

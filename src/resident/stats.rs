@@ -51,7 +51,7 @@ pub fn limited(image: &crate::scene::Image, limit_px: u32) -> Extent {
 
 impl SceneStats {
     pub fn of(scene: &Scene) -> Self {
-        Self::with_texture_limit(scene, scene.texture_limit_px)
+        Self::with_texture_limit(scene, scene.texturing.limit_px)
     }
 
     /// The numbers of `scene` as if its limit were `limit_px`; 0: none.

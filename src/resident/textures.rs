@@ -9,7 +9,7 @@ use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, AccessSet, Gpu, Image, upload};
 use crate::plan::{Plan, Resources, Sharing};
 use crate::resident::stats::distinct_images;
-use crate::scene::{self, ColorSpace, Scene, Texture, TextureSlot, Wrap, mipmaps};
+use crate::scene::{self, ColorSpace, Scene, ShownTexels, Texture, TextureSlot, Texturing, Wrap, mipmaps};
 use ash::vk;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -27,7 +27,7 @@ fn readers() -> AccessSet {
 pub struct Textures {
     /// Pictures in the order of `distinct_images`.
     sources: Vec<(Arc<scene::Image>, ColorSpace)>,
-    texture_limit_px: u32,
+    texturing: Texturing,
     /// Images of `sources` in their order, and a white pixel.
     images: Vec<Image>,
 }
@@ -42,19 +42,20 @@ impl Textures {
         let mut resources = Resources::make(gpu, "scene", &plan, &Sharing::default())?;
         let sources = sources(scene);
         let mut images = Vec::with_capacity(sources.len() + 1);
-        for (index, (image, color_space)) in sources.iter().enumerate() {
+        for (index, ((image, color_space), (place, _))) in sources.iter().zip(distinct_images(scene)).enumerate() {
             let target = resources.image(&format!("scene.textures.{index}"));
             // A limit leaves the finest levels out.
             let all = mipmaps::level_count(image.width, image.height);
             let levels = all - target.description.level_count..all;
-            let fill = |bytes: &mut [u8]| mipmaps::write(image, *color_space, levels, bytes);
+            let shown = ShownTexels::of(scene, place);
+            let fill = |bytes: &mut [u8]| mipmaps::write(image, *color_space, levels, shown.as_ref(), bytes);
             upload::image(gpu, &target, readers(), fill)?;
             images.push(target);
         }
         let white = resources.image("scene.textures.white");
         upload::image(gpu, &white, readers(), |bytes| bytes.fill(255))?;
         images.push(white);
-        Ok(Self { sources, texture_limit_px: scene.texture_limit_px, images })
+        Ok(Self { sources, texturing: scene.texturing, images })
     }
 
     /// Whether they are what `new` would make of `scene`: the same pictures, not only equal ones.
@@ -63,7 +64,8 @@ impl Textures {
             Arc::ptr_eq(&one.0, &other.0) && one.1 == other.1
         };
         let others = sources(scene);
-        self.texture_limit_px == scene.texture_limit_px
+        (self.texturing.limit_px, self.texturing.fills_gutters)
+            == (scene.texturing.limit_px, scene.texturing.fills_gutters)
             && self.sources.len() == others.len()
             && self.sources.iter().zip(&others).all(|(one, other)| same(one, other))
     }
@@ -134,8 +136,7 @@ fn sampler_info(texture: &Texture) -> vk::SamplerCreateInfo<'static> {
         Wrap::ClampToEdge => vk::SamplerAddressMode::CLAMP_TO_EDGE,
     };
     let sampler = &texture.sampler;
-    // Anisotropy is left out on purpose: software drivers take several times as long for it, and pictures of different
-    // drivers would differ by more than their rounding.
+    // Without anisotropy: shaders read along a slant (glsl/shading/slanted.glsl).
     vk::SamplerCreateInfo::default()
         .mag_filter(filter(sampler.mag_linear))
         .min_filter(filter(sampler.min_linear))

@@ -23,7 +23,7 @@ use crate::gpu::structure::Over;
 use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
 use crate::plan::{Plan, Requirements, Resources};
 use crate::resident::stats::limited;
-use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, TextureSlot, Wrap, mipmaps};
+use crate::scene::{AlphaMode, ColorSpace, Draw, Material, Mesh, Scene, ShownTexels, TextureSlot, Wrap, mipmaps};
 use crate::units::Bytes;
 use bytemuck::Zeroable;
 use glam::{Mat3, Vec2, Vec3, Vec4};
@@ -113,6 +113,8 @@ pub struct Layout {
     /// Texels of each buffer.
     texel_counts: Vec<u64>,
     reads: Reads,
+    /// Readings of a texture along a slanted cone's footprint, at most.
+    anisotropy: u32,
 }
 
 impl Layout {
@@ -135,7 +137,7 @@ impl Layout {
             if places[index].is_some() {
                 continue;
             }
-            let extent = limited(&scene.images[index], scene.texture_limit_px);
+            let extent = limited(&scene.images[index], scene.texturing.limit_px);
             let all = mipmaps::level_count(extent.width, extent.height);
             let count = mipmaps::texel_count(extent.width, extent.height, reads.levels.of(0, all));
             let fits = |used: &u64| used + count <= most_texels;
@@ -170,6 +172,7 @@ impl Layout {
             places,
             texel_counts,
             reads,
+            anisotropy: scene.texturing.anisotropy,
         })
     }
 
@@ -228,7 +231,7 @@ impl Layout {
             ("HAS_TANGENTS", u32::from(self.has_tangents)),
             ("HAS_EXTENDED", u32::from(self.has_extended)),
             ("TEXEL_BUFFERS", self.texel_counts.len().max(1) as u32),
-            ("TEXTURE_CONE", u32::from(self.reads.levels == TexelLevels::Cone)),
+            ("TEXTURE_CONE", if self.reads.levels == TexelLevels::Cone { self.anisotropy } else { 0 }),
             ("HAS_OCCLUSION", u32::from(self.reads.occlusion)),
             ("MOVES", u32::from(self.is_moving)),
         ]
@@ -266,7 +269,7 @@ impl Layout {
     /// `emitter_density` of a material: how likely a point of it is chosen, per square metre; 0: it lights nothing.
     fn materials(&self, scene: &Scene, emitter_density: impl Fn(&Material) -> f32) -> Vec<TracedMaterialBlock> {
         let block = |material: &Material| TracedMaterialBlock {
-            material: material_blocks::block(material),
+            material: material_blocks::block(scene, material),
             base_color: self.texels(scene, material, TextureSlot::BaseColor),
             metallic_roughness: self.texels(scene, material, TextureSlot::MetallicRoughness),
             normal: self.texels(scene, material, TextureSlot::Normal),
@@ -286,19 +289,20 @@ impl Layout {
     /// Writes the words of a texel buffer. An image in both colour spaces lies there once: its words are as the file has
     /// them.
     fn write_words(&self, scene: &Scene, buffer: usize, words: &mut [u8]) {
-        for (image, place) in scene.images.iter().zip(&self.places) {
+        for (index, (image, place)) in scene.images.iter().zip(&self.places).enumerate() {
             let Some(place) = place.filter(|place| place.buffer as usize == buffer) else { continue };
             let color_space = scene
                 .textures
                 .iter()
-                .find(|texture| std::ptr::eq(&scene.images[texture.image], image))
+                .find(|texture| texture.image == index)
                 .map_or(ColorSpace::Linear, |texture| texture.color_space);
+            let shown = (self.reads.levels == TexelLevels::Cone).then(|| ShownTexels::of(scene, index)).flatten();
             let levels = [(image.width, image.height), (place.width_px, place.height_px)]
                 .map(|(width, height)| mipmaps::level_count(width, height));
             let written = self.reads.levels.of(levels[0] - levels[1], levels[0]);
             let start = 4 * place.first as usize;
             let bytes = 4 * mipmaps::texel_count(image.width, image.height, written.clone()) as usize;
-            mipmaps::write(image, color_space, written, &mut words[start..start + bytes]);
+            mipmaps::write(image, color_space, written, shown.as_ref(), &mut words[start..start + bytes]);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The levels of a texture, made on the host: the same texels on every driver.
 
-use super::{ColorSpace, Image};
+use super::{ColorSpace, Image, ShownTexels, Wrap};
 use crate::picture::tonemap::linear_from_srgb;
 use std::ops::Range;
 
@@ -24,15 +24,53 @@ fn bytes_of(image: &Image, levels: Range<u32>) -> usize {
     4 * texel_count(image.width, image.height, levels) as usize
 }
 
+/// How much of a level's texel a texel counts that no triangle shows: so little that it is not seen beside one that is, while where
+/// there is none the mean is theirs. A power of two: weights, and what is weighted, stay as exact as they are.
+const HIDDEN_WEIGHT: f32 = 1.0 / (1u64 << 40) as f32;
+
+/// A texel as numbers: 4, or with a weight 5, which are the numbers times the weight, and the weight.
+type Numbers<const COUNT: usize> = [f32; COUNT];
+
+const PLAIN: usize = 4;
+const WEIGHTED: usize = 5;
+
 /// Writes these levels, 0 the finest, one after the other: RGBA8, each a box filter of the one before. Colour is averaged
 /// as light, not as code values. `target` has as many bytes as they need.
 ///
+/// With `shown`, of the finest level, coarser ones are means of what is shown, and texels of them that have nothing of it take after
+/// their neighbours that do, or else after the level above: what filters read beside a chart is like the chart. The finest is
+/// as it was painted.
+///
 /// Row by row: beside `target` it holds a few rows of numbers and no level, because the numbers of a whole picture would
 /// be four times as large as the picture.
-pub fn write(image: &Image, color_space: ColorSpace, levels: Range<u32>, target: &mut [u8]) {
+pub fn write(
+    image: &Image,
+    color_space: ColorSpace,
+    levels: Range<u32>,
+    shown: Option<&ShownTexels>,
+    target: &mut [u8],
+) {
     assert!(levels.end <= level_count(image.width, image.height), "{}: it has no level {levels:?}", image.name);
     assert_eq!(target.len(), bytes_of(image, levels.clone()), "{}: bytes of its levels {levels:?}", image.name);
     let codec = Codec::new(color_space);
+    match shown {
+        None => write_means::<PLAIN>(image, &codec, levels, |_, _| 1.0, target),
+        Some(shown) => {
+            let weight = |x, y| if shown.contains(x, y) { 1.0 } else { HIDDEN_WEIGHT };
+            write_means::<WEIGHTED>(image, &codec, levels.clone(), weight, target);
+            fill_gutters(image, &codec, levels, shown, target);
+        }
+    }
+}
+
+/// Writes the levels, each the mean of the one before. `weight`: of a texel of the finest, of `WEIGHTED`.
+fn write_means<const COUNT: usize>(
+    image: &Image,
+    codec: &Codec,
+    levels: Range<u32>,
+    weight: impl Fn(u32, u32) -> f32,
+    target: &mut [u8],
+) {
     let mut rest = target;
     let mut rows: Vec<_> = (0..levels.end)
         .map(|level| {
@@ -42,7 +80,7 @@ pub fn write(image: &Image, color_space: ColorSpace, levels: Range<u32>, target:
         })
         .collect();
     // The even row of each level that waits for the odd one.
-    let mut waiting: Vec<Vec<[f32; 4]>> = vec![Vec::new(); levels.end as usize];
+    let mut waiting: Vec<Vec<Numbers<COUNT>>> = vec![Vec::new(); levels.end as usize];
     for (y, texels) in image.rgba8.chunks_exact(4 * image.width as usize).enumerate() {
         if let Some(Some(written)) = rows.first_mut().map(Iterator::next) {
             written.copy_from_slice(texels);
@@ -50,7 +88,8 @@ pub fn write(image: &Image, color_space: ColorSpace, levels: Range<u32>, target:
         if levels.end == 1 {
             continue;
         }
-        let (mut y, mut finer) = (y, texels.chunks_exact(4).map(|texel| codec.decode(texel)).collect());
+        let numbers = |(x, texel)| weighted::<COUNT>(codec.decode(texel), weight(x, y as u32));
+        let (mut y, mut finer) = (y, (0..).zip(texels.chunks_exact(4)).map(numbers).collect());
         for level in 1..levels.end {
             let (of_finer, at) = (size_of_level(image, level - 1), level as usize);
             let is_alone = of_finer[1] == 1;
@@ -65,18 +104,68 @@ pub fn write(image: &Image, color_space: ColorSpace, levels: Range<u32>, target:
                 written
                     .chunks_exact_mut(4)
                     .zip(&coarser)
-                    .for_each(|(to, from)| to.copy_from_slice(&codec.encode(*from)));
+                    .for_each(|(to, from)| to.copy_from_slice(&codec.encode(mean(*from))));
             }
             (y, finer) = (y / 2, coarser);
         }
     }
 }
 
+fn weighted<const COUNT: usize>(channels: [f32; 4], weight: f32) -> Numbers<COUNT> {
+    std::array::from_fn(|index| if index < PLAIN { channels[index] * weight } else { weight })
+}
+
+fn mean<const COUNT: usize>(numbers: Numbers<COUNT>) -> [f32; 4] {
+    let weight = if COUNT == WEIGHTED { numbers[COUNT - 1] } else { 1.0 };
+    std::array::from_fn(|channel| numbers[channel] / weight)
+}
+
+/// Gives the texels of `target`'s levels that have nothing shown the mean of their neighbours that have, across the picture's edges too,
+/// or what the level above has in their place. Of the levels that `write` has written, not the finest of all.
+fn fill_gutters(image: &Image, codec: &Codec, levels: Range<u32>, shown: &ShownTexels, target: &mut [u8]) {
+    let mut shown_at: Vec<ShownTexels> = Vec::new();
+    for _ in 1..levels.end {
+        let coarser = shown_at.last().unwrap_or(shown).coarser();
+        shown_at.push(coarser);
+    }
+    let start_of = |level: u32| bytes_of(image, levels.start..level);
+    for level in (levels.start.max(1)..levels.end).rev() {
+        let shown = &shown_at[level as usize - 1];
+        let (finer, coarser) = target[start_of(level)..].split_at_mut(bytes_of(image, level..level + 1));
+        let [width, height] = size_of_level(image, level);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            if shown.contains(x as u32, y as u32) {
+                continue;
+            }
+            let to = 4 * (y * width + x);
+            if !shown.has_near(x as u32, y as u32) {
+                if level + 1 < levels.end {
+                    let [coarser_width, coarser_height] = size_of_level(image, level + 1);
+                    let at = (y / 2).min(coarser_height - 1) * coarser_width + (x / 2).min(coarser_width - 1);
+                    finer[to..to + 4].copy_from_slice(&coarser[4 * at..][..4]);
+                }
+                continue;
+            }
+            let mut sum: Numbers<WEIGHTED> = [0.0; WEIGHTED];
+            for (right, down) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
+                let column = Wrap::Repeat.texel(x as i64 + right, width as u32);
+                let row = Wrap::Repeat.texel(y as i64 + down, height as u32);
+                if shown.contains(column, row) {
+                    let start = 4 * (row as usize * width + column as usize);
+                    let neighbour: Numbers<WEIGHTED> = weighted(codec.decode(&finer[start..start + 4]), 1.0);
+                    sum.iter_mut().zip(neighbour).for_each(|(sum, value)| *sum += value);
+                }
+            }
+            finer[to..to + 4].copy_from_slice(&codec.encode(mean(sum)));
+        }
+    }
+}
+
 /// The row of `width` texels that two rows of the finer level become.
-fn halved(rows: [&[[f32; 4]]; 2], width: usize) -> Vec<[f32; 4]> {
+fn halved<const COUNT: usize>(rows: [&[Numbers<COUNT>]; 2], width: usize) -> Vec<Numbers<COUNT>> {
     let last = rows[0].len() - 1;
     let texel = |x: usize| {
-        let mut sum = [0.0f32; 4];
+        let mut sum = [0.0; COUNT];
         for row in rows {
             for column in [2 * x, (2 * x + 1).min(last)] {
                 for (sum, channel) in sum.iter_mut().zip(row[column]) {
@@ -138,7 +227,7 @@ mod tests {
     fn levels(image: &Image, color_space: ColorSpace) -> Vec<u8> {
         let all = 0..level_count(image.width, image.height);
         let mut bytes = vec![0; bytes_of(image, all.clone())];
-        write(image, color_space, all, &mut bytes);
+        write(image, color_space, all, None, &mut bytes);
         bytes
     }
 
@@ -151,7 +240,7 @@ mod tests {
             let all = levels(&image, ColorSpace::Srgb);
             for some in (0..count).flat_map(|first| [first..first + 1, first..count]) {
                 let mut found = vec![0; bytes_of(&image, some.clone())];
-                write(&image, ColorSpace::Srgb, some.clone(), &mut found);
+                write(&image, ColorSpace::Srgb, some.clone(), None, &mut found);
                 let start = bytes_of(&image, 0..some.start);
                 assert!(found == all[start..start + found.len()], "{width}x{height}: {some:?}");
             }
@@ -184,6 +273,60 @@ mod tests {
                 finer = coarser;
             }
             assert_eq!(all, expected, "{width}x{height}");
+        }
+    }
+
+    /// Sides that are powers of two: a texel of a level stands for a square of finest ones.
+    #[test]
+    fn coarser_levels_are_means_of_what_is_shown() {
+        let (width, height) = (32u32, 16u32);
+        // Shown: one number in red, all the same colour in green and blue; hidden: another, in all.
+        let is_shown = |x: u32, y: u32| (3..=9).contains(&x) && y > 4 || (x, y) == (25, 2);
+        let shown = ShownTexels::with([width, height], is_shown);
+        let texel = |x: u32, y: u32| match is_shown(x, y) {
+            true => [(x * 17 + y * 5) as u8, 80, 200, 255],
+            false => [250, 250, 0, 0],
+        };
+        let rgba8: Vec<u8> = (0..width * height).flat_map(|at| texel(at % width, at / width)).collect();
+        let image = Image { name: String::new(), width, height, rgba8: rgba8.clone() };
+        let all = 0..level_count(width, height);
+        let mut found = vec![0; bytes_of(&image, all.clone())];
+        write(&image, ColorSpace::Linear, all.clone(), Some(&shown), &mut found);
+        assert_eq!(found[..rgba8.len()], rgba8);
+        for level in 1..all.end {
+            let [level_width, level_height] = size_of_level(&image, level).map(|side| side as u32);
+            for (x, y) in (0..level_height).flat_map(|y| (0..level_width).map(move |x| (x, y))) {
+                let start = bytes_of(&image, 0..level) + 4 * (y * level_width + x) as usize;
+                let of = |at: u32, side: u32, finest: u32| at * finest / side..(at + 1) * finest / side;
+                let squares = of(y, level_height, height).flat_map(|y| of(x, level_width, width).map(move |x| (x, y)));
+                let reds: Vec<f64> =
+                    squares.filter(|(x, y)| is_shown(*x, *y)).map(|(x, y)| f64::from(texel(x, y)[0])).collect();
+                let [red, others @ ..] = &found[start..start + 4] else { unreachable!() };
+                // What has nothing of its own takes after others that are shown, too.
+                assert_eq!(others, [80, 200, 255], "level {level}, {x} {y}");
+                if !reds.is_empty() {
+                    let mean = reds.iter().sum::<f64>() / reds.len() as f64;
+                    assert!((f64::from(*red) - mean).abs() <= 0.51, "level {level}, {x} {y}: {red} for {mean}");
+                }
+            }
+        }
+        // Beside what is shown lies the mean of the neighbours that are.
+        let start = bytes_of(&image, 0..1);
+        let red = |x: usize, y: usize| f64::from(found[start + 4 * (16 * y + x)]);
+        let mean = (red(4, 3) + red(4, 4) + red(4, 5)) / 3.0;
+        assert!((red(5, 4) - mean).abs() <= 0.51, "{} for {mean}", red(5, 4));
+    }
+
+    #[test]
+    fn what_is_shown_whole_has_the_levels_of_its_picture() {
+        let (width, height) = (37, 22);
+        let rgba8 = (0..4 * width * height).map(|at| (at * 91 % 256) as u8).collect();
+        let image = Image { name: String::new(), width, height, rgba8 };
+        let all = 0..level_count(width, height);
+        for space in [ColorSpace::Srgb, ColorSpace::Linear] {
+            let mut found = vec![0; bytes_of(&image, all.clone())];
+            write(&image, space, all.clone(), Some(&ShownTexels::with([width, height], |_, _| true)), &mut found);
+            assert!(found == levels(&image, space), "{space:?}");
         }
     }
 

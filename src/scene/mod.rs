@@ -22,6 +22,7 @@ pub mod palette;
 pub mod places;
 pub mod procedural;
 pub mod shell;
+mod shown_texels;
 pub mod texture;
 
 use crate::error::{Error, Result};
@@ -35,7 +36,8 @@ pub use light::{Light, LightKind, LightSource};
 pub use material::{AlphaMode, Material, TextureSlot};
 pub use medium::Medium;
 pub use mesh::{Bounds, Draw, Facing, Mesh, Node};
-pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Wrap};
+pub use shown_texels::ShownTexels;
+pub use texture::{ColorSpace, Image, Placement, Sampler, Texture, Texturing, Wrap};
 
 /// Everything that a technique may draw.
 #[derive(Clone, Debug, Default)]
@@ -59,9 +61,8 @@ pub struct Scene {
     /// Decoded pictures; textures point here. Shared by the moments of a model: what is the same picture at two of them
     /// need not be looked at twice.
     pub images: Vec<Arc<Image>>,
-    /// Greatest side that a texture has in device memory: larger ones begin at a coarser level. 0: no limit. What the
-    /// host looks up (`shading::material`) stays as fine as the file.
-    pub texture_limit_px: u32,
+    /// How a device holds and reads textures. What the host looks up (`shading::material`) stays as the file has it.
+    pub texturing: Texturing,
     /// Punctual lights. Emissive materials are not listed here.
     pub lights: Vec<Light>,
     /// What `--medium auto` is. None: nothing, as in every file: glTF has no word for it.

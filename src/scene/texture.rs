@@ -28,6 +28,22 @@ pub enum Wrap {
     ClampToEdge,
 }
 
+impl Wrap {
+    /// The texel, of `count` along an axis, that a coordinate beyond the picture falls on.
+    pub fn texel(self, at: i64, count: u32) -> u32 {
+        let count = i64::from(count);
+        let inside = match self {
+            Self::Repeat => at.rem_euclid(count),
+            Self::ClampToEdge => at.clamp(0, count - 1),
+            Self::MirroredRepeat => {
+                let inside = at.rem_euclid(2 * count);
+                inside.min(2 * count - 1 - inside)
+            }
+        };
+        inside as u32
+    }
+}
+
 /// glTF's sampler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sampler {
@@ -71,4 +87,38 @@ pub struct Texture {
     pub image: usize,
     pub sampler: Sampler,
     pub color_space: ColorSpace,
+}
+
+/// How a device holds and reads textures, as far as a file says nothing of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texturing {
+    /// Greatest side of a texture in texels: larger ones begin at a coarser level. 0: no limit.
+    pub limit_px: u32,
+    /// Whether coarser levels leave out what no triangle shows.
+    pub fills_gutters: bool,
+    /// How many times as long as wide the part of a texture may be that one reading averages, 1 to 16.
+    pub anisotropy: u32,
+}
+
+impl Default for Texturing {
+    fn default() -> Self {
+        Self { limit_px: 0, fills_gutters: true, anisotropy: 1 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrap_modes_reach_beyond_both_edges() {
+        for (wrap, expected) in [
+            (Wrap::Repeat, [2, 3, 0, 3, 0, 1]),
+            (Wrap::ClampToEdge, [0, 0, 0, 3, 3, 3]),
+            (Wrap::MirroredRepeat, [1, 0, 0, 3, 3, 2]),
+        ] {
+            let got = [-2, -1, 0, 3, 4, 5].map(|at| wrap.texel(at, 4));
+            assert_eq!(got, expected, "{wrap:?}");
+        }
+    }
 }

@@ -19,9 +19,9 @@ pub use optics::{
 };
 pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAPS};
 pub use tables::{
-    BRDF, Brdf, COMMON, CULL, CULL_BY, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow, EMISSIVE,
-    GEOMETRY, GeometryChoice, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD, POSITION,
-    POSITION_THRESHOLD, PositionStorage, Rig, SHADING, SampleFormat, TEXELS, VPL_CLAMP, WORKGROUP,
+    ANISOTROPY, BRDF, Brdf, COMMON, CULL, CULL_BY, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow,
+    EMISSIVE, GEOMETRY, GeometryChoice, Gutters, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD,
+    POSITION, POSITION_THRESHOLD, PositionStorage, Rig, SHADING, SampleFormat, TEXELS, VPL_CLAMP, WORKGROUP,
 };
 pub use tree::{NodeOrder, StackPlace, TREE};
 pub use volume::{VOLUME, VOLUME_PLACE, raw_volume_size, volume_name};

@@ -1,7 +1,7 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
 use super::tree::TREE_GROWTH;
-use super::{Changes, Kind, Setting, Unread};
+use super::{Changes, Kind, Setting, Unread, Values};
 use crate::choice::choices;
 use crate::memory::{Strategy, alias};
 use crate::picture::image_file::ExrPrecision;
@@ -167,7 +167,43 @@ pub const COMMON: &[Setting] = &[
                the greatest power of two with which it does not",
         ..Setting::changing(Changes::Picture)
     },
+    Setting {
+        key: "texture-gutters",
+        kind: Kind::Choice(Gutters::WORDS),
+        default: "fill",
+        help: "What a texture's coarser levels take in that no triangle shows, such as the ground between the charts of an \
+               atlas: nothing, they are means of what is shown and take after it beside it (fill); or all of it, as \
+               most programs have them, so that it shows at the charts' edges (keep)",
+        unread: at_finest_level,
+        ..Setting::changing(Changes::Picture)
+    },
+    ANISOTROPY,
 ];
+
+pub const ANISOTROPY: Setting = Setting {
+    key: "anisotropy",
+    kind: Kind::Integer { min: 1, max: 16 },
+    default: "1",
+    help: "How many times as long as wide the part of a texture may be that a pixel averages, where a surface is seen at \
+           a slant; 1: as long as wide, and blurred across by as much as it is long",
+    unread: at_finest_level,
+    ..Setting::changing(Changes::Picture)
+};
+
+/// What only coarser levels of textures have is unread where rays read none.
+fn at_finest_level(values: &Values) -> Option<Unread> {
+    let is_finest = values.get("texture-level") == Some("0");
+    is_finest.then(|| Unread::at(values, "texture-level", "--texture-level cone", "rays read the finest level"))
+}
+
+choices! {
+    /// What coarser levels of a texture take in that no triangle shows (`--texture-gutters`).
+    pub enum Gutters {
+        /// Nothing.
+        "fill" => Fill,
+        "keep" => Keep,
+    }
+}
 
 choices! {
     /// When the default rig lights a scene (`--rig`).

@@ -3,7 +3,7 @@
 //! of glsl/shading/texel.glsl, and for normals of glsl/shading/material.glsl.
 
 use crate::picture::tonemap::linear_from_srgb;
-use crate::scene::{AlphaMode, ColorSpace, Draw, Image, Material, Mesh, Scene, Texture, TextureSlot, Wrap};
+use crate::scene::{AlphaMode, ColorSpace, Draw, Image, Material, Mesh, Scene, Texture, TextureSlot};
 use glam::{Mat3, Vec2, Vec3, Vec4};
 
 /// What a mesh says of a point on one of its triangles.
@@ -119,25 +119,11 @@ fn sample(scene: &Scene, texture: &Texture, uv: Vec2) -> Vec4 {
         (Vec2::new(0.0, 1.0), (1.0 - fraction.x) * fraction.y),
         (Vec2::new(1.0, 1.0), fraction.x * fraction.y),
     ] {
-        let x = wrapped(texture.sampler.wrap_u, low.x + step.x, image.width);
-        let y = wrapped(texture.sampler.wrap_v, low.y + step.y, image.height);
+        let x = texture.sampler.wrap_u.texel((low.x + step.x) as i64, image.width);
+        let y = texture.sampler.wrap_v.texel((low.y + step.y) as i64, image.height);
         sum += texel(image, x, y, texture.color_space) * weight;
     }
     sum
-}
-
-/// The texel that a coordinate beyond the picture falls on.
-fn wrapped(wrap: Wrap, at: f32, size: u32) -> u32 {
-    let last = size as f32 - 1.0;
-    let index = match wrap {
-        Wrap::Repeat => at.rem_euclid(size as f32),
-        Wrap::ClampToEdge => at.clamp(0.0, last),
-        Wrap::MirroredRepeat => {
-            let period = at.rem_euclid(2.0 * size as f32);
-            if period >= size as f32 { 2.0 * size as f32 - 1.0 - period } else { period }
-        }
-    };
-    index.clamp(0.0, last) as u32
 }
 
 fn texel(image: &Image, x: u32, y: u32, color_space: ColorSpace) -> Vec4 {
@@ -155,20 +141,8 @@ fn texel(image: &Image, x: u32, y: u32, color_space: ColorSpace) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Placement, Sampler};
+    use crate::scene::{Placement, Sampler, Wrap};
     use glam::{Affine2, Mat4};
-
-    #[test]
-    fn wrap_modes_reach_beyond_both_edges() {
-        for (wrap, expected) in [
-            (Wrap::Repeat, [2, 3, 0, 3, 0, 1]),
-            (Wrap::ClampToEdge, [0, 0, 0, 3, 3, 3]),
-            (Wrap::MirroredRepeat, [1, 0, 0, 3, 3, 2]),
-        ] {
-            let got = [-2.0, -1.0, 0.0, 3.0, 4.0, 5.0].map(|at| wrapped(wrap, at, 4));
-            assert_eq!(got, expected, "{wrap:?}");
-        }
-    }
 
     #[test]
     fn a_hole_is_where_alpha_falls_below_the_cutoff() {

@@ -51,7 +51,7 @@ pub fn require_fitting(
         larger.aovs = job.aovs.clone();
         larger.set("memory-budget", &text)?;
         // Textures that a larger budget leaves finer take more.
-        scene = larger.with_texture_limit(scene, driver.caps);
+        scene = larger.with_texturing(scene, driver.caps);
         let plans = Plans::new(&larger, &scene, bvh, driver)?;
         if rehearse(&plans, &larger, driver, enough_bytes, Copies::All).is_ok() {
             return Err(advised(refused, &text));

@@ -33,7 +33,7 @@ pub struct Study {
 /// Errors: impossible settings or a broken scene (exit code 2); a device of these caps lacks what the settings need (3).
 pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     job.require_read()?;
-    let scene = job.with_texture_limit(job.load_scene()?, caps);
+    let scene = job.with_texturing(job.load_scene()?, caps);
     let name = scene.name.clone();
     let (bvh, rules) = (LazyBvh::default(), caps.rules());
     let driver = Driver { caps, requirements: Requirements::Rules(&rules) };
@@ -53,7 +53,7 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
 ///
 /// Errors: as `planned`.
 pub fn resolved(job: &Job, caps: &Caps) -> Result<BTreeMap<&'static str, String>> {
-    let scene = job.with_texture_limit(job.load_scene()?, caps);
+    let scene = job.with_texturing(job.load_scene()?, caps);
     let (bvh, rules) = (LazyBvh::default(), caps.rules());
     with_inputs(job, &scene, &bvh, Driver { caps, requirements: Requirements::Rules(&rules) }, |inputs| {
         Ok(Planned::new(job.technique, inputs, &job.aovs)?.prepared.resolved())

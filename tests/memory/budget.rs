@@ -164,14 +164,14 @@ fn a_texture_limit_frees_what_the_error_promises() {
     let unlimited = textures(&counted_device(Strategy::Linear), &scene);
     for &strategy in Strategy::ALL {
         for budget in [4, 12, 30, 60] {
-            scene.texture_limit_px = 0;
+            scene.texturing.limit_px = 0;
             let request = within(strategy, budget * MIB);
             let error = Session::open(&request, scene.clone()).map(drop).expect_err("the textures are larger");
             let (limit_px, frees) = promise(&error).unwrap_or_else(|| panic!("{strategy:?}, {budget} MiB: {error}"));
-            scene.texture_limit_px = limit_px;
+            scene.texturing.limit_px = limit_px;
             let limited = textures(&request, &scene);
             assert_eq!(quincunx::units::Bytes(unlimited - limited).to_string(), frees, "{strategy:?}, {budget} MiB");
-            scene.texture_limit_px = 2 * limit_px;
+            scene.texturing.limit_px = 2 * limit_px;
             let still = Session::open(&request, scene.clone()).map(drop);
             assert!(still.is_err(), "{strategy:?}, {budget} MiB: a limit of {} is enough", 2 * limit_px);
         }
@@ -182,7 +182,7 @@ fn a_texture_limit_frees_what_the_error_promises() {
 fn a_texture_limit_is_planned_and_changes_only_what_is_larger() {
     let hash_within = |limit_px: u32| {
         let mut scene = scene::load(TEXTURED, 1).unwrap();
-        scene.texture_limit_px = limit_px;
+        scene.texturing.limit_px = limit_px;
         let watched = Watched::with_scene(scene);
         let snapshot = watched.session.gpu.memory.snapshot();
         assert_eq!(watched.session.stats.plan().bytes(), snapshot.asked_bytes(), "limit {limit_px}");

@@ -3,3 +3,4 @@
 mod derivatives;
 mod light_units;
 mod materials;
+mod texture_levels;

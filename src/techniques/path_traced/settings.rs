@@ -196,8 +196,8 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Choice(TexelLevels::WORDS),
         default: "0",
         help: "Mip level of textures that rays read: 0, the finest, which the paths of a pixel average; or the one \
-               whose texels are as wide as the ray's cone, which needs fewer paths, blurs surfaces seen at a slant, \
-               and takes a third more memory",
+               whose texels are as wide as the ray's cone, which needs fewer paths, blurs surfaces seen at a slant \
+               (less with --anisotropy), and takes a third more memory",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
