@@ -1,11 +1,11 @@
 // Readings of a texture side by side along the longer axis of what a pixel or a cone shows of it, each at the level of its
 // shorter one: the anisotropic filter that Vulkan describes, in shaders. Samplers' own takes the steps of whole quads on some
-// drivers and none that a shader states on others (lavapipe of Mesa 22 and 25).
+// drivers and none that a shader states on others (lavapipe of Mesa 22 and 25). Each reading costs what one costs.
 #ifndef SHADING_SLANTED_GLSL
 #define SHADING_SLANTED_GLSL
 
 struct Readings {
-    // From the first beyond one end to the first beyond the other, on the picture, whose sides are 1.
+    // The longer axis from end to end, on the picture, whose sides are 1.
     vec2 longest;
     float count;
     // What a reading is as wide as, texels of the finest level.

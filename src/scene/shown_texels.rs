@@ -72,7 +72,8 @@ impl ShownTexels {
         shown
     }
 
-    /// Index of a texel's word, and its bit there.
+    /// Index of a texel's word, and its bit there. Texels lie on the picture: so does what `Wrap::texel` gives, and what is
+    /// counted up to its size.
     fn place(&self, x: u32, y: u32) -> (usize, u64) {
         (self.row_words() * y as usize + (x / u64::BITS) as usize, 1 << (x % u64::BITS))
     }
@@ -97,7 +98,8 @@ impl ShownTexels {
             let [mut first, mut last] = [f64::INFINITY, f64::NEG_INFINITY];
             for (from, to) in [(corners[0], corners[1]), (corners[1], corners[2]), (corners[2], corners[0])] {
                 let (from, to) = if from.y <= to.y { (from, to) } else { (to, from) };
-                if to.y < slab[0] || from.y > slab[1] {
+                // `squares` has let an end pass that lies a little outside: its nearest place counts.
+                if to.y < slab[0] - ROUNDING || from.y > slab[1] + ROUNDING {
                     continue;
                 }
                 for x in slab.map(|y| x_at(from, to, y)) {
@@ -157,7 +159,7 @@ impl ShownTexels {
     pub fn coarser(&self) -> Self {
         let [width, height] = self.size;
         let mut coarser = Self::none([(width / 2).max(1), (height / 2).max(1)]);
-        let row = |y: u32| self.words.chunks_exact(self.row_words()).nth(y as usize).expect("a row of the picture");
+        let row = |y: u32| &self.words[self.place(0, y).0..][..self.row_words()];
         let row_words = coarser.row_words();
         for (y, target) in (0..coarser.size[1]).zip(coarser.words.chunks_exact_mut(row_words)) {
             let rows = row(2 * y).iter().zip(row((2 * y + 1).min(height - 1))).map(|(upper, lower)| upper | lower);
@@ -241,6 +243,9 @@ mod tests {
         // A fifth is no number of a float: ends lie a little beside the squares' edges.
         let shown = read_by([8, 5], Wrap::Repeat, &[[1.0, 1.0], [5.0, 1.0], [1.0, 3.0]]).unwrap();
         assert_eq!(rows(&shown), ["........", ".####...", ".##.....", "........", "........"]);
+        // Ends just before a square's edge, which rounding takes for the next one's.
+        let shown = read_by([4, 4], Wrap::Repeat, &[[1.995, 2.99], [1.998, 2.99], [1.995, 2.995]]).unwrap();
+        assert_eq!(rows(&shown), ["....", "....", "....", "..#."]);
         // A sliver, along rows and across.
         let shown = read_by([4, 3], Wrap::Repeat, &[[0.2, 0.5], [3.6, 0.5], [3.6, 0.6]]).unwrap();
         assert_eq!(rows(&shown), ["####", "....", "...."]);

@@ -2,13 +2,12 @@
 //!
 //! A checkerboard whose texels are two pixels wide is seen at its finest level everywhere; every other level is grey.
 
-use crate::support::choices::techniques;
+use crate::support::choices::{known_to, techniques};
 use crate::support::square::{matt, picture, square};
 use crate::support::watched::{Changes, Watched};
 use crate::support::{self, Feature};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use quincunx::scene::{AlphaMode, ColorSpace, Placement, Scene};
-use quincunx::techniques::{self, settings_of};
 
 /// Pixels of a side.
 const SIDE: usize = 32;
@@ -63,11 +62,7 @@ fn the_finest_level_is_seen_on_every_edge() {
             let watched = Watched::with_scene(board(placement, has_colors, alpha));
             for technique in &techniques {
                 // Ambient light is the same of all of them without it, too.
-                let reads = |(key, _): &(&str, &str)| {
-                    settings_of(techniques::find(technique).unwrap()).iter().any(|setting| setting.key == *key)
-                };
-                let changes: Vec<_> = AMBIENT.iter().copied().filter(reads).collect();
-                let found = watched.picture(technique, &changes);
+                let found = watched.picture(technique, &known_to(technique, AMBIENT));
                 let wrong: Vec<_> = (0..SIDE * SIDE)
                     .filter(|at| {
                         let expected = if is_black(at % SIDE / 2, at / SIDE / 2) == is_swapped { 1.0 } else { 0.0 };

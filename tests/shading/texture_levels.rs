@@ -1,23 +1,16 @@
 //! What coarser levels of textures show: nothing of gutters, and along a slant as much as across it.
 
-use crate::support::choices::techniques;
+use crate::support::choices::{known_to, techniques};
 use crate::support::square::{matt, picture, square};
 use crate::support::watched::{Changes, Watched};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use quincunx::scene::{ColorSpace, Placement, Sampler, Scene, Texturing};
-use quincunx::techniques::{self, settings_of};
 
 /// Pixels of a side.
 const SIDE: usize = 32;
 
 const AMBIENT: Changes<'static> =
     &[("size", "32x32"), ("rig", "none"), ("ambient", "1"), ("brdf", "lambert"), ("texture-level", "cone")];
-
-/// What `technique` reads of them.
-fn changes_of(technique: &str) -> Vec<(&'static str, &'static str)> {
-    let settings = settings_of(techniques::find(technique).unwrap());
-    AMBIENT.iter().copied().filter(|(key, _)| settings.iter().any(|setting| setting.key == *key)).collect()
-}
 
 /// The square that fills the picture, unlit, with a part of a texture on it: `size` of it from `corner`.
 fn board(side: u32, texels: &[[u8; 4]], corner: Vec2, size: Vec2) -> Scene {
@@ -42,7 +35,7 @@ fn gutters_do_not_show() {
         scene.texturing = Texturing { fills_gutters, ..Texturing::default() };
         let watched = Watched::with_scene(scene.clone());
         for technique in techniques() {
-            let found = watched.picture(technique, &changes_of(technique));
+            let found = watched.picture(technique, &known_to(technique, AMBIENT));
             let away = |at: usize| (Vec3::from_array(found.pixels[at]) - Vec3::Y).abs().max_element();
             let worst = (0..SIDE * SIDE).map(away).fold(0.0, f32::max);
             if fills_gutters {
@@ -67,7 +60,7 @@ fn stripes_are_kept_where_texels_are_narrow() {
         scene.texturing = Texturing { anisotropy, ..Texturing::default() };
         let watched = Watched::with_scene(scene.clone());
         for technique in techniques() {
-            let found = watched.picture(technique, &changes_of(technique));
+            let found = watched.picture(technique, &known_to(technique, AMBIENT));
             // The middle of each stripe.
             let of = |parity: usize| {
                 let columns = (0..4).filter(|stripe| stripe % 2 == parity).map(|stripe| 8 * stripe + 4);

@@ -16,6 +16,12 @@ pub fn techniques() -> impl Iterator<Item = &'static str> {
     techniques::ALL.iter().map(|technique| technique.name())
 }
 
+/// Those of `changes` that `technique` has a setting for.
+pub fn known_to<'a>(technique: &str, changes: Changes<'a>) -> Vec<(&'a str, &'a str)> {
+    let settings = techniques::settings_of(techniques::find(technique).unwrap());
+    changes.iter().copied().filter(|(key, _)| settings.iter().any(|setting| setting.key == *key)).collect()
+}
+
 /// What `--key` of `technique` can be: a choice's words, or a few numbers of one digit. Without `auto`, which is one of them.
 #[track_caller]
 pub fn words(technique: &str, key: &str) -> Vec<&'static str> {
