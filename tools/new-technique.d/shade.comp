@@ -14,9 +14,9 @@ void main() {
         return;
     }
     vec4 value = vec4(frame.background.rgb, 0.0);
-    if (point_has_surface[0]) {
+    if (point_is_shaded[0]) {
         precise vec3 radiance = emitted_at(pixel) + ambient_of(0u);
-        radiance += LIGHT_SCALE * point_direct[0];
+        radiance += LIGHT_SCALE * point_radiance[0];
         value = vec4(radiance, 1.0);
     }
     imageStore(color, ivec2(pixel), value);
