@@ -100,6 +100,13 @@ pub struct Texturing {
     pub anisotropy: u32,
 }
 
+impl Texturing {
+    /// Whether a texture is read at several places for a pixel that sees it at a slant.
+    pub fn reads_along(&self) -> bool {
+        self.anisotropy > 1
+    }
+}
+
 impl Default for Texturing {
     fn default() -> Self {
         Self { limit_px: 0, fills_gutters: true, anisotropy: 1 }

@@ -38,7 +38,7 @@ impl Assembly {
     /// Adds a material whose colour (and relief, and roughness, as `maps` asks) comes from a pattern.
     ///
     /// `material` gives the rest. Where metalness and roughness come from the pattern both factors become 1.
-    pub fn textured(&mut self, material: Material, maps: Maps, pattern: impl Fn([f32; 2]) -> Texel) -> usize {
+    pub fn textured(&mut self, material: Material, maps: Maps, pattern: impl Fn([f32; 2]) -> Texel + Sync) -> usize {
         let sheet = Sheet::paint(maps.size_px, |u, v| pattern([u, v]));
         let name = material.name.clone();
         let mut material = material;
@@ -59,7 +59,7 @@ impl Assembly {
 
     /// Adds a material that lights itself, as a window does: a pattern is what it shines, by the factor of `material`; it
     /// reflects next to nothing.
-    pub fn shining(&mut self, material: Material, size_px: u32, pattern: impl Fn([f32; 2]) -> Texel) -> usize {
+    pub fn shining(&mut self, material: Material, size_px: u32, pattern: impl Fn([f32; 2]) -> Texel + Sync) -> usize {
         let index = self.textured(material, Maps { size_px, relief: None, metallic_roughness: false }, pattern);
         let material = &mut self.scene.materials[index];
         material.emissive_texture = material.base_color_texture.take();
