@@ -109,6 +109,9 @@ vec2 uv_change(uint which, vec2 change, vec2 change_1) {
 #endif
 }
 
+// 0: no material of the scene is read along a slant, and compilers need not see how.
+layout(constant_id = 79) const uint READS_ALONG = 1;
+
 // `most`: readings along the longer axis of what the pixel shows.
 vec4 texel_along(sampler2D picture, vec2 uv, vec2 right, vec2 down, uint most) {
     Readings readings = readings_of(right, down, vec2(textureSize(picture, 0)), most);
@@ -119,7 +122,7 @@ vec4 texel_along(sampler2D picture, vec2 uv, vec2 right, vec2 down, uint most) {
     return sum / readings.count;
 }
 
-#define TEXEL(name, which) (material.flags >> MATERIAL_ANISOTROPY_SHIFT == 0u \
+#define TEXEL(name, which) (READS_ALONG == 0u || material.flags >> MATERIAL_ANISOTROPY_SHIFT == 0u \
     ? ISOTROPIC(name, which) \
     : texel_along(name, uv_of(which), UV_CHANGE(which, right), UV_CHANGE(which, down), 1u + (material.flags >> MATERIAL_ANISOTROPY_SHIFT)))
 

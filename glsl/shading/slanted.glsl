@@ -12,6 +12,9 @@ struct Readings {
     float width_px;
 };
 
+// In the middle.
+const Readings ONE_READING = Readings(vec2(0.0), 1.0, 0.0);
+
 // `one`, `other`: steps on the picture, at a right angle on the screen or the surface. `most`: readings.
 Readings readings_of(vec2 one, vec2 other, vec2 size_px, uint most) {
     vec2 along = one * size_px;

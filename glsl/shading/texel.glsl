@@ -93,14 +93,17 @@ float level_at(TexelsBlock texels, float width_px) {
     return (texels.flags & TEXELS_BETWEEN_LEVELS) != 0u ? level : max(ceil(level - 0.5), 0.0);
 }
 
+// `filtered` stands in as few places as can be: drivers copy it to each, for each texture, before they know which are not run.
 vec4 filtered_at(TexelsBlock texels, vec2 place, float level) {
-    if (TEXTURE_CONE == 0u || level <= 0.0) {
-        return filtered(texels, place, (texels.flags & TEXELS_NEAREST) != 0u);
+    bool is_coarser = TEXTURE_CONE != 0u && level > 0.0;
+    bool is_nearest = (texels.flags & (is_coarser ? TEXELS_NEAREST_SMALL : TEXELS_NEAREST)) != 0u;
+    TexelsBlock finer = texels;
+    float between = 0.0;
+    if (is_coarser) {
+        finer = level_of(texels, int(level));
+        between = fract(level);
     }
-    bool is_nearest = (texels.flags & TEXELS_NEAREST_SMALL) != 0u;
-    TexelsBlock finer = level_of(texels, int(level));
     vec4 value = filtered(finer, place, is_nearest);
-    float between = fract(level);
     return between > 0.0 ? mix(value, filtered(level_of(finer, 1), place, is_nearest), between) : value;
 }
 
@@ -108,18 +111,6 @@ vec4 filtered_at(TexelsBlock texels, vec2 place, float level) {
 vec2 step_of(TexelsBlock texels, vec4 in_both_sets) {
     vec2 in_set = texels.u.w > 0.5 ? in_both_sets.zw : in_both_sets.xy;
     return vec2(dot(texels.u.xy, in_set), dot(texels.v.xy, in_set));
-}
-
-vec4 filtered_along(TexelsBlock texels, vec2 place, Footprint footprint) {
-    vec2 size_px = vec2(texels.width_px, texels.height_px);
-    vec2 along = step_of(texels, footprint.along);
-    Readings readings = readings_of(along, step_of(texels, footprint.across), size_px, TEXTURE_CONE);
-    float level = level_at(texels, readings.width_px);
-    vec4 sum = vec4(0.0);
-    for (float index = 0.0; index < readings.count; index++) {
-        sum += filtered_at(texels, place + place_of(readings, index), level);
-    }
-    return sum / readings.count;
 }
 
 // `uvs`: the two UV sets of the point. Bilinear, or nearest where the sampler says so.
@@ -131,15 +122,22 @@ vec4 texel_of(TexelsBlock texels, vec4 uvs, Footprint footprint) {
     vec2 uv = is_second ? uvs.zw : uvs.xy;
     vec2 place = vec2(dot(texels.u.xy, uv) + texels.u.z, dot(texels.v.xy, uv) + texels.v.z);
     float level = 0.0;
+    Readings readings = ONE_READING;
     if (TEXTURE_CONE != 0u && (texels.flags & TEXELS_LEVELS) != 0u) {
+        vec2 size_px = vec2(texels.width_px, texels.height_px);
         if (TEXTURE_CONE != 1u) {
-            return filtered_along(texels, place, footprint);
+            readings = readings_of(step_of(texels, footprint.along), step_of(texels, footprint.across), size_px, TEXTURE_CONE);
+        } else {
+            float turned = abs(texels.u.x * texels.v.y - texels.u.y * texels.v.x);
+            readings.width_px = (is_second ? footprint.widths.y : footprint.widths.x) * sqrt(turned * size_px.x * size_px.y);
         }
-        float turned = abs(texels.u.x * texels.v.y - texels.u.y * texels.v.x);
-        float width = is_second ? footprint.widths.y : footprint.widths.x;
-        level = level_at(texels, width * sqrt(turned * float(texels.width_px) * float(texels.height_px)));
+        level = level_at(texels, readings.width_px);
     }
-    return filtered_at(texels, place, level);
+    vec4 sum = vec4(0.0);
+    for (float index = 0.0; index < readings.count; index++) {
+        sum += filtered_at(texels, place + place_of(readings, index), level);
+    }
+    return sum / readings.count;
 }
 
 #endif

@@ -185,7 +185,7 @@ impl Blend {
                     FRAG_VARIANTS,
                     &[mesh::vertex_name(scene), shadows, target.samples.shaded_name()],
                 )),
-                constants,
+                constants: &[constants, &[scene.texture_constant()]].concat(),
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[target.samples.format],
                 samples: target.samples.count,

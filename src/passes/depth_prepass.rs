@@ -107,7 +107,7 @@ impl DepthPrepass {
         let with_holes = (mesh::vertex_shader(scene), mesh::vertex_buffers(scene));
         Ok(Self {
             opaque: pipeline((&VERT, mesh::POSITIONS), None, &[])?,
-            mask: pipeline(with_holes, Some(mask), levels)?,
+            mask: pipeline(with_holes, Some(mask), &[levels, &[scene.texture_constant()]].concat())?,
         })
     }
 

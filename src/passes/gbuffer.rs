@@ -283,7 +283,8 @@ impl GBufferPass {
         }
         formats.extend(position.image_format());
         // Only what writes emission knows of it.
-        let constants = [("SURFACE_EXTRAS", u32::from(scene.has_extras))];
+        let extras = has_emissive.then_some(("SURFACE_EXTRAS", u32::from(scene.has_extras)));
+        let constants: Vec<_> = extras.into_iter().chain([scene.texture_constant()]).collect();
         let pipeline = |alpha: &str| {
             let names = [position.name(), emissive_name(has_emissive), alpha, mesh::vertex_name(scene)];
             GraphicsPipeline::new(
@@ -292,7 +293,7 @@ impl GBufferPass {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &names)),
-                    constants: if has_emissive { &constants } else { &[] },
+                    constants: &constants,
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     samples: 1,

@@ -84,6 +84,7 @@ pub struct SceneGpu {
     pub host_indices: Vec<u32>,
     /// Whether a drawn material has `Material::has_extras`.
     pub has_extras: bool,
+    reads_along: bool,
     /// Layout of set 1: the textures of a material.
     pub material_layout: vk::DescriptorSetLayout,
     /// Set 1 of each material.
@@ -108,6 +109,11 @@ pub struct ClusteredCalls<'a> {
 }
 
 impl SceneGpu {
+    /// READS_ALONG, of shaders that read the textures of a material.
+    pub fn texture_constant(&self) -> (&'static str, u32) {
+        ("READS_ALONG", u32::from(self.reads_along))
+    }
+
     /// `calls`, which are of this scene, with its clusters.
     pub fn clustered<'a>(&'a self, calls: &'a [DrawCall]) -> ClusteredCalls<'a> {
         ClusteredCalls { calls, clusters: &self.clusters, indices: &self.host_indices }
@@ -163,6 +169,7 @@ impl SceneGpu {
             clusters: geometry.clusters,
             host_indices: geometry.indices,
             has_extras: scene.drawn_materials().any(Material::has_extras),
+            reads_along: scene.texturing.reads_along(),
             material_layout: layout,
             material_sets: sets,
             owner: Arc::new(owner),

@@ -59,7 +59,7 @@ impl Material {
                     vertex: mesh::vertex_shader(scene),
                     geometry: None,
                     fragment: Some(variant(FRAG_VARIANTS, &[alpha, mesh::vertex_name(scene), lights, shadows, shaded])),
-                    constants,
+                    constants: &[constants, &[scene.texture_constant()]].concat(),
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[samples.format],
                     samples: samples.count,

@@ -88,14 +88,15 @@ impl ShadowMaps {
         scene: &SceneGpu,
     ) -> Result<Self> {
         let vertex_name = mesh::vertex_name(scene);
-        let pipeline = |alpha, vertex_buffers, fragment| {
+        let of_textures = [scene.texture_constant()];
+        let pipeline = |alpha, vertex_buffers, fragment: Option<_>| {
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {
                     vertex: variant(VERT_VARIANTS, &[alpha, vertex_name]),
                     geometry: None,
                     fragment,
-                    constants: &[],
+                    constants: if fragment.is_some() { &of_textures } else { &[] },
                     vertex_buffers,
                     color_formats: &[],
                     samples: 1,

@@ -97,6 +97,8 @@ pub struct Choices {
     pub texels: u32,
     /// Lights are left out that reach none of them.
     culls_lights: bool,
+    /// Textures are read at several places for a pixel that sees them at a slant.
+    reads_along: bool,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
 }
@@ -146,6 +148,7 @@ impl Choices {
             culls_lights: values.is_on("cull-lights") && inputs.lights.lights.iter().any(|light| light.range.is_some()),
             maps: maps.map_err(|error| error.within(NAME))?,
             direct,
+            reads_along: inputs.scene.texturing.reads_along(),
             visibility,
             raster: RasterChoices {
                 layer_from: LayerFrom::of(values, inputs.caps),
@@ -255,6 +258,7 @@ impl Choices {
             ("HAS_LIST_ENTRIES", u32::from(self.lists.has_entries)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("TEXELS", self.texels),
+            ("READS_ALONG", u32::from(self.reads_along)),
             ("CULLS_LIGHTS", u32::from(self.culls_lights)),
             ("HAS_PADDING", u32::from(self.raster.has_padding)),
             ("SUB_PIXEL_BITS", self.sub_pixel_bits()),

@@ -42,7 +42,8 @@ impl Decals {
         choices: &Choices,
     ) -> Result<Self> {
         let fragment = variant(FRAG_VARIANTS, &[mesh::vertex_name(scene)]);
-        let constants = constants_of(&choices.geometry_constants(), &[Some(fragment)]);
+        let mut constants = constants_of(&choices.geometry_constants(), &[Some(fragment)]);
+        constants.push(scene.texture_constant());
         let pipeline = GraphicsPipeline::new(
             gpu,
             &GraphicsDescription {

@@ -218,7 +218,8 @@ impl Geometry {
         let pipeline = |alpha: &str| {
             let names = [alpha, extras_name(choices.has_extras), motion, packing, mesh::vertex_name(scene)];
             let fragment = variant(FRAG_VARIANTS, &names);
-            let constants = constants_of(&choices.geometry_constants(), &[Some(fragment)]);
+            let mut constants = constants_of(&choices.geometry_constants(), &[Some(fragment)]);
+            constants.push(scene.texture_constant());
             GraphicsPipeline::new(
                 gpu,
                 &GraphicsDescription {

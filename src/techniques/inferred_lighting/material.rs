@@ -161,7 +161,7 @@ impl Material {
                         FRAG_VARIANTS,
                         &[alpha, mesh::vertex_name(scene), guide, light, count, shaded],
                     )),
-                    constants,
+                    constants: &[constants, &[scene.texture_constant()]].concat(),
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[filter.samples.format],
                     samples: filter.samples.count,
