@@ -8,7 +8,7 @@ use serde_json::Value;
 #[test]
 fn errors_of_independent_samples_fall_with_the_root_of_their_number() {
     let program = Program::new();
-    let begin = ["bench", "frame", "zone-plate:growth=96", "--technique", "interleaved_sampling", "--size", "48x48"];
+    let begin = ["bench", "frame", "zone-plate:growth=96", "--technique", "interleaved_sampling", "--size", "36x36"];
     let sweep =
         ["--basis", "4x4", "--sweep", "sampler=random,relaxed", "--sweep", "samples=1,4,16", "--rate", "samples"];
     let rest = ["--reference", "auto", "--reference-spp", "2048", "--repeat", "1", "-o", "out"];

@@ -119,7 +119,7 @@ fn pixels_are_the_means_of_their_samples() {
 #[test]
 fn it_converges_to_paths() {
     let watched = Watched::open("cornell");
-    let shared = [("size", "48x36"), ("background", "0"), ("direct-shadow", "ray"), ("brdf", "lambert")];
+    let shared = [("size", "36x27"), ("background", "0"), ("direct-shadow", "ray"), ("brdf", "lambert")];
     for (effect, lens) in [("aa", &[][..]), ("aa,defocus", &[("aperture", "0.25"), ("focus", "3")])] {
         let shared = both(&shared, lens);
         let paths = [("transport", "direct"), ("light-visibility", "on"), ("emissive", "off"), ("spp", "2048")];

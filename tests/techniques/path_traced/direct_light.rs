@@ -13,7 +13,7 @@ fn straight_light_and_the_rest_are_all_of_it() {
         &[("transport", "one-bounce"), ("vpl-visibility", "off"), ("emissive", "on")][..],
     ] {
         let mean = |own: &[(&str, &str)]| {
-            let shared = [("size", "48x36"), ("spp", "256")];
+            let shared = [("size", "36x27"), ("spp", "256")];
             watched.picture("path_traced", &both(&both(&shared, common), own)).mean()
         };
         let (all, rest) = (mean(&[]), mean(&[("direct-light", "off")]));

@@ -261,7 +261,7 @@ fn interleaved_shading_comes_to_the_light_walk_as_virtual_lights_grow() {
     // The upper back wall, without an edge in sight: a pixel of one technique is a mean, of the other its middle.
     scene.cameras = vec![camera(vec3(2.78, 4.4, 5.0), vec3(2.78, 4.4, 0.0), 0.25)];
     let watched = Watched::with_scene(scene);
-    let common = [("emissive", "off"), ("brdf", "lambert"), ("size", "24x24")];
+    let common = [("emissive", "off"), ("brdf", "lambert"), ("size", "16x16")];
     let reference = |seed: &str| {
         let own = [("spp", "4096"), ("transport", "one-bounce"), ("vpl-visibility", "off")];
         watched.picture(NAME, &both(&both(&common, &own), &[("seed", seed)]))
