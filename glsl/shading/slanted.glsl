@@ -12,7 +12,7 @@ struct Readings {
     float width_px;
 };
 
-// In the middle.
+// One reading, in the middle, of the finest level: where nothing is slanted.
 const Readings ONE_READING = Readings(vec2(0.0), 1.0, 0.0);
 
 // `one`, `other`: steps on the picture, at a right angle on the screen or the surface. `most`: readings.

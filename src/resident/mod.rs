@@ -84,6 +84,7 @@ pub struct SceneGpu {
     pub host_indices: Vec<u32>,
     /// Whether a drawn material has `Material::has_extras`.
     pub has_extras: bool,
+    /// `Texturing::reads_along` of the scene.
     reads_along: bool,
     /// Layout of set 1: the textures of a material.
     pub material_layout: vk::DescriptorSetLayout,
