@@ -1,5 +1,6 @@
 //! The choices that the settings make.
 
+use super::guard_band;
 use super::mid_exposure::MidExposure;
 use super::space::ShadingSpace;
 use super::tuples::TupleTable;
@@ -133,8 +134,9 @@ impl Choices {
         let shading = Shading::new(values, inputs.caps, samples).map_err(|error| error.within(NAME))?;
         let visibility = shading.visibility(values, inputs.caps)?;
         let pixel_samples = PixelSamples::of(values, visibility)?;
-        let space =
-            ShadingSpace::new(values, &inputs.caps.limits, inputs.view.extent).map_err(|error| error.within(NAME))?;
+        let guard_px = guard_band::width_px(values, inputs, lens, mid_exposure.as_ref());
+        let space = ShadingSpace::new(values, guard_px, &inputs.caps.limits, inputs.view.extent)
+            .map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
         let cache_entries = values.unless_auto("shading-cache", Values::integer);
         let direct = DirectSettings::new(values, inputs.lights, inputs.scene);

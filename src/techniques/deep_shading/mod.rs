@@ -7,7 +7,7 @@
 //! - sample: a pixel of the frame at one of its tuples
 //! - shading space, the paper's canonical one: the frame in the middle of the exposure, seen from the middle of the
 //!   lens, in whose pixels surfaces are shaded (section 3)
-//! - guard band: pixels of shading space around the frame's, for what blur brings in (`--guard-band`)
+//! - guard band: pixels of shading space around the frame's, for what blur brings in (`--guard-band`; guard_band.rs)
 //! - SPID, shading point identifier: what a sample keeps of what it sees, the triangle's id and the pixel of
 //!   shading space where that is shaded
 //! - list: the triangles to be shaded at one pixel of shading space, in nodes that are linked or, once compacted,
@@ -76,6 +76,7 @@ mod counters;
 mod entries;
 mod eyes;
 mod frame;
+mod guard_band;
 mod indirect;
 mod lists;
 mod mid_exposure;
@@ -252,6 +253,7 @@ impl Prepared for PreparedDeep {
         let mut resolved = BTreeMap::from([
             ("spp", table.samples.to_string()),
             ("tuples", table.tuples_of_eye().to_string()),
+            ("guard-band", self.choices.space.guard_px.to_string()),
             ("visibility", visibility.name().to_owned()),
             ("pixel-samples", pixel_samples.name().to_owned()),
         ]);

@@ -223,11 +223,13 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "guard-band",
         kind: Kind::Integer { min: 0, max: MOST_GUARD_PX },
+        auto: true,
         default: "64",
         unit: "px",
         paper: "Clarberg 2014, 6",
         help: "Width of the border of shading space around the frame, for what blur brings in; samples that are \
-               farther out are shaded one by one",
+               farther out are shaded one by one; auto: as wide as blur brings things in, up to a twentieth of the \
+               frame's longer side",
         unread: without_space,
         ..Setting::changing(Changes::Picture)
     },

@@ -9,10 +9,10 @@ use crate::frame::View;
 use crate::gpu::shader::structs::DeepBlock;
 use crate::lens::Lens;
 use crate::settings::Values;
-use crate::techniques::deep_shading::eyes::clip_from;
+use crate::techniques::deep_shading::eyes::{Sight, metre};
 use crate::techniques::deep_shading::modes::warp::Warp;
 use crate::units::Extent;
-use glam::{Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec4, Vec4Swizzles};
 
 /// Places of 16 bits a side, one of which says that there is none.
 const MOST_SIDE_PX: u64 = 65_534;
@@ -20,7 +20,7 @@ const MOST_SIDE_PX: u64 = 65_534;
 /// Size and warp of shading space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadingSpace {
-    guard_px: u32,
+    pub guard_px: u32,
     /// Pixels of it along a pixel of the frame.
     scale: f64,
     /// Pixels of it that the frame takes if it is even.
@@ -31,11 +31,11 @@ pub struct ShadingSpace {
 }
 
 impl ShadingSpace {
-    /// Reads `--guard-band`, `--shading-scale`, `--shading-warp` and `--warp-falloff`.
+    /// Around the frame there are `guard_px`. Reads `--shading-scale`, `--shading-warp` and `--warp-falloff`.
     ///
     /// Errors: a side is longer than shading points can be packed, or than a device of these limits draws (exit code 2).
-    pub fn new(values: &Values, limits: &Limits, frame: Extent) -> Result<Self> {
-        let (guard_px, scale) = (values.integer("guard-band") as u32, values.number("shading-scale"));
+    pub fn new(values: &Values, guard_px: u32, limits: &Limits, frame: Extent) -> Result<Self> {
+        let scale = values.number("shading-scale");
         let scaled = [frame.width, frame.height].map(|side| f64::from(side) * scale);
         let warp_falloff = if values.is("shading-warp", Warp::Foveated) { values.number("warp-falloff") } else { 0.0 };
         let even = scaled.map(|side| side.ceil() + 2.0 * f64::from(guard_px));
@@ -102,20 +102,15 @@ impl ShadingSpace {
     pub fn block(&self, open: &View, close: Option<&View>, lens: Option<Lens>, table: &TupleTable) -> DeepBlock {
         let close = close.unwrap_or(open);
         let layer = table.layer(open.extent);
-        let [open_clip, close_clip] = [open, close].map(View::clip_from_world);
-        let [open_depth, close_depth] = [open, close].map(depth_row);
-        // How much of the picture's half a metre is, where a metre is as far away as it is wide.
-        let row_length = |matrix: &Mat4, row: usize| matrix.row(row).truncate().length();
         let radius = lens.map_or(0.0, |lens| lens.reach());
-        let from_middle = |clip: Mat4, depth: Vec4| {
-            lens.map_or(clip, |lens| clip_from(clip, depth, row_length(&open_clip, 0), lens)).to_cols_array_2d()
-        };
+        let reach = radius * metre(open);
+        let [open, close] = Sight::of_exposure(open, close, lens);
         DeepBlock {
-            open_clip_from_world: from_middle(open_clip, open_depth),
-            close_clip_from_world: from_middle(close_clip, close_depth),
-            open_depth: open_depth.to_array(),
-            close_depth: close_depth.to_array(),
-            lens: [0, 1].map(|axis| radius * row_length(&open_clip, axis)),
+            open_clip_from_world: open.clip_from_world.to_cols_array_2d(),
+            close_clip_from_world: close.clip_from_world.to_cols_array_2d(),
+            open_depth: open.depth.to_array(),
+            close_depth: close.depth.to_array(),
+            lens: reach.to_array(),
             inverse_focus: lens.map_or(0.0, |lens| 1.0 / lens.focus),
             guard_px: self.guard_px as f32,
             scaled_px: self.scaled_px,
@@ -133,12 +128,6 @@ impl ShadingSpace {
     }
 }
 
-/// Row whose product with a point is its distance before the plane of the eye.
-fn depth_row(view: &View) -> Vec4 {
-    let forward: Vec3 = -view.camera.world_from_view.z_axis.truncate();
-    forward.extend(-forward.dot(view.eye()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,12 +135,14 @@ mod tests {
     use crate::settings::Values;
 
     fn space(guard: &str, scale: &str, extent: Extent) -> Result<ShadingSpace> {
+        ShadingSpace::new(&scaled(scale), guard.parse().unwrap(), &known::caps(known::DEFAULT).unwrap().limits, extent)
+    }
+
+    fn scaled(scale: &str) -> Values {
         let rows = super::super::settings::SETTINGS;
         let mut values = Values::defaults(rows);
-        for (key, text) in [("guard-band", guard), ("shading-scale", scale)] {
-            values.set(rows.iter().find(|row| row.key == key).unwrap(), text).unwrap();
-        }
-        ShadingSpace::new(&values, &known::caps(known::DEFAULT).unwrap().limits, extent)
+        values.set(rows.iter().find(|row| row.key == "shading-scale").unwrap(), scale).unwrap();
+        values
     }
 
     #[test]
@@ -186,14 +177,7 @@ mod tests {
             for (guard, frame) in
                 [("0", Extent::new(5000, 8)), ("64", Extent::new(17, 6001)), ("200", Extent::new(16_384, 16_384))]
             {
-                let of_scale = |scale: &str| {
-                    let rows = super::super::settings::SETTINGS;
-                    let mut values = Values::defaults(rows);
-                    for (key, text) in [("guard-band", guard), ("shading-scale", scale)] {
-                        values.set(rows.iter().find(|row| row.key == key).unwrap(), text).unwrap();
-                    }
-                    ShadingSpace::new(&values, &limits, frame)
-                };
+                let of_scale = |scale: &str| ShadingSpace::new(&scaled(scale), guard.parse().unwrap(), &limits, frame);
                 let Err(error) = of_scale("4") else {
                     let side = frame.width.max(frame.height) * 4 + 2 * guard.parse::<u32>().unwrap();
                     assert!(side <= most, "{frame} with {most}");

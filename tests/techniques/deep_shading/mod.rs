@@ -3,6 +3,7 @@
 
 mod baselines;
 mod entries;
+mod guard_band;
 mod hostile;
 mod looped;
 mod own_samples;
