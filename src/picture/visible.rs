@@ -10,23 +10,27 @@ const LENGTHS: [[u8; 3]; 8] =
     [[0, 0, 0], [0, 0, 160], [0, 220, 255], [60, 220, 60], [255, 240, 0], [255, 140, 0], [220, 0, 0], [255, 255, 255]];
 
 /// The stage as light that a PNG shows: normals from -1..1 to 0..1, irradiance as a white surface would show it, depths as a part
-/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, of an object or a triangle, and for each
+/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, of an object or a triangle, for each address and for each
 /// length of a list, other whole numbers as they are: flags are white.
 pub fn visible(aov: &Aov, extent: Extent) -> Picture {
     let is = |ending: &str| aov.name.ends_with(ending);
     let pixels = match &aov.channels {
         AovChannels::Rgb(values) if is("normal") => around_grey(values, 1.0),
-        AovChannels::Rgb(values) if is("motion") => around_grey(values, greatest(values.iter().flatten())),
+        AovChannels::Rgb(values) if is("motion") || is("shifts") => {
+            around_grey(values, greatest(values.iter().flatten()))
+        }
         AovChannels::Rgb(values) if is("irradiance") => {
             values.iter().map(|value| value.map(|channel| channel / std::f32::consts::PI)).collect()
         }
         AovChannels::Rgb(values) => values.clone(),
-        AovChannels::Y(values) if is("depth") => {
+        AovChannels::Y(values) if is("depth") || is("zmax") => {
             let most = greatest(values);
             values.iter().map(|value| [value / most; 3]).collect()
         }
         AovChannels::Y(values) => values.iter().map(|value| [*value; 3]).collect(),
-        AovChannels::YU32(values) if is(".id") || is("spids") => values.iter().map(|id| color_of(*id)).collect(),
+        AovChannels::YU32(values) if is(".id") || is("spids") || is("addresses") => {
+            values.iter().map(|id| color_of(*id)).collect()
+        }
         AovChannels::YU32(values) if is("lengths") => values.iter().map(|length| color_of_length(*length)).collect(),
         AovChannels::YU32(values) => values.iter().map(|value| [*value as f32; 3]).collect(),
     };

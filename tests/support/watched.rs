@@ -125,6 +125,16 @@ impl Watched {
         }
     }
 
+    /// A stage of one channel.
+    pub fn floats(&self, renderer: &Renderer, name: &str) -> Vec<f32> {
+        let aov = renderer.aov(name).unwrap();
+        require_silence(&self.session.gpu, name);
+        match aov.channels {
+            AovChannels::Y(texels) => texels,
+            other => panic!("{name} is no stage of one channel: {other:?}"),
+        }
+    }
+
     /// A stage of whole numbers.
     pub fn integers(&self, renderer: &Renderer, name: &str) -> Vec<u32> {
         let aov = renderer.aov(name).unwrap();

@@ -14,47 +14,22 @@ use super::resolve::Resolve;
 use super::sample_colors::SampleColors;
 use super::scene::DeepScene;
 use super::separate::SeparateShading;
+use super::stages::Stages;
 use super::stereo::{self, RightEye};
 use super::visibility::ray::TracedSamples;
 use crate::error::Result;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image, readback};
+use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
 use crate::lens::Lens;
 use crate::passes::accumulate::Accumulate;
-use crate::picture::{Aov, AovChannels};
+use crate::picture::Aov;
 use crate::plan::Resources;
 use crate::resident::{DrawList, LensDisc, SceneGpu, Sweep};
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
-use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, LENGTHS, NAME, ORDER, SPIDS, full};
-use crate::techniques::deep_shading::visibility::samples::Samples;
+use crate::techniques::deep_shading::resources::{COLOR, COUNTERS, NAME, ORDER, full};
 use crate::techniques::{Frame, Inputs, Run};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-pub const AOVS: &[&str] = &[LENGTHS, SPIDS, stereo::RIGHT];
-
-/// Those that the settings leave out, with the reason.
-pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
-    let is_apart = matches!(choices.shading, Shading::Deep | Shading::IndirectGbuffer);
-    let mut left_out = Vec::new();
-    let mut leave_out = |stage, why: &str| left_out.push((stage, why.to_owned()));
-    if !is_apart {
-        let why = "samples of this --shading have colours and nothing else; --shading deep makes it";
-        leave_out(LENGTHS, why);
-        leave_out(SPIDS, why);
-    } else {
-        if !(choices.has_lists && choices.is_counted) {
-            leave_out(LENGTHS, "lists are counted with --shading deep, --lists linked or direct, and --instrument on");
-        }
-        if choices.lists.is_direct {
-            leave_out(SPIDS, "--lists direct has no SPIDs; --lists linked makes them");
-        }
-    }
-    if !choices.has_right_eye() {
-        leave_out(stereo::RIGHT, "two eyes see with --stereo above 0 and --stereo-eyes both");
-    }
-    left_out
-}
 
 /// From the scene to samples that have colours.
 enum ShadingPasses {
@@ -142,13 +117,6 @@ impl DeepFrame {
         }
     }
 
-    /// A stage of whole numbers, from that of each pixel of the frame.
-    fn of_pixels(&self, name: &str, number: impl Fn([u32; 2]) -> u32) -> Aov {
-        let frame = self.color.description.extent;
-        let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| [x, y]));
-        Aov { name: name.to_owned(), channels: AovChannels::YU32(pixels.map(number).collect()) }
-    }
-
     /// Picture of one set of samples.
     fn run_picture(&self) -> &Image {
         self.reconstruct.as_ref().map_or(&self.color, |reconstruct| &reconstruct.color)
@@ -156,16 +124,6 @@ impl DeepFrame {
 
     fn counted(&self, gpu: &Arc<Gpu>) -> Result<FrameCounts> {
         FrameCounts::read(gpu, &self.counters, Access::ComputeWrite)
-    }
-
-    /// The triangle that each pixel's first sample sees, by its id; all ones where it sees none.
-    ///
-    /// Errors: memory for the copy (exit code 4).
-    fn first_primitives(&self, gpu: &Arc<Gpu>, samples: &Samples) -> Result<Aov> {
-        let bytes = readback::image(gpu, &samples.spids, Access::ComputeSample)?;
-        let spids: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
-        let frame = self.color.description.extent;
-        Ok(self.of_pixels(SPIDS, |pixel| spids[self.choices.table.first_sample(frame, pixel)][0]))
     }
 }
 
@@ -299,13 +257,7 @@ impl Frame for DeepFrame {
         if name == stereo::RIGHT {
             return self.right.as_ref().expect(REFUSED).stage(gpu);
         }
-        let separate = self.separate().expect(REFUSED);
-        if name == SPIDS {
-            return self.first_primitives(gpu, separate.samples().expect(REFUSED));
-        }
-        let count = separate.count().expect(REFUSED);
-        let bytes = readback::buffer(gpu, &count.lengths, count.lengths.bytes, Access::ComputeWrite)?;
-        let lengths: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        Ok(self.of_pixels(name, |at| lengths[self.choices.space.index_under(at)]))
+        let (choices, separate) = (&self.choices, self.separate().expect(REFUSED));
+        Stages { gpu, choices, separate, frame: self.color.description.extent }.read(name)
     }
 }

@@ -97,6 +97,7 @@ mod separate;
 mod settings;
 mod shade;
 mod space;
+mod stages;
 mod stereo;
 mod touched;
 mod tuples;
@@ -148,7 +149,7 @@ impl Technique for DeepShading {
     }
 
     fn aovs(&self) -> &'static [&'static str] {
-        frame::AOVS
+        stages::ALL
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
@@ -245,7 +246,7 @@ impl Prepared for PreparedDeep {
     }
 
     fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
-        frame::left_out(&self.choices)
+        stages::left_out(&self.choices)
     }
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {

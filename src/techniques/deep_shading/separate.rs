@@ -179,6 +179,10 @@ impl SeparateShading {
         ("DrawnRanges", Bound::Buffer(&self.draw_ranges))
     }
 
+    pub fn lists(&self) -> Option<&Lists> {
+        Some(&self.list_shading()?.lists)
+    }
+
     pub fn count(&self) -> Option<&Count> {
         self.list_shading()?.count.as_ref()
     }

@@ -11,6 +11,7 @@ mod rates;
 mod reconstruct;
 mod rivals;
 mod samplers;
+mod stages;
 mod stereo;
 mod texture_space;
 mod visibility;
