@@ -10,8 +10,8 @@ const LENGTHS: [[u8; 3]; 8] =
     [[0, 0, 0], [0, 0, 160], [0, 220, 255], [60, 220, 60], [255, 240, 0], [255, 140, 0], [220, 0, 0], [255, 255, 255]];
 
 /// The stage as light that a PNG shows: normals from -1..1 to 0..1, irradiance as a white surface would show it, depths as a part
-/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, of an object or a triangle, for each address and for each
-/// length of a list, other whole numbers as they are: flags are white.
+/// of the greatest, vectors around grey and as a part of the longest, a colour for each id, of an object or a triangle, for each
+/// address and for each length of a list, other whole numbers as they are: flags are white.
 pub fn visible(aov: &Aov, extent: Extent) -> Picture {
     let is = |ending: &str| aov.name.ends_with(ending);
     let pixels = match &aov.channels {

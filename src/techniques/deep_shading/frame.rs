@@ -14,7 +14,7 @@ use super::resolve::Resolve;
 use super::sample_colors::SampleColors;
 use super::scene::DeepScene;
 use super::separate::SeparateShading;
-use super::stages::Stages;
+use super::stages::{REFUSED, Stages};
 use super::stereo::{self, RightEye};
 use super::visibility::ray::TracedSamples;
 use crate::error::Result;
@@ -253,7 +253,6 @@ impl Frame for DeepFrame {
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {
-        const REFUSED: &str = "a stage that the settings leave out is refused";
         if name == stereo::RIGHT {
             return self.right.as_ref().expect(REFUSED).stage(gpu);
         }

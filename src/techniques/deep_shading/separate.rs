@@ -179,6 +179,7 @@ impl SeparateShading {
         ("DrawnRanges", Bound::Buffer(&self.draw_ranges))
     }
 
+    /// None: `--lists none`, or `--shading indirect-gbuffer`.
     pub fn lists(&self) -> Option<&Lists> {
         Some(&self.list_shading()?.lists)
     }

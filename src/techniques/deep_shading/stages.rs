@@ -4,6 +4,7 @@
 use super::choices::Choices;
 use super::separate::SeparateShading;
 use super::stereo;
+use super::visibility::ray::trace::Spid;
 use super::visibility::samples::Samples;
 use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::space::{NO_PRIMITIVE, NO_SHADING_PIXEL};
@@ -19,7 +20,8 @@ const SHIFTS: &str = "visibility.spids.shifts";
 
 pub const ALL: &[&str] = &[LENGTHS, SPIDS, SHIFTS, ZMAX, ADDRESSES, stereo::RIGHT];
 
-const REFUSED: &str = "a stage that the settings leave out is refused";
+/// What a stage is read from is there.
+pub const REFUSED: &str = "a stage that the settings leave out is refused";
 
 /// Those that the settings leave out, with the reason.
 pub fn left_out(choices: &Choices) -> Vec<(&'static str, String)> {
@@ -65,10 +67,8 @@ impl Stages<'_> {
     /// Errors: memory for copies (exit code 4).
     pub fn read(&self, name: &str) -> Result<Aov> {
         let channels = match name {
-            SPIDS => self.seen_of_samples(|_, [primitive, _]| primitive, NO_PRIMITIVE).map(AovChannels::YU32),
-            SHIFTS => {
-                self.seen_of_samples(|pixel, [_, place]| self.shift(pixel, place), [0.0; 3]).map(AovChannels::Rgb)
-            }
+            SPIDS => self.seen_of_samples(|_, spid| spid.primitive, NO_PRIMITIVE).map(AovChannels::YU32),
+            SHIFTS => self.seen_of_samples(|pixel, spid| self.shift(pixel, spid.pixel), [0.0; 3]).map(AovChannels::Rgb),
             ADDRESSES => {
                 let buffer = self.separate.lists().and_then(|lists| lists.addresses.as_ref()).expect(REFUSED);
                 let addresses = self.words(buffer, Access::ComputeRead)?;
@@ -116,13 +116,13 @@ impl Stages<'_> {
     }
 
     /// `of` each pixel and the SPID of its first sample; `nothing` where that sees nothing.
-    fn seen_of_samples<T: Copy>(&self, of: impl Fn([u32; 2], [u32; 2]) -> T, nothing: T) -> Result<Vec<T>> {
+    fn seen_of_samples<T: Copy>(&self, of: impl Fn([u32; 2], Spid) -> T, nothing: T) -> Result<Vec<T>> {
         let samples: &Samples = self.separate.samples().expect(REFUSED);
         let bytes = readback::image(self.gpu, &samples.spids, Access::ComputeSample)?;
-        let spids: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
+        let spids: Vec<Spid> = bytemuck::pod_collect_to_vec(&bytes);
         let of_pixel = |pixel| {
             let spid = spids[self.sample_of(pixel)];
-            if spid[0] == NO_PRIMITIVE { nothing } else { of(pixel, spid) }
+            if spid.primitive == NO_PRIMITIVE { nothing } else { of(pixel, spid) }
         };
         Ok(self.pixels().map(of_pixel).collect())
     }

@@ -1,4 +1,4 @@
-//! The buffers of figure 3 as pictures: conservative depth (B) and addresses of colours (C).
+//! Figures 2 and 3 as pictures: where samples are shaded, conservative depth (B) and addresses of colours (C).
 
 use super::{DEEP, FRAGMENT};
 use crate::support::boxes::{camera, panel, rectangle};
