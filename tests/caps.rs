@@ -222,6 +222,8 @@ fn expected_choice(tried: &Tried, key: &str) -> Option<&'static str> {
         "storage" => "buffer",
         "conservative" | "polygon-from" if features.geometry_shader => "geometry",
         "conservative" | "polygon-from" => "vertex",
+        "vertices" if features.geometry_shader => "indexed",
+        "vertices" => "fetched",
         "layer-from" if features.layer_from_vertex_shader => "vertex",
         "layer-from" => "geometry",
         "sample-tests" if features.shader_int64_atomics => "loop",

@@ -64,6 +64,31 @@ fn dispatches_and_vertices_are_counted_to_the_last() {
     }
 }
 
+/// Corners are as many as triangles have of them for each tuple; in a mesh most are shared by six triangles, and of a run of these the
+/// device places each once.
+#[test]
+fn indexed_draws_place_a_vertex_once_for_the_triangles_around_it() {
+    let caps = driver();
+    if !has(&caps, Feature::PipelineStatistics) || !has(&caps, Feature::GeometryShader) {
+        return;
+    }
+    let watched = Watched::open("hall:triangles=8000");
+    for visibility in ["repeat-frame", "repeat-draw"] {
+        let placed = |vertices| {
+            let changes = [SIZE, ("spp", "2"), ("tuples", "4"), ("visibility", visibility), ("vertices", vertices)];
+            let (counters, counted) = of(&watched, &changes);
+            let counted = &counted[&format!("{DEEP}.visibility")];
+            let corners = 3 * 4 * counters["triangles_drawn"] as u64;
+            assert_eq!(counted["input_assembly_vertices"], corners, "{changes:?}");
+            (counted["vertex_shader_invocations"], corners)
+        };
+        let [(fetched, corners), (indexed, _)] = ["fetched", "indexed"].map(placed);
+        println!("{visibility}: {indexed} of {fetched} vertices are placed");
+        assert_eq!(fetched, corners, "{visibility}");
+        assert!(3 * indexed < 2 * corners && 6 * indexed >= corners, "{visibility}: {indexed} of {corners}");
+    }
+}
+
 #[test]
 fn shaders_count_no_more_executions_than_the_device() {
     if !has(&driver(), Feature::PipelineStatistics) {

@@ -46,12 +46,6 @@ vec4 canonical_between(vec4 corners[3], vec3 weights) {
     return weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2];
 }
 
-// The same of a place on the triangle whose first corner it is.
-vec4 canonical_at(uint corner, vec3 weights) {
-    vec4 corners[3] = vec4[3](canonical_corner(corner), canonical_corner(corner + 1u), canonical_corner(corner + 2u));
-    return canonical_between(corners, weights);
-}
-
 // Weights of a triangle's corners, of sum 1, without those below 0: the rasteriser moves corners a little, and where a
 // triangle is seen edge-on that little can be far in shading space.
 vec3 inside_weights(vec3 weights) {

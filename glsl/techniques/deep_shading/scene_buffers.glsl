@@ -24,6 +24,9 @@ struct DrawnParams {
     uint flags;
     // The number of a triangle in the order of draws is its place among all indices, a third of it, plus this (modulo 2^32).
     uint order_offset;
+    // The place of the first triangle that is drawn among all.
+    uint first_triangle;
+    uint _unused;
 };
 
 #ifdef DRAW_OF_TRIANGLE

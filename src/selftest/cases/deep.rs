@@ -186,6 +186,7 @@ pub const GROUPS: &[Group] = &[
             &[("visibility", "instancing"), ("layer-from", "vertex")],
             &[("visibility", "instancing"), ("layer-from", "geometry")],
             &[("visibility", "replicate")],
+            &[("vertices", "fetched")],
         ],
         must: Must::Equal(ROUNDING),
     },

@@ -25,6 +25,7 @@ use crate::techniques::deep_shading::modes::sample_tests::is_looped;
 use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::vertices::Vertices;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources;
 use crate::techniques::deep_shading::resources::{
@@ -50,6 +51,7 @@ pub struct ListChoices {
 
 /// How triangles are drawn, for samples and into shading space.
 pub struct RasterChoices {
+    pub vertices: Vertices,
     pub layer_from: LayerFrom,
     pub polygon_from: PolygonFrom,
     pub conservative: Conservative,
@@ -139,6 +141,7 @@ impl Choices {
             .map_err(|error| error.within(NAME))?;
         let samples_of_set = table.sample_count(inputs.view.extent);
         let cache_entries = values.unless_auto("shading-cache", Values::integer);
+        let is_of_space = matches!(shading, Shading::Deep | Shading::IndirectGbuffer);
         let direct = DirectSettings::new(values, inputs.lights, inputs.scene);
         let texels = match shading {
             Shading::Deep => Texels::new(values, inputs.caps).of_column(direct.load(inputs.lights.lights.len())),
@@ -153,11 +156,15 @@ impl Choices {
             reads_along: inputs.scene.texturing.reads_along(),
             visibility,
             raster: RasterChoices {
+                // Baselines draw each corner with its weights.
+                vertices: match is_of_space && visibility.draws_corners() {
+                    true => Vertices::of(values, inputs.caps),
+                    false => Vertices::Fetched,
+                },
                 layer_from: LayerFrom::of(values, inputs.caps),
                 polygon_from: PolygonFrom::of(values, inputs.caps),
                 conservative: Conservative::of(values, inputs.caps),
-                is_looped: matches!(shading, Shading::Deep | Shading::IndirectGbuffer)
-                    && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
+                is_looped: is_of_space && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
                 coverage_test: values.choice("coverage-test"),
                 has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),
                 sub_pixel_bits: inputs.caps.limits.sub_pixel_bits,

@@ -124,6 +124,7 @@ use frame::{DeepFrame, HostTables};
 use modes::layer_from::LayerFrom;
 use modes::polygon_from::PolygonFrom;
 use modes::shading::Shading;
+use modes::vertices::Vertices;
 use modes::visibility::Visibility;
 use primitives::Primitives;
 use std::collections::BTreeMap;
@@ -169,6 +170,9 @@ impl Technique for DeepShading {
             };
             let of = format!("--visibility {}", visibility.name());
             needs.push(need(&of, ability, "--visibility repeat-frame works without it"));
+        }
+        if has_layers && visibility.draws_corners() && Vertices::of(values, caps) == Vertices::Indexed {
+            needs.push(need("--vertices indexed", Ability::GeometryShader, "--vertices fetched works without it"));
         }
         let has_polygons = visibility.has_polygons() && shading != ShadingKind::Msaa;
         if has_polygons && PolygonFrom::of(values, caps) == PolygonFrom::Geometry {
@@ -274,6 +278,9 @@ impl Prepared for PreparedDeep {
         resolved.extend(self.choices.maps.as_ref().map(MapLayout::resolved));
         if visibility.has_layer_from() {
             resolved.insert("layer-from", raster.layer_from.name().to_owned());
+        }
+        if visibility.draws_corners() && matches!(shading, Shading::Deep | Shading::IndirectGbuffer) {
+            resolved.insert("vertices", raster.vertices.name().to_owned());
         }
         if visibility.has_polygons() && !matches!(shading, Shading::Msaa { .. }) {
             resolved.insert("polygon-from", raster.polygon_from.name().to_owned());

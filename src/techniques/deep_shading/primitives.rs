@@ -89,6 +89,7 @@ impl Primitives {
             primitive_offset: self.offsets[call.draw as usize],
             order_offset: self.orders[call.draw as usize],
             flags,
+            first_triangle: call.first_index / 3,
             ..DrawnParams::zeroed()
         }
     }

@@ -14,6 +14,7 @@ use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::vertices::Vertices;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::modes::warp::Warp;
 
@@ -103,6 +104,19 @@ pub const SETTINGS: &[Setting] = &[
         help: "Stage that writes the tuple's layer with --visibility repeat-draw and instancing: vertex shaders, or a \
                geometry shader that passes triangles through; the same samples; auto: vertex where the device can",
         unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "samples are drawn layer by layer"),
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "vertices",
+        kind: Kind::Choice(Vertices::WORDS),
+        auto: true,
+        default: "auto",
+        paper: "Clarberg 2014, 4.2",
+        help: "How --visibility repeat-frame, repeat-draw and instancing draw triangles: by the scene's indices, so that a \
+               vertex is placed once for the triangles around it (indexed); or corner by corner, each of which looks its \
+               index up (fetched, the plain way); the same samples; auto: indexed where fragments can ask for a triangle's \
+               number",
+        unread: |values| Unread::unless(values, "shading", ShadingKind::OF_SPACE, "each corner has its weights"),
         ..Setting::changing(Changes::Nothing)
     },
     Setting {

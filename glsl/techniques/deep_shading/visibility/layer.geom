@@ -1,6 +1,6 @@
 // Triangles as they are, each into its tuple's layer: for devices whose vertex shaders cannot say which that is (section
 // 4.2, Interleave-Instancing). Pass: src/techniques/deep_shading/visibility/layer.rs.
-// variants: VERTEX=plain|extended
+// variants: VERTEX=plain|extended VERTICES=fetched|indexed
 #version 460
 
 layout(triangles) in;
@@ -8,17 +8,17 @@ layout(triangle_strip, max_vertices = 3) out;
 
 // As sample.vert has them.
 layout(location = 0) in vec4 in_canonical[];
-layout(location = 1) flat in uint in_primitive[];
-layout(location = 2) in vec3 in_weights[];
 layout(location = 3) in vec2 in_uv[];
 layout(location = 6) flat in uint in_tuple[];
 
 layout(location = 0) out vec4 out_canonical;
-layout(location = 1) flat out uint out_primitive;
-layout(location = 2) out vec3 out_weights;
 layout(location = 3) out vec2 out_uv;
 layout(location = 6) flat out uint out_tuple;
 
+#ifdef VERTICES_FETCHED
+layout(location = 1) flat in uint in_primitive[];
+layout(location = 1) flat out uint out_primitive;
+#endif
 #ifdef VERTEX_EXTENDED
 layout(location = 4) in vec4 in_color[];
 layout(location = 5) in vec2 in_uv_1[];
@@ -31,8 +31,11 @@ void main() {
         gl_Position = gl_in[index].gl_Position;
         gl_Layer = int(in_tuple[0]);
         out_canonical = in_canonical[index];
+#ifdef VERTICES_FETCHED
         out_primitive = in_primitive[0];
-        out_weights = in_weights[index];
+#else
+        gl_PrimitiveID = gl_PrimitiveIDIn;
+#endif
         out_uv = in_uv[index];
 #ifdef VERTEX_EXTENDED
         out_color = in_color[index];

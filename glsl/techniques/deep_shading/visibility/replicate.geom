@@ -28,7 +28,6 @@ layout(location = 6) in vec2 in_depths[];
 // As sample.vert has them.
 layout(location = 0) out vec4 out_canonical;
 layout(location = 1) flat out uint out_primitive;
-layout(location = 2) out vec3 out_weights;
 layout(location = 3) out vec2 out_uv;
 layout(location = 6) flat out uint out_tuple;
 
@@ -51,7 +50,6 @@ void main() {
             gl_Layer = int(tuple);
             out_canonical = in_canonical[index];
             out_primitive = in_primitive[0];
-            out_weights = vec3(index == 0u, index == 1u, index == 2u);
             out_uv = in_uv[index];
 #ifdef VERTEX_EXTENDED
             out_color = in_color[index];

@@ -1,19 +1,26 @@
 // What a sample sees: the id of the triangle and its shading point, packed (a SPID), and perhaps the depth there.
 // Pass: src/techniques/deep_shading/visibility/sample.rs. Appendix A, pass 1.
-// variants: ALPHA=opaque|tested VERTEX=plain|extended DEPTH=none|shading
+// VERTICES: the triangle's number comes from the vertex it is drawn by, or from the device.
+// variants: ALPHA=opaque|tested VERTEX=plain|extended DEPTH=none|shading VERTICES=fetched|indexed
 #version 460
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/visibility/covers.glsl"
+#include "techniques/deep_shading/visibility/seen.glsl"
+#include "techniques/deep_shading/visibility/triangle.glsl"
 
 layout(location = 0) in vec4 in_canonical;
+#ifdef VERTICES_FETCHED
 layout(location = 1) flat in uint in_primitive;
-layout(location = 2) in vec3 in_weights;
+#endif
 layout(location = 6) flat in uint in_tuple;
 
 // 1: tuples are drawn together and reach beyond the frame.
 layout(constant_id = 96) const uint HAS_PADDING = 0;
 
 layout(std430, set = 0, binding = 0) readonly buffer Frame { FrameBlock frame; };
+layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[]; };
 #ifdef ALPHA_TESTED
 layout(location = 3) in vec2 in_uv_here;
 #ifdef VERTEX_EXTENDED
@@ -41,7 +48,54 @@ bool is_padding(uvec2 at) {
     return pixel.x >= frame.width_px || pixel.y >= frame.height_px;
 }
 
+// The drawn triangle's place among all.
+uint drawn_triangle() {
+#ifdef VERTICES_INDEXED
+    return params.first_triangle + uint(gl_PrimitiveID);
+#else
+    return in_primitive - params.primitive_offset;
+#endif
+}
+
+// The rasteriser moves corners by up to half of the step that SUB_PIXEL_BITS says, so that fragments may lie beside their triangle.
+// Where neighbours lie no more pixels of shading space apart than this, that is no more than hulls are drawn too large by.
+const float STEEP_PX = 4.0;
+
+// Whether the triangle is seen so nearly edge-on that what lies beside it can be far away in shading space.
+bool is_steep() {
+    vec2 rates = fwidth(in_canonical.xy / in_canonical.w);
+    bool is_even = max(rates.x, rates.y) <= STEEP_PX && fwidth(in_canonical.w) <= 0.5 * abs(in_canonical.w);
+    return !is_even;
+}
+
+// Where the sample sees the triangle in shading space, or the triangle's place beside it. Only where `is_wanted`, by which the loop
+// ends, because some drivers run both sides of every branch.
+vec4 inside_canonical(uint triangle, bool is_wanted) {
+    vec2 from[3];
+    vec4 canonical_corners[3];
+    for (uint corner = 0u; corner < 3u && is_wanted; corner++) {
+        uint vertex = vertex_of(3u * triangle + corner);
+        Seen open = seen_open(vertex);
+        Seen close = open;
+        if (IS_MOVING != 0u) {
+            close = seen_close(vertex);
+        }
+        TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + in_tuple];
+        from[corner] = from_sample(layer_corner(open, close, tuple), gl_FragCoord.xy);
+        canonical_corners[corner] = canonical_of(open, close);
+    }
+    vec4 canonical = in_canonical;
+    if (is_wanted) {
+        vec3 weights = covered_weights(areas_of(from[0], from[1], from[2]));
+        if (any(lessThan(weights, vec3(0.0)))) {
+            canonical = canonical_between(canonical_corners, inside_weights(weights));
+        }
+    }
+    return canonical;
+}
+
 void main() {
+    bool is_wanted = is_steep();
 #ifdef ALPHA_TESTED
     // A layer's pixels are a table apart.
     vec2 pixels = vec2(deep.table_width_px, deep.table_height_px);
@@ -64,12 +118,9 @@ void main() {
     if (HAS_PADDING != 0u && is_padding(uvec2(gl_FragCoord.xy))) {
         discard;
     }
-    vec4 canonical = in_canonical;
-    if (any(lessThan(in_weights, vec3(0.0)))) {
-        uint corner = 3u * (in_primitive - params.primitive_offset);
-        canonical = canonical_at(corner, inside_weights(in_weights));
-    }
-    out_spid = uvec2(in_primitive, shading_pixel(deep, canonical));
+    uint triangle = drawn_triangle();
+    vec4 canonical = inside_canonical(triangle, is_wanted);
+    out_spid = uvec2(triangle + params.primitive_offset, shading_pixel(deep, canonical));
 #ifdef DEPTH_SHADING
     out_shading_depth = shading_depth(canonical);
 #endif

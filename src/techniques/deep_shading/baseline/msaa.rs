@@ -28,7 +28,7 @@ use crate::techniques::deep_shading::visibility::draw::SampleStages;
 
 pub(super) fn stages() -> SampleStages {
     // The shader tells sides apart: what is drawn has none.
-    SampleStages { vertex: &VERT, geometry: None, sides: Some(Sides::Both), vertex_count: 3 }
+    SampleStages { vertex: &VERT, geometry: None, sides: Some(Sides::Both), vertex_count: 3, is_indexed: false }
 }
 
 /// `alpha`: the value of the shader's axis.

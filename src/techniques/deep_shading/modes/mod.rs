@@ -13,5 +13,6 @@ pub mod sample_tests;
 pub mod shade_by;
 pub mod shading;
 pub mod shading_kind;
+pub mod vertices;
 pub mod visibility;
 pub mod warp;

@@ -43,6 +43,11 @@ impl Visibility {
         self == Self::Stochastic
     }
 
+    /// Whether vertex shaders place triangles for one tuple each, so that `--vertices` chooses how they come by these.
+    pub fn draws_corners(self) -> bool {
+        matches!(self, Self::RepeatFrame | Self::RepeatDraw | Self::Instancing)
+    }
+
     /// Whether each sample is looked at by itself, wherever in its pixel, on the lens and in time it is.
     pub fn tests_samples(self) -> bool {
         matches!(self, Self::Stochastic | Self::Ray)

@@ -6,6 +6,7 @@ use crate::gpu::shader::techniques::deep_shading::visibility::sample::VERT_VARIA
 use crate::gpu::shader::{Shader, variant};
 use crate::passes::mesh;
 use crate::resident::{DrawCall, SceneGpu, Sides};
+use crate::techniques::deep_shading::modes::vertices::Vertices;
 use crate::techniques::deep_shading::pass_inputs::DrawInputs;
 use crate::techniques::deep_shading::primitives;
 use std::ops::Range;
@@ -33,12 +34,14 @@ pub struct SampleStages {
     pub sides: Option<Sides>,
     /// Vertices of a triangle.
     pub vertex_count: u32,
+    /// The device draws by the scene's indices; or else shaders look them up.
+    pub is_indexed: bool,
 }
 
 impl SampleStages {
     /// Stages that draw triangles as one tuple sees them.
-    pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>) -> Self {
-        Self { vertex, geometry, sides: None, vertex_count: 3 }
+    pub fn sharp(vertex: &'static Shader, geometry: Option<&'static Shader>, vertices: Vertices) -> Self {
+        Self { vertex, geometry, sides: None, vertex_count: 3, is_indexed: vertices == Vertices::Indexed }
     }
 
     /// How many vertices a call has, and the first.
@@ -48,12 +51,12 @@ impl SampleStages {
 }
 
 /// The vertex stage for `scene`. `layer`: a value of its axis LAYER.
-pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str) -> &'static Shader {
+pub fn vertex_shader(scene: &SceneGpu, repeats: &Repeats, layer: &str, vertices: Vertices) -> &'static Shader {
     let tuple = if repeats.instance_count > 1 { "instance" } else { "pushed" };
-    variant(VERT_VARIANTS, &[mesh::vertex_name(scene), tuple, layer])
+    variant(VERT_VARIANTS, &[mesh::vertex_name(scene), tuple, layer, vertices.name()])
 }
 
-/// Draws `calls` by vertex fetches of the shaders' own: one after the other as the index buffer has them.
+/// Draws `calls`: triangles one after the other as the index buffer has them.
 pub fn draw<'a>(
     cmd: &Commands,
     pipeline: &GraphicsPipeline,
@@ -63,13 +66,23 @@ pub fn draw<'a>(
     repeats: &Repeats,
 ) {
     let DrawInputs { scene, primitives, .. } = inputs;
+    if stages.is_indexed {
+        mesh::bind_indices(cmd, scene);
+    }
     mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
         let params = primitives.params(scene, call);
         let [count, first] = stages.vertices(call);
         for tuple in repeats.tuples.clone().step_by(repeats.step as usize) {
             cmd.push(&pipeline.interface, bytemuck::bytes_of(&primitives::of_tuple(params, tuple)));
+            let (device, buffer, instances) = (&cmd.gpu().device, cmd.buffer(), repeats.instance_count);
             // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-            unsafe { cmd.gpu().device.cmd_draw(cmd.buffer(), count, repeats.instance_count, first, 0) };
+            unsafe {
+                if stages.is_indexed {
+                    device.cmd_draw_indexed(buffer, count, instances, first, call.vertex_offset, 0);
+                } else {
+                    device.cmd_draw(buffer, count, instances, first, 0);
+                }
+            }
         }
     });
 }

@@ -6,14 +6,16 @@ use crate::gpu::shader::variant;
 use crate::passes::mesh;
 use crate::resident::SceneGpu;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
+use crate::techniques::deep_shading::modes::vertices::Vertices;
 use crate::techniques::deep_shading::visibility::draw;
 use crate::techniques::deep_shading::visibility::draw::{Repeats, SampleStages};
 
 impl LayerFrom {
     /// For draws that repeat so.
-    pub(super) fn stages(self, scene: &SceneGpu, repeats: &Repeats) -> SampleStages {
+    pub(super) fn stages(self, scene: &SceneGpu, repeats: &Repeats, vertices: Vertices) -> SampleStages {
         let layer = if self == Self::Vertex { "vertex" } else { "none" };
-        let geometry = (self == Self::Geometry).then(|| variant(GEOM_VARIANTS, &[mesh::vertex_name(scene)]));
-        SampleStages::sharp(draw::vertex_shader(scene, repeats, layer), geometry)
+        let geometry =
+            (self == Self::Geometry).then(|| variant(GEOM_VARIANTS, &[mesh::vertex_name(scene), vertices.name()]));
+        SampleStages::sharp(draw::vertex_shader(scene, repeats, layer, vertices), geometry, vertices)
     }
 }

@@ -14,5 +14,6 @@ pub(super) fn stages(tests: &str) -> SampleStages {
         geometry: Some(variant(GEOM_VARIANTS, &[tests])),
         sides: Some(Sides::Both),
         vertex_count: 3,
+        is_indexed: false,
     }
 }

@@ -29,16 +29,17 @@ pub struct TupleDraws {
 
 impl TupleDraws {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+        let vertices = choices.raster.vertices;
         let depth = if choices.lists.has_zmax { "shading" } else { "none" };
         let formats = [SPID_FORMAT, SHADING_DEPTH_FORMAT];
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = stages::stages(scene, choices, &repeats);
         let pipeline = |alpha| {
-            let names = [alpha, mesh::vertex_name(scene), depth, choices.count_axis()];
+            let [alpha, vertex] = [alpha, mesh::vertex_name(scene)];
             // What is interleaved counts nothing.
             let fragment = match choices.visibility {
-                Visibility::Stochastic => variant(stochastic::FRAGMENTS, &names),
-                _ => variant(FRAG_VARIANTS, &names[..3]),
+                Visibility::Stochastic => variant(stochastic::FRAGMENTS, &[alpha, vertex, depth, choices.count_axis()]),
+                _ => variant(FRAG_VARIANTS, &[alpha, vertex, depth, vertices.name()]),
             };
             let constants = constants_of(choices, &[Some(stages.vertex), stages.geometry, Some(fragment)]);
             GraphicsPipeline::new(

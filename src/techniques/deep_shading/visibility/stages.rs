@@ -36,9 +36,12 @@ impl Visibility {
 
 /// Before fragments. `repeats`: of the same visibility, which draws.
 pub fn stages(scene: &SceneGpu, choices: &Choices, repeats: &Repeats) -> SampleStages {
+    let vertices = choices.raster.vertices;
     match choices.visibility {
-        Visibility::RepeatFrame => SampleStages::sharp(draw::vertex_shader(scene, repeats, "none"), None),
-        Visibility::RepeatDraw | Visibility::Instancing => choices.raster.layer_from.stages(scene, repeats),
+        Visibility::RepeatFrame => {
+            SampleStages::sharp(draw::vertex_shader(scene, repeats, "none", vertices), None, vertices)
+        }
+        Visibility::RepeatDraw | Visibility::Instancing => choices.raster.layer_from.stages(scene, repeats, vertices),
         Visibility::Replicate => replicate::stages(scene, repeats),
         Visibility::Stochastic => stochastic::stages(choices, "layer"),
         Visibility::Ray => unreachable!("rays draw nothing"),

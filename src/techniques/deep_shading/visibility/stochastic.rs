@@ -36,5 +36,6 @@ pub(super) fn stages(choices: &Choices, tests: &str) -> SampleStages {
         sides: Some(Sides::Both),
         // A fan of triangles.
         vertex_count: 3 * (side_count - 2),
+        is_indexed: false,
     }
 }
