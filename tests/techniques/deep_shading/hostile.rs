@@ -3,6 +3,7 @@
 //! the one it has by itself, and what shading space has no place for is counted.
 
 use super::FRAGMENT;
+use crate::support::difference::require_same;
 use crate::support::gltf_file::{GltfFile, U32};
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{Feature, has};
@@ -119,6 +120,34 @@ fn slivers_in_motion_have_all_their_colours() {
     require_whole(&watched, &[("aperture", "0.1")]);
     let watched = watched.showing(moving(&slivers(), "scale", [1.0, -1.0, 1.0], [1.0; 3]));
     require_whole(&watched, &[]);
+}
+
+/// Plates whose planes pass the eye at many distances, at an angle of the screen.
+fn plates(angle: f32) -> Vec<Triangle> {
+    let (x, y) = (angle.cos(), angle.sin());
+    let plate = |index: i32| {
+        let off = 0.0001 * index as f32;
+        let at = |along: f32, z: f32| [3.0 * along * x - off * y, 3.0 * along * y + off * x, z];
+        [at(-1.0, -2.0), at(1.0, -2.0), at(0.0, -40.0)]
+    };
+    (-5000..5000).map(plate).collect()
+}
+
+/// While they pass the eye some samples see them so nearly edge-on that what lies a 500th of a pixel beside a plate is far away in
+/// shading space, where each is broad.
+#[test]
+fn plates_that_pass_the_eye_have_all_their_colours() {
+    for angle in [0.3f32, 1.2] {
+        let (x, y) = (-0.5 * angle.sin(), 0.5 * angle.cos());
+        let watched = Watched::with_scene(moving(&plates(angle), "translation", [-x, -y, 0.0], [x, y, 0.0]));
+        let common = [SIZE, ("spp", "4"), ("tuples", "8"), ("visibility", "repeat-frame")];
+        let fragments = watched.render(DEEP, &both(&common, &[FRAGMENT]));
+        let counters = fragments.measured_counters().unwrap();
+        assert_eq!(counters["samples_without_colour"], 0.0, "{angle}: {counters:?}");
+        assert!(counters["samples_seen"] > 5000.0, "{angle}: {counters:?}");
+        let alone = watched.picture(DEEP, &both(&common, &[("lists", "none")]));
+        require_same(&watched.session.gpu, &fragments.picture().unwrap(), &alone, &angle);
+    }
 }
 
 /// One corner behind the eye, two, all; in the eye's own plane; on the near plane; in the eye.
