@@ -68,24 +68,20 @@ bool is_steep() {
     return !is_even;
 }
 
-// Where the sample sees the triangle in shading space, or the triangle's place beside it. Only where `is_wanted`, by which the loop
-// ends, because some drivers run both sides of every branch.
+// Where the sample sees the triangle in shading space, or, where `is_wanted`, the triangle's place beside it.
 vec4 inside_canonical(uint triangle, bool is_wanted) {
-    vec2 from[3];
-    vec4 canonical_corners[3];
-    for (uint corner = 0u; corner < 3u && is_wanted; corner++) {
-        uint vertex = vertex_of(3u * triangle + corner);
-        Seen open = seen_open(vertex);
-        Seen close = open;
-        if (IS_MOVING != 0u) {
-            close = seen_close(vertex);
-        }
-        TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + in_tuple];
-        from[corner] = from_sample(layer_corner(open, close, tuple), gl_FragCoord.xy);
-        canonical_corners[corner] = canonical_of(open, close);
-    }
     vec4 canonical = in_canonical;
-    if (is_wanted) {
+    // A loop, and no branch: software drivers run a branch that no lane takes, and such triangles are few.
+    for (bool is_missing = is_wanted; is_missing; is_missing = false) {
+        TupleBlock tuple = tuples[frame.sample_index * deep.tuple_count + in_tuple];
+        Seen seen[6];
+        see_triangle(triangle, seen);
+        vec2 from[3];
+        vec4 canonical_corners[3];
+        for (uint corner = 0u; corner < 3u; corner++) {
+            from[corner] = from_sample(layer_corner(seen[corner], seen[corner + 3u], tuple), gl_FragCoord.xy);
+            canonical_corners[corner] = canonical_of(seen[corner], seen[corner + 3u]);
+        }
         vec3 weights = covered_weights(areas_of(from[0], from[1], from[2]));
         if (any(lessThan(weights, vec3(0.0)))) {
             canonical = canonical_between(canonical_corners, inside_weights(weights));

@@ -35,7 +35,7 @@ impl TupleDraws {
         let repeats = choices.visibility.repeats(scene, &gpu.caps.limits, choices.table.tuple_count());
         let stages = stages::stages(scene, choices, &repeats);
         let pipeline = |alpha| {
-            let [alpha, vertex] = [alpha, mesh::vertex_name(scene)];
+            let vertex = mesh::vertex_name(scene);
             // What is interleaved counts nothing.
             let fragment = match choices.visibility {
                 Visibility::Stochastic => variant(stochastic::FRAGMENTS, &[alpha, vertex, depth, choices.count_axis()]),
