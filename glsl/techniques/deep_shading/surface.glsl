@@ -10,6 +10,7 @@
 #include "shading/light.glsl"
 #include "techniques/deep_shading/attributes.glsl"
 #include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/scaled.glsl"
 #include "techniques/deep_shading/stored.glsl"
 
 // BRDF_ and SHADOW_ values.
@@ -157,7 +158,8 @@ void stand_in(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
     Corner b = corner_at(vertices.y);
     Corner c = corner_at(vertices.z);
     EvenPixel even = even_pixel(deep, pixel);
-    Place place = place_at(a.canonical, b.canonical, c.canonical, even.middle);
+    Place place = place_at(
+        scaled(a.canonical, primitive), scaled(b.canonical, primitive), scaled(c.canonical, primitive), even.middle);
     vec3 right = place.right;
     if (deep.warp_falloff != 0.0) {
         place.right = even.right.x * right + even.right.y * place.down;

@@ -55,7 +55,7 @@ pub const STAGES: &[BenchStage] = &[
     BenchStage {
         name: "shade",
         summary: "Passes that shade what is listed, and samples that are not, in nanoseconds a shaded surface",
-        passes: &["entries", "shade", "strays", "indirect.gbuffer", "indirect.shade"],
+        passes: &["scales", "entries", "shade", "strays", "indirect.gbuffer", "indirect.shade"],
         work: Work::Counted(&[INVOCATIONS]),
         made_with: &[],
         fused_by: None,

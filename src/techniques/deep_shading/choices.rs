@@ -14,7 +14,9 @@ use crate::passes::shadow_maps::MapLayout;
 use crate::passes::texels::Texels;
 use crate::settings::{GeometryChoice, Values};
 use crate::techniques::Inputs;
-use crate::techniques::deep_shading::contradictions::{require_both, require_direct, require_spids, require_straight};
+use crate::techniques::deep_shading::contradictions::{
+    require_both, require_direct, require_drawn, require_spids, require_straight,
+};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::coverage_test::CoverageTest;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
@@ -25,6 +27,7 @@ use crate::techniques::deep_shading::modes::sample_tests::is_looped;
 use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::shading_rate;
 use crate::techniques::deep_shading::modes::vertices::Vertices;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources;
@@ -102,6 +105,8 @@ pub struct Choices {
     culls_lights: bool,
     /// Textures are read at several places for a pixel that sees them at a slant.
     reads_along: bool,
+    /// With `--shading-rate blur`: pixels of shading space across a blur, at least.
+    pub blur_pixels: Option<f32>,
     /// With `--direct-shadow map`.
     pub maps: Option<MapLayout>,
 }
@@ -118,6 +123,7 @@ impl Choices {
         require_straight(values)?;
         require_spids(values)?;
         require_both(values)?;
+        require_drawn(values)?;
         let is_compacted = has_lists && values.is_on("compaction");
         let is_by_fragment = shade_by == Some(ShadeBy::Fragment);
         let lens = if values.number("aperture").max(values.number("stereo")) > 0.0 {
@@ -153,6 +159,7 @@ impl Choices {
             culls_lights: values.is_on("cull-lights") && inputs.lights.lights.iter().any(|light| light.range.is_some()),
             maps: maps.map_err(|error| error.within(NAME))?,
             direct,
+            blur_pixels: shading_rate::blur_pixels(values).filter(|_| is_of_space && is_blurred),
             reads_along: inputs.scene.texturing.reads_along(),
             visibility,
             raster: RasterChoices {
@@ -261,6 +268,7 @@ impl Choices {
         constants.extend(self.maps.iter().flat_map(MapLayout::constants));
         constants.extend([
             ("IS_MOVING", u32::from(self.blur.is_moving)),
+            ("HAS_SCALES", u32::from(self.blur_pixels.is_some())),
             ("HAS_LENS", u32::from(self.blur.lens.is_some_and(|lens| lens.reach() > 0.0))),
             ("TOLERATES_DUPLICATES", u32::from(self.lists.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(self.lists.is_compacted)),

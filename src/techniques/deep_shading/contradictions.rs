@@ -5,6 +5,7 @@ use crate::settings::{StereoEyes, Values};
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::lists::Lists;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::shading_rate::ShadingRate;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::modes::warp::Warp;
 use crate::techniques::deep_shading::resources::NAME;
@@ -63,6 +64,16 @@ pub fn require_direct(values: &Values) -> Result<()> {
         return refused("without SPIDs a sample needs its address", "--address-buffer on gives it one");
     }
     Ok(())
+}
+
+/// Errors: rays of the host, which find samples' pixels without the device's scales (exit code 2).
+pub fn require_drawn(values: &Values) -> Result<()> {
+    if !values.is("shading-rate", ShadingRate::Blur) || !values.is("visibility", Visibility::Ray) {
+        return Ok(());
+    }
+    Err(Error::request("--shading-rate blur with --visibility ray: the host does not know how coarse triangles are")
+        .within(NAME)
+        .note("--visibility stochastic sees the same samples"))
 }
 
 /// Errors: the device draws triangles itself that shading space has bent (exit code 2).

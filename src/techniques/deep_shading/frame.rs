@@ -12,13 +12,14 @@ use super::primitives::{self, Primitives};
 use super::reconstruct::Reconstruct;
 use super::resolve::Resolve;
 use super::sample_colors::SampleColors;
+use super::scales::Scales;
 use super::scene::DeepScene;
 use super::separate::SeparateShading;
 use super::stages::{REFUSED, Stages};
 use super::stereo::{self, RightEye};
 use super::visibility::ray::TracedSamples;
 use crate::error::Result;
-use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
+use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image};
 use crate::lens::Lens;
 use crate::passes::accumulate::Accumulate;
 use crate::picture::Aov;
@@ -51,6 +52,7 @@ pub struct DeepFrame {
     primitives: Primitives,
     list: DrawList,
     scene: DeepScene,
+    scales: Option<Scales>,
     maps_once: Option<(String, u64)>,
     shader: ShadingPasses,
     resolve: Resolve,
@@ -96,6 +98,7 @@ impl DeepFrame {
         Ok(Self {
             maps_once: deep_scene.draw_maps_once(gpu, scene)?,
             list,
+            scales: Scales::new(gpu, resources, &choices, &primitives)?,
             scene: deep_scene,
             shader,
             resolve: Resolve::new(gpu, &choices)?,
@@ -136,8 +139,14 @@ impl Frame for DeepFrame {
         if let ShadingPasses::Separate(separate, addresses) = &self.shader {
             bound.extend([addresses.bound(), separate.draw_ranges()]);
         }
+        if let Some(scales) = &self.scales {
+            scales.record(cmd, &bound)?;
+        }
+        let scales = self.scales.as_ref().map(|scales| scales.scales.from(Access::ComputeWrite));
+        // Without scales nothing reads what is bound in their place.
+        bound.push(("Scales", Bound::Buffer(scales.map_or(frame, |scales| scales.resource))));
         let (table, extent) = (&self.choices.table, color.description.extent);
-        let inputs = DrawInputs { scene, list, primitives, table, frame: extent, bound: &bound };
+        let inputs = DrawInputs { scene, list, primitives, table, frame: extent, scales, bound: &bound };
         match &self.shader {
             ShadingPasses::Separate(separate, _) => {
                 let shaded = separate.record(cmd, &self.scene, inputs, counters)?;

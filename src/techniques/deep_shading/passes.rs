@@ -1,6 +1,7 @@
 //! The passes of a frame in order, up to the resolve and what counts after it, and what each touches.
 
 use super::choices::Choices;
+use super::scales::SCALES;
 use super::visibility::looped;
 use super::{entries, indirect, reconstruct, stereo};
 use crate::gpu::Access;
@@ -23,7 +24,15 @@ fn links(choices: &Choices, access: Access) -> Touches {
     lists
 }
 
+/// How coarse triangles are, as `access` reads it.
+fn scales(choices: &Choices, access: Access) -> Option<(String, Access)> {
+    choices.blur_pixels.map(|_| touch(SCALES, access))
+}
+
 pub fn plan(plan: &mut Plan, choices: &Choices) {
+    if choices.blur_pixels.is_some() {
+        plan.pass(full(SCALES), [touch(SCALES, Access::ComputeWrite)]);
+    }
     if choices.lists.is_direct {
         let copied = [BEGINS, NODES, ADDRESSES, COLORS, COUNTERS].into_iter();
         let copied = copied.chain(choices.lists.is_compacted.then_some(LINEAR));
@@ -51,6 +60,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
         shaded.extend(choices.lists.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
         shaded.extend(choices.lists.has_marks.then(|| touch(MARKS, Access::GraphicsRead)));
         shaded.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
+        shaded.extend(scales(choices, Access::GraphicsRead));
         shaded.extend([touch(COLORS, Access::FragmentWrite), touch(COUNTERS, Access::FragmentWrite)]);
         plan.pass(full("shade"), shaded);
     }
@@ -71,6 +81,7 @@ fn visibility(choices: &Choices) -> Touches {
     let written = choices.visibility.writes();
     let mut seen = vec![touch(SPIDS, written)];
     seen.extend(choices.has_depth().then(|| touch(DEPTH, Access::DepthWrite)));
+    seen.extend(scales(choices, Access::GraphicsRead));
     seen.extend(choices.raster.is_looped.then(looped::touches).into_iter().flatten());
     seen.extend([touch(COUNTERS, Access::TransferWrite), touch(COUNTERS, Access::FragmentWrite)]);
     seen.extend(choices.lists.has_zmax.then(|| touch(SHADING_DEPTHS, written)));
@@ -111,6 +122,7 @@ fn insertion(plan: &mut Plan, choices: &Choices) {
 
 fn shaded_entries(choices: &Choices) -> Touches {
     let mut shaded = entries::read().to_vec();
+    shaded.extend(scales(choices, Access::ComputeRead));
     shaded.extend(choices.maps.iter().filter_map(|maps| maps.read_by(NAME, Access::ComputeSample)));
     shaded.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);
     shaded

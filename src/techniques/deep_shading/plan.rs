@@ -8,7 +8,7 @@ use super::counters;
 use super::lists::direct;
 use super::tuples::TupleTable;
 use super::visibility::{looped, ray};
-use super::{buffer_addresses, entries, indirect, passes, ranges, reconstruct, stereo};
+use super::{buffer_addresses, entries, indirect, passes, ranges, reconstruct, scales, stereo};
 use crate::error::{Error, Result};
 use crate::gpu::ImageDescription;
 use crate::gpu::shader::structs::{DeepBlock, DrawBlock, FrameBlock, TupleBlock};
@@ -59,6 +59,9 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>) -> Result<Plan> {
     if matches!(choices.shading, Shading::Deep | Shading::IndirectGbuffer) {
         entries::plan(&mut plan, choices.samples_of(extent), inputs.scene.materials.len());
         ranges::plan(&mut plan, full(ranges::BY_ID), inputs.stats.draw_count);
+        if choices.blur_pixels.is_some() {
+            scales::plan(&mut plan, inputs.scene.triangle_count());
+        }
         buffer_addresses::plan(&mut plan, choices.is_by_address);
     }
     if choices.run_count > 1 {

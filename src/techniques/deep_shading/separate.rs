@@ -226,6 +226,7 @@ impl SeparateShading {
                 visibility::record(cmd, rasterizer, inputs, samples, counters, self.visibility)?;
             }
         }
+        let inputs = inputs.after_visibility();
         match &self.source {
             Source::Lists(list_shading) => self.record_lists(cmd, deep, inputs, list_shading, counters),
             Source::Samples(alone) => {

@@ -14,6 +14,7 @@ use crate::techniques::deep_shading::modes::polygon_from::PolygonFrom;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
+use crate::techniques::deep_shading::modes::shading_rate::ShadingRate;
 use crate::techniques::deep_shading::modes::vertices::Vertices;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::modes::warp::Warp;
@@ -260,6 +261,29 @@ pub const SETTINGS: &[Setting] = &[
                 &[ShadingKind::Deep, ShadingKind::IndirectGbuffer, ShadingKind::TextureSpace],
                 "it shades no pixels of shading space",
             )
+        },
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "shading-rate",
+        kind: Kind::Choice(ShadingRate::WORDS),
+        default: "full",
+        paper: "Clarberg 2014, 6",
+        help: "How finely triangles are shaded: at each pixel of shading space (full); or coarser along an axis on which all \
+               of a triangle is blurred, by lens or motion, up to 16 times, so that --blur-pixels lie across the blur (blur)",
+        unread: without_space,
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "blur-pixels",
+        kind: Kind::Number { min: 1.0, max: 64.0 },
+        default: "8",
+        unit: "px",
+        help: "Pixels of shading space across the blur of a triangle with --shading-rate blur, at least",
+        unread: |values| {
+            without_space(values).or_else(|| {
+                Unread::unless(values, "shading-rate", &[ShadingRate::Blur], "blur does not matter to shading")
+            })
         },
         ..Setting::changing(Changes::Picture)
     },

@@ -11,10 +11,10 @@ const SIZE: (&str, &str) = ("size", "160x90");
 const AUTO: (&str, &str) = ("guard-band", "auto");
 
 /// Vertical angle of the camera, radians.
-const Y_FOV: f32 = 0.9;
+pub const Y_FOV: f32 = 0.9;
 
 /// A wall in all of the picture, `aside` metres to the right.
-fn wall(aside: f32) -> Scene {
+pub fn wall(aside: f32) -> Scene {
     let name = format!("wall {aside}");
     let mut scene = Scene { name: name.clone(), hash: name, ..Scene::default() };
     rectangle(&mut scene, vec3(aside, 0.0, -4.0), 40.0 * Vec3::X, 40.0 * Vec3::Y, panel(Vec3::splat(0.25)));

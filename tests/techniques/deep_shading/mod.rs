@@ -12,6 +12,7 @@ mod rates;
 mod reconstruct;
 mod rivals;
 mod samplers;
+mod shading_rate;
 mod stages;
 mod stereo;
 mod texture_space;

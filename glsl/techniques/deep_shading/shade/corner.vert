@@ -3,6 +3,7 @@
 // variants: MARKS=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/scaled.glsl"
 
 layout(location = 0) flat out uint out_primitive;
 #ifdef MARKS_ON
@@ -20,7 +21,7 @@ void main() {
         return;
     }
 #endif
-    vec4 clip = canonical_clip(vertex_of(corner));
+    vec4 canonical = scaled(canonical_corner(corner), out_primitive);
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
-    gl_Position = vec4(shading_from_clip(deep, clip) * 2.0 / extent - clip.w, clip.zw);
+    gl_Position = vec4(canonical.xy * 2.0 / extent - canonical.w, canonical.zw);
 }

@@ -3,6 +3,7 @@
 // variants: MARKS=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
+#include "techniques/deep_shading/scaled.glsl"
 #include "techniques/deep_shading/shade/hull.glsl"
 
 layout(location = 0) flat out uint out_primitive;
@@ -22,8 +23,11 @@ void main() {
         return;
     }
 #endif
-    Hull hull = hull_of(
-        canonical_corner(3u * triangle), canonical_corner(3u * triangle + 1u), canonical_corner(3u * triangle + 2u));
+    vec4 corners[3];
+    for (uint corner = 0u; corner < 3u; corner++) {
+        corners[corner] = scaled(canonical_corner(3u * triangle + corner), out_primitive);
+    }
+    Hull hull = hull_of(corners[0], corners[1], corners[2]);
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
     gl_Position = hull.count == 0u ? vec4(0.0, 0.0, 0.5, 1.0) : vec4(
         fan_corner(hull, vertex) * 2.0 / extent - 1.0, 0.5, 1.0);

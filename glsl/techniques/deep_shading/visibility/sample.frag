@@ -6,6 +6,7 @@
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/scaled.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
 #include "techniques/deep_shading/visibility/triangle.glsl"
@@ -116,7 +117,8 @@ void main() {
     }
     uint triangle = drawn_triangle();
     vec4 canonical = inside_canonical(triangle, is_wanted);
-    out_spid = uvec2(triangle + params.primitive_offset, shading_pixel(deep, canonical));
+    uint primitive = triangle + params.primitive_offset;
+    out_spid = uvec2(primitive, shading_pixel(deep, scaled(canonical, primitive)));
 #ifdef DEPTH_SHADING
     out_shading_depth = shading_depth(canonical);
 #endif

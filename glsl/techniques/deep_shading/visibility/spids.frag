@@ -7,6 +7,7 @@
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/scaled.glsl"
 #include "techniques/deep_shading/ranges.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
@@ -52,7 +53,8 @@ void main() {
     vec3 areas = areas_of(from_sample(corners[0], at), from_sample(corners[1], at), from_sample(corners[2], at));
     vec3 weights = covered_weights(areas);
     vec4 canonical = canonical_between(canonical_corners, weights);
-    out_spid = uvec2(triangle + params.primitive_offset, shading_pixel(deep, canonical));
+    uint primitive = triangle + params.primitive_offset;
+    out_spid = uvec2(primitive, shading_pixel(deep, scaled(canonical, primitive)));
 #ifdef DEPTH_SHADING
     out_shading_depth = shading_depth(canonical);
 #endif

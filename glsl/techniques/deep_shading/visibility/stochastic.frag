@@ -5,6 +5,7 @@
 #include "frame.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/place.glsl"
+#include "techniques/deep_shading/scaled.glsl"
 #include "techniques/deep_shading/counting.glsl"
 #include "techniques/deep_shading/visibility/covers.glsl"
 #include "techniques/deep_shading/visibility/seen.glsl"
@@ -49,7 +50,7 @@ void main() {
         canonical_corners[corner] = canonical_of(open_corner(corner), close_corner(corner));
     }
     vec4 canonical = canonical_between(canonical_corners, placed_weights(tuple, at));
-    out_spid = uvec2(in_primitive, shading_pixel(deep, canonical));
+    out_spid = uvec2(in_primitive, shading_pixel(deep, scaled(canonical, in_primitive)));
 #ifdef DEPTH_SHADING
     out_shading_depth = shading_depth(canonical);
 #endif

@@ -40,6 +40,7 @@ impl ShadeEntries {
         // Entries are counted after the frame.
         let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
         cmd.pass(&full(self.pass), traffic, |cmd| {
+            cmd.barriers(inputs.scales_to(Access::ComputeRead));
             cmd.barriers(maps.and_then(|maps| maps.to(Access::ComputeSample)));
             cmd.barriers([colors, counters].map(|edge| edge.to(Access::ComputeWrite)));
             let mut bound = inputs.bound.to_vec();

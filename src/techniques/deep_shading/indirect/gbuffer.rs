@@ -43,6 +43,7 @@ impl Gbuffer {
         let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
         cmd.pass(&full(PASS), traffic, |cmd| {
             cmd.barriers(entries.entries.iter().map(|buffer| buffer.discard(Access::ComputeWrite)));
+            cmd.barriers(inputs.scales_to(Access::ComputeRead));
             cmd.barriers([colors.to(Access::ComputeRead)]);
             let mut bound = inputs.bound.to_vec();
             bound.extend(entries.bound());

@@ -27,6 +27,7 @@ use super::counters::FrameCounts;
 use super::entries::order::EntryOrder;
 use super::entries::sort::Sort;
 use super::pass_inputs::{DrawInputs, ShadingEdges};
+use super::scales::SCALES;
 use super::stereo;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
@@ -69,7 +70,9 @@ pub fn plan_passes(plan: &mut Plan, choices: &Choices) {
     plan.pass(full(memoise::PASS), memoised);
     super::entries::plan_sort(plan);
     let made = ENTRIES.map(|(name, _)| touch(name, Access::ComputeWrite)).into_iter();
-    plan.pass(full(gbuffer::PASS), made.chain(super::entries::read()).chain([touch(COLORS, Access::ComputeRead)]));
+    let scales = choices.blur_pixels.map(|_| touch(SCALES, Access::ComputeRead));
+    let read = super::entries::read().into_iter().chain(scales).chain([touch(COLORS, Access::ComputeRead)]);
+    plan.pass(full(gbuffer::PASS), made.chain(read));
     let mut shaded: Vec<_> = ENTRIES.map(|(name, _)| touch(name, Access::ComputeRead)).into();
     shaded.extend(choices.maps.iter().filter_map(|maps| maps.read_by(NAME, Access::ComputeSample)));
     shaded.extend([touch(COLORS, Access::ComputeWrite), touch(COUNTERS, Access::ComputeWrite)]);

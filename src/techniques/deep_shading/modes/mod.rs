@@ -13,6 +13,7 @@ pub mod sample_tests;
 pub mod shade_by;
 pub mod shading;
 pub mod shading_kind;
+pub mod shading_rate;
 pub mod vertices;
 pub mod visibility;
 pub mod warp;

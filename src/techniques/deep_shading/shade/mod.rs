@@ -97,6 +97,7 @@ impl Shade {
             invocations: None,
         };
         cmd.pass(&full("shade"), traffic, |cmd| {
+            cmd.barriers(inputs.scales_to(Access::GraphicsRead));
             cmd.barriers(maps.and_then(|maps| maps.to(Access::FragmentSample)));
             cmd.barriers(listed.links_to(Access::GraphicsRead));
             cmd.barriers(listed.depths_and_marks_to(Access::GraphicsRead));

@@ -89,6 +89,7 @@ pub fn record(
     cmd.pass(&format!("{NAME}.visibility"), traffic, |cmd| {
         cmd.barriers(samples.colors().map(|image| image.discard(Access::ColorWrite)));
         cmd.barriers(samples.depth.iter().map(|depth| depth.discard(Access::DepthWrite)));
+        cmd.barriers(inputs.scales_to(Access::GraphicsRead));
         begin_counters(cmd, counters);
         let mut bound = inputs.bound.to_vec();
         bound.push(("Counters", Bound::Buffer(counters)));
