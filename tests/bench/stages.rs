@@ -33,7 +33,7 @@ type Changes = &'static [(&'static str, &'static str)];
 /// Settings of other methods, whose passes a stage of a technique names too.
 const OTHERS: &[(&str, &str, Changes)] = &[
     ("deep_shading", "shade", &[("shade-by", "fragment")]),
-    ("deep_shading", "shade", &[("shading", "indirect-gbuffer"), ("shading-rate", "blur")]),
+    ("deep_shading", "shade", &[("shading", "indirect-gbuffer"), ("shading-rate", "blur"), ("aperture", "0.2")]),
     ("inferred_lighting", "light", &[("volumes", "quad")]),
 ];
 
