@@ -29,9 +29,8 @@ layout(std430, set = 0, binding = 19) writeonly buffer Scales { uvec2 scales[]; 
 const float COARSEST_SCALE = 0.0625;
 
 // Least size of what goes from `low` to `high`.
-vec2 least_size(vec2 low, vec2 high) {
-    vec2 size = min(abs(low), abs(high));
-    return vec2(low.x * high.x > 0.0 ? size.x : 0.0, low.y * high.y > 0.0 ? size.y : 0.0);
+float least_size(float low, float high) {
+    return low * high > 0.0 ? min(abs(low), abs(high)) : 0.0;
 }
 
 // Widths of the box that everything of the triangle is blurred by at least, in pixels of even shading space: what the lens
@@ -58,12 +57,13 @@ vec2 least_blur_px(Seen seen[6]) {
     vec2 blur = vec2(0.0);
     if (HAS_LENS != 0u) {
         // Each of two eyes has a part of the disk.
-        float part = (1.0 - abs(tuples[0].eye)) * least_size(parts.xx, parts.yy).x;
+        float part = (1.0 - abs(tuples[0].eye)) * least_size(parts.x, parts.y);
         blur = abs(deep.lens) * part * deep.scaled_px;
     }
     if (IS_MOVING != 0u) {
         vec2 across = max(abs(low_way), abs(high_way)).yx;
-        blur += max(least_size(low_way, high_way) - across, 0.0);
+        vec2 along = vec2(least_size(low_way.x, high_way.x), least_size(low_way.y, high_way.y));
+        blur += max(along - across, 0.0);
     }
     return blur;
 }

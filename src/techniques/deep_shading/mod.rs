@@ -17,12 +17,12 @@
 //! - hull: the polygon around every pixel which a triangle touches (`--conservative`)
 //! - atlas, chart: a mesh's own texture coordinates, and a connected part of them (`--shading texture-space`)
 //!
-//! Passes: shadow_maps (with `--direct-shadow map`), scales (with `--shading-rate blur`), visibility (each sample's SPID), lists (insertion by
-//! compare-exchange), lists.compact, lists.address, entries (sorts what lists have, and strays, by material), shade,
-//! resolve (box filter), with `--reconstruct on` reconstruct.samples (motion and depth), reconstruct.bins, reconstruct.layers,
-//! reconstruct.means and reconstruct.filter, count (`--instrument on`), accumulate (`--accumulate` above 1). With
-//! `--shade-by fragment` shade is one conservative pass over shading space, and strays follow it; with `--lists none`
-//! entries.samples takes the place of the lists.
+//! Passes: shadow_maps (with `--direct-shadow map`), scales (with `--shading-rate blur`), visibility (each sample's SPID),
+//! lists (insertion by compare-exchange), lists.compact, lists.address, entries (sorts what lists have, and strays, by
+//! material), shade, resolve (box filter), with `--reconstruct on` reconstruct.samples (motion and depth), reconstruct.bins,
+//! reconstruct.layers, reconstruct.means and reconstruct.filter, count (`--instrument on`), accumulate (`--accumulate`
+//! above 1). With `--shade-by fragment` shade is one conservative pass over shading space, and strays follow it; with
+//! `--lists none` entries.samples takes the place of the lists.
 //!
 //! Baselines (`--shading`; baseline/mod.rs), whose passes are shadow_maps, one that draws and shades at once, resolve
 //! and accumulate, or those of `indirect-gbuffer`
@@ -51,8 +51,8 @@
 //! - a compute shader shades what lists have, as entries (`--shade-by fragment` is the paper's way: nothing has to be drawn
 //!   where a colour is a function of triangle and pixel); where fragments do, shading space is drawn with triangles that
 //!   lists have, which insertion marks (`--shaded-triangles all` is the paper's way)
-//! - where blur makes the shading rate lower (`--shading-rate blur`), which the paper leaves for others to evaluate, each triangle is
-//!   scaled by itself (scales.rs)
+//! - where blur makes the shading rate lower (`--shading-rate blur`), which the paper leaves for others to evaluate, each
+//!   triangle is scaled by itself (scales.rs)
 //! - BLEND surfaces, which the paper does not have: as many samples see one as its alpha says
 //! - `--visibility stochastic` tests all of a pixel's samples in a loop, the nearest kept by 64-bit atomics (the paper has
 //!   images of 8 samples a pixel and their depth test), or draws a layer a tuple where the device has none

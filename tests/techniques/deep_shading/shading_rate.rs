@@ -1,19 +1,28 @@
 //! Triangles that are shaded as coarsely as blur lets them be (`--shading-rate blur`).
 
 use super::guard_band::{Y_FOV, wall};
-use super::{DEEP, FOVEATED, FRAGMENT, conservative, refusal, rmse, turning, visibilities};
+use super::{DEEP, FOVEATED, FRAGMENT, conservative, refusal, turning, visibilities};
 use crate::support::difference::{self, require_same};
 use crate::support::watched::{Changes, Watched, both};
+use glam::{Mat4, Vec3};
+use quincunx::picture::Picture;
+use quincunx::scene;
 use std::collections::BTreeMap;
 
 const BLUR: (&str, &str) = ("shading-rate", "blur");
 const SIZE: (&str, &str) = ("size", "160x90");
 
-fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f64> {
-    let counters = watched.render(DEEP, changes).measured_counters().unwrap();
+/// A picture, and what was counted.
+fn seen(watched: &Watched, changes: Changes<'_>) -> (Picture, BTreeMap<&'static str, f64>) {
+    let renderer = watched.render(DEEP, changes);
+    let counters = renderer.measured_counters().unwrap();
     assert_eq!(counters["samples_without_colour"], 0.0, "{changes:?}");
     assert_eq!(counters["samples_of_full_lists"], 0.0, "{changes:?}");
-    counters
+    (renderer.picture().unwrap(), counters)
+}
+
+fn counters(watched: &Watched, changes: Changes<'_>) -> BTreeMap<&'static str, f64> {
+    seen(watched, changes).1
 }
 
 /// As many pixels of shading space as what is seen of the wall has, each as wide along an axis as a stated part of the blur there;
@@ -47,7 +56,7 @@ fn a_wall_out_of_focus_has_as_many_pixels_as_its_blur_lets_it() {
     }
 }
 
-/// What is sharp, in focus or at rest, keeps its bits; so does a lens that brings the blur of what moves along to nothing.
+/// What is sharp, in focus or at rest, keeps its bits; so does what turns, whose corners go different ways.
 #[test]
 fn what_is_sharp_is_shaded_at_each_pixel() {
     let common = [SIZE, ("spp", "8")];
@@ -69,8 +78,8 @@ fn coarse_shading_does_not_show_in_a_wide_blur() {
     let common = [("size", "320x180"), ("aperture", "0.05"), ("focus", "4"), ("spp", "32")];
     let reference = watched.picture(DEEP, &both(&common, &[("spp", "64"), ("tuples", "64"), ("accumulate", "4")]));
     let found = |changes: Changes<'_>| {
-        let changes = both(&common, changes);
-        (rmse(&watched, &changes, &reference), counters(&watched, &changes)["shaded_per_pixel"])
+        let (picture, counters) = seen(&watched, &both(&common, changes));
+        (difference::rmse(&picture, &reference), counters["shaded_per_pixel"])
     };
     let (full, full_rate) = found(&[]);
     let (blur, blur_rate) = found(&[BLUR]);
@@ -83,12 +92,18 @@ fn coarse_shading_does_not_show_in_a_wide_blur() {
 /// All that reads how coarse triangles are: entries, and fragments of every method that the driver has.
 #[track_caller]
 fn require_one_coarse_picture(watched: &Watched, common: Changes<'_>) {
-    let common = &both(common, &[("size", "97x55"), BLUR]);
-    let alone = watched.picture(DEEP, &both(common, &[("lists", "none")]));
+    let sharp = &both(common, &[("size", "97x55")]);
+    let common = &both(sharp, &[BLUR, ("blur-pixels", "2")]);
+    let (alone, full) = (watched.picture(DEEP, &both(common, &[("lists", "none")])), counters(watched, sharp));
+    let (listed, coarse) = seen(watched, common);
+    require_same(&watched.session.gpu, &listed, &alone, common);
+    let [coarse, full] = [coarse, full].map(|counters| counters["shaded_per_pixel"]);
+    println!("{common:?}: {coarse} of {full} executions a pixel");
+    assert!(coarse < 0.8 * full, "{common:?}: {coarse} of {full}");
     let goes = |method: &&str| *method != "hardware" || !common.contains(&FOVEATED);
     let drawn = conservative(watched).into_iter().filter(goes);
     let drawn = drawn.map(|method| vec![FRAGMENT, ("conservative", method), ("zmax", "on")]);
-    for method in [vec![], vec![("shading", "indirect-gbuffer")]].into_iter().chain(drawn) {
+    for method in drawn.chain([vec![("shading", "indirect-gbuffer")]]) {
         let changes = both(common, &method);
         require_same(&watched.session.gpu, &watched.picture(DEEP, &changes), &alone, &changes);
     }
@@ -96,12 +111,18 @@ fn require_one_coarse_picture(watched: &Watched, common: Changes<'_>) {
 
 #[test]
 fn every_method_shades_coarse_triangles_alike() {
-    let hall = Watched::open("hall:triangles=8000");
-    require_one_coarse_picture(&hall, &[("spp", "4"), ("aperture", "0.6"), ("focus", "6"), ("blur-pixels", "4")]);
-    let lens = [("spp", "2"), ("aperture", "0.3"), ("guard-band", "8"), FOVEATED];
-    require_one_coarse_picture(&Watched::open("cornell"), &lens);
-    let turning = Watched::with_scene(turning("fence:lights=6"));
-    require_one_coarse_picture(&turning, &[("camera", "rotor"), ("spp", "4"), ("blur-pixels", "2")]);
+    let lamps = Watched::open("lamps:objects=40,lights=8");
+    let lens = [("spp", "2"), ("aperture", "0.4"), ("focus", "3")];
+    require_one_coarse_picture(&lamps, &lens);
+    require_one_coarse_picture(&lamps, &both(&lens, &[("guard-band", "8"), FOVEATED]));
+    let mut closing = scene::load("cornell", 1).unwrap();
+    // One of the same hash would be the same scene.
+    closing.hash.push('\'');
+    for draw in &mut closing.draws {
+        draw.world_from_object = Mat4::from_translation(Vec3::X) * draw.world_from_object;
+    }
+    let pushed = Watched::with_scene(scene::load("cornell", 1).unwrap().closing_as(closing).unwrap());
+    require_one_coarse_picture(&pushed, &[("spp", "4")]);
 }
 
 /// Whatever sees the samples, they have coarse pixels, and both eyes of two share them.
@@ -111,10 +132,8 @@ fn every_visibility_finds_coarse_pixels() {
     let common = [SIZE, ("spp", "8"), ("aperture", "0.4"), ("focus", "3"), ("brdf", "lambert")];
     let coarse = both(&common, &[BLUR, ("blur-pixels", "4")]);
     let found = |changes: Changes<'_>| {
-        let renderer = watched.render(DEEP, &both(&coarse, changes));
-        let counters = renderer.measured_counters().unwrap();
-        assert_eq!(counters["samples_without_colour"], 0.0, "{changes:?}");
-        (renderer.picture().unwrap(), counters["shaded_per_pixel"])
+        let (picture, counters) = seen(&watched, &both(&coarse, changes));
+        (picture, counters["shaded_per_pixel"])
     };
     let (frames, rate) = found(&[("visibility", "repeat-frame")]);
     let full = counters(&watched, &common)["shaded_per_pixel"];
