@@ -169,7 +169,7 @@ pub const GROUPS: &[Group] = &[
         name: "coarse",
         technique: NAME,
         place: HALL,
-        common: &[FEW, LENS, ("shading-rate", "blur"), FRAGMENT],
+        common: &[FEW, ("aperture", "1"), ("shading-rate", "blur"), ("blur-pixels", "1"), FRAGMENT],
         twin: ALONE,
         methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
