@@ -53,12 +53,12 @@ layout(buffer_reference, std430, buffer_reference_align = 16) buffer Quads { vec
             name[index] = word;                                \
         }                                                      \
     }
-#define RAISES_WORDS(function, name)                                     \
+#define LOWERS_WORDS(function, name)                                     \
     void function(uint index, uint word) {                               \
         if (BY_ADDRESS != 0u) {                                          \
-            atomicMax(Words(buffer_addresses.name).words[index], word);  \
+            atomicMin(Words(buffer_addresses.name).words[index], word);  \
         } else {                                                         \
-            atomicMax(name[index], word);                                \
+            atomicMin(name[index], word);                                \
         }                                                                \
     }
 // Returns what was there.

@@ -1,6 +1,6 @@
 // A triangle at the pixels of shading space that it touches: shaded where the list has it (section 4.4; appendix A, pass 3).
 // Pass: src/techniques/deep_shading/shade/mod.rs.
-// variants: LISTS=linked|compact ZMAX=off|on VERTEX=plain|extended SHADOWS=traced|mapped
+// variants: LISTS=linked|compact VERTEX=plain|extended SHADOWS=traced|mapped
 #version 460
 #include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
@@ -11,6 +11,9 @@
 layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
 // 1: what is shaded is counted.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
+
+// Stores would put it off.
+layout(early_fragment_tests) in;
 
 layout(location = 0) flat in uint in_primitive;
 
@@ -26,36 +29,9 @@ WRITES_PAIRS(set_color, colors)
 layout(std430, set = 0, binding = 23) readonly buffer Linear { uint linear[]; };
 READS_WORDS(row_id, linear)
 #endif
-#ifdef ZMAX_ON
-layout(std430, set = 0, binding = 25) readonly buffer ZMax { uint zmax[]; };
-READS_WORDS(zmax_of, zmax)
-#endif
 layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 #include "techniques/deep_shading/nodes.glsl"
-
-#ifdef ZMAX_ON
-// Whether nothing of the triangle in this pixel is as near as what is farthest of all that samples saw here. Never so where
-// a sample saw this triangle: it saw it between its corners. The margin is for interpolation, whose errors are parts of what
-// a triangle spans.
-bool is_hidden(uint pixel) {
-    uint corner = 3u * (in_primitive - params.primitive_offset);
-    vec4 clips[3] = vec4[3](
-        canonical_clip(vertex_of(corner)), canonical_clip(vertex_of(corner + 1u)), canonical_clip(vertex_of(corner + 2u)));
-    float nearest = 0.0;
-    float farthest = 1.0;
-    for (uint index = 0u; index < 3u; index++) {
-        if (clips[index].w <= 0.0 || clips[index].z > clips[index].w) {
-            return false;
-        }
-        float depth = clips[index].z / clips[index].w;
-        nearest = max(nearest, depth);
-        farthest = min(farthest, depth);
-    }
-    float farthest_seen = uintBitsToFloat(~zmax_of(pixel));
-    return nearest + 0.05 * (nearest - farthest) + 1e-3 * nearest < farthest_seen;
-}
-#endif
 
 void main() {
     uvec2 at = uvec2(gl_FragCoord.xy);
@@ -73,11 +49,6 @@ void main() {
     if (begin_of(pixel) == 0u) {
         return;
     }
-#ifdef ZMAX_ON
-    if (is_hidden(pixel)) {
-        return;
-    }
-#endif
     uint color = color_index(pixel, in_primitive);
     if (color == NO_COLOR) {
         return;

@@ -90,10 +90,13 @@ uint shading_pixel(DeepBlock deep, vec4 canonical) {
     return has_place ? pixel.x | pixel.y << 16 : NO_SHADING_PIXEL;
 }
 
-// Its depth, greater the farther, as the bits of floats without sign compare.
+// Its depth, reversed, as bits: those of floats without sign compare as the floats do.
 uint shading_depth(vec4 canonical) {
-    return ~floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
+    return floatBitsToUint(clamp(canonical.z / canonical.w, 0.0, 1.0));
 }
+
+// Bits of the depth that zmax begins at: the near plane, behind which lies all that may be seen.
+const uint NEAREST_DEPTH = 0x3f800000u;
 
 // Tuples of one eye.
 uint eye_tuples(DeepBlock deep) {

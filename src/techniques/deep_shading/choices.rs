@@ -272,6 +272,7 @@ impl Choices {
             ("HAS_LENS", u32::from(self.blur.lens.is_some_and(|lens| lens.reach() > 0.0))),
             ("TOLERATES_DUPLICATES", u32::from(self.lists.tolerates_duplicates)),
             ("IS_COMPACTED", u32::from(self.lists.is_compacted)),
+            ("HAS_ZMAX", u32::from(self.lists.has_zmax)),
             ("HAS_LIST_ENTRIES", u32::from(self.lists.has_entries)),
             ("IS_COUNTED", u32::from(self.is_counted)),
             ("TEXELS", self.texels),

@@ -41,8 +41,9 @@
 //!   (`--duplicates tolerated` is the paper's way)
 //! - colours of a compacted list follow each other from a place that the list's first node keeps; a pass of its own
 //!   then looks up each sample's address
-//! - s_z is the depth where the sample hit, and a triangle is hidden where its nearest corner is behind all of them:
-//!   the test needs no depth buffer in shading space, and hulls no depth
+//! - s_z is the depth where the sample hit; zmax is a buffer, as compute shaders have no atomics on depth images, and is copied
+//!   into one. Samples lie anywhere in a pixel: hulls lie nearer than their triangle's plane by what that rises in half a one;
+//!   what is thinner than a pixel, warped or not drawn by hulls is as near as its nearest corner (depth.glsl)
 //! - a shading point outside its triangle is brought to the triangle's nearest place; texture levels come from rates on
 //!   the triangle's plane: colours depend on triangle and pixel alone
 //! - samples outside shading space, behind its eye or before its near plane are shaded where they are seen, and

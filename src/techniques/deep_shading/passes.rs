@@ -8,8 +8,8 @@ use crate::gpu::Access;
 use crate::plan::Plan;
 use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::resources::{
-    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, MARKS, NAME, NODES, SHADING_DEPTHS, SPIDS,
-    ZMAX, full,
+    ADDRESSES, BEGINS, COLOR, COLORS, COUNTERS, DEPTH, LENGTHS, LINEAR, MARKS, NAME, NODES, SHADE_DEPTH,
+    SHADING_DEPTHS, SPIDS, ZMAX, full,
 };
 
 type Touches = Vec<(String, Access)>;
@@ -57,7 +57,10 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
     entries::plan_sort(plan);
     if choices.is_by_fragment() {
         let mut shaded = links(choices, Access::GraphicsRead);
-        shaded.extend(choices.lists.has_zmax.then(|| touch(ZMAX, Access::GraphicsRead)));
+        if choices.lists.has_zmax {
+            shaded.extend([touch(ZMAX, Access::TransferRead), touch(SHADE_DEPTH, Access::TransferWrite)]);
+            shaded.push(touch(SHADE_DEPTH, Access::DepthTest));
+        }
         shaded.extend(choices.lists.has_marks.then(|| touch(MARKS, Access::GraphicsRead)));
         shaded.extend(choices.maps.iter().filter_map(|maps| maps.read(NAME)));
         shaded.extend(scales(choices, Access::GraphicsRead));

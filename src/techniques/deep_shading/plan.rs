@@ -21,8 +21,8 @@ use crate::techniques::deep_shading::modes::shading::Shading;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
 use crate::techniques::deep_shading::resources::{
     ADDRESS_BYTES, ADDRESSES, BEGIN_BYTES, BEGINS, COLOR, COLOR_BYTES, COLORS, COUNTERS, DEPTH, DEPTH_FORMAT, LENGTHS,
-    LINEAR, LINEAR_COUNT, MARKS, NAME, NODE_BYTES, NODES, ROW_ID_BYTES, SHADING_DEPTH_FORMAT, SHADING_DEPTHS,
-    SPID_FORMAT, SPIDS, ZMAX, full, stored,
+    LINEAR, LINEAR_COUNT, MARKS, NAME, NODE_BYTES, NODES, ROW_ID_BYTES, SHADE_DEPTH, SHADING_DEPTH_FORMAT,
+    SHADING_DEPTHS, SPID_FORMAT, SPIDS, ZMAX, full, stored,
 };
 use ash::vk::{BufferUsageFlags, Format, ImageUsageFlags as Usage};
 
@@ -142,6 +142,10 @@ fn plan_deep(plan: &mut Plan, choices: &Choices, inputs: &Inputs<'_>) {
         }
         if choices.lists.has_marks {
             list("listed_triangles", MARKS, inputs.scene.triangle_count().div_ceil(32) * 4);
+        }
+        if choices.lists.has_zmax {
+            let usage = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::TRANSFER_DST;
+            plan.image("shading_depth", full(SHADE_DEPTH), choices.space.extent, DEPTH_FORMAT, usage);
         }
         if choices.lists.has_zmax && !choices.lists.is_direct {
             let depths = layers(choices, inputs, SHADING_DEPTH_FORMAT, attached(choices));

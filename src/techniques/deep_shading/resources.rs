@@ -25,6 +25,8 @@ pub const COLORS: &str = "shade.colors";
 pub const LINEAR: &str = "lists.linear";
 pub const ADDRESSES: &str = "lists.addresses";
 pub const ZMAX: &str = "lists.zmax";
+/// The same as a depth buffer.
+pub const SHADE_DEPTH: &str = "shade.depth";
 pub const MARKS: &str = "lists.marks";
 pub const LENGTHS: &str = "count.lengths";
 pub const COUNTERS: &str = "count.counters";

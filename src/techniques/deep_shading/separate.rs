@@ -131,7 +131,11 @@ impl SeparateShading {
             Source::Lists(Box::new(ListShading {
                 lists: Lists::new(resources, choices),
                 insertion,
-                by_fragment: if choices.is_by_fragment() { Some(Shade::new(gpu, scene, choices)?) } else { None },
+                by_fragment: if choices.is_by_fragment() {
+                    Some(Shade::new(gpu, scene, resources, choices)?)
+                } else {
+                    None
+                },
                 shade: ShadeEntries::new(gpu, scene, choices)?,
                 count: if choices.is_counted { Some(Count::new(gpu, resources, choices)?) } else { None },
             }))

@@ -375,8 +375,9 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Choice(&["on", "off"]),
         default: "off",
         paper: "on: Clarberg 2014, 3.1",
-        help: "Leave out, before a list is read, triangles that lie behind all that samples saw at that pixel of \
-               shading space, by a depth more for each sample; the same picture, and on software drivers not sooner",
+        help: "Leave out, by a depth test before a list is read, triangles that lie behind all that samples saw at that pixel \
+               of shading space, with a depth more for each sample; the same picture, and sooner where all triangles are drawn \
+               (--shaded-triangles all)",
         unread: without_fragments,
         ..Setting::changing(Changes::Nothing)
     },

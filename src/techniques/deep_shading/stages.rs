@@ -7,7 +7,7 @@ use super::stereo;
 use super::visibility::ray::trace::Spid;
 use super::visibility::samples::Samples;
 use crate::error::Result;
-use crate::gpu::shader::techniques::deep_shading::space::{NO_PRIMITIVE, NO_SHADING_PIXEL};
+use crate::gpu::shader::techniques::deep_shading::space::{NEAREST_DEPTH, NO_PRIMITIVE, NO_SHADING_PIXEL};
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::picture::{Aov, AovChannels};
 use crate::techniques::deep_shading::modes::shading::Shading;
@@ -76,9 +76,9 @@ impl Stages<'_> {
             }
             ZMAX => {
                 let buffer = self.separate.lists().and_then(|lists| lists.zmax.as_ref()).expect(REFUSED);
-                let words = self.words(buffer, Access::GraphicsRead)?;
-                // Nothing is seen where none has raised it: as far as can be.
-                let depth = |word: u32| if word == 0 { 0.0 } else { f32::from_bits(!word) };
+                let words = self.words(buffer, Access::TransferRead)?;
+                // Nothing is seen where none has lowered it: as far as can be.
+                let depth = |word: u32| if word == NEAREST_DEPTH { 0.0 } else { f32::from_bits(word) };
                 Ok(AovChannels::Y(self.pixels().map(|at| depth(words[self.choices.space.index_under(at)])).collect()))
             }
             _ => {

@@ -17,6 +17,7 @@ mod stages;
 mod stereo;
 mod texture_space;
 mod visibility;
+mod zmax;
 
 use crate::support::choices::{is_possible, words};
 use crate::support::difference::require_same;

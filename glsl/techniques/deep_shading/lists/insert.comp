@@ -38,7 +38,7 @@ WRITES_WORDS(set_address, addresses)
 #ifdef ZMAX_ON
 layout(set = 0, binding = 28) uniform usampler2DArray shading_depths;
 layout(std430, set = 0, binding = 25) buffer ZMax { uint zmax[]; };
-RAISES_WORDS(raise_zmax, zmax)
+LOWERS_WORDS(lower_zmax, zmax)
 #endif
 #ifdef MARKS_ON
 layout(std430, set = 0, binding = 44) buffer Marks { uint marks[]; };
@@ -127,7 +127,7 @@ void main() {
         }
 #endif
 #ifdef ZMAX_ON
-        raise_zmax(pixel, texelFetch(shading_depths, ivec3(at), 0).x);
+        lower_zmax(pixel, texelFetch(shading_depths, ivec3(at), 0).x);
 #endif
     }
     if (color == NO_PRIMITIVE) {

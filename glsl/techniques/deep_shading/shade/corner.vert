@@ -4,6 +4,10 @@
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/scaled.glsl"
+#include "techniques/deep_shading/shade/depth.glsl"
+
+// 1: the triangle is as near as its nearest corner (depth.glsl), for a depth test.
+layout(constant_id = 111) const uint HAS_ONE_DEPTH = 0;
 
 layout(location = 0) flat out uint out_primitive;
 #ifdef MARKS_ON
@@ -23,5 +27,11 @@ void main() {
 #endif
     vec4 canonical = scaled(canonical_corner(corner), out_primitive);
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
-    gl_Position = vec4(canonical.xy * 2.0 / extent - canonical.w, canonical.zw);
+    float z = canonical.z;
+    if (HAS_ONE_DEPTH != 0u) {
+        uint first = corner - corner % 3u;
+        z = canonical.w * nearest_depths(
+            canonical_corner(first), canonical_corner(first + 1u), canonical_corner(first + 2u)).at_origin;
+    }
+    gl_Position = vec4(canonical.xy * 2.0 / extent - canonical.w, z, canonical.w);
 }

@@ -5,6 +5,9 @@
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/shade/hull.glsl"
 
+// 1: it lies as far back as it may (depth.glsl), for a depth test.
+layout(constant_id = 110) const uint HAS_ZMAX = 0;
+
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 8) out;
 
@@ -28,9 +31,14 @@ void main() {
         corners[index] = vec4((at.xy + at.w) * 0.5 * extent, at.zw);
     }
     Hull hull = hull_of(corners[0], corners[1], corners[2]);
+    Depths depths = Depths(vec2(0.0), 0.5);
+    if (HAS_ZMAX != 0u) {
+        depths = hull_depths(corners[0], corners[1], corners[2], hull);
+    }
     for (uint place = 0u; place < hull.count; place++) {
         out_primitive = in_primitive[0];
-        gl_Position = vec4(hull.corners[strip_corner(place, hull.count)] * 2.0 / extent - 1.0, 0.5, 1.0);
+        vec2 corner = hull.corners[strip_corner(place, hull.count)];
+        gl_Position = vec4(corner * 2.0 / extent - 1.0, depth_at(depths, corner), 1.0);
         EmitVertex();
     }
     EndPrimitive();

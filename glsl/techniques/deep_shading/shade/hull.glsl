@@ -5,11 +5,7 @@
 #define DEEP_SHADING_SHADE_HULL_GLSL
 
 #include "techniques/deep_shading/hull.glsl"
-
-// From a pixel's middle to its rim.
-float reach_px() {
-    return 0.5 + snap_px();
-}
+#include "techniques/deep_shading/shade/depth.glsl"
 
 // In even shading space, or in one sector of it that is warped. Corners as `hull_around` takes them.
 Hull even_hull_of(vec4 a, vec4 b, vec4 c) {
@@ -73,6 +69,21 @@ Hull hull_of(vec4 a, vec4 b, vec4 c) {
         return whole;
     }
     return warped_box_of(least, greatest);
+}
+
+// As far back as all of the triangle in a pixel allows (section 4.4): in its plane, or where the hull comes before the near
+// plane there, as near as its nearest corner. Corners as `hull_of` takes them.
+Depths hull_depths(vec4 a, vec4 b, vec4 c, Hull hull) {
+    Depths nearest = nearest_depths(a, b, c);
+    if (deep.warp_falloff != 0.0 || nearest.at_origin == 1.0) {
+        return nearest;
+    }
+    Depths plane = plane_depths(a, b, c);
+    float greatest = 0.0;
+    for (uint index = 0u; index < hull.count; index++) {
+        greatest = max(greatest, depth_at(plane, hull.corners[index]));
+    }
+    return greatest < 1.0 ? plane : nearest;
 }
 
 #endif

@@ -6,6 +6,9 @@
 #include "techniques/deep_shading/scaled.glsl"
 #include "techniques/deep_shading/shade/hull.glsl"
 
+// 1: it lies as far back as it may (depth.glsl), for a depth test.
+layout(constant_id = 110) const uint HAS_ZMAX = 0;
+
 layout(location = 0) flat out uint out_primitive;
 #ifdef MARKS_ON
 layout(std430, set = 0, binding = 44) readonly buffer Marks { uint marks[]; };
@@ -28,7 +31,15 @@ void main() {
         corners[corner] = scaled(canonical_corner(3u * triangle + corner), out_primitive);
     }
     Hull hull = hull_of(corners[0], corners[1], corners[2]);
+    if (hull.count == 0u) {
+        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);
+        return;
+    }
+    Depths depths = Depths(vec2(0.0), 0.5);
+    if (HAS_ZMAX != 0u) {
+        depths = hull_depths(corners[0], corners[1], corners[2], hull);
+    }
+    vec2 at = fan_corner(hull, vertex);
     vec2 extent = vec2(deep.shading_width_px, deep.shading_height_px);
-    gl_Position = hull.count == 0u ? vec4(0.0, 0.0, 0.5, 1.0) : vec4(
-        fan_corner(hull, vertex) * 2.0 / extent - 1.0, 0.5, 1.0);
+    gl_Position = vec4(at * 2.0 / extent - 1.0, depth_at(depths, at), 1.0);
 }

@@ -33,7 +33,7 @@ void main() {
     uvec2 words = nearest[sample_index(deep, uvec3(pixel, in_instance))];
     out_spid = uvec2(NO_PRIMITIVE, NO_SHADING_PIXEL);
 #ifdef DEPTH_SHADING
-    out_shading_depth = 0xffffffffu;
+    out_shading_depth = NEAREST_DEPTH;
 #endif
     if (is_nothing(words)) {
         return;

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::gpu::shader::techniques::deep_shading::counters::{COUNTED_COLORS, COUNTED_CROWDED, COUNTED_STRAYS};
 use crate::gpu::shader::techniques::deep_shading::entries::waiting::ENTRY_STRAY;
 use crate::gpu::shader::techniques::deep_shading::lists::insert::LIST_MOST;
+use crate::gpu::shader::techniques::deep_shading::space::NEAREST_DEPTH;
 use crate::gpu::{Access, Buffer, Commands, Traffic};
 use crate::memory::kinds::Use;
 use crate::plan::{Plan, Resources, Shape};
@@ -70,7 +71,7 @@ impl HostLists {
             entries: Vec::new(),
             stray_entries: Vec::new(),
             linear: vec![0; if is_compacted { pixels * LINEAR_COUNT as usize } else { 0 }],
-            zmax: vec![0; if has_zmax { pixels } else { 0 }],
+            zmax: vec![NEAREST_DEPTH; if has_zmax { pixels } else { 0 }],
             addresses: vec![NONE; hits.spids.len()],
             marks: vec![0; if has_marks { primitive_count.div_ceil(32) as usize } else { 0 }],
             crowded_count: 0,
@@ -83,7 +84,7 @@ impl HostLists {
             }
             let pixel = (spid.pixel >> 16) * space.width + (spid.pixel & 0xffff);
             if let Some(zmax) = lists.zmax.get_mut(pixel as usize) {
-                *zmax = (*zmax).max(hits.shading_depths[sample]);
+                *zmax = (*zmax).min(hits.shading_depths[sample]);
             }
             entries.push(Entry { pixel, primitive: spid.primitive, sample: sample as u32 });
         }
@@ -252,7 +253,10 @@ mod tests {
         assert_eq!(lists.marks, [1 << 7, 1 << 3]);
         let counted = [COUNTED_STRAYS, COUNTED_CROWDED, COUNTED_COLORS].map(|word| lists.counters()[word as usize]);
         assert_eq!(counted, [1, 0, 3]);
-        assert_eq!((lists.stray_entries, lists.zmax), (vec![[4, 9 | ENTRY_STRAY]], vec![0, 3, 5, 0]));
+        assert_eq!(
+            (lists.stray_entries, lists.zmax),
+            (vec![[4, 9 | ENTRY_STRAY]], vec![NEAREST_DEPTH, 0, 5, NEAREST_DEPTH])
+        );
     }
 
     #[test]

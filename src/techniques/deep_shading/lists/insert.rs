@@ -7,6 +7,7 @@ use super::Lists;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::techniques::deep_shading::lists::insert::COMP_VARIANTS;
+use crate::gpu::shader::techniques::deep_shading::space::NEAREST_DEPTH;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Traffic};
 use crate::techniques::deep_shading::resources::full;
@@ -57,11 +58,12 @@ impl Insert {
             invocations: Some(samples.count()),
         };
         cmd.pass(&full("lists"), traffic, |cmd| {
-            let cleared = [Some(&lists.begins), lists.zmax.as_ref(), lists.marks.as_ref()];
-            let cleared: Vec<&Buffer> = cleared.into_iter().flatten().collect();
-            cmd.barriers(cleared.iter().map(|buffer| buffer.discard(Access::TransferWrite)));
-            cleared.iter().for_each(|buffer| cmd.clear(buffer));
-            cmd.barriers(cleared.iter().map(|buffer| buffer.from(Access::TransferWrite).to(Access::ComputeWrite)));
+            let words = [(Some(&lists.begins), 0), (lists.zmax.as_ref(), NEAREST_DEPTH), (lists.marks.as_ref(), 0)];
+            let filled: Vec<(&Buffer, u32)> =
+                words.into_iter().filter_map(|(buffer, word)| Some((buffer?, word))).collect();
+            cmd.barriers(filled.iter().map(|(buffer, _)| buffer.discard(Access::TransferWrite)));
+            filled.iter().for_each(|(buffer, word)| cmd.fill_buffer(buffer, *word));
+            cmd.barriers(filled.iter().map(|(buffer, _)| buffer.from(Access::TransferWrite).to(Access::ComputeWrite)));
             cmd.barriers([counters.to(Access::ComputeWrite)]);
             let fresh = [Some(&lists.nodes), Some(colors), lists.addresses.as_ref()].into_iter().flatten();
             cmd.barriers(fresh.map(|buffer| buffer.discard(Access::ComputeWrite)));

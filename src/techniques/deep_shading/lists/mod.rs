@@ -23,7 +23,7 @@ pub struct Lists {
     pub linear: Option<Buffer>,
     /// 4 B a sample, with `--address-buffer on`.
     pub addresses: Option<Buffer>,
-    /// 4 B a pixel of shading space, with `--zmax on`.
+    /// 4 B a pixel of shading space, with `--zmax on`: depth as D32_SFLOAT.
     pub zmax: Option<Buffer>,
     /// A bit a triangle of the scene, with `--shaded-triangles listed`: it stands in a list.
     pub marks: Option<Buffer>,
@@ -36,7 +36,7 @@ pub struct ListsEdge<'a> {
     /// Begins, nodes and rows.
     pub links: AccessSet,
     pub addresses: AccessSet,
-    pub depths_and_marks: AccessSet,
+    pub zmax_and_marks: AccessSet,
 }
 
 impl<'a> ListsEdge<'a> {
@@ -49,9 +49,14 @@ impl<'a> ListsEdge<'a> {
         self.lists.addresses.as_ref().map(|buffer| buffer.from(self.addresses).to(access))
     }
 
-    pub fn depths_and_marks_to(self, access: Access) -> impl Iterator<Item = Barrier> + 'a {
-        let buffers = self.lists.zmax.iter().chain(&self.lists.marks);
-        buffers.map(move |buffer| buffer.from(self.depths_and_marks).to(access))
+    /// None without zmax.
+    pub fn zmax_to(self, access: Access) -> Option<Barrier> {
+        self.lists.zmax.as_ref().map(|buffer| buffer.from(self.zmax_and_marks).to(access))
+    }
+
+    /// None without marks.
+    pub fn marks_to(self, access: Access) -> Option<Barrier> {
+        self.lists.marks.as_ref().map(|buffer| buffer.from(self.zmax_and_marks).to(access))
     }
 
     /// Addresses where there are some, links otherwise: what leads from a sample to its colour becomes readable.
@@ -103,7 +108,7 @@ impl Lists {
     /// Names the access that touched all of it last.
     pub fn from(&self, access: impl Into<AccessSet>) -> ListsEdge<'_> {
         let access = access.into();
-        ListsEdge { lists: self, links: access, addresses: access, depths_and_marks: access }
+        ListsEdge { lists: self, links: access, addresses: access, zmax_and_marks: access }
     }
 
     /// Bytes of nodes and begins, which a pass over all of them reads.

@@ -7,5 +7,11 @@ use crate::techniques::deep_shading::shade::stages::SpaceStages;
 
 /// `marks`: the value of the shader's axis.
 pub(super) fn stages(is_conservative: bool, marks: &str) -> SpaceStages {
-    SpaceStages { vertex: variant(VERT_VARIANTS, &[marks]), geometry: None, is_conservative, vertex_count: 3 }
+    SpaceStages {
+        vertex: variant(VERT_VARIANTS, &[marks]),
+        geometry: None,
+        is_conservative,
+        has_hulls: false,
+        vertex_count: 3,
+    }
 }

@@ -7,5 +7,11 @@ use crate::techniques::deep_shading::shade::stages::SpaceStages;
 /// `marks`: the value of the geometry shader's axis; corners are made of all triangles.
 pub(super) fn stages(marks: &str) -> SpaceStages {
     let geometry = Some(variant(GEOM_VARIANTS, &[marks]));
-    SpaceStages { vertex: variant(VERT_VARIANTS, &["off"]), geometry, is_conservative: false, vertex_count: 3 }
+    SpaceStages {
+        vertex: variant(VERT_VARIANTS, &["off"]),
+        geometry,
+        is_conservative: false,
+        has_hulls: true,
+        vertex_count: 3,
+    }
 }

@@ -1,8 +1,9 @@
 //! Shade, with `--shade-by fragment`: all triangles once over shading space, every pixel that they touch; what the lists have
 //! is shaded and stored (Clarberg & Munkberg 2014, section 4.4). Shaders: shade.frag, and the vertex and geometry stages of
-//! the methods.
+//! the methods. With `--zmax on` lists.zmax is the draws' depth buffer, which hides what lies behind all that was seen.
 //! reads   the scene, its lights, the lists, lists.zmax, lists.marks
 //! writes  shade.colors   buffer, 8 B a sample: RGBA16F
+//!         shade.depth    D32_SFLOAT, with `--zmax on`: lists.zmax
 
 pub mod corner;
 pub mod geometry;
@@ -16,13 +17,14 @@ use crate::error::Result;
 use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::techniques::deep_shading::shade::FRAG_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Commands, Gpu, Traffic};
+use crate::gpu::{Access, Bound, Commands, Gpu, Image, Traffic};
 use crate::passes::mesh;
 use crate::passes::shadow_maps;
+use crate::plan::Resources;
 use crate::resident::{SceneGpu, Sides};
 use crate::techniques::deep_shading::choices::constants_of;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
-use crate::techniques::deep_shading::resources::full;
+use crate::techniques::deep_shading::resources::{DEPTH_FORMAT, SHADE_DEPTH, full};
 use crate::techniques::deep_shading::shade::stages::SpaceStages;
 use crate::units::Extent;
 use ash::vk;
@@ -43,17 +45,22 @@ pub struct Shade {
     pipeline: GraphicsPipeline,
     stages: SpaceStages,
     space: Extent,
+    /// With `--zmax on`.
+    depth: Option<Image>,
 }
 
 impl Shade {
-    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, choices: &Choices) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         let lists = if choices.lists.is_compacted { "compact" } else { "linked" };
-        let zmax = if choices.lists.has_zmax { "on" } else { "off" };
         let stages = choices.raster.conservative.stages(if choices.lists.has_marks { "on" } else { "off" });
         let shadows = shadow_maps::axis(choices.maps.is_some());
-        let fragment = variant(FRAG_VARIANTS, &[lists, zmax, mesh::vertex_name(scene), shadows]);
+        let fragment = variant(FRAG_VARIANTS, &[lists, mesh::vertex_name(scene), shadows]);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
-        let constants = constants_of(choices, &shaders);
+        let depth = choices.lists.has_zmax.then(|| resources.image(&full(SHADE_DEPTH)));
+        let mut constants = constants_of(choices, &shaders);
+        if !stages.has_hulls {
+            constants.push(("HAS_ONE_DEPTH", u32::from(depth.is_some())));
+        }
         let pipeline = GraphicsPipeline::new(
             gpu,
             &GraphicsDescription {
@@ -65,9 +72,9 @@ impl Shade {
                 color_formats: &[],
                 samples: 1,
                 blending: Blending::Replace,
-                depth_format: None,
+                depth_format: depth.is_some().then_some(DEPTH_FORMAT),
                 depth_write: false,
-                depth_compare: vk::CompareOp::ALWAYS,
+                depth_compare: vk::CompareOp::GREATER_OR_EQUAL,
                 depth_clamp: false,
                 depth_bias: DepthBias::NONE,
                 conservative_margin_px: stages.is_conservative.then(|| choices.snap_px()),
@@ -75,7 +82,7 @@ impl Shade {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Self { pipeline, stages, space: choices.space.extent })
+        Ok(Self { pipeline, stages, space: choices.space.extent, depth })
     }
 
     pub fn record(
@@ -100,7 +107,13 @@ impl Shade {
             cmd.barriers(inputs.scales_to(Access::GraphicsRead));
             cmd.barriers(maps.and_then(|maps| maps.to(Access::FragmentSample)));
             cmd.barriers(listed.links_to(Access::GraphicsRead));
-            cmd.barriers(listed.depths_and_marks_to(Access::GraphicsRead));
+            cmd.barriers(listed.marks_to(Access::GraphicsRead));
+            if let (Some(zmax), Some(depth)) = (&lists.zmax, &self.depth) {
+                cmd.barriers(listed.zmax_to(Access::TransferRead));
+                cmd.barriers([depth.discard(Access::TransferWrite)]);
+                cmd.copy_to_image(zmax, depth);
+                cmd.barriers([depth.from(Access::TransferWrite).to(Access::DepthTest)]);
+            }
             cmd.barriers([colors, counters].map(|edge| edge.to(Access::FragmentWrite)));
             let mut bound = inputs.bound.to_vec();
             bound.extend(lists.bound());
@@ -108,7 +121,7 @@ impl Shade {
                 [("Colors", colors), ("Counters", counters)].map(|(name, edge)| (name, Bound::Buffer(edge.resource))),
             );
             let set = cmd.set_for(&self.pipeline, &self.pipeline.interface.own(&bound))?;
-            cmd.begin_rendering(self.space, &[], None);
+            cmd.begin_rendering(self.space, &[], self.depth.as_ref().map(|depth| (depth, None, Access::DepthTest)));
             let Some(first) = list.calls().next() else {
                 cmd.end_rendering();
                 return Ok(());

@@ -12,6 +12,7 @@ pub(super) fn stages(marks: &str) -> SpaceStages {
         vertex: variant(VERT_VARIANTS, &[marks]),
         geometry: None,
         is_conservative: false,
+        has_hulls: true,
         vertex_count: HULL_VERTICES,
     }
 }

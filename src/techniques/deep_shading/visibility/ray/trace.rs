@@ -167,7 +167,7 @@ impl<'a> Tracer<'a> {
         }
         let pixel = self.space.pixel(clip).map_or(NONE, |[x, y]| x | y << 16);
         let depth = (clip.z / clip.w).clamp(0.0, 1.0);
-        (Spid { primitive: met.primitive, pixel }, !depth.to_bits())
+        (Spid { primitive: met.primitive, pixel }, depth.to_bits())
     }
 }
 
