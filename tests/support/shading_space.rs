@@ -24,8 +24,11 @@ fn own() -> Own {
 static DRAWS_INTO_NOTHING: AtomicBool = AtomicBool::new(false);
 
 unsafe extern "system" fn noted_begin(buffer: vk::CommandBuffer, info: *const vk::RenderingInfo<'_>) {
-    // SAFETY: the caller's own struct.
-    let into_nothing = unsafe { (*info).color_attachment_count == 0 && (*info).p_depth_attachment.is_null() };
+    // SAFETY: the caller's own structs; a depth attachment may be left out.
+    let (colors, depth) = unsafe { ((*info).color_attachment_count, (*info).p_depth_attachment.as_ref()) };
+    // With zmax what is drawn is tested, and still leaves nothing.
+    let is_kept = depth.is_some_and(|depth| depth.store_op == vk::AttachmentStoreOp::STORE);
+    let into_nothing = colors == 0 && !is_kept;
     DRAWS_INTO_NOTHING.store(into_nothing, Ordering::SeqCst);
     let begin = own().begin.expect("the hook stored it");
     // SAFETY: the driver's own function with the caller's arguments.
