@@ -457,8 +457,8 @@ impl Renderer {
                      shadow rays, or all steps of a path's rays"
                 ))
                 .note(format!(
-                    "fewer lights or --bounces, --direct-shadow none or sun, --cull tiled, or a newer driver \
-                     ({gone_in}) would help"
+                    "fewer lights, --vpls or --bounces, a larger --pattern, --direct-shadow none or sun, --cull tiled, \
+                     --vpl-shadow none, or a newer driver ({gone_in}) would help"
                 )),
             _ => error,
         }

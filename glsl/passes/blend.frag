@@ -1,6 +1,6 @@
 // BLEND surfaces over the finished picture, back to front, lit forward by the punctual lights of their piece's list, and by the
 // virtual ones of their pixel. Pass: src/passes/blend.rs.
-// variants: VERTEX=plain|extended SHADOWS=traced|mapped SHADED=pixel|sample
+// variants: VERTEX=plain|extended SHADOWS=traced|mapped SHADED=pixel|sample VPL_SHADOW=none|ray
 #version 460
 #include "frame.glsl"
 #include "bvh.glsl"
@@ -46,6 +46,9 @@ layout(std430, set = 0, binding = 9) readonly buffer LightLists { uint light_lis
 #include "shading/material.glsl"
 #include "bvh_walk.glsl"
 #include "shading/lit.glsl"
+#ifdef VPL_SHADOW_RAY
+#include "shading/vpl_shadow.glsl"
+#endif
 #include "shading/sample.glsl"
 
 layout(location = 0) out vec4 out_color;
@@ -69,7 +72,13 @@ void main() {
     }
     uint vpl = first;
     for (; vpl < end; vpl++) {
-        received += vpl_irradiance(vpls[vpl], position_ws, lit.normal_ws, params.least_squared);
+        vec3 of_light = vpl_irradiance(vpls[vpl], position_ws, lit.normal_ws, params.least_squared);
+#ifdef VPL_SHADOW_RAY
+        if (of_light == vec3(0.0) || is_hidden_from(vpls[vpl], position_ws, lit.normal_ws)) {
+            continue;
+        }
+#endif
+        received += of_light;
     }
     expect_done(vpl == end);
     vec3 radiance = lit.radiance + albedo_of(lit.surface) * received * (params.weight / PI);

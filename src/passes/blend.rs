@@ -74,12 +74,14 @@ pub struct BlendTarget<'a> {
     pub samples: Samples,
     /// Lights have shadow maps; the constants are those of `MapLayout::constants` too.
     pub has_shadow_maps: bool,
+    /// What stops virtual point lights, as the shader's axis names it.
+    pub vpl_shadow: &'static str,
 }
 
 impl<'a> BlendTarget<'a> {
-    /// One sample, no shadow maps.
+    /// One sample, no shadow maps, virtual lights that nothing stops.
     pub fn plain(lists: &'a ObjectLists) -> Self {
-        Self { pieces: &lists.pieces, samples: Samples::ONE, has_shadow_maps: false }
+        Self { pieces: &lists.pieces, samples: Samples::ONE, has_shadow_maps: false, vpl_shadow: "none" }
     }
 }
 
@@ -183,7 +185,7 @@ impl Blend {
                 geometry: None,
                 fragment: Some(variant(
                     FRAG_VARIANTS,
-                    &[mesh::vertex_name(scene), shadows, target.samples.shaded_name()],
+                    &[mesh::vertex_name(scene), shadows, target.samples.shaded_name(), target.vpl_shadow],
                 )),
                 constants: &[constants, &[scene.texture_constant()]].concat(),
                 vertex_buffers: mesh::vertex_buffers(scene),

@@ -279,6 +279,16 @@ fn every_method_is_branch_under_blended_surfaces() {
 }
 
 #[test]
+fn every_method_is_branch_where_rays_stop_virtual_lights() {
+    let watched = Watched::open("hall:triangles=8000");
+    let common = [("size", "97x55"), ("vpls", "32"), ("position", "float"), ("filter", "none")];
+    let splits = splits();
+    let free = require_one_picture(&watched, INTERLEAVED, &common, &changes(&splits[..1]));
+    let shadowed = both(&common, &[("vpl-shadow", "ray")]);
+    assert_ne!(require_one_picture(&watched, INTERLEAVED, &shadowed, &changes(&splits)), free);
+}
+
+#[test]
 fn the_same_request_gives_the_same_bytes() {
     let size = ("size", "321x181");
     for (technique, scene, changes) in

@@ -167,7 +167,8 @@ impl Forward {
         let constants: Vec<_> =
             choices.light_constants().into_iter().chain(steps).chain([choices.samples.constant()]).collect();
         let samples = choices.samples;
-        let target = BlendTarget { pieces: &of.listed.lists.pieces, samples, has_shadow_maps: choices.maps.is_some() };
+        let plain = BlendTarget::plain(&of.listed.lists);
+        let target = BlendTarget { samples, has_shadow_maps: choices.maps.is_some(), ..plain };
         let maps = choices.maps.as_ref();
         let maps =
             maps.map(|layout| ShadowMaps::new(gpu, resources, technique, layout, of.scene, scene)).transpose()?;

@@ -155,6 +155,15 @@ pub const GROUPS: &[Group] = &[
         must: Must::Equal(ROUNDING),
     },
     Group {
+        name: "vpl-shadow",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, UNFILTERED, ("vpl-shadow", "ray")],
+        twin: Twin::Method(&[("split", "branch"), ("position", "float")]),
+        methods: &[&[("position", "float")], &[("split", "stencil"), ("position", "float")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
         name: "bands",
         technique: NAME,
         place: CORNELL,

@@ -4,6 +4,7 @@ use super::mapping::mapping;
 use super::split_method::{Copier, Copies, Form, MaskKind, SplitMethod};
 use super::sub_buffers::Storage;
 use super::subsets::subsets;
+use crate::bvh::Bvh;
 use crate::caps::Caps;
 use crate::choice::choices;
 use crate::error::{Error, Result};
@@ -39,6 +40,16 @@ choices! {
 }
 
 choices! {
+    /// What stops virtual point lights (`--vpl-shadow`); the words are the shaders' too.
+    pub enum VplShadow {
+        /// Nothing: they reach through walls (SNSM).
+        "none" => None,
+        /// A ray from each surface to each of its lights.
+        "ray" => Ray,
+    }
+}
+
+choices! {
     /// At which discontinuity the filter stops (`--discontinuity`).
     pub enum StopAt {
         "directional" => Directional,
@@ -69,6 +80,7 @@ pub struct Choices {
     pub direct_pattern: Pattern,
     /// Virtual point lights.
     pub vpl_count: u32,
+    pub vpl_shadow: VplShadow,
     /// The scene's own lights that this frame has.
     pub direct_count: u32,
 }
@@ -124,6 +136,7 @@ impl Choices {
             light_pattern: Pattern::grid(light_pattern),
             direct_pattern: Pattern::grid(direct_pattern),
             vpl_count: values.integer("vpls") as u32,
+            vpl_shadow: values.choice("vpl-shadow"),
             direct_count: if direct == Direct::None { 0 } else { lights.lights.len() as u32 },
         };
         choices.check_lights(values.text("pattern"))?;
@@ -270,10 +283,26 @@ impl Choices {
             return 1;
         }
         let joined = self.joined_count().div_ceil(self.direct_subset_count());
+        let mut load = self.shading.direct.load(joined as usize);
+        if self.vpl_shadow == VplShadow::Ray {
+            let vpls = u64::from(self.vpl_count.div_ceil(self.subset_count()));
+            load.light_count += vpls;
+            load.casting_count += vpls;
+        }
         let lanes = u64::from(self.shading.lane_count());
         let room = self.mapping.sub_texel_count() / (lanes * LEAST_WORKGROUPS);
         let room = room.checked_ilog2().map_or(1, |power| 1 << power);
-        self.shading.texels.of_list(self.shading.direct.load(joined as usize)).min(room)
+        self.shading.texels.of_list(load).min(room)
+    }
+
+    /// The tree that rays walk; an empty one where nothing casts any.
+    ///
+    /// Errors: as `LazyBvh::over`.
+    pub fn tree<'a>(&self, inputs: &Inputs<'a>) -> Result<&'a Bvh> {
+        match self.vpl_shadow {
+            VplShadow::None => self.shading.direct.tree(inputs.bvh, inputs.scene),
+            VplShadow::Ray => inputs.bvh.over(inputs.scene),
+        }
     }
 
     /// Sub-buffers that share one subset of the punctual lights.

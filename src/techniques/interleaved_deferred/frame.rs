@@ -59,7 +59,7 @@ impl InterleavedFrame {
         let Choices { shading, mapping, .. } = choices;
         let FrameLights { subsets, direct: direct_lights, blended, vpl_clamp_m } = *lights;
         let has_emissive = inputs.stats.has_emissive;
-        let tree = shading.direct.tree(inputs.bvh, inputs.scene)?;
+        let tree = choices.tree(inputs)?;
         let direct = DirectGpu::new(gpu, resources, NAME, direct_lights, shading.culls(direct_lights.len()), tree)?;
         let least_squared = vpl_clamp_m * vpl_clamp_m;
         let params = ShadeParams {
@@ -90,7 +90,7 @@ impl InterleavedFrame {
                 inputs.view,
                 choices.blend_params(least_squared),
                 &shading.direct.light_constants(),
-                &BlendTarget::plain(blended),
+                &BlendTarget { vpl_shadow: choices.vpl_shadow.name(), ..BlendTarget::plain(blended) },
             )?,
             blend_lists: (inputs.stats.has_blend)
                 .then(|| blend::upload_lists(gpu, resources, NAME, blended))

@@ -19,7 +19,7 @@
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
 //! - the direct lights' pattern, made by clustering sub-buffers (section 4.6), may be of any divisors of the split's, where
 //!   the paper says powers of two
-//! - secondary lights are never shadowed (SNSM), as in the paper's section 6.2
+//! - secondary lights are not shadowed (SNSM), as in the paper's section 6.2, or by rays (`--vpl-shadow ray`)
 //!
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
 //! every split except `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
@@ -63,7 +63,7 @@ use crate::plan::Plan;
 use crate::resident::SceneGpu;
 use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
-use choices::{Choices, Direct};
+use choices::{Choices, Direct, VplShadow};
 use frame::{FrameLights, InterleavedFrame};
 use shade::SubsetLights;
 use split_method::SplitMethod;
@@ -95,12 +95,21 @@ impl Technique for InterleavedDeferred {
     }
 
     fn shorter(&self) -> &'static [(&'static str, &'static str)] {
-        &[("storage", "image"), ("position", "unorm16"), ("cull", "none"), ("direct-shadow", "none")]
+        &[
+            ("storage", "image"),
+            ("position", "unorm16"),
+            ("cull", "none"),
+            ("direct-shadow", "none"),
+            ("vpl-shadow", "none"),
+        ]
     }
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
         let mut needs: Vec<Need> =
             [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(direct::needs(values)).collect();
+        if !values.is("vpl-shadow", VplShadow::None) && direct::needs(values).is_none() {
+            needs.extend(direct::depth_rays(values));
+        }
         if let Ok(split) = SplitMethod::new(values, caps) {
             needs.extend(split.needs(values));
             let filter: Filter = values.choice("filter");
@@ -113,11 +122,12 @@ impl Technique for InterleavedDeferred {
         choices::bounds(caps)
     }
 
-    /// Direct light, and what as many bounces as light walks have bring, unshadowed (SNSM) and clamped.
+    /// Direct light, and what as many bounces as light walks have bring: unshadowed (SNSM) and clamped, or with `--vpl-shadow ray` as it
+    /// is, by `--brdf`.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let mut settings = vec![
             ("light-visibility", light_visibility(values, lights, 0)?),
-            ("vpl-visibility", "off".to_owned()),
+            ("vpl-visibility", if values.is("vpl-shadow", VplShadow::None) { "off" } else { "on" }.to_owned()),
             ("ambient-visibility", "off".to_owned()),
         ];
         match values.integer("vpl-bounces") {

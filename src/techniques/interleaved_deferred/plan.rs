@@ -23,7 +23,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, blended: &ObjectLists) -> Re
     let (extent, has_emissive) = (inputs.view.extent, inputs.stats.has_emissive);
     let mut plan = Plan::default();
     gbuffer::plan(&mut plan, NAME, extent, shading.position, has_emissive);
-    let tree = shading.direct.tree(inputs.bvh, inputs.scene)?;
+    let tree = choices.tree(inputs)?;
     direct::plan_with_masks(&mut plan, NAME, choices.direct_count as usize, shading, tree, extent);
     shade::plan(&mut plan, choices.vpl_count, choices.joined_count(), choices.subset_count());
     plan.picture(full("composite.color"), extent);

@@ -1,6 +1,6 @@
 //! The settings of interleaved deferred shading.
 
-use super::choices::{BlendLights, Direct, StopAt};
+use super::choices::{BlendLights, Direct, StopAt, VplShadow};
 use super::split_method::{Form, Split, StorageKind};
 use crate::passes::filter::Filter;
 use crate::settings::{
@@ -94,6 +94,15 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Picture)
     },
     VPL_CLAMP,
+    Setting {
+        key: "vpl-shadow",
+        kind: Kind::Choice(VplShadow::WORDS),
+        default: "none",
+        paper: "Segovia 2006, 4.3",
+        help: "What stops virtual point lights: nothing, as in the paper's shading without shadow maps, or solid surfaces, by a \
+               shadow ray from each surface to each light of its subset",
+        ..Setting::changing(Changes::Picture)
+    },
     EMISSIVE,
     Setting {
         key: "direct",

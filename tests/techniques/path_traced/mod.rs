@@ -254,6 +254,31 @@ fn direct_light_is_deferred_shading_s() {
     }
 }
 
+/// The wall behind the tall block, from which most virtual lights are hidden.
+#[test]
+fn virtual_lights_with_shadow_rays_come_to_path_tracing() {
+    let mut scene = plain("cornell");
+    scene.cameras = vec![camera(vec3(1.0, 1.2, 0.9), vec3(0.0, 1.2, 0.9), 0.5)];
+    let watched = Watched::with_scene(scene);
+    let common = [("emissive", "off"), ("brdf", "lambert"), ("size", "16x9")];
+    let bounced = |transport| {
+        let own = [("spp", "4096"), ("transport", transport), ("ambient-visibility", "off")];
+        mean(&watched.picture(NAME, &both(&common, &own)))
+    };
+    let expected = bounced("one-bounce") - bounced("direct");
+    let received = |vpls: &str, shadow: &str| {
+        let own =
+            [("vpls", vpls), ("vpl-shadow", shadow), ("direct", "none"), ("vpl-clamp", "0.05"), ("pattern", "8x8")];
+        let exact = [("filter", "none"), ("position", "float")];
+        mean(&watched.picture("interleaved_deferred", &both(&both(&common, &own), &exact)))
+    };
+    let found = ["1024", "4096", "16384"].map(|vpls| received(vpls, "ray"));
+    let through = received("4096", "none");
+    println!("{found:?} of {expected}; {through} through walls");
+    assert!(through.cmpgt(1.2 * expected).all(), "the block stops light: {through} and {expected}");
+    require_within(found[2], expected, 0.02, "16384 virtual lights");
+}
+
 /// The error of N virtual point lights falls with their number, down to what the reference itself is off by.
 #[test]
 fn interleaved_shading_comes_to_the_light_walk_as_virtual_lights_grow() {

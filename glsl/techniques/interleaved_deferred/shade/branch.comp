@@ -1,7 +1,7 @@
 // One pass over the un-split G-buffer, each pixel looping over its own subset (Segovia 2006, section 3.1, dynamic
 // branching).
 // Pass: src/techniques/interleaved_deferred/shade/branch.rs.
-// variants: POSITION=half|unorm16|depth|float
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|ray
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"

@@ -38,6 +38,9 @@ layout(std430, set = 0, binding = 4) readonly buffer BvhNodes { BvhNodeBlock bvh
 layout(std430, set = 0, binding = 5) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
 
 #include "bvh_walk.glsl"
+#ifdef VPL_SHADOW_RAY
+#include "shading/vpl_shadow.glsl"
+#endif
 
 // What a thread shades with one reading of its light list: a light is read lane by lane on drivers that cannot know that
 // all lanes read the same one, and that costs more than the arithmetic of one point.
@@ -79,7 +82,15 @@ void shade_points(SubsetBlock subset) {
     for (; vpl_index < vpl_end; vpl_index++) {
         VplBlock vpl = vpls[vpl_index];
         for (uint i = 0u; i < TEXELS; i++) {
-            sum[i] += vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
+            vec3 received = vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
+#ifdef VPL_SHADOW_RAY
+            // Points without a surface have no position that a ray could start from.
+            if (!point_has_surface[i] || received == vec3(0.0) ||
+                is_hidden_from(vpl, point_position_ws[i], point_normal_ws[i])) {
+                continue;
+            }
+#endif
+            sum[i] += received;
         }
     }
     expect_done(vpl_index == vpl_end);

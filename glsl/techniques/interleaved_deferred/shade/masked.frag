@@ -1,6 +1,6 @@
 // One of n x m draws over the whole frame, which only the pixels of its subset pass, by stencil or by depth test (Segovia
 // 2006, section 3.1). The draw's number comes as its instance. Pass: src/techniques/interleaved_deferred/shade/masked.rs.
-// variants: POSITION=half|unorm16|depth|float
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|ray
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"

@@ -2,7 +2,7 @@
 // nothing is copied. All subsets in one dispatch, workgroups numbered by subset (`--split remap`, later practice), or a
 // dispatch a subset (`--split indirect`, Segovia 2006, section 3.1). With the pattern 1x1 it is plain deferred shading of
 // all lights (`--split none`). Pass: src/techniques/interleaved_deferred/shade/strided.rs.
-// variants: POSITION=half|unorm16|depth|float
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|ray
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"

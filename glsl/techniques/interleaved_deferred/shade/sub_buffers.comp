@@ -1,6 +1,6 @@
 // Each sub-buffer shaded with its own lights: one light list for neighbouring threads. Segovia 2006, section 4.3 (SNSM).
 // Pass: src/techniques/interleaved_deferred/shade/sub_buffers.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers VPL_SHADOW=none|ray
 #version 460
 #include "passes/gbuffer.glsl"
 #define READS_SURFACE

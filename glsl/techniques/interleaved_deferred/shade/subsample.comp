@@ -1,6 +1,6 @@
 // Sub-sampling: all lights at the middle pixel of each n x m cell (Segovia 2006, section 5.4, what figures 6 and 7
 // compare with). Pass: src/techniques/interleaved_deferred/shade/subsample.rs.
-// variants: POSITION=half|unorm16|depth|float
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|ray
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"

@@ -19,7 +19,7 @@ pub struct ShadeBranch {
 
 impl ShadeBranch {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
         let constants = [&choices.shading.workgroup_constants()[..], &choices.irradiance_constants()].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }

@@ -34,7 +34,7 @@ pub struct ShadeMasked {
 
 impl ShadeMasked {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, kind: MaskKind) -> Result<Self> {
-        let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name()]);
+        let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
         let formats = [drawn_irradiance::FORMAT];
         let (compare, stencil) = match kind {
             MaskKind::Stencil => (vk::CompareOp::ALWAYS, Some(StencilUse::RequireEqual)),

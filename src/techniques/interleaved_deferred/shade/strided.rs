@@ -31,7 +31,7 @@ pub struct ShadeStrided {
 
 impl ShadeStrided {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, dispatches: Dispatches) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
         Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)?, dispatches })
     }
 

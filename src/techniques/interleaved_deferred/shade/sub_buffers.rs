@@ -21,7 +21,7 @@ pub struct ShadeSubBuffers {
 impl ShadeSubBuffers {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, storage: Storage) -> Result<Self> {
         let position = choices.shading.position;
-        let shader = variant(COMP_VARIANTS, &[position.name(), storage.name()]);
+        let shader = variant(COMP_VARIANTS, &[position.name(), storage.name(), choices.vpl_shadow.name()]);
         let listed = TexelListPipeline::new(gpu, choices, shader)?;
         Ok(Self { listed, storage, texel_bytes: 8 + position.bytes() })
     }

@@ -18,7 +18,7 @@ pub struct ShadeSubsample {
 
 impl ShadeSubsample {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name()]);
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
         Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)? })
     }
 

@@ -1,0 +1,11 @@
+// What stops a virtual point light on its way to a surface: a ray that any solid surface ends. After bvh_walk.glsl.
+#ifndef SHADING_VPL_SHADOW_GLSL
+#define SHADING_VPL_SHADOW_GLSL
+
+bool is_hidden_from(VplBlock vpl, vec3 position_ws, vec3 normal_ws) {
+    vec3 to_vpl = vpl.position_ws.xyz - position_ws;
+    float distance = length(to_vpl);
+    return occluded(position_ws, normal_ws, to_vpl / max(distance, 1e-12), distance);
+}
+
+#endif
