@@ -6,6 +6,28 @@
 #include "bvh_tests.glsl"
 #include "loops.glsl"
 
+// Where a walk through the tree is, and the leaf that it has entered; no triangles: none yet.
+struct NodeWalk {
+    uint at;
+    uint first_triangle;
+    uint triangle_count;
+};
+
+// One node further, unless a leaf is entered or the walk has ended.
+void visit_node(inout NodeWalk walk, uint end, vec3 origin, vec3 inverse, float limit) {
+    if (walk.triangle_count != 0u || walk.at >= end) {
+        return;
+    }
+    BvhNodeBlock node = bvh_nodes[walk.at];
+    bool is_entered = box_entry(node, origin, inverse, limit) >= 0.0;
+    uint count = floatBitsToUint(node.min_count.w);
+    // First triangle of a leaf; for other nodes the place after all below them.
+    uint first = floatBitsToUint(node.max_first.w);
+    walk.at = count == 0u && !is_entered ? first : walk.at + 1u;
+    walk.first_triangle = first;
+    walk.triangle_count = is_entered ? count : 0u;
+}
+
 // Whether anything lies between a surface point and a light `distance` away in the unit direction.
 bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distance) {
     vec3 offset = normal_ws * RAY_OFFSET;
@@ -26,26 +48,24 @@ bool occluded(vec3 position_ws, vec3 normal_ws, vec3 direction_ws, float distanc
     vec3 met;
     BvhNodeBlock root = bvh_nodes[0];
     uint end = floatBitsToUint(root.min_count.w) == 0u ? floatBitsToUint(root.max_first.w) : 1u;
-    uint at = 0u;
-    while (at < end) {
-        BvhNodeBlock node = bvh_nodes[at];
-        bool is_entered = box_entry(node, origin, inverse, limit) >= 0.0;
-        uint count = floatBitsToUint(node.min_count.w);
-        // First triangle of a leaf; for other nodes the place after all below them.
-        uint first = floatBitsToUint(node.max_first.w);
-        at = count == 0u && !is_entered ? first : at + 1u;
-        if (count == 0u || !is_entered) {
-            continue;
-        }
-        uint triangle = first;
-        for (; triangle < first + count; triangle++) {
+    NodeWalk walk = NodeWalk(0u, 0u, 0u);
+    while (walk.at < end) {
+        walk.triangle_count = 0u;
+        // Several nodes an iteration: a driver may count iterations, of all rays of a thread together (loops.glsl).
+        visit_node(walk, end, origin, inverse, limit);
+        visit_node(walk, end, origin, inverse, limit);
+        visit_node(walk, end, origin, inverse, limit);
+        visit_node(walk, end, origin, inverse, limit);
+        uint triangle = walk.first_triangle;
+        uint triangle_end = walk.first_triangle + walk.triangle_count;
+        for (; triangle < triangle_end; triangle++) {
             if (triangle_hit(bvh_triangles[triangle], origin, direction_ws, limit, met)) {
                 return true;
             }
         }
-        expect_done(triangle == first + count);
+        expect_done(triangle == triangle_end);
     }
-    expect_done(at >= end);
+    expect_done(walk.at >= end);
     return false;
 }
 
