@@ -12,7 +12,7 @@ layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
 // 1: what is shaded is counted.
 layout(constant_id = 94) const uint IS_COUNTED = 0;
 
-// Stores would put it off.
+// The depth test of --zmax comes before the shader: its stores would put the test off.
 layout(early_fragment_tests) in;
 
 layout(location = 0) flat in uint in_primitive;

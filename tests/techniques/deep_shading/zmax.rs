@@ -13,9 +13,9 @@ const SIZE: (&str, &str) = ("size", "96x54");
 const ZMAX: (&str, &str) = ("zmax", "on");
 const Y_FOV: f32 = 0.9;
 
-/// Metres from the eye to a screen that hides, from 1 m below it on, the left half of all
-/// that is behind it, and to a wall and the floor's end.
+/// Metres from the eye to a screen, which hides the left half of what is behind it, from 1 m below the eye on.
 const SCREEN_M: f32 = 6.0;
+/// To a wall, and to the floor's end.
 const FAR_M: f32 = 40.0;
 
 fn scene(name: &str, build: impl Fn(&mut Scene)) -> Watched {

@@ -94,13 +94,15 @@ impl Shade {
     ) -> Result<()> {
         let DrawInputs { scene, list, primitives, .. } = inputs;
         let (ShadingEdges { colors, counters, maps }, lists) = (edges, listed.lists);
+        let copied_bytes = self.depth.as_ref().map_or(0, |depth| depth.description.bytes());
         let traffic = Traffic {
             // Vertices are an upper bound: those of triangles without a list may stay unread.
             read_bytes: mesh::read_bytes(scene, list.calls())
                 + lists.link_bytes()
+                + copied_bytes
                 + lists.marks.as_ref().map_or(0, |marks| marks.bytes),
-            // Counted after the frame.
-            written_bytes: 0,
+            // Colours are counted after the frame.
+            written_bytes: copied_bytes,
             invocations: None,
         };
         cmd.pass(&full("shade"), traffic, |cmd| {
