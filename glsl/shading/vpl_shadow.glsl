@@ -1,4 +1,5 @@
-// What stops a virtual point light on its way to a surface: a ray that any solid surface ends. After bvh_walk.glsl.
+// What stops a virtual point light on its way to a surface, where Segovia 2006 has a shadow map (section 4.3): a ray that any solid
+// surface ends, a walk through the tree for each point and light. After bvh_walk.glsl.
 #ifndef SHADING_VPL_SHADOW_GLSL
 #define SHADING_VPL_SHADOW_GLSL
 

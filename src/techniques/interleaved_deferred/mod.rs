@@ -105,11 +105,12 @@ impl Technique for InterleavedDeferred {
     }
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
+        let of_rays = match values.choice("vpl-shadow") {
+            VplShadow::None => direct::needs(values),
+            VplShadow::Ray => direct::depth_rays(values),
+        };
         let mut needs: Vec<Need> =
-            [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(direct::needs(values)).collect();
-        if !values.is("vpl-shadow", VplShadow::None) && direct::needs(values).is_none() {
-            needs.extend(direct::depth_rays(values));
-        }
+            [gbuffer::need()].into_iter().chain(blend::needs(has_blend)).chain(of_rays).collect();
         if let Ok(split) = SplitMethod::new(values, caps) {
             needs.extend(split.needs(values));
             let filter: Filter = values.choice("filter");

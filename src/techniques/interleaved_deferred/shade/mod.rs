@@ -1,5 +1,6 @@
-//! Shading without shadow maps (SNSM): Segovia 2006, section 4.3. Every split sums the same function over its lights
-//! (irradiance.glsl): float, in the order of the list, packed to halves once.
+//! Shading without shadow maps (SNSM), or with a shadow ray for each light (`--vpl-shadow ray`): Segovia 2006, section 4.3.
+//! Every split sums the same function over its lights (irradiance.glsl): float, in the order of the list, packed to halves
+//! once.
 
 pub mod branch;
 pub mod masked;
