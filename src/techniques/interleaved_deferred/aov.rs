@@ -1,11 +1,12 @@
 //! The stages of the paper's figure 3, and what `--split subsample` interpolates, read back after a frame.
 
-use super::choices::Choices;
+use super::choices::{Choices, VplShadow};
 use super::frame::InterleavedFrame;
 use super::split_method::{Split, SplitMethod};
 use super::split_passes::SplitPasses;
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
+use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::hidden::HIDDEN_HEAD;
 use crate::gpu::{Access, Buffer, Gpu, readback};
 use crate::passes::decode;
 use crate::passes::filter::Filter;
@@ -14,6 +15,7 @@ use crate::settings::Values;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
+const UNSEEN: &str = "vpl_shadow.hidden";
 const SPLIT: &str = "split.normal";
 const SHADED: &str = "shade.irradiance";
 const UPSCALED: &str = "upscale.irradiance";
@@ -22,13 +24,26 @@ const FLAGS: &str = "discontinuity.flags";
 const FILTERED: &str = "filter.irradiance";
 
 /// Names that `--aov` takes.
-pub const AOVS: &[&str] =
-    &["gbuffer.normal", "gbuffer.color", "gbuffer.color.id", SPLIT, SHADED, UPSCALED, GATHERED, FLAGS, FILTERED];
+pub const AOVS: &[&str] = &[
+    "gbuffer.normal",
+    "gbuffer.color",
+    "gbuffer.color.id",
+    UNSEEN,
+    SPLIT,
+    SHADED,
+    UPSCALED,
+    GATHERED,
+    FLAGS,
+    FILTERED,
+];
 
 /// Those that the settings leave out, with the reason.
 pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String)> {
     let mut left_out = Vec::new();
     let split = values.choice::<Split>("split").name();
+    if choices.vpl_shadow == VplShadow::None {
+        left_out.push((UNSEEN, "with --vpl-shadow none nothing looks for hidden lights; ray does".to_owned()));
+    }
     if choices.split != SplitMethod::Subsample {
         left_out.push((UPSCALED, format!("--split {split} interpolates nothing; subsample does")));
     }
@@ -67,6 +82,7 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
     let filter = || frame.filter.as_ref().expect("a stage that the settings leave out is refused");
     let rgb = |values: Vec<[f32; 3]>| Ok(Aov { name: name.to_owned(), channels: AovChannels::Rgb(values) });
     match (name, &frame.split_passes) {
+        (UNSEEN, _) => Ok(Aov { name: name.to_owned(), channels: AovChannels::YU32(hidden_counts(frame, gpu)?) }),
         (SPLIT, SplitPasses::SubBuffers(sub_buffers)) => {
             let last = sub_buffers.copies.storage.read(Stage::Compute);
             rgb(side_by_side(frame, gpu, &sub_buffers.surface.normal, last, decode::normal)?)
@@ -128,6 +144,24 @@ fn cells(frame: &InterleavedFrame, texels: &[[f32; 3]]) -> Vec<[f32; 3]> {
 
 fn in_frame_order(frame: &InterleavedFrame, gpu: &Arc<Gpu>, buffer: &Buffer) -> Result<Vec<[f32; 3]>> {
     Ok(rows(frame, texels(gpu, buffer, decode::halves)?.into_iter()))
+}
+
+/// How many virtual lights of its subset each pixel does not see, of those that would light it; each pixel shows its
+/// pattern's one with `--split subsample`.
+fn hidden_counts(frame: &InterleavedFrame, gpu: &Arc<Gpu>) -> Result<Vec<u32>> {
+    let hidden = frame.shade.hidden.as_ref().expect("a stage that the settings leave out is refused");
+    let stage = if let SplitPasses::Masked { .. } = frame.split_passes { Stage::Fragment } else { Stage::Compute };
+    let bytes = readback::buffer(gpu, hidden, hidden.bytes, stage.reads())?;
+    let words: &[u32] = bytemuck::cast_slice(&bytes);
+    let (mapping, words_a_point) = (frame.shade.mapping(), frame.shade.params.words_a_point as usize);
+    let of_cells = matches!(frame.split_passes, SplitPasses::Subsample { .. });
+    let count = |pixel: [u32; 2]| {
+        let [x, y, subset] = mapping.texel_of_pixel(pixel);
+        let place = mapping.linear_of([x, y, if of_cells { 0 } else { subset }]) as usize;
+        let first = HIDDEN_HEAD as usize + place * words_a_point;
+        words[first..first + words_a_point].iter().map(|word| word.count_ones()).sum()
+    };
+    Ok((0..mapping.height_px).flat_map(|y| (0..mapping.width_px).map(move |x| [x, y])).map(count).collect())
 }
 
 /// Leaves the padding of the rows out.

@@ -21,6 +21,12 @@ const SUBSET_EVALUATIONS: Count = Count {
     of: |done| Some(done.counter("shaded_pixels").unwrap_or(0.0) * done.counter("subset_lights_per_pixel")?),
 };
 
+/// Each pixel that is shaded looks for the virtual lights of its subset.
+const VPL_TESTS: Count = Count {
+    unit: Unit::Evaluation,
+    of: |done| Some(done.counter("shaded_pixels").unwrap_or(0.0) * done.counter("vpls_per_pixel")?),
+};
+
 /// A copy's time does not depend on what is copied, so one virtual point light is enough for the identity; at 1x1 every
 /// pixel would meet all of them.
 const COPY: Work = Work::Copy(Copying {
@@ -56,6 +62,15 @@ pub const STAGES: &[BenchStage] = &[
         made_with: &[],
         fused_by: None,
         left_out: never,
+    },
+    BenchStage {
+        name: "vpl_shadow",
+        summary: "What finds the virtual lights that a pixel does not see, in nanoseconds a pixel and a light",
+        passes: &["vpl_shadow"],
+        work: Work::Counted(&[VPL_TESTS]),
+        made_with: &[("vpl-shadow", "ray")],
+        fused_by: None,
+        left_out: |_| Some("--vpl-shadow none looks for nothing".to_owned()),
     },
     BenchStage {
         name: "gather",

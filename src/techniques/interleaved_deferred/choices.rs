@@ -40,7 +40,7 @@ choices! {
 }
 
 choices! {
-    /// What stops virtual point lights (`--vpl-shadow`); the words are the shaders' too.
+    /// What stops virtual point lights (`--vpl-shadow`).
     pub enum VplShadow {
         /// Nothing: they reach through walls (SNSM).
         "none" => None,
@@ -283,16 +283,32 @@ impl Choices {
             return 1;
         }
         let joined = self.joined_count().div_ceil(self.direct_subset_count());
-        let mut load = self.shading.direct.load(joined as usize);
-        if self.vpl_shadow == VplShadow::Ray {
-            let vpls = u64::from(self.vpl_count.div_ceil(self.subset_count()));
-            load.light_count += vpls;
-            load.casting_count += vpls;
-        }
+        let load = self.shading.direct.load(joined as usize);
         let lanes = u64::from(self.shading.lane_count());
         let room = self.mapping.sub_texel_count() / (lanes * LEAST_WORKGROUPS);
         let room = room.checked_ilog2().map_or(1, |power| 1 << power);
         self.shading.texels.of_list(load).min(room)
+    }
+
+    /// The most virtual lights that a pixel has.
+    pub fn most_vpls_a_subset(&self) -> u32 {
+        self.vpl_count.div_ceil(self.subset_count())
+    }
+
+    /// The shaders' axis VPL_SHADOW, where a pass has looked for what is hidden.
+    pub fn shade_axis(&self) -> &'static str {
+        match self.vpl_shadow {
+            VplShadow::None => "none",
+            VplShadow::Ray => "tested",
+        }
+    }
+
+    /// The same of what blends, which no G-buffer holds: it looks for itself.
+    pub fn blend_axis(&self) -> &'static str {
+        match self.vpl_shadow {
+            VplShadow::None => "none",
+            VplShadow::Ray => "ray",
+        }
     }
 
     /// The tree that rays walk; an empty one where nothing casts any.

@@ -6,6 +6,7 @@ use super::composite::Composite;
 use super::filter::{FilterStage, FilteredIrradiance};
 use super::shade::{ShadeGpu, SubsetLights};
 use super::split_passes::SplitPasses;
+use super::vpl_shadow::{self, FindHidden};
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
@@ -39,6 +40,7 @@ pub struct InterleavedFrame {
     /// The composite shades every punctual light.
     pub is_lit_fully: bool,
     pub shade: ShadeGpu,
+    pub hidden: Option<FindHidden>,
     pub split_passes: SplitPasses,
     pub filter: Option<FilterStage>,
     pub composite: Composite,
@@ -68,6 +70,8 @@ impl InterleavedFrame {
             cluster_size: choices.cluster_size() as f32,
             weight: choices.direct_subset_count() as f32,
             subset_first: 0,
+            words_a_point: vpl_shadow::words_a_point(choices),
+            _unused: [0; 3],
         };
         let shade = ShadeGpu::new(gpu, resources, subsets, params)?;
         let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
@@ -80,6 +84,7 @@ impl InterleavedFrame {
                 has_emissive,
             )?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position, shading.cull_by)).transpose()?,
+            hidden: FindHidden::new(gpu, choices, least_squared)?,
             split_passes: SplitPasses::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, choices, has_emissive, direct.masks.is_some(), lit_count)?,
@@ -90,7 +95,7 @@ impl InterleavedFrame {
                 inputs.view,
                 choices.blend_params(least_squared),
                 &shading.direct.light_constants(),
-                &BlendTarget { vpl_shadow: choices.vpl_shadow.name(), ..BlendTarget::plain(blended) },
+                &BlendTarget { vpl_shadow: choices.blend_axis(), ..BlendTarget::plain(blended) },
             )?,
             blend_lists: (inputs.stats.has_blend)
                 .then(|| blend::upload_lists(gpu, resources, NAME, blended))
@@ -119,6 +124,19 @@ impl InterleavedFrame {
         let lights = CullLights { blocks: &self.direct.lights, count: self.direct.light_count };
         cull.record(cmd, NAME, gbuffer, frame, lights, masks)?;
         Ok(gbuffer.after(Access::ComputeSample))
+    }
+
+    /// The virtual lights that pixels do not see, where any are looked for.
+    pub fn record_hidden<'a>(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        gbuffer: Edge<'a, GBuffer>,
+    ) -> Result<Edge<'a, GBuffer>> {
+        match &self.hidden {
+            Some(hidden) => hidden.record(cmd, frame, &self.shade, &self.direct, gbuffer),
+            None => Ok(gbuffer),
+        }
     }
 
     /// Discontinuities before the gather, where it filters.

@@ -45,6 +45,7 @@ mod split_passes;
 pub mod sub_buffers;
 pub mod subsets;
 pub mod upscale;
+pub mod vpl_shadow;
 
 use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::{self, Figures};
@@ -247,6 +248,7 @@ impl Prepared for PreparedInterleaved {
             ("light_walks", f64::from(found.walk_count)),
             ("shaded_pixels", choices.shaded_pixel_count() as f64),
             ("subset_lights_per_pixel", vpls + joined),
+            ("vpls_per_pixel", vpls),
         ]);
         counters.extend(blend::counters(&blended));
         Ok(HostPart {
@@ -266,6 +268,7 @@ impl Frame for InterleavedFrame {
         // Each pass is handed the G-buffer as the one before it left it.
         let gbuffer = self.record_gbuffer(cmd, scene, frame)?;
         let gbuffer = self.record_cull(cmd, frame, gbuffer)?;
+        let gbuffer = self.record_hidden(cmd, frame, gbuffer)?;
         let (gbuffer, flags) = self.record_flags_of_gather(cmd, frame, gbuffer)?;
         let (gbuffer, irradiance) = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer, flags)?;
         let (gbuffer, irradiance) = self.record_filter(cmd, frame, gbuffer, irradiance)?;

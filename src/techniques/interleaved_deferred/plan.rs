@@ -4,6 +4,7 @@ use super::choices::Choices;
 use super::filter;
 use super::shade;
 use super::split_passes;
+use super::vpl_shadow;
 use crate::error::Result;
 use crate::gpu::Access;
 use crate::lights::object_lists::ObjectLists;
@@ -33,6 +34,7 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, blended: &ObjectLists) -> Re
         let written = cull::masks(NAME, Access::ComputeWrite);
         plan.pass(full("cull"), gbuffer::surface(NAME, shading.position).into_iter().chain([written]));
     }
+    vpl_shadow::plan(&mut plan, choices);
     filter::plan_before_gather(&mut plan, choices);
     let gathered = split_passes::plan(&mut plan, choices);
     let filtered = filter::plan(&mut plan, choices, gathered);

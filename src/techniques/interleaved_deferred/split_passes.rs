@@ -14,6 +14,7 @@ use super::split::{self, Split};
 use super::split_method::{Copies, SplitMethod};
 use super::sub_buffers::{Stage, Surface, Texels};
 use super::upscale::Upscale;
+use super::vpl_shadow;
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::direct::DirectGpu;
@@ -49,18 +50,19 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
     let frame_bytes = mapping.frame_texel_count() * 8;
     let (shaded, shade) = (format!("{NAME}.shade.irradiance"), format!("{NAME}.shade"));
     let surface = |stage: Stage| gbuffer::surface_as(NAME, shading.position, stage.samples()).into_iter();
+    let hidden = |stage: Stage| vpl_shadow::read(choices, stage.reads());
     let (read, written) = (Access::ComputeRead, Access::ComputeWrite);
     match split {
         SplitMethod::None | SplitMethod::Branch | SplitMethod::Indirect | SplitMethod::Remap => {
             plan.buffer("irradiance", &shaded, frame_bytes);
-            plan.pass(shade, surface(Stage::Compute).chain([(shaded.clone(), written)]));
+            plan.pass(shade, surface(Stage::Compute).chain(hidden(Stage::Compute)).chain([(shaded.clone(), written)]));
             shaded
         }
         SplitMethod::Subsample => {
             let upscaled = format!("{NAME}.upscale.irradiance");
             plan.buffer("irradiance", &shaded, mapping.sub_texel_count() * 8);
             plan.buffer("irradiance", &upscaled, frame_bytes);
-            plan.pass(shade, surface(Stage::Compute).chain([(shaded.clone(), written)]));
+            plan.pass(shade, surface(Stage::Compute).chain(hidden(Stage::Compute)).chain([(shaded.clone(), written)]));
             plan.pass(format!("{NAME}.upscale"), [(shaded, read), (upscaled.clone(), written)]);
             upscaled
         }
@@ -69,15 +71,17 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
             plan.buffer("irradiance", &shaded, frame_bytes);
             DrawnIrradiance::plan(plan, "shade", mapping);
             let tested = (kind.resource(), Access::DepthTest);
-            plan.pass(shade, surface(Stage::Fragment).chain([tested]).chain(DrawnIrradiance::touches("shade")));
+            let read = surface(Stage::Fragment).chain(hidden(Stage::Fragment)).chain([tested]);
+            plan.pass(shade, read.chain(DrawnIrradiance::touches("shade")));
             shaded
         }
         SplitMethod::Copy(copies) => {
             split::plan(plan, choices, *copies);
             let storage = copies.storage;
             storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, Stage::Compute);
-            let surface = Surface::touches("split", storage.read(Stage::Compute));
-            plan.pass(shade, surface.into_iter().chain([(shaded.clone(), storage.written(Stage::Compute))]));
+            let surface =
+                Surface::touches("split", storage.read(Stage::Compute)).into_iter().chain(hidden(Stage::Compute));
+            plan.pass(shade, surface.chain([(shaded.clone(), storage.written(Stage::Compute))]));
             gather::plan(plan, choices, *copies, shaded)
         }
     }

@@ -40,6 +40,14 @@ impl Stage {
             Self::Fragment => Access::FragmentSample,
         }
     }
+
+    /// How it reads a buffer.
+    pub fn reads(self) -> Access {
+        match self {
+            Self::Compute => Access::ComputeRead,
+            Self::Fragment => Access::GraphicsRead,
+        }
+    }
 }
 
 impl Storage {

@@ -98,7 +98,7 @@ fn both_methods_shade_the_same_irradiance() {
 #[test]
 fn a_stage_that_the_settings_leave_out_is_refused() {
     let watched = Watched::open("cornell");
-    let common = [("size", "33x17"), ("vpls", "64")];
+    let common = [("size", "33x17"), ("vpls", "64"), ("vpl-shadow", "ray")];
     let stages = quincunx::techniques::find(TECHNIQUE).unwrap().aovs();
     let filtered = ["discontinuity.flags", "filter.irradiance"];
     let split = ["split.normal", "gather.irradiance"];
@@ -116,6 +116,7 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
         (("filter", "none"), [&filtered[..], &upscaled].concat()),
         (("pattern", "1x1"), [&filtered[..], &upscaled].concat()),
         (("pattern", "2x2"), upscaled.to_vec()),
+        (("vpl-shadow", "none"), [&upscaled[..], &["vpl_shadow.hidden"]].concat()),
     ];
     for (change, missing) in by_split.chain(by_others) {
         let changes = both(&common, &[change]);

@@ -5,6 +5,7 @@ use crate::support::boxes::{camera, closed_box, point_light, rectangle};
 use crate::support::difference::require_same;
 use crate::support::watched::{Changes, Watched, both};
 use glam::{Vec3, vec3};
+use quincunx::picture::AovChannels;
 use quincunx::scene::{AlphaMode, Material, Scene};
 
 const RAY: (&str, &str) = ("vpl-shadow", "ray");
@@ -38,6 +39,32 @@ fn a_room_behind_a_wall_is_dark() {
         assert!(lit_count > lit.pixels.len() / 2, "{way:?}: {lit_count} pixels");
         let dark = watched.picture(NAME, &both(&both(&COMMON, way), &[RAY]));
         assert!(dark.pixels.iter().flatten().all(|channel| *channel == 0.0), "{way:?}: rays are stopped");
+    }
+}
+
+/// Light that a wall stops is light that it hides: in a room behind it every pixel of 64 lights a pixel has hidden ones, which stage
+/// and picture agree on; in the lit room nothing hides any.
+#[test]
+fn hidden_lights_are_counted() {
+    for (eye_x, split) in [(0.1, "none"), (0.1, "stencil"), (0.1, "subsample"), (-0.1, "one-pass")] {
+        let watched = rooms(eye_x);
+        let way = both(&COMMON, &[("split", split), ("filter", "none"), RAY]);
+        let lit = watched.picture(NAME, &both(&way, &[("vpl-shadow", "none")]));
+        let renderer = watched.render_stages(NAME, &way, &["vpl_shadow.hidden"]);
+        let AovChannels::YU32(counts) = renderer.aov("vpl_shadow.hidden").unwrap().channels else { panic!("counts") };
+        assert_eq!(counts.len(), lit.pixels.len());
+        let most = if split == "none" || split == "subsample" { 64 } else { 4 };
+        assert!(counts.iter().all(|count| *count <= most), "{split}");
+        let hidden = counts.iter().filter(|count| **count > 0).count();
+        println!("{split} from {eye_x}: {hidden} of {} pixels do not see lights", counts.len());
+        if eye_x < 0.0 {
+            assert_eq!(hidden, 0, "{split}");
+        } else if split == "subsample" {
+            assert!(hidden > counts.len() / 2, "{split}: {hidden}");
+        } else {
+            let differing = counts.iter().zip(&lit.pixels).filter(|(count, pixel)| (**count > 0) != (pixel[0] > 0.0));
+            assert!(differing.count() <= counts.len() / 100, "{split}: what is lit is what is hidden");
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 // One pass over the un-split G-buffer, each pixel looping over its own subset (Segovia 2006, section 3.1, dynamic
 // branching).
 // Pass: src/techniques/interleaved_deferred/shade/branch.rs.
-// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|ray
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|tested
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
@@ -16,7 +16,7 @@ void main() {
         return;
     }
     // One pixel a thread: its neighbours have other lights, so there is nothing to share.
-    set_point(0u, true, normal_words(pixel), position_words(pixel), pixel);
+    set_point(0u, true, normal_words(pixel), position_words(pixel), pixel, place_of_pixel(pixel));
     shade_points(subsets[subset_of(params.mapping, pixel)]);
     irradiance[pixel.y * row_pitch(params.mapping) + pixel.x] = point_irradiance[0];
 }

@@ -9,6 +9,7 @@
 #include "shading/light.glsl"
 #include "shading/subset.glsl"
 #include "techniques/interleaved_deferred/mapping.glsl"
+#include "techniques/interleaved_deferred/vpl_shadow/hidden.glsl"
 
 struct ShadeParams {
     MappingParams mapping;
@@ -21,6 +22,9 @@ struct ShadeParams {
     float weight;
     // First subset of this dispatch; 0 where a dispatch has them all.
     uint subset_first;
+    // Words of `hidden` that a point has, where virtual lights are tested.
+    uint words_a_point;
+    uint _unused[3];
 };
 
 // Points that a thread shades.
@@ -36,22 +40,36 @@ layout(std430, set = 0, binding = 2) readonly buffer SubsetLights { LightBlock s
 layout(std430, set = 0, binding = 3) readonly buffer Subsets { SubsetBlock subsets[]; };
 layout(std430, set = 0, binding = 4) readonly buffer BvhNodes { BvhNodeBlock bvh_nodes[]; };
 layout(std430, set = 0, binding = 5) readonly buffer BvhTriangles { BvhTriangleBlock bvh_triangles[]; };
+#ifdef VPL_SHADOW_TESTED
+layout(std430, set = 0, binding = 7) readonly buffer Hidden { uint hidden[]; };
+#endif
 
 #include "bvh_walk.glsl"
-#ifdef VPL_SHADOW_RAY
-#include "shading/vpl_shadow.glsl"
-#endif
 
 // What a thread shades with one reading of its light list: a light is read lane by lane on drivers that cannot know that
 // all lanes read the same one, and that costs more than the arithmetic of one point.
 vec3 point_position_ws[TEXELS];
 vec3 point_normal_ws[TEXELS];
 bool point_has_surface[TEXELS];
+#ifdef VPL_SHADOW_TESTED
+// Its first word of `hidden`.
+uint point_hidden_at[TEXELS];
+#endif
+vec3 point_sum[TEXELS];
 // Packed halves; all bits 0 without a surface.
 uvec2 point_irradiance[TEXELS];
 
-// The i-th point is the surface that these words of the G-buffer hold; none where `exists` is false.
-void set_point(uint i, bool exists, uvec2 normal_bits, POSITION_WORDS position, uvec2 pixel) {
+// Where a pixel's words of `hidden` are.
+uint place_of_pixel(uvec2 pixel) {
+    return linear_of(params.mapping, texel_of_pixel(params.mapping, pixel));
+}
+
+// The i-th point is the surface that these words of the G-buffer hold; none where `exists` is false. `place`: as
+// `first_hidden_word`.
+void set_point(uint i, bool exists, uvec2 normal_bits, POSITION_WORDS position, uvec2 pixel, uint place) {
+#ifdef VPL_SHADOW_TESTED
+    point_hidden_at[i] = first_hidden_word(place, params.words_a_point);
+#endif
     point_has_surface[i] = exists && has_surface(normal_bits);
     point_normal_ws[i] = unpack_normal(normal_bits);
     point_position_ws[i] = unpack_position(frame, position, pixel);
@@ -70,34 +88,62 @@ bool is_shadowed(LightBlock light, Incident incident, uint i) {
     return casts && occluded(point_position_ws[i], point_normal_ws[i], incident.direction_ws, incident.distance);
 }
 
+void add_to(uint i, vec3 received) {
+    precise vec3 sum = point_sum[i] + received;
+    point_sum[i] = sum;
+}
+
+vec3 received_from(VplBlock vpl, uint i) {
+    return vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
+}
+
+// Adds to each point what it receives from a subset's lights from `first` to `end`, of those that it sees where that was tested.
+#ifdef VPL_SHADOW_TESTED
+void add_vpls(uint first, uint end) {
+    // The pass that has looked may have been cut short, too.
+    expect_done(hidden[0] == 0u);
+    uint vpl_index = first;
+    for (uint word = 0u; vpl_index < end; word++) {
+        uint words[TEXELS];
+        for (uint i = 0u; i < TEXELS; i++) {
+            words[i] = point_has_surface[i] ? hidden[point_hidden_at[i] + word] : 0u;
+        }
+        uint word_first = vpl_index;
+        for (; vpl_index < min(end, word_first + LIGHTS_A_WORD); vpl_index++) {
+            VplBlock vpl = vpls[vpl_index];
+            for (uint i = 0u; i < TEXELS; i++) {
+                vec3 received = received_from(vpl, i);
+                add_to(i, (words[i] >> (vpl_index - word_first) & 1u) == 0u ? received : vec3(0.0));
+            }
+        }
+    }
+    expect_done(vpl_index == end);
+}
+#else
+void add_vpls(uint first, uint end) {
+    uint vpl_index = first;
+    for (; vpl_index < end; vpl_index++) {
+        VplBlock vpl = vpls[vpl_index];
+        for (uint i = 0u; i < TEXELS; i++) {
+            add_to(i, received_from(vpl, i));
+        }
+    }
+    expect_done(vpl_index == end);
+}
+#endif
+
 // Each point's irradiance from all lights of `subset`, in the order of the lists, rounded to halves once.
 void shade_points(SubsetBlock subset) {
-    precise vec3 sum[TEXELS];
     for (uint i = 0u; i < TEXELS; i++) {
-        sum[i] = vec3(0.0);
+        point_sum[i] = vec3(0.0);
     }
     bool is_lit = has_any_surface();
     uint vpl_end = is_lit ? subset.vpl_first + subset.vpl_count : 0u;
-    uint vpl_index = min(subset.vpl_first, vpl_end);
-    for (; vpl_index < vpl_end; vpl_index++) {
-        VplBlock vpl = vpls[vpl_index];
-        for (uint i = 0u; i < TEXELS; i++) {
-            vec3 received = vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
-#ifdef VPL_SHADOW_RAY
-            // Points without a surface have no position that a ray could start from.
-            if (!point_has_surface[i] || received == vec3(0.0) ||
-                is_hidden_from(vpl, point_position_ws[i], point_normal_ws[i])) {
-                continue;
-            }
-#endif
-            sum[i] += received;
-        }
-    }
-    expect_done(vpl_index == vpl_end);
+    add_vpls(min(subset.vpl_first, vpl_end), vpl_end);
     // Before the punctual lights join: both factors are whole, and with one pattern for both kinds this one is 1 and keeps
     // the bits of the one sum.
     for (uint i = 0u; i < TEXELS; i++) {
-        sum[i] *= params.cluster_size;
+        point_sum[i] *= params.cluster_size;
     }
     uint light_end = HAS_JOINED && is_lit ? subset.light_first + subset.light_count : 0u;
     uint light_index = min(subset.light_first, light_end);
@@ -110,14 +156,14 @@ void shade_points(SubsetBlock subset) {
             bool faces = point_has_surface[i] && cosine > 0.0 && incident.irradiance != vec3(0.0);
             if (faces && !is_shadowed(light, incident, i)) {
                 precise vec3 received = incident.irradiance * cosine;
-                sum[i] += received;
+                add_to(i, received);
             }
         }
         expect_done(i == TEXELS);
     }
     expect_done(light_index == light_end);
     for (uint i = 0u; i < TEXELS; i++) {
-        precise vec3 weighted = nan_if_cut(sum[i] * params.weight);
+        precise vec3 weighted = nan_if_cut(point_sum[i] * params.weight);
         point_irradiance[i] = point_has_surface[i] ? pack_halves(weighted, 0u) : uvec2(0u);
     }
 }

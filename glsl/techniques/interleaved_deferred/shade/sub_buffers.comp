@@ -1,6 +1,6 @@
 // Each sub-buffer shaded with its own lights: one light list for neighbouring threads. Segovia 2006, section 4.3 (SNSM).
 // Pass: src/techniques/interleaved_deferred/shade/sub_buffers.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers VPL_SHADOW=none|ray
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers VPL_SHADOW=none|tested
 #version 460
 #include "passes/gbuffer.glsl"
 #define READS_SURFACE
@@ -19,7 +19,8 @@ void main() {
         uvec3 texel = texel_at(listed(i));
         bool exists = is_in_sub_buffer(params.mapping, texel);
         PLACE place = place_of_texel(params.mapping, exists ? texel : uvec3(0u, 0u, texel.z));
-        set_point(i, exists, load_normal(place), load_position(place), pixel_of_texel(params.mapping, texel));
+        uvec2 pixel = pixel_of_texel(params.mapping, texel);
+        set_point(i, exists, load_normal(place), load_position(place), pixel, linear_of(params.mapping, texel));
     }
     shade_points(subsets[gl_GlobalInvocationID.z]);
     for (uint i = 0u; i < TEXELS; i++) {

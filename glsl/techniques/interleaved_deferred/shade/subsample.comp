@@ -1,6 +1,6 @@
 // Sub-sampling: all lights at the middle pixel of each n x m cell (Segovia 2006, section 5.4, what figures 6 and 7
 // compare with). Pass: src/techniques/interleaved_deferred/shade/subsample.rs.
-// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|ray
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|tested
 #version 460
 #include "passes/gbuffer_read.glsl"
 #include "techniques/interleaved_deferred/shade/irradiance.glsl"
@@ -14,7 +14,7 @@ void main() {
         uint cell = listed(i);
         uvec2 at = uvec2(cell % params.mapping.sub_width_px, cell / params.mapping.sub_width_px);
         uvec2 pixel = middle_of_cell(params.mapping, at);
-        set_point(i, cell < cell_count, normal_words(pixel), position_words(pixel), pixel);
+        set_point(i, cell < cell_count, normal_words(pixel), position_words(pixel), pixel, cell);
     }
     shade_points(subsets[0]);
     for (uint i = 0u; i < TEXELS; i++) {

@@ -19,7 +19,7 @@ pub struct ShadeBranch {
 
 impl ShadeBranch {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
         let constants = [&choices.shading.workgroup_constants()[..], &choices.irradiance_constants()].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
@@ -42,6 +42,7 @@ impl ShadeBranch {
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));

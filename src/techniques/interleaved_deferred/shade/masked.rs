@@ -34,7 +34,7 @@ pub struct ShadeMasked {
 
 impl ShadeMasked {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, kind: MaskKind) -> Result<Self> {
-        let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
+        let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
         let formats = [drawn_irradiance::FORMAT];
         let (compare, stencil) = match kind {
             MaskKind::Stencil => (vk::CompareOp::ALWAYS, Some(StencilUse::RequireEqual)),
@@ -72,6 +72,7 @@ impl ShadeMasked {
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to(Access::FragmentSample));
             cmd.barriers([mask.to(Access::DepthTest)]);
+            cmd.barriers(shade.hidden_to(Access::GraphicsRead));
             let mut bound = shade.bound(frame, direct);
             bound.extend(gbuffer.resource.bound_surface());
             let depth = Some((&mask.resource.image, None, Access::DepthTest));

@@ -1,4 +1,4 @@
-//! Shading without shadow maps (SNSM), or with a shadow ray for each light (`--vpl-shadow ray`): Segovia 2006, section 4.3.
+//! Shading with the lights of the subsets, all of them (SNSM) or those that a pixel sees (SSM, vpl_shadow/): Segovia 2006, section 4.3.
 //! Every split sums the same function over its lights (irradiance.glsl): float, in the order of the list, packed to halves
 //! once.
 
@@ -9,11 +9,12 @@ pub mod sub_buffers;
 pub mod subsample;
 
 use super::choices::Choices;
+use super::vpl_shadow::HIDDEN;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
-use crate::gpu::{Access, Bound, Buffer, Gpu, upload};
+use crate::gpu::{Access, Barrier, Bound, Buffer, Gpu, upload};
 use crate::passes::direct::DirectGpu;
 use crate::plan::{Plan, Resources};
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -42,6 +43,8 @@ pub struct ShadeGpu {
     pub vpls: Buffer,
     subset_lights: Buffer,
     pub subsets: Buffer,
+    /// Which of them a pixel does not see, where that is looked for.
+    pub hidden: Option<Buffer>,
     /// Parameters of shading that every split has.
     pub params: ShadeParams,
 }
@@ -54,12 +57,19 @@ impl ShadeGpu {
             upload::buffer(gpu, &buffer, bytes, Access::ComputeRead | Access::GraphicsRead)?;
             Ok(buffer)
         };
+        let words_a_point = params.words_a_point;
         Ok(Self {
             vpls: filled("vpls", bytemuck::cast_slice(&lights.vpls))?,
             subset_lights: filled("subset_lights", bytemuck::cast_slice(&lights.lights))?,
             subsets: filled("subsets", bytemuck::cast_slice(&lights.subsets))?,
+            hidden: (words_a_point > 0).then(|| resources.buffer(HIDDEN)),
             params,
         })
+    }
+
+    /// What is hidden becomes readable as `access` says, where it was found.
+    pub fn hidden_to(&self, access: Access) -> Option<Barrier> {
+        self.hidden.as_ref().map(|hidden| hidden.from(Access::ComputeWrite).to(access))
     }
 
     pub fn mapping(&self) -> &MappingParams {
@@ -68,14 +78,16 @@ impl ShadeGpu {
 
     /// Bindings of irradiance.glsl.
     fn bound<'a>(&'a self, frame: &'a Buffer, direct: &'a DirectGpu) -> Vec<(&'static str, Bound<'a>)> {
-        vec![
+        let hidden = self.hidden.iter().map(|hidden| ("Hidden", Bound::Buffer(hidden)));
+        let lights = [
             ("Frame", Bound::Buffer(frame)),
             ("Vpls", Bound::Buffer(&self.vpls)),
             ("SubsetLights", Bound::Buffer(&self.subset_lights)),
             ("Subsets", Bound::Buffer(&self.subsets)),
             ("BvhNodes", Bound::Buffer(&direct.bvh_nodes)),
             ("BvhTriangles", Bound::Buffer(&direct.bvh_triangles)),
-        ]
+        ];
+        lights.into_iter().chain(hidden).collect()
     }
 }
 

@@ -21,7 +21,7 @@ pub struct ShadeSubBuffers {
 impl ShadeSubBuffers {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, storage: Storage) -> Result<Self> {
         let position = choices.shading.position;
-        let shader = variant(COMP_VARIANTS, &[position.name(), storage.name(), choices.vpl_shadow.name()]);
+        let shader = variant(COMP_VARIANTS, &[position.name(), storage.name(), choices.shade_axis()]);
         let listed = TexelListPipeline::new(gpu, choices, shader)?;
         Ok(Self { listed, storage, texel_bytes: 8 + position.bytes() })
     }
@@ -44,6 +44,7 @@ impl ShadeSubBuffers {
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(split.to(self.storage.read(Stage::Compute)));
+            cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
             bound.extend(split.resource.source());

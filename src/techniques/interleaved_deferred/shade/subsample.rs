@@ -18,7 +18,7 @@ pub struct ShadeSubsample {
 
 impl ShadeSubsample {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.vpl_shadow.name()]);
+        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
         Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)? })
     }
 
@@ -40,6 +40,7 @@ impl ShadeSubsample {
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));
