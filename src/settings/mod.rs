@@ -17,7 +17,9 @@ pub use optics::{
     APERTURE, FOCUS, LIGHT_RADIUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes,
     earlier_s, exposure_s, light_radius_m,
 };
-pub use shadow_maps::{MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_MAPS};
+pub use shadow_maps::{
+    MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_BIAS_M, SHADOW_CASTERS, SHADOW_MAPS, SHADOW_SLOPE_BIAS,
+};
 pub use tables::{
     ANISOTROPY, BRDF, Brdf, COMMON, CULL, CULL_BY, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow,
     EMISSIVE, GEOMETRY, GeometryChoice, Gutters, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD,

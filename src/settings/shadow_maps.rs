@@ -76,35 +76,41 @@ pub const SHADOW_MAPS: &[Setting] = &[
         unread: without_maps,
         ..Setting::changing(Changes::Picture)
     },
-    Setting {
-        key: "shadow-bias",
-        kind: Kind::Length,
-        default: "0.03%",
-        unit: "m",
-        help: "Distance by which a point moves towards the light before its shadow map is read, to cover rounding",
-        unread: without_maps,
-        ..Setting::changing(Changes::Picture)
-    },
-    Setting {
-        key: "shadow-slope-bias",
-        kind: Kind::Number { min: 0.0, max: 64.0 },
-        default: "2",
-        unit: "px",
-        help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
-               this many texels; 2 is the reach of four comparisons",
-        unread: without_maps,
-        ..Setting::changing(Changes::Picture)
-    },
-    Setting {
-        key: "shadow-casters",
-        kind: Kind::Choice(GeometryChoice::WORDS),
-        default: "culled",
-        help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
-               plain way to the same bits)",
-        unread: without_maps,
-        ..Setting::changing(Changes::Nothing)
-    },
+    SHADOW_BIAS_M,
+    SHADOW_SLOPE_BIAS,
+    SHADOW_CASTERS,
 ];
+
+pub const SHADOW_BIAS_M: Setting = Setting {
+    key: "shadow-bias",
+    kind: Kind::Length,
+    default: "0.03%",
+    unit: "m",
+    help: "Distance by which a point moves towards the light before its shadow map is read, to cover rounding",
+    unread: without_maps,
+    ..Setting::changing(Changes::Picture)
+};
+
+pub const SHADOW_SLOPE_BIAS: Setting = Setting {
+    key: "shadow-slope-bias",
+    kind: Kind::Number { min: 0.0, max: 64.0 },
+    default: "2",
+    unit: "px",
+    help: "Slope bias: surfaces in a shadow map are moved away from the light by the change of their depth over \
+           this many texels; 2 is the reach of four comparisons",
+    unread: without_maps,
+    ..Setting::changing(Changes::Picture)
+};
+
+pub const SHADOW_CASTERS: Setting = Setting {
+    key: "shadow-casters",
+    kind: Kind::Choice(GeometryChoice::WORDS),
+    default: "culled",
+    help: "Triangles to draw into a shadow map: only the clusters that it may hold (culled), or all of them (the \
+           plain way to the same bits)",
+    unread: without_maps,
+    ..Setting::changing(Changes::Nothing)
+};
 
 fn without_maps(values: &Values) -> Option<Unread> {
     Unread::unless(values, MAPPED_DIRECT_SHADOW.key, &[DirectShadow::Map], "there are no shadow maps")

@@ -22,28 +22,27 @@
 //! away by a slope's part of it, in the rasteriser, cannot detach a shadow by more than as many texels, however steep the
 //! surface; metres along the ray to the light are added where it is asked, because they mean the same at every distance.
 
+mod casters;
 mod format;
 mod layout;
+pub mod projection;
 
+pub use casters::CasterPipelines;
+pub use format::FORMAT;
 pub use layout::MapLayout;
 
 use super::mesh;
 use crate::caps::{Ability, Need};
 use crate::error::Result;
 use crate::gpu::commands::Submits;
-use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
 use crate::gpu::sampler::Sampler;
-use crate::gpu::shader::passes::shadow_maps::{FRAG_VARIANTS, VERT_VARIANTS};
-use crate::gpu::shader::structs::ShadowMapsParams;
-use crate::gpu::shader::variant;
 use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic, upload};
 use crate::plan::Resources;
 use crate::resident::{DrawList, SceneGpu};
 use crate::scene::Scene;
 use crate::settings::{MapFilter, Values};
 use ash::vk;
-use bytemuck::Zeroable;
-use format::{FORMAT, blocks_name, depth_name, pass, views_name};
+use format::{blocks_name, depth_name, pass, views_name};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -64,8 +63,7 @@ pub fn needs(values: &Values) -> Option<Need> {
 }
 
 pub struct ShadowMaps {
-    opaque: GraphicsPipeline,
-    mask: GraphicsPipeline,
+    pipelines: CasterPipelines,
     /// What is drawn into each layer.
     casters: Vec<DrawList>,
     depth: Image,
@@ -87,37 +85,9 @@ impl ShadowMaps {
         posed: &Scene,
         scene: &SceneGpu,
     ) -> Result<Self> {
-        let vertex_name = mesh::vertex_name(scene);
-        let of_textures = [scene.texture_constant()];
-        let pipeline = |alpha, vertex_buffers, fragment: Option<_>| {
-            GraphicsPipeline::new(
-                gpu,
-                &GraphicsDescription {
-                    vertex: variant(VERT_VARIANTS, &[alpha, vertex_name]),
-                    geometry: None,
-                    fragment,
-                    constants: if fragment.is_some() { &of_textures } else { &[] },
-                    vertex_buffers,
-                    color_formats: &[],
-                    samples: 1,
-                    blending: Blending::Replace,
-                    depth_format: Some(FORMAT),
-                    depth_write: true,
-                    depth_compare: vk::CompareOp::GREATER,
-                    depth_clamp: false,
-                    // Depth is reversed: less is farther from the light.
-                    depth_bias: DepthBias { slope: -layout.slope_bias_px, ..DepthBias::NONE },
-                    conservative_margin_px: None,
-                    stencil: None,
-                    foreign_sets: &[scene.material_layout],
-                },
-            )
-        };
-        let mask = variant(FRAG_VARIANTS, &[vertex_name]);
         let casters = layout.views.iter().map(|view| DrawList::of_casters(posed, scene, view, layout.casters));
         let maps = Self {
-            opaque: pipeline("opaque", mesh::POSITIONS, None)?,
-            mask: pipeline("mask", mesh::vertex_buffers(scene), Some(mask))?,
+            pipelines: CasterPipelines::new(gpu, scene, layout.slope_bias_px)?,
             casters: casters.collect(),
             depth: resources.image(&depth_name(technique)),
             blocks: resources.buffer(&blocks_name(technique)),
@@ -167,29 +137,12 @@ impl ShadowMaps {
         };
         cmd.pass(&pass(technique), traffic, |cmd| {
             cmd.barriers([self.depth.discard(Access::DepthWrite)]);
-            let draws = [("Draws", Bound::Buffer(&scene.pose.draws)), ("ShadowMapViews", Bound::Buffer(&self.views))];
-            let placements =
-                scene.extended.as_ref().map(|extended| ("Placements", Bound::Buffer(&extended.placements)));
-            let cut: Vec<_> = draws.into_iter().chain(placements).collect();
-            let (opaque, mask) = (cmd.set_for(&self.opaque, &draws)?, cmd.set_for(&self.mask, &cut)?);
+            let sets = self.pipelines.sets(cmd, scene, &self.views)?;
             for (layer, casters) in (0u32..).zip(&self.casters) {
-                let params = |material: u32| ShadowMapsParams {
-                    material: scene.material_blocks[material as usize],
-                    layer,
-                    ..ShadowMapsParams::zeroed()
-                };
                 let target = (&self.depth, Some(0.0), Access::DepthWrite);
                 cmd.begin_layers(self.depth.description.extent, Layers::One(layer), &[], Some(target));
                 mesh::bind_streams(cmd, scene);
-                if let Some(first) = casters.opaque.first() {
-                    cmd.bind_with_set(&self.opaque, bytemuck::bytes_of(&params(first.material)), opaque);
-                    mesh::draw_with(cmd, &self.opaque, scene, &casters.opaque, |_| ());
-                }
-                if let Some(first) = casters.mask.first() {
-                    cmd.bind_with_set(&self.mask, bytemuck::bytes_of(&params(first.material)), mask);
-                    let push = |material| cmd.push(&self.mask.interface, bytemuck::bytes_of(&params(material)));
-                    mesh::draw_with(cmd, &self.mask, scene, &casters.mask, push);
-                }
+                self.pipelines.draw(cmd, scene, &sets, layer, casters);
                 cmd.end_rendering();
             }
             Ok(())
