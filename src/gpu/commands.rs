@@ -402,6 +402,21 @@ impl Commands {
         unsafe { self.gpu.device.cmd_fill_buffer(self.buffer(), target.handle, 0, vk::WHOLE_SIZE, 0) };
     }
 
+    /// Where the attachments hold what the clip volume holds, and which texels draws may touch, until the next rendering begins.
+    pub fn set_window(&mut self, [x, y]: [u32; 2], extent: Extent) {
+        let viewport = vk::Viewport {
+            x: x as f32,
+            y: y as f32,
+            width: extent.width as f32,
+            height: extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: the buffer is being recorded.
+        unsafe { self.gpu.device.cmd_set_viewport(self.buffer(), 0, &[viewport]) };
+        self.set_scissor([x, y], extent);
+    }
+
     /// Which texels draws may touch, until the next rendering begins: `offset` and `extent`, in the attachments.
     pub fn set_scissor(&mut self, [x, y]: [u32; 2], extent: Extent) {
         let area = vk::Rect2D {

@@ -7,6 +7,7 @@
 //!
 //! Positions lie in a stream of their own, because depth and visibility passes read nothing else.
 
+mod boxes;
 mod clipped;
 mod clusters;
 mod disc;
@@ -24,6 +25,7 @@ pub mod traced;
 mod visible;
 pub mod volume;
 
+pub use boxes::ClusterBoxes;
 pub use clusters::Cluster;
 pub use disc::LensDisc;
 pub use geometry::{Geometry, groups_of};

@@ -75,16 +75,19 @@ impl DrawList {
         kept.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         let clusters_drawn = kept.len() as u64;
         let mut list = Self { opaque: Vec::new(), mask: Vec::new(), clusters_drawn, clusters_culled };
-        for (_, part) in kept {
-            let calls = if part.alpha == AlphaMode::Opaque { &mut list.opaque } else { &mut list.mask };
-            match calls.last_mut() {
-                Some(last) if last.draw == part.draw && last.first_index + last.index_count == part.first_index => {
-                    last.index_count += part.index_count;
-                }
-                _ => calls.push(part),
-            }
-        }
+        kept.into_iter().for_each(|(_, part)| list.push(part));
         list
+    }
+
+    /// Adds a part of a draw; what follows the last one is one with it.
+    pub(super) fn push(&mut self, part: DrawCall) {
+        let calls = if part.alpha == AlphaMode::Opaque { &mut self.opaque } else { &mut self.mask };
+        match calls.last_mut() {
+            Some(last) if last.draw == part.draw && last.first_index + last.index_count == part.first_index => {
+                last.index_count += part.index_count;
+            }
+            _ => calls.push(part),
+        }
     }
 
     /// In the order of drawing.

@@ -52,6 +52,22 @@ const CONVERGED: Bounds = Bounds {
     why: "each pixel has a subset of the lights, and the filter spreads it: the mean stays, and edges are coarser",
 };
 
+const ONE_TEXEL: Bounds = Bounds {
+    apart: 0.002,
+    rmse: 0.001,
+    flip: 0.001,
+    mean: 0.0005,
+    why: "the same maps elsewhere in an image: corners are snapped after they are moved there, which takes a texel of an edge \
+          here and there",
+};
+const TEXELS_WIDE: Bounds = Bounds {
+    apart: 0.03,
+    rmse: 0.01,
+    flip: 0.01,
+    mean: 0.002,
+    why: "a map's texels are as wide as its distance says, and a shadow's edge with them",
+};
+
 pub const GROUPS: &[Group] = &[
     Group {
         name: "repeat",
@@ -162,6 +178,36 @@ pub const GROUPS: &[Group] = &[
         twin: Twin::Method(&[("split", "branch"), ("position", "float")]),
         methods: &[&[("position", "float")], &[("split", "stencil"), ("position", "float")]],
         must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "vpl-shadow-map",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, UNFILTERED, ("vpl-shadow", "map"), ("position", "float")],
+        twin: Twin::Method(&[("split", "branch"), ("shadow-casters", "all")]),
+        methods: &[&[], &[("split", "stencil")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "vpl-shadow-shape",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, UNFILTERED, ("vpl-shadow", "map"), ("position", "float")],
+        twin: Twin::Method(&[("vpl-shadow-shape", "layers"), ("vpl-shadow-maps", "5")]),
+        methods: &[
+            &[("vpl-shadow-shape", "cube"), ("vpl-shadow-maps", "64")],
+            &[("vpl-shadow-shape", "hemicube"), ("vpl-shadow-maps", "7")],
+        ],
+        must: Must::Near(ONE_TEXEL),
+    },
+    Group {
+        name: "vpl-shadow-rays",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, ("position", "float")],
+        twin: Twin::Method(&[("vpl-shadow", "ray")]),
+        methods: &[&[("vpl-shadow", "map"), ("vpl-shadow-size", "512")]],
+        must: Must::Near(TEXELS_WIDE),
     },
     Group {
         name: "bands",

@@ -42,7 +42,7 @@ pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String
     let mut left_out = Vec::new();
     let split = values.choice::<Split>("split").name();
     if choices.vpl_shadow == VplShadow::None {
-        left_out.push((UNSEEN, "with --vpl-shadow none nothing looks for hidden lights; ray does".to_owned()));
+        left_out.push((UNSEEN, "with --vpl-shadow none nothing looks for hidden lights; ray and map do".to_owned()));
     }
     if choices.split != SplitMethod::Subsample {
         left_out.push((UPSCALED, format!("--split {split} interpolates nothing; subsample does")));

@@ -1,5 +1,6 @@
 //! What a benchmark times of interleaved deferred shading, and the plain form of it.
 
+use super::choices::VplShadow;
 use super::split_method::Split;
 use crate::choice::Choice;
 use crate::passes::filter::Filter;
@@ -26,6 +27,8 @@ const VPL_TESTS: Count = Count {
     unit: Unit::Evaluation,
     of: |done| Some(done.counter("shaded_pixels").unwrap_or(0.0) * done.counter("vpls_per_pixel")?),
 };
+
+const MAP_TRIANGLES: Count = Count { unit: Unit::Triangle, of: |done| done.counter("vpl_map_triangles_drawn") };
 
 /// A copy's time does not depend on what is copied, so one virtual point light is enough for the identity; at 1x1 every
 /// pixel would meet all of them.
@@ -62,6 +65,17 @@ pub const STAGES: &[BenchStage] = &[
         made_with: &[],
         fused_by: None,
         left_out: never,
+    },
+    BenchStage {
+        name: "vpl_maps",
+        summary: "Drawing of the virtual lights' shadow maps, in nanoseconds a triangle that is drawn into one",
+        passes: &["vpl_maps"],
+        work: Work::Counted(&[MAP_TRIANGLES]),
+        made_with: &[("vpl-shadow", "map")],
+        fused_by: None,
+        left_out: |values| {
+            Some(format!("--vpl-shadow {} draws no maps; map does", values.choice::<VplShadow>("vpl-shadow").name()))
+        },
     },
     BenchStage {
         name: "vpl_shadow",

@@ -4,6 +4,7 @@ use super::mapping::mapping;
 use super::split_method::{Copier, Copies, Form, MaskKind, SplitMethod};
 use super::sub_buffers::Storage;
 use super::subsets::subsets;
+use super::vpl_shadow::VplMaps;
 use crate::bvh::Bvh;
 use crate::caps::Caps;
 use crate::choice::choices;
@@ -46,6 +47,8 @@ choices! {
         "none" => None,
         /// A ray from each surface to each of its lights.
         "ray" => Ray,
+        /// A shadow map of each light (SSM).
+        "map" => Map,
     }
 }
 
@@ -81,6 +84,8 @@ pub struct Choices {
     /// Virtual point lights.
     pub vpl_count: u32,
     pub vpl_shadow: VplShadow,
+    /// Shadow maps of virtual lights, where they have any; `PreparedInterleaved` knows what room they have.
+    pub vpl_maps: Option<VplMaps>,
     /// The scene's own lights that this frame has.
     pub direct_count: u32,
 }
@@ -137,6 +142,7 @@ impl Choices {
             direct_pattern: Pattern::grid(direct_pattern),
             vpl_count: values.integer("vpls") as u32,
             vpl_shadow: values.choice("vpl-shadow"),
+            vpl_maps: None,
             direct_count: if direct == Direct::None { 0 } else { lights.lights.len() as u32 },
         };
         choices.check_lights(values.text("pattern"))?;
@@ -220,6 +226,7 @@ impl Choices {
             ("texels", self.list_texels().to_string()),
             (WORKGROUP.key, workgroup::text(self.shading.workgroup)),
         ]);
+        resolved.extend(self.vpl_maps.iter().flat_map(VplMaps::resolved));
         if let Some(copies) = self.split.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
             resolved.insert("storage", storage.to_owned());
@@ -299,15 +306,15 @@ impl Choices {
     pub fn shade_axis(&self) -> &'static str {
         match self.vpl_shadow {
             VplShadow::None => "none",
-            VplShadow::Ray => "tested",
+            VplShadow::Ray | VplShadow::Map => "tested",
         }
     }
 
-    /// The same of what blends, which no G-buffer holds: it looks for itself.
+    /// The same of what blends, which no G-buffer holds: it looks for itself, by rays, because no map waits for it.
     pub fn blend_axis(&self) -> &'static str {
         match self.vpl_shadow {
             VplShadow::None => "none",
-            VplShadow::Ray => "ray",
+            VplShadow::Ray | VplShadow::Map => "ray",
         }
     }
 
@@ -318,6 +325,8 @@ impl Choices {
         match self.vpl_shadow {
             VplShadow::None => self.shading.direct.tree(inputs.bvh, inputs.scene),
             VplShadow::Ray => inputs.bvh.over(inputs.scene),
+            VplShadow::Map if inputs.stats.has_blend => inputs.bvh.over(inputs.scene),
+            VplShadow::Map => self.shading.direct.tree(inputs.bvh, inputs.scene),
         }
     }
 

@@ -6,7 +6,7 @@ use super::composite::Composite;
 use super::filter::{FilterStage, FilteredIrradiance};
 use super::shade::{ShadeGpu, SubsetLights};
 use super::split_passes::SplitPasses;
-use super::vpl_shadow::{self, FindHidden};
+use super::vpl_shadow::{self, FindHidden, Sought};
 use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
@@ -84,7 +84,13 @@ impl InterleavedFrame {
                 has_emissive,
             )?,
             cull: direct.masks.as_ref().map(|_| Cull::new(gpu, shading.position, shading.cull_by)).transpose()?,
-            hidden: FindHidden::new(gpu, choices, least_squared)?,
+            hidden: FindHidden::new(
+                gpu,
+                inputs,
+                scene,
+                resources,
+                &Sought { choices, lights: subsets, least_squared },
+            )?,
             split_passes: SplitPasses::new(gpu, resources, choices)?,
             filter: FilterStage::new(gpu, inputs, resources, choices)?,
             composite: Composite::new(gpu, choices, has_emissive, direct.masks.is_some(), lit_count)?,
@@ -130,11 +136,12 @@ impl InterleavedFrame {
     pub fn record_hidden<'a>(
         &self,
         cmd: &mut Commands,
+        scene: &SceneGpu,
         frame: &Buffer,
         gbuffer: Edge<'a, GBuffer>,
     ) -> Result<Edge<'a, GBuffer>> {
         match &self.hidden {
-            Some(hidden) => hidden.record(cmd, frame, &self.shade, &self.direct, gbuffer),
+            Some(hidden) => hidden.record(cmd, frame, scene, &self.shade, &self.direct, gbuffer),
             None => Ok(gbuffer),
         }
     }

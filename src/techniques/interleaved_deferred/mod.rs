@@ -10,6 +10,9 @@
 //! `depth` comes mask. With `--fuse on` gather walks the filter's rows (behind discontinuity, which then comes before
 //! split) and composite its columns: no pass filter where one compute shader pulls each pixel.
 //!
+//! With `--vpl-shadow` vpl_shadow comes before split and finds the lights that a pixel does not see. With maps vpl_maps, which draws
+//! them, comes before it; where not all maps are held at once, both come once a turn, with the turn's number behind their names.
+//!
 //! Differs from the paper
 //! - by default compute shaders copy, where the paper drew; `--split fragment` draws, with the paper's look-up textures
 //! - sub-buffers are tiled in an image, as in the paper's figure 3, with `--storage image`; in buffers, the default on
@@ -19,7 +22,7 @@
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
 //! - the direct lights' pattern, made by clustering sub-buffers (section 4.6), may be of any divisors of the split's, where
 //!   the paper says powers of two
-//! - secondary lights are not shadowed (SNSM), as in the paper's section 6.2, or by rays (`--vpl-shadow ray`)
+//! - what hides a light from a pixel is found before the shading, and not in its loop: the maps need not be held all at once
 //!
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
 //! every split except `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
@@ -71,6 +74,7 @@ use split_method::SplitMethod;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
+use vpl_shadow::{FindHidden, VplMaps};
 
 pub struct InterleavedDeferred;
 
@@ -107,7 +111,7 @@ impl Technique for InterleavedDeferred {
 
     fn needs(&self, values: &Values, caps: &Caps, has_blend: bool) -> Vec<Need> {
         let of_rays = match values.choice("vpl-shadow") {
-            VplShadow::None => direct::needs(values),
+            VplShadow::None | VplShadow::Map => direct::needs(values),
             VplShadow::Ray => direct::depth_rays(values),
         };
         let mut needs: Vec<Need> =
@@ -178,13 +182,17 @@ impl Technique for InterleavedDeferred {
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
-        let choices = Choices::new(inputs)?;
+        let mut choices = Choices::new(inputs)?;
         let mut direct_lights = direct::light_blocks(inputs.lights, inputs.values);
         direct_lights.truncate(choices.direct_count as usize);
         let blended = blend::lists(inputs.scene, &direct_lights, inputs.values, inputs.caps)?;
         let emissive = inputs.emissive_lights();
         // What lights reach in one frame of an animation, they reach in all of them.
         let vpl_clamp_m = inputs.values.length("vpl-clamp", inputs.scene.lasting_bounds().diagonal());
+        if choices.vpl_shadow == VplShadow::Map {
+            let room_bytes = plan::room_bytes(&choices, inputs, &blended)?;
+            choices.vpl_maps = Some(VplMaps::new(inputs.values, inputs.scene, &inputs.caps.limits, room_bytes)?);
+        }
         Ok(Box::new(PreparedInterleaved { choices, direct_lights, blended, emissive, vpl_clamp_m }))
     }
 }
@@ -268,7 +276,7 @@ impl Frame for InterleavedFrame {
         // Each pass is handed the G-buffer as the one before it left it.
         let gbuffer = self.record_gbuffer(cmd, scene, frame)?;
         let gbuffer = self.record_cull(cmd, frame, gbuffer)?;
-        let gbuffer = self.record_hidden(cmd, frame, gbuffer)?;
+        let gbuffer = self.record_hidden(cmd, scene, frame, gbuffer)?;
         let (gbuffer, flags) = self.record_flags_of_gather(cmd, frame, gbuffer)?;
         let (gbuffer, irradiance) = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer, flags)?;
         let (gbuffer, irradiance) = self.record_filter(cmd, frame, gbuffer, irradiance)?;
@@ -278,7 +286,8 @@ impl Frame for InterleavedFrame {
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
-        self.gbuffer_pass.counters().into()
+        let of_maps = self.hidden.iter().flat_map(FindHidden::counters);
+        self.gbuffer_pass.counters().into_iter().chain(of_maps).collect()
     }
 
     fn picture(&self) -> (&Image, Access) {

@@ -4,6 +4,7 @@
 mod discontinuity;
 mod split;
 mod subsample;
+mod vpl_maps;
 mod vpl_shadow;
 
 use crate::support::choices::{Way, is_possible, ways};

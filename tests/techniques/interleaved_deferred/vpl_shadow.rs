@@ -13,7 +13,7 @@ const COMMON: [(&str, &str); 4] = [("size", "64x36"), ("vpls", "64"), ("direct",
 
 /// A box that a wall from side to side makes two rooms of; a lamp hangs in the left one, a pane in the right one. `eye_x`: in which
 /// room the camera looks away from the wall.
-fn rooms(eye_x: f32) -> Watched {
+pub fn rooms(eye_x: f32) -> Watched {
     let grey = Material { double_sided: true, ..Material::diffuse("grey", Vec3::splat(0.6)) };
     let mut scene = closed_box(&grey);
     rectangle(&mut scene, Vec3::ZERO, Vec3::Y, Vec3::Z, grey.clone());

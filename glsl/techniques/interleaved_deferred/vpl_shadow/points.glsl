@@ -16,6 +16,12 @@ struct HiddenParams {
     uint words_a_point;
     // 1: a point stands for a cell of the pattern.
     uint is_of_cells;
+    // First subset and first word of a point that the dispatch is about.
+    uint subset_first;
+    uint word_first;
+    // The virtual lights that it is about, of the whole list.
+    uint light_first;
+    uint light_end;
     uint _unused;
 };
 
@@ -34,8 +40,8 @@ HiddenPoint hidden_point(HiddenParams params) {
     MappingParams mapping = params.mapping;
     uint inside = gl_WorkGroupID.x * gl_WorkGroupSize.x * gl_WorkGroupSize.y + gl_LocalInvocationIndex;
     HiddenPoint point;
-    point.subset = gl_WorkGroupID.z;
-    point.word = gl_WorkGroupID.y;
+    point.subset = params.subset_first + gl_WorkGroupID.z;
+    point.word = params.word_first + gl_WorkGroupID.y;
     uvec3 texel = uvec3(inside % mapping.sub_width_px, inside / mapping.sub_width_px, point.subset);
     point.pixel = params.is_of_cells != 0u ? middle_of_cell(mapping, texel.xy) : pixel_of_texel(mapping, texel);
     point.exists = texel.y < mapping.sub_height_px && is_in_frame(mapping, point.pixel);

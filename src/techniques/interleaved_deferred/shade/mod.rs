@@ -16,6 +16,7 @@ use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
 use crate::gpu::{Access, Barrier, Bound, Buffer, Gpu, upload};
 use crate::passes::direct::DirectGpu;
+use crate::passes::gbuffer::GBuffer;
 use crate::plan::{Plan, Resources};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
@@ -70,6 +71,23 @@ impl ShadeGpu {
     /// What is hidden becomes readable as `access` says, where it was found.
     pub fn hidden_to(&self, access: Access) -> Option<Barrier> {
         self.hidden.as_ref().map(|hidden| hidden.from(Access::ComputeWrite).to(access))
+    }
+
+    /// What a pass binds that looks for hidden lights (find.glsl).
+    pub fn bound_to_find<'a>(
+        &'a self,
+        frame: &'a Buffer,
+        gbuffer: &'a GBuffer,
+        hidden: &'a Buffer,
+    ) -> Vec<(&'static str, Bound<'a>)> {
+        let mut bound = gbuffer.bound_surface();
+        bound.extend([
+            ("Frame", Bound::Buffer(frame)),
+            ("Vpls", Bound::Buffer(&self.vpls)),
+            ("Subsets", Bound::Buffer(&self.subsets)),
+            ("Hidden", Bound::Buffer(hidden)),
+        ]);
+        bound
     }
 
     pub fn mapping(&self) -> &MappingParams {

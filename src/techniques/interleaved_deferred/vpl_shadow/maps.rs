@@ -1,0 +1,280 @@
+//! Shadow maps of the virtual lights, as many at once as the atlas holds: drawn, asked by every pixel that has one of these lights, and
+//! drawn over. Shaders: shadow_maps.vert, shadow_maps.frag, maps.comp.
+//! reads   the scene, the G-buffer, the lights
+//! writes  vpl_shadow.maps  image, 4 B a texel; vpl_shadow.hidden
+
+use super::super::shade::ShadeGpu;
+use super::reach::Reach;
+use super::unrolled::{self, MapShape};
+use super::{
+    LIGHTS_A_WORD, MAPS, Sought, Turn, VIEWS, VPL_MAPS, VplMaps, clear, drawing_pass, finding_pass, groups, params,
+    turns,
+};
+use crate::error::{Error, Result};
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::sampler::Sampler;
+use crate::gpu::shader::structs::{HiddenParams, SubsetBlock, VplBlock, VplMapBlock};
+use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::maps::COMP_VARIANTS;
+use crate::gpu::shader::variant;
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic, upload};
+use crate::passes::gbuffer::GBuffer;
+use crate::passes::mesh;
+use crate::passes::shadow_maps::CasterPipelines;
+use crate::plan::{Plan, Resources};
+use crate::resident::{ClusterBoxes, DrawList, SceneGpu};
+use crate::scene::{Bounds, Scene};
+use crate::settings::GeometryChoice;
+use crate::techniques::Inputs;
+use ash::vk;
+use glam::Vec3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Draws of all maps together, at most: each is recorded.
+const MOST_DRAWS: usize = 1 << 22;
+
+/// Surfaces are off their boxes by this part of the scene's diagonal, or of the greatest coordinate, whichever is more: halves have
+/// eleven bits.
+const SLACK: [f32; 2] = [1e-4, 1.0 / 1024.0];
+
+/// A face that is drawn.
+struct FaceDraws {
+    index: u32,
+    casters: DrawList,
+}
+
+pub struct HiddenByMaps {
+    maps: VplMaps,
+    pipelines: CasterPipelines,
+    /// The faces of each light's map that the picture can ask.
+    faces: Vec<Vec<FaceDraws>>,
+    depth: Image,
+    views: Buffer,
+    blocks: Buffer,
+    nearest: Sampler,
+    compare: ComputePipeline,
+    params: HiddenParams,
+    groups: [u32; 3],
+    subsets: Vec<SubsetBlock>,
+}
+
+/// Plans the atlas and what says where its maps are.
+pub fn plan(plan: &mut Plan, maps: &VplMaps, vpl_count: u32) {
+    let count = |a_light: usize| u64::from(vpl_count) * a_light as u64;
+    plan.push(super::GROUP, MAPS, crate::plan::Shape::Image(maps.atlas.description()));
+    plan.buffer(super::GROUP, VIEWS, count(maps.atlas.face_count() as usize * size_of::<[[f32; 4]; 4]>()));
+    plan.buffer(super::GROUP, VPL_MAPS, count(size_of::<VplMapBlock>()));
+}
+
+impl HiddenByMaps {
+    /// Takes out what `plan` put in.
+    ///
+    /// Errors: the driver refuses, memory for the upload, more draws than can be recorded (exit code 4).
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        inputs: &Inputs<'_>,
+        scene: &SceneGpu,
+        resources: &mut Resources,
+        maps: VplMaps,
+        sought: &Sought<'_>,
+    ) -> Result<Self> {
+        let Sought { choices, lights, least_squared } = *sought;
+        let atlas = maps.atlas;
+        let bounds = box_of(inputs.scene);
+        let (mut clips, mut faces, mut draw_count) = (Vec::new(), Vec::new(), 0);
+        let boxes = ClusterBoxes::new(inputs.scene, scene, inputs.view);
+        let extreme = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let slack_m = (SLACK[0] * bounds.diagonal()).max(SLACK[1] * extreme);
+        for vpl in &lights.vpls {
+            let all = atlas.faces(vpl, &bounds);
+            clips.extend(all.iter().map(|face| face.clip_from_world.to_cols_array_2d()));
+            let drawn: Vec<FaceDraws> = (0..)
+                .zip(&all)
+                .filter_map(|(index, face)| {
+                    if maps.casters == GeometryChoice::All {
+                        return Some(FaceDraws { index, casters: boxes.list(|_| true) });
+                    }
+                    let reach = Reach::of(vpl, face);
+                    let is_asked = is_bright(vpl) && boxes.seen().iter().any(|seen| reach.may_hold(seen, slack_m));
+                    let casters = || boxes.list(|bounds| reach.may_hold(bounds, slack_m));
+                    is_asked.then(|| FaceDraws { index, casters: casters() })
+                })
+                .collect();
+            draw_count += drawn.iter().map(|face| face.casters.calls().count()).sum::<usize>();
+            if draw_count > MOST_DRAWS {
+                let done = faces.len() + 1;
+                return Err(Error::memory(format!(
+                    "--vpl-shadow map: the maps of the first {done} virtual lights of {} take {draw_count} draws, and at most \
+                     {MOST_DRAWS} are recorded",
+                    lights.vpls.len()
+                ))
+                .note("fewer --vpls, or --vpl-shadow ray, which draws nothing"));
+            }
+            faces.push(drawn);
+        }
+        let (views, blocks) = (resources.buffer(VIEWS), resources.buffer(VPL_MAPS));
+        upload::buffer(gpu, &views, bytemuck::cast_slice(&clips), Access::GraphicsRead)?;
+        let of_lights: Vec<VplMapBlock> = lights.vpls.iter().map(|vpl| unrolled::block(vpl, &bounds)).collect();
+        upload::buffer(gpu, &blocks, bytemuck::cast_slice(&of_lights), Access::ComputeRead)?;
+        let settings = &choices.shading;
+        let own = [("MAP_SIZE", atlas.size_px), ("MAP_COLUMNS", atlas.columns), ("MAP_BIAS", maps.bias_m.to_bits())];
+        let shader = variant(COMP_VARIANTS, &[settings.position.name(), atlas.shape.name()]);
+        let constants = [&settings.workgroup_constants()[..], &own].concat();
+        let params = params(choices, least_squared);
+        Ok(Self {
+            pipelines: CasterPipelines::new(gpu, scene, maps.slope_bias_px)?,
+            faces,
+            depth: resources.image(MAPS),
+            views,
+            blocks,
+            nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            compare: ComputePipeline::new(gpu, shader, &constants)?,
+            groups: groups(choices, &params),
+            params,
+            subsets: lights.subsets.clone(),
+            maps,
+        })
+    }
+
+    pub fn record(
+        &self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        scene: &SceneGpu,
+        lights: &ShadeGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        hidden: &Buffer,
+    ) -> Result<()> {
+        let all: Vec<Turn> = turns(Some(&self.maps), self.faces.len() as u32).collect();
+        for turn in &all {
+            self.draw(cmd, turn, all.len(), scene)?;
+            self.find(cmd, turn, all.len(), frame, lights, gbuffer, hidden)?;
+        }
+        Ok(())
+    }
+
+    /// Draws the maps of the lights whose turn it is.
+    fn draw(&self, cmd: &mut Commands, turn: &Turn, turn_count: usize, scene: &SceneGpu) -> Result<()> {
+        let lights = || turn.first..turn.end;
+        let drawn = || lights().flat_map(|light| &self.faces[light as usize]);
+        let traffic = Traffic {
+            read_bytes: drawn().map(|face| mesh::depth_bytes(scene, &face.casters)).sum(),
+            written_bytes: self.depth.description.bytes(),
+            invocations: None,
+        };
+        let (atlas, face_count) = (&self.maps.atlas, self.maps.atlas.face_count());
+        let target = (&self.depth, Some(0.0), Access::DepthWrite);
+        cmd.pass(&drawing_pass(turn, turn_count), traffic, |cmd| {
+            cmd.barriers([match turn.index {
+                0 => self.depth.discard(Access::DepthWrite),
+                _ => self.depth.from(Access::ComputeSample).to(Access::DepthWrite),
+            }]);
+            let sets = self.pipelines.sets(cmd, scene, &self.views)?;
+            let extent = self.depth.description.extent;
+            let draw = |cmd: &mut Commands, light: u32, face: &FaceDraws| {
+                let view = light * face_count + face.index;
+                self.pipelines.draw(cmd, scene, &sets, view, &face.casters);
+            };
+            if atlas.shape == MapShape::Layers {
+                for light in lights() {
+                    for index in 0..face_count {
+                        // What is not drawn is cleared all the same: nothing stands in the way.
+                        let layer = atlas.window(light - turn.first, index).layer;
+                        cmd.begin_layers(extent, Layers::One(layer), &[], Some(target));
+                        mesh::bind_streams(cmd, scene);
+                        let found = self.faces[light as usize].iter().find(|face| face.index == index);
+                        found.into_iter().for_each(|face| draw(cmd, light, face));
+                        cmd.end_rendering();
+                    }
+                }
+                return Ok(());
+            }
+            cmd.begin_rendering(extent, &[], Some(target));
+            mesh::bind_streams(cmd, scene);
+            for light in lights() {
+                for face in &self.faces[light as usize] {
+                    let window = atlas.window(light - turn.first, face.index);
+                    cmd.set_window(window.at_px, window.extent);
+                    draw(cmd, light, face);
+                }
+            }
+            cmd.end_rendering();
+            Ok(())
+        })
+    }
+
+    /// Asks these maps for every pixel that has one of their lights.
+    #[expect(clippy::too_many_arguments, reason = "what the pass reads and writes, each once")]
+    fn find(
+        &self,
+        cmd: &mut Commands,
+        turn: &Turn,
+        turn_count: usize,
+        frame: &Buffer,
+        lights: &ShadeGpu,
+        gbuffer: Edge<'_, GBuffer>,
+        hidden: &Buffer,
+    ) -> Result<()> {
+        let stretches = |subset: &SubsetBlock| {
+            let (first, end) = (subset.vpl_first.max(turn.first), (subset.vpl_first + subset.vpl_count).min(turn.end));
+            (first < end).then(|| [first, end - 1].map(|light| (light - subset.vpl_first) / LIGHTS_A_WORD))
+        };
+        let found =
+            || self.subsets.iter().enumerate().filter_map(|(index, subset)| Some((index as u32, stretches(subset)?)));
+        let subset_first = found().map(|(index, _)| index).min().unwrap_or_default();
+        let subset_end = found().map(|(index, _)| index + 1).max().unwrap_or_default();
+        let word_first = found().map(|(_, [first, _])| first).min().unwrap_or_default();
+        let word_end = found().map(|(_, [_, last])| last + 1).max().unwrap_or_default();
+        let params =
+            HiddenParams { subset_first, word_first, light_first: turn.first, light_end: turn.end, ..self.params };
+        let groups = [self.groups[0], word_end - word_first, subset_end - subset_first];
+        let invocations: u64 = groups.iter().chain(&self.compare.workgroup).map(|count| u64::from(*count)).product();
+        let traffic = Traffic {
+            read_bytes: invocations * gbuffer.resource.surface_bytes() + hidden.bytes,
+            written_bytes: hidden.bytes,
+            invocations: Some(invocations),
+        };
+        cmd.pass(&finding_pass(turn, turn_count), traffic, |cmd| {
+            match turn.index {
+                0 => {
+                    clear(cmd, hidden);
+                    cmd.barriers(gbuffer.surface_to_sampled());
+                }
+                _ => {
+                    cmd.barriers([hidden.from(Access::ComputeWrite).to(Access::ComputeWrite)]);
+                    cmd.barriers(gbuffer.resource.from(Access::ComputeSample).surface_to_sampled());
+                }
+            }
+            cmd.barriers([self.depth.from(Access::DepthWrite).to(Access::ComputeSample)]);
+            let mut bound = lights.bound_to_find(frame, gbuffer.resource, hidden);
+            bound.push(("VplMaps", Bound::Buffer(&self.blocks)));
+            bound.push(("atlas", Bound::Sampled(&self.depth, self.nearest.handle, Access::ComputeSample)));
+            cmd.dispatch(&self.compare, bytemuck::bytes_of(&params), &bound, groups)
+        })
+    }
+
+    /// Numbers for the report's `counters`: maps that are drawn of those that lights have, their faces and triangles, and turns.
+    pub fn counters(&self) -> BTreeMap<&'static str, f64> {
+        let faces = || self.faces.iter().flatten();
+        let triangles: u64 = faces().map(|face| face.casters.triangles_drawn()).sum();
+        BTreeMap::from([
+            ("vpl_maps", self.faces.iter().filter(|faces| !faces.is_empty()).count() as f64),
+            ("vpl_map_faces", faces().count() as f64),
+            ("vpl_map_triangles_drawn", triangles as f64),
+            ("vpl_map_turns", turns(Some(&self.maps), self.faces.len() as u32).count() as f64),
+        ])
+    }
+}
+
+/// A light that walks have not found is dark.
+fn is_bright(vpl: &VplBlock) -> bool {
+    vpl.intensity[..3].iter().any(|channel| *channel > 0.0)
+}
+
+/// What casts shadows; a point where nothing does.
+fn box_of(scene: &Scene) -> Bounds {
+    match scene.bounds() {
+        bounds if bounds.is_empty() => Bounds { min: Vec3::ZERO, max: Vec3::ZERO },
+        bounds => bounds,
+    }
+}
