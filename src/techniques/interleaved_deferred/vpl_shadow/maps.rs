@@ -4,16 +4,15 @@
 //! writes  vpl_shadow.maps  image, 4 B a texel; vpl_shadow.hidden
 
 use super::super::shade::ShadeGpu;
+use super::held::{GROUP, MAPS, Turn, VIEWS, VPL_MAPS, VplMaps, drawing_pass, finding_pass, turns};
 use super::reach::Reach;
+use super::sought::{Sought, clear, groups, params};
 use super::unrolled::{self, MapShape};
-use super::{
-    LIGHTS_A_WORD, MAPS, Sought, Turn, VIEWS, VPL_MAPS, VplMaps, clear, drawing_pass, finding_pass, groups, params,
-    turns,
-};
 use crate::error::{Error, Result};
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{HiddenParams, SubsetBlock, VplBlock, VplMapBlock};
+use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::hidden::LIGHTS_A_WORD;
 use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::maps::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic, upload};
@@ -61,9 +60,9 @@ pub struct HiddenByMaps {
 /// Plans the atlas and what says where its maps are.
 pub fn plan(plan: &mut Plan, maps: &VplMaps, vpl_count: u32) {
     let count = |a_light: usize| u64::from(vpl_count) * a_light as u64;
-    plan.push(super::GROUP, MAPS, crate::plan::Shape::Image(maps.atlas.description()));
-    plan.buffer(super::GROUP, VIEWS, count(maps.atlas.face_count() as usize * size_of::<[[f32; 4]; 4]>()));
-    plan.buffer(super::GROUP, VPL_MAPS, count(size_of::<VplMapBlock>()));
+    plan.push(GROUP, MAPS, crate::plan::Shape::Image(maps.atlas.description()));
+    plan.buffer(GROUP, VIEWS, count(maps.atlas.face_count() as usize * size_of::<[[f32; 4]; 4]>()));
+    plan.buffer(GROUP, VPL_MAPS, count(size_of::<VplMapBlock>()));
 }
 
 impl HiddenByMaps {

@@ -3,7 +3,7 @@
 
 use super::super::choices::Choices;
 use super::super::shade::ShadeGpu;
-use super::{clear, groups, params};
+use super::sought::{clear, groups, params};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::HiddenParams;
