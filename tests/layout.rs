@@ -337,6 +337,7 @@ fn vertices_that_several_pipelines_place_are_invariant() {
         "techniques/deep_shading/shade/vertex",
         "techniques/inferred_lighting/light/shadow_volumes",
         "techniques/inferred_lighting/light/volumes",
+        "techniques/interleaved_deferred/shade/drawn",
         "techniques/interleaved_sampling/slices",
         // It copies places.
         "techniques/deep_shading/visibility/layer",

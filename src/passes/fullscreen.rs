@@ -31,11 +31,20 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
 /// Draws it, inside rendering, with the pipeline that is bound. `number`: below 4096; the fragment program reads it as
 /// `in_instance`, and the triangle's depth is that many 4096ths.
 pub fn draw(cmd: &Commands, number: u32) {
+    draw_vertices(cmd, 3, number);
+}
+
+/// Draws a vertex stage that makes a quad of six vertices, which reads `number` as its instance.
+pub fn draw_quad(cmd: &Commands, number: u32) {
+    draw_vertices(cmd, 6, number);
+}
+
+fn draw_vertices(cmd: &Commands, count: u32, number: u32) {
     let (device, buffer) = (&cmd.gpu().device, cmd.buffer());
     // SAFETY: the buffer is being recorded inside rendering; the stage reads no vertex buffer.
     unsafe {
         device.cmd_set_cull_mode(buffer, vk::CullModeFlags::NONE);
         device.cmd_set_front_face(buffer, vk::FrontFace::COUNTER_CLOCKWISE);
-        device.cmd_draw(buffer, 3, 1, 0, number);
+        device.cmd_draw(buffer, count, 1, 0, number);
     }
 }

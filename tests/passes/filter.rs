@@ -9,7 +9,7 @@ use quincunx::gpu::{Access, Buffer, Commands, Gpu, readback, upload};
 use quincunx::memory::kinds::Use;
 use quincunx::passes::decode;
 use quincunx::passes::filter::gauss::Gauss;
-use quincunx::passes::filter::{FilterSetup, Kernel, StopBits};
+use quincunx::passes::filter::{FilterSetup, Kernel, StopBits, WalkEnd};
 use quincunx::units::Extent;
 use std::sync::Arc;
 
@@ -133,7 +133,7 @@ fn a_frames_filter_is_its_twin() {
                 assert!(flagged > 0 && flagged < frame.flags.len(), "{flagged} of {} are flagged", frame.flags.len());
                 let sigma = if sigma == 0.0 { taps as f32 / 3.0 } else { sigma };
                 let stop_bits = if ends == "any" { StopBits::ANY } else { StopBits::DIRECTIONAL };
-                let expected = filtered(&frame, steps, Kernel { taps, sigma, stop_bits });
+                let expected = filtered(&frame, steps, Kernel { taps, sigma, stop_bits, walk_end: WalkEnd::Flag });
                 let slack = |index| match steps {
                     Steps::Single => Vec3::ZERO,
                     Steps::Pairs => sampler_slack(&frame, taps, index),
@@ -145,11 +145,15 @@ fn a_frames_filter_is_its_twin() {
     }
 }
 
-/// The pass by itself, on irradiance and flags that no scene gives; however many texels a thread filters, the same bits.
+/// The pass by itself, on irradiance and flags that no scene gives; however many texels a thread filters and however walks end, the
+/// same bits.
 fn run_gauss(gpu: &Arc<Gpu>, frame: &Frame, kernel: Kernel, workgroup: [u32; 2]) -> Vec<[f32; 3]> {
     let plain = run_texels(gpu, frame, kernel, workgroup, 1);
     for texels in [3, 8] {
-        assert_eq!(run_texels(gpu, frame, kernel, workgroup, texels), plain, "{texels} texels a thread");
+        for walk_end in [WalkEnd::Flag, WalkEnd::Branch] {
+            let found = run_texels(gpu, frame, Kernel { walk_end, ..kernel }, workgroup, texels);
+            assert_eq!(found, plain, "{texels} texels a thread, {walk_end:?}");
+        }
     }
     plain
 }
@@ -227,7 +231,7 @@ fn gauss_is_its_twin_on_noise() {
             let frame = frame_of(extent, color, |index| bit(index, 1) | bit(index, 2) | bit(index, 3));
             for (taps, sigma) in [(5, 5.0 / 3.0), (7, 2.0), (17, 4.0)] {
                 for stop_bits in [StopBits::DIRECTIONAL, StopBits::ANY] {
-                    let kernel = Kernel { taps, sigma, stop_bits };
+                    let kernel = Kernel { taps, sigma, stop_bits, walk_end: WalkEnd::Flag };
                     let found = run_gauss(&gpu, &frame, kernel, workgroup);
                     let what = format!("{extent}, {kernel:?}, {density} flagged");
                     require_close(&found, &filtered(&frame, Steps::Single, kernel), |_| Vec3::ZERO, extent, &what);
@@ -243,7 +247,7 @@ fn a_constant_irradiance_stays_as_it_is() {
     let extent = Extent::new(67, 43);
     for level in [0.0, 0.25, 3.7, 60_000.0] {
         let frame = frame_of(extent, |_| [level, 0.5 * level, level], |index| u32::from(noise(index) < 0.2));
-        let kernel = Kernel { taps: 7, sigma: 2.0, stop_bits: StopBits::ANY };
+        let kernel = Kernel { taps: 7, sigma: 2.0, stop_bits: StopBits::ANY, walk_end: WalkEnd::Flag };
         let found = run_gauss(&gpu, &frame, kernel, [64, 1]);
         // A weighted mean of one half is that half within float rounding, which the way to half floats takes away.
         assert_eq!(found, frame.irradiance, "level {level}");
@@ -258,13 +262,15 @@ fn a_flagged_column_keeps_its_two_sides_apart() {
     let sides = |index| if is_left(index) { [1.0; 3] } else { [9.0; 3] };
     let frame = frame_of(extent, sides, |index| u32::from(index % 32 == 15));
     for stop_bits in [StopBits::DIRECTIONAL, StopBits::ANY] {
-        let kernel = Kernel { taps: 17, sigma: 4.0, stop_bits };
+        let kernel = Kernel { taps: 17, sigma: 4.0, stop_bits, walk_end: WalkEnd::Flag };
         assert_eq!(run_gauss(&gpu, &frame, kernel, [64, 1]), frame.irradiance, "{stop_bits:?}");
         assert_eq!(filtered(&frame, Steps::Pairs, kernel), frame.irradiance, "in pairs, {stop_bits:?}");
     }
     // Along x, a step in y is no obstacle to a directional walk, and one to the paper's flag.
     let steps = frame_of(extent, sides, |index| if index % 32 == 15 { 2 } else { 0 });
-    let run = |stop_bits| run_gauss(&gpu, &steps, Kernel { taps: 17, sigma: 4.0, stop_bits }, [64, 1]);
+    let run = |stop_bits| {
+        run_gauss(&gpu, &steps, Kernel { taps: 17, sigma: 4.0, stop_bits, walk_end: WalkEnd::Flag }, [64, 1])
+    };
     assert_ne!(run(StopBits::DIRECTIONAL), steps.irradiance);
     assert_eq!(run(StopBits::ANY), steps.irradiance);
 }
@@ -275,7 +281,7 @@ fn pairs_are_as_good_as_single_steps_on_a_ramp() {
     let extent = Extent::new(64, 48);
     let ramp = |index: usize| [1.0 + 0.01 * (index % 64) as f32, 2.0 + 0.02 * (index / 64) as f32, 3.0];
     let frame = frame_of(extent, ramp, |_| 0);
-    let kernel = Kernel { taps: 5, sigma: 5.0 / 3.0, stop_bits: StopBits::ANY };
+    let kernel = Kernel { taps: 5, sigma: 5.0 / 3.0, stop_bits: StopBits::ANY, walk_end: WalkEnd::Flag };
     let [single, pairs] = [Steps::Single, Steps::Pairs].map(|steps| filtered(&frame, steps, kernel));
     for (index, (single, pairs)) in single.iter().zip(&pairs).enumerate() {
         let (x, y) = (index as u32 % extent.width, index as u32 / extent.width);

@@ -20,6 +20,9 @@ struct WalkParams {
 // Taps on either side of the middle.
 layout(constant_id = 8) const uint RADIUS = 2;
 
+// Whether a walk leaves its loop where it ends (dynamic branching), or goes on with weights of 0 (a flag).
+layout(constant_id = 115) const bool WALK_BRANCHES = false;
+
 const uint WINDOW = TEXELS + 2u * RADIUS;
 
 vec3 window_value[WINDOW];
@@ -50,6 +53,9 @@ uvec2 walked(WalkParams walk, uint i) {
     bool open = true;
     for (uint tap = 1u; tap <= RADIUS; tap++) {
         open = open && window_open_after[middle + tap - 1u];
+        if (WALK_BRANCHES && !open) {
+            break;
+        }
         // A weight of 0 adds exactly nothing: irradiance is finite.
         float weight = open ? weight_of(walk, tap) : 0.0;
         sum += window_value[middle + tap] * weight;
@@ -58,6 +64,9 @@ uvec2 walked(WalkParams walk, uint i) {
     open = true;
     for (uint tap = 1u; tap <= RADIUS; tap++) {
         open = open && window_open_after[middle - tap];
+        if (WALK_BRANCHES && !open) {
+            break;
+        }
         float weight = open ? weight_of(walk, tap) : 0.0;
         sum += window_value[middle - tap] * weight;
         weights += weight;

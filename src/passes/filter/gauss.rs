@@ -72,7 +72,7 @@ pub struct Gauss {
 impl Gauss {
     pub fn new(gpu: &Arc<Gpu>, setup: &FilterSetup<'_>) -> Result<Self> {
         let FilterSetup { label, workgroup, extent, row_pitch, kernel, texels } = *setup;
-        let constants = [workgroup, &[("TEXELS", texels), ("RADIUS", kernel.radius())]].concat();
+        let constants = [workgroup, &[("TEXELS", texels)], &kernel.constants()].concat();
         let pipeline = ComputePipeline::new(gpu, &crate::gpu::shader::passes::filter::gauss::COMP, &constants)?;
         Ok(Self { label: label.to_owned(), pipeline, extent, row_pitch, kernel, texels })
     }

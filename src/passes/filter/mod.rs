@@ -15,6 +15,7 @@ pub mod upsample;
 pub use all::Filter;
 
 use crate::caps::Ability;
+use crate::choice::choices;
 use crate::error::Result;
 use crate::gpu::shader::structs::WalkParams;
 use crate::gpu::{Buffer, Commands, Edge, Gpu};
@@ -36,6 +37,16 @@ impl StopBits {
     pub const DIRECTIONAL: Self = Self { x: 1, y: 2 };
 }
 
+choices! {
+    /// How a walk of the Gaussian ends (`--walk-end`); the same bits.
+    pub enum WalkEnd {
+        /// The taps beyond weigh nothing.
+        "flag" => Flag,
+        /// Dynamic branching leaves the loop.
+        "branch" => Branch,
+    }
+}
+
 /// A separable Gaussian's shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kernel {
@@ -44,12 +55,18 @@ pub struct Kernel {
     /// Standard deviation in px.
     pub sigma: f32,
     pub stop_bits: StopBits,
+    pub walk_end: WalkEnd,
 }
 
 impl Kernel {
     /// Taps on either side of the middle.
     pub fn radius(self) -> u32 {
         self.taps / 2
+    }
+
+    /// RADIUS and WALK_BRANCHES of walk.glsl.
+    pub fn constants(self) -> [(&'static str, u32); 2] {
+        [("RADIUS", self.radius()), ("WALK_BRANCHES", u32::from(self.walk_end == WalkEnd::Branch))]
     }
 
     /// Weight of the tap `distance_px` beside the middle, whose weight is 1.

@@ -144,6 +144,28 @@ pub const GROUPS: &[Group] = &[
         must: Must::Near(HALF_TEXELS),
     },
     Group {
+        name: "shade-by",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, ("position", "float"), UNFILTERED],
+        twin: Twin::Method(&[("split", "branch")]),
+        methods: &[
+            &[("shade-by", "viewport")],
+            &[("shade-by", "quad"), ("split", "tile")],
+            &[("shade-by", "quad"), ("split", "fragment"), ("vpl-shadow", "none")],
+        ],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "walk-end",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS, ("kernel", "9")],
+        twin: Twin::Method(&[("walk-end", "flag")]),
+        methods: &[&[("walk-end", "branch")], &[("walk-end", "branch"), ("fuse", "on")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
         name: "all-lights",
         technique: NAME,
         place: CORNELL,

@@ -1,10 +1,10 @@
 //! The choices that the settings make, and what is refused because it cannot be made.
 
 use super::mapping::mapping;
-use super::split_method::{Copier, Copies, Form, MaskKind, SplitMethod};
-use super::sub_buffers::Storage;
+use super::split_method::{Copier, Copies, Form, MaskKind, ShadeBy, SplitMethod};
+use super::sub_buffers::{Stage, Storage};
 use super::subsets::subsets;
-use super::vpl_shadow::VplMaps;
+use super::vpl_shadow::held::VplMaps;
 use crate::bvh::Bvh;
 use crate::caps::Caps;
 use crate::choice::choices;
@@ -66,6 +66,7 @@ pub struct Choices {
     pub split: SplitMethod,
     /// 1x1 with `--split none`: one subset of all lights.
     pub mapping: MappingParams,
+    pub shade_by: ShadeBy,
     pub filter: Filter,
     pub kernel: Kernel,
     /// The composite walks the columns of the filter; the rows too are walked elsewhere where `gather_filters`.
@@ -132,6 +133,7 @@ impl Choices {
             shading: ShadingSettings::new(values, lights, scene, caps),
             split,
             mapping,
+            shade_by: values.choice("shade-by"),
             filter,
             kernel: kernel(values)?,
             fused: filter == Filter::Gauss && values.is_on("fuse"),
@@ -286,7 +288,8 @@ impl Choices {
 
     /// Texels that a thread shades with one reading of its list of lights; 1 where each pixel finds its own.
     pub fn list_texels(&self) -> u32 {
-        if matches!(self.split, SplitMethod::Branch | SplitMethod::Masked(_)) {
+        let is_drawn = self.split.copies().is_some() && self.shade_by != ShadeBy::Dispatch;
+        if is_drawn || matches!(self.split, SplitMethod::Branch | SplitMethod::Masked(_)) {
             return 1;
         }
         let joined = self.joined_count().div_ceil(self.direct_subset_count());
@@ -300,6 +303,11 @@ impl Choices {
     /// The most virtual lights that a pixel has.
     pub fn most_vpls_a_subset(&self) -> u32 {
         self.vpl_count.div_ceil(self.subset_count())
+    }
+
+    /// What shades sub-buffers.
+    pub fn shade_stage(&self) -> Stage {
+        if self.shade_by == ShadeBy::Dispatch { Stage::Compute } else { Stage::Fragment }
     }
 
     /// The shaders' axis VPL_SHADOW, where a pass has looked for what is hidden.
@@ -401,5 +409,5 @@ fn kernel(values: &Values) -> Result<Kernel> {
         StopAt::Any => StopBits::ANY,
         StopAt::Directional => StopBits::DIRECTIONAL,
     };
-    Ok(Kernel { taps, sigma, stop_bits })
+    Ok(Kernel { taps, sigma, stop_bits, walk_end: values.choice("walk-end") })
 }

@@ -31,7 +31,7 @@ impl Composite {
         let mut constants =
             [&shading.workgroup_constants()[..], &shading.direct.light_constants(), &[("TEXELS", texels)]].concat();
         if choices.fused {
-            constants.push(("RADIUS", kernel.radius()));
+            constants.extend(kernel.constants());
         }
         let params = CompositeParams {
             walk: kernel.walk(false),

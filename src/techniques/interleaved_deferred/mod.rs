@@ -17,7 +17,7 @@
 //! - by default compute shaders copy, where the paper drew; `--split fragment` draws, with the paper's look-up textures
 //! - sub-buffers are tiled in an image, as in the paper's figure 3, with `--storage image`; in buffers, the default on
 //!   software drivers, they lie one after the other
-//! - compute shaders shade sub-buffers, where the paper drew quads
+//! - by default compute shaders shade sub-buffers, where the paper drew; `--shade-by viewport` and `quad` draw
 //! - sub-buffers are padded to whole patterns or blocks, so the tiled buffer is at least as large as the frame, not equal
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
 //! - the direct lights' pattern, made by clustering sub-buffers (section 4.6), may be of any divisors of the split's, where

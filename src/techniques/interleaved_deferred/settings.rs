@@ -1,9 +1,9 @@
 //! The settings of interleaved deferred shading.
 
 use super::choices::{BlendLights, Direct, StopAt, VplShadow};
-use super::split_method::{Form, Split, StorageKind};
+use super::split_method::{Form, ShadeBy, Split, StorageKind};
 use super::vpl_shadow::unrolled::MapShape;
-use crate::passes::filter::Filter;
+use crate::passes::filter::{Filter, WalkEnd};
 use crate::settings::{
     BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION,
     POSITION_THRESHOLD, SHADOW_BIAS_M, SHADOW_CASTERS, SHADOW_SLOPE_BIAS, Setting, TEXELS, Unread, VPL_CLAMP, Values,
@@ -54,6 +54,16 @@ pub const SETTINGS: &[Setting] = &[
         default: "pull",
         help: "What a thread of a copy stands for: a texel that it writes (pull) or a texel that it reads (push), or a \
                pair of such texels in buffers",
+        unread: without_copy,
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "shade-by",
+        kind: Kind::Choice(ShadeBy::WORDS),
+        default: "dispatch",
+        paper: "Segovia 2006, 4.3",
+        help: "What shades sub-buffers: a compute shader (dispatch), or, as in the paper, a draw each, in a viewport that is the \
+               sub-buffer (viewport) or of a quad on it (quad), which need --storage image; the same bits",
         unread: without_copy,
         ..Setting::changing(Changes::Nothing)
     },
@@ -236,6 +246,18 @@ pub const SETTINGS: &[Setting] = &[
                unfiltered)",
         unread: is_unfiltered,
         ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "walk-end",
+        kind: Kind::Choice(WalkEnd::WORDS),
+        default: "flag",
+        paper: "Segovia 2006, 5.4",
+        help: "How a walk of --filter gauss ends at a discontinuity: the texels beyond weigh nothing (flag), or dynamic branching \
+               leaves the loop (branch), which the paper found no faster",
+        unread: |values| {
+            is_even(values).or_else(|| Unread::unless(values, "filter", &[Filter::Gauss], "it walks in another way"))
+        },
+        ..Setting::changing(Changes::Nothing)
     },
     Setting { unread: is_unfiltered, ..NORMAL_THRESHOLD },
     Setting { unread: is_unfiltered, ..POSITION_THRESHOLD },

@@ -33,6 +33,18 @@ impl Split {
 }
 
 choices! {
+    /// What shades sub-buffers (`--shade-by`).
+    pub enum ShadeBy {
+        /// A compute shader.
+        "dispatch" => Dispatch,
+        /// A draw each, in a viewport that is the sub-buffer.
+        "viewport" => Viewport,
+        /// A draw each, of a quad on the sub-buffer.
+        "quad" => Quad,
+    }
+}
+
+choices! {
     /// Where sub-buffers lie (`--storage`).
     pub enum StorageKind {
         "buffer" => Buffer,
@@ -121,7 +133,15 @@ impl SplitMethod {
         if form == Form::Push && matches!(split, Split::Tile | Split::Fragment) {
             return Err(knows_one_form(split));
         }
-        let storage = storage(split, values.unless_auto("storage", Values::choice), caps)?;
+        let is_drawn = !values.is("shade-by", ShadeBy::Dispatch);
+        if is_drawn && split == Split::Layered {
+            return Err(draws_into_one_image(values.choice("shade-by"), "--split layered"));
+        }
+        let asked = values.unless_auto("storage", Values::choice);
+        if is_drawn && asked == Some(StorageKind::Buffer) {
+            return Err(draws_into_one_image(values.choice("shade-by"), "--storage buffer"));
+        }
+        let storage = storage(split, if is_drawn { Some(StorageKind::Image) } else { asked }, caps)?;
         Ok(Self::Copy(Copies { by, storage, form }))
     }
 
@@ -183,6 +203,14 @@ fn needs_image(split: Split) -> Error {
     };
     Error::request(format!("{NAME}: --split {} with --storage buffer: {why}", split.name()))
         .note("--storage image or auto; --split one-pass, two-pass and tile support buffers")
+}
+
+fn draws_into_one_image(by: ShadeBy, with: &str) -> Error {
+    Error::request(format!(
+        "{NAME}: --shade-by {} with {with}: draws need the sub-buffers tiled in one image",
+        by.name()
+    ))
+    .note("--storage image with --split one-pass, two-pass, tile or fragment; --shade-by dispatch shades all")
 }
 
 fn knows_one_form(split: Split) -> Error {

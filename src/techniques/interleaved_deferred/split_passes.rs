@@ -6,6 +6,7 @@ use super::gather::{self, Gather};
 use super::mask::{self, Mask};
 use super::shade::ShadeGpu;
 use super::shade::branch::ShadeBranch;
+use super::shade::drawn::ShadeDrawn;
 use super::shade::masked::{Masked, ShadeMasked};
 use super::shade::strided::{Dispatches, ShadeStrided};
 use super::shade::sub_buffers::ShadeSubBuffers;
@@ -33,12 +34,19 @@ pub enum SplitPasses {
     SubBuffers(SubBuffers),
 }
 
+/// What shades sub-buffers.
+#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
+enum ShadeCopied {
+    Dispatched(ShadeSubBuffers),
+    Drawn(ShadeDrawn),
+}
+
 /// Split, shade, gather.
 pub struct SubBuffers {
     pub copies: Copies,
     split: Split,
     pub surface: Surface,
-    shade: ShadeSubBuffers,
+    shade: ShadeCopied,
     pub shaded: Texels,
     gather: Gather,
     pub gathered: Buffer,
@@ -78,10 +86,10 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
         SplitMethod::Copy(copies) => {
             split::plan(plan, choices, *copies);
             let storage = copies.storage;
-            storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, Stage::Compute);
-            let surface =
-                Surface::touches("split", storage.read(Stage::Compute)).into_iter().chain(hidden(Stage::Compute));
-            plan.pass(shade, surface.chain([(shaded.clone(), storage.written(Stage::Compute))]));
+            let stage = choices.shade_stage();
+            storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, stage);
+            let surface = Surface::touches("split", storage.read(stage)).into_iter().chain(hidden(stage));
+            plan.pass(shade, surface.chain([(shaded.clone(), storage.written(stage))]));
             gather::plan(plan, choices, *copies, shaded)
         }
     }
@@ -116,7 +124,10 @@ impl SplitPasses {
                 gathered: resources.buffer(&format!("{NAME}.{}", gather::target(choices))),
                 split: Split::new(gpu, resources, choices, copies)?,
                 surface: Surface::new(gpu, resources, "split", copies.storage)?,
-                shade: ShadeSubBuffers::new(gpu, choices, copies.storage)?,
+                shade: match choices.shade_stage() {
+                    Stage::Compute => ShadeCopied::Dispatched(ShadeSubBuffers::new(gpu, choices, copies.storage)?),
+                    Stage::Fragment => ShadeCopied::Drawn(ShadeDrawn::new(gpu, choices)?),
+                },
                 shaded: Texels::new(gpu, resources, "shade.irradiance", copies.storage)?,
                 gather: Gather::new(gpu, resources, choices, copies)?,
             }),
@@ -158,8 +169,18 @@ impl SplitPasses {
             Self::SubBuffers(SubBuffers { copies, split, surface, shade, shaded, gather, gathered }) => {
                 split.record(cmd, mapping, gbuffer, surface)?;
                 let written = copies.storage.written(copies.stage());
-                shade.record(cmd, frame, lights, direct, surface.from(written), shaded)?;
-                let last = gather.record(cmd, mapping, shaded.from(Access::ComputeWrite), flags, gathered)?;
+                let surface = surface.from(written);
+                let shaded_by = match shade {
+                    ShadeCopied::Dispatched(shade) => {
+                        shade.record(cmd, frame, lights, direct, surface, shaded)?;
+                        Access::ComputeWrite
+                    }
+                    ShadeCopied::Drawn(shade) => {
+                        shade.record(cmd, frame, lights, direct, surface, shaded)?;
+                        Access::ColorWrite
+                    }
+                };
+                let last = gather.record(cmd, mapping, shaded.from(shaded_by), flags, gathered)?;
                 (gathered, last, copies.stage())
             }
         };

@@ -2,6 +2,7 @@
 //! picture.
 
 mod discontinuity;
+mod shade_by;
 mod split;
 mod subsample;
 mod vpl_maps;

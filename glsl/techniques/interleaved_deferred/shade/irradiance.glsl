@@ -8,24 +8,8 @@
 #include "loops.glsl"
 #include "shading/light.glsl"
 #include "shading/subset.glsl"
-#include "techniques/interleaved_deferred/mapping.glsl"
+#include "techniques/interleaved_deferred/shade/params.glsl"
 #include "techniques/interleaved_deferred/vpl_shadow/hidden.glsl"
-
-struct ShadeParams {
-    MappingParams mapping;
-    // Square of --vpl-clamp, in square metres.
-    float least_squared;
-    // Sub-buffers of a cluster: (n * m) / (i * j), a whole number.
-    float cluster_size;
-    // i * j of --direct-pattern, the weight of a punctual light; a virtual point light weighs cluster_size times as much,
-    // n * m. So the mean over a pattern is the sum over all lights.
-    float weight;
-    // First subset of this dispatch; 0 where a dispatch has them all.
-    uint subset_first;
-    // Words of `hidden` that a point has, where virtual lights are tested.
-    uint words_a_point;
-    uint _unused[3];
-};
 
 // Points that a thread shades.
 layout(constant_id = 2) const uint TEXELS = 1;

@@ -28,8 +28,7 @@ impl GatherFiltered {
         let Choices { shading, kernel, .. } = choices;
         let shader = variant(COMP_VARIANTS, &[copies.storage.name()]);
         let texels = shading.texels.of_filter();
-        let constants =
-            [&shading.workgroup_constants()[..], &[("TEXELS", texels), ("RADIUS", kernel.radius())]].concat();
+        let constants = [&shading.workgroup_constants()[..], &[("TEXELS", texels)], &kernel.constants()].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, kernel: *kernel, copies, texels })
     }
 

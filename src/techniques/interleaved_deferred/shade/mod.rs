@@ -3,13 +3,14 @@
 //! once.
 
 pub mod branch;
+pub mod drawn;
 pub mod masked;
 pub mod strided;
 pub mod sub_buffers;
 pub mod subsample;
 
 use super::choices::Choices;
-use super::vpl_shadow::HIDDEN;
+use super::vpl_shadow::held::HIDDEN;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::Shader;
