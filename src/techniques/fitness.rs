@@ -123,7 +123,14 @@ mod tests {
             (device(|caps| caps.formats.float_depth_with_stencil = false), &["--split stencil"][..]),
             (
                 device(|caps| caps.features.storage_image_extended_formats = false),
-                &["--split layered", "--split fragment", "--storage image", "--filter gauss-fast"],
+                &[
+                    "--split layered",
+                    "--split fragment",
+                    "--storage image",
+                    "--shade-by viewport",
+                    "--shade-by quad",
+                    "--filter gauss-fast",
+                ],
             ),
             (device(|caps| caps.formats.float_color_blend = false), &["a scene with BLEND surfaces"]),
         ] {

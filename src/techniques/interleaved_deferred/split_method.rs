@@ -109,6 +109,9 @@ choices! {
     }
 }
 
+/// What works without images.
+const SUPPORT_BUFFERS: &str = "--split one-pass, two-pass and tile support --storage buffer";
+
 impl SplitMethod {
     /// The split that `--split`, `--storage`, `--copy` and `--fragment-passes` ask for on a device.
     ///
@@ -155,11 +158,13 @@ impl SplitMethod {
                 need("--split stencil".to_owned(), Ability::DepthWithStencil, "--split depth tests a depth buffer");
             }
             Self::Copy(copies) if copies.storage != Storage::Buffer => {
-                let of = match split {
-                    Split::Layered | Split::Fragment => format!("--split {}", split.name()),
-                    _ => "--storage image".to_owned(),
+                let (of, instead) = match (split, values.choice("shade-by")) {
+                    (_, by @ (ShadeBy::Viewport | ShadeBy::Quad)) => {
+                        (format!("--shade-by {}", by.name()), "--shade-by dispatch shades buffers too")
+                    }
+                    (Split::Layered | Split::Fragment, _) => (format!("--split {}", split.name()), SUPPORT_BUFFERS),
+                    _ => ("--storage image".to_owned(), SUPPORT_BUFFERS),
                 };
-                let instead = "--split one-pass, two-pass and tile support --storage buffer";
                 need(of, Ability::StoreWordPairs, instead);
             }
             _ => {}

@@ -35,7 +35,6 @@ pub enum SplitPasses {
 }
 
 /// What shades sub-buffers.
-#[expect(clippy::large_enum_variant, reason = "one a renderer, never moved")]
 enum ShadeCopied {
     Dispatched(ShadeSubBuffers),
     Drawn(ShadeDrawn),
