@@ -28,6 +28,12 @@ pub struct Caps {
 }
 
 impl Caps {
+    /// Bytes that the largest heap may hold under `--memory-budget`; None: as many as it has.
+    pub fn budget_bytes(&self, asked: Option<u64>) -> u64 {
+        let heap_bytes = self.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
+        heap_bytes.min(asked.unwrap_or(u64::MAX))
+    }
+
     /// How a plan without the device rounds: as measured, or not at all where that was not done.
     pub fn rules(&self) -> Cow<'_, LayoutRules> {
         match &self.layout {

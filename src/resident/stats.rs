@@ -79,8 +79,7 @@ impl SceneStats {
     ///
     /// The last quarter is the frame's and the staging buffers'.
     pub fn fitting_limit_px(scene: &Scene, caps: &Caps, budget_bytes: Option<u64>) -> u32 {
-        let heap_bytes = caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
-        let room_bytes = heap_bytes.min(budget_bytes.unwrap_or(u64::MAX)) / 4 * 3;
+        let room_bytes = caps.budget_bytes(budget_bytes) / 4 * 3;
         let fits = |limit_px: u32| Self::with_texture_limit(scene, limit_px).plan().bytes() <= room_bytes;
         let side_px = scene.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(1);
         let powers = 0..=side_px.ilog2();

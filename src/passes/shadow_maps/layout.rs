@@ -248,8 +248,7 @@ impl MapDemand {
             let out = "fewer lights would fit (six maps a point light); --direct-shadow ray needs no maps";
             return Err(Error::request(why).note(out));
         }
-        let heap_bytes = caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
-        let budget_bytes = values.bytes("memory-budget").unwrap_or(u64::MAX).min(heap_bytes);
+        let budget_bytes = caps.budget_bytes(values.bytes("memory-budget"));
         let image_bytes = requirements.greatest_image_bytes(&description(size_px, layer_count));
         let held_bytes = stats.plan().bytes();
         let (holds, room) = [

@@ -20,8 +20,7 @@ fn full(what: &str) -> String {
 
 /// What memory has beside the scene and all that a frame needs but virtual lights' shadow maps.
 pub fn room_bytes(choices: &Choices, inputs: &Inputs<'_>, blended: &ObjectLists) -> Result<u64> {
-    let heap_bytes = inputs.caps.heaps.iter().map(|heap| heap.bytes).max().unwrap_or_default();
-    let budget_bytes = inputs.values.bytes("memory-budget").unwrap_or(u64::MAX).min(heap_bytes);
+    let budget_bytes = inputs.caps.budget_bytes(inputs.values.bytes("memory-budget"));
     let others = plan(&Choices { vpl_maps: None, ..choices.clone() }, inputs, blended)?.bytes();
     Ok(budget_bytes.saturating_sub(inputs.stats.plan().bytes()).saturating_sub(others))
 }
