@@ -108,20 +108,9 @@ impl Commands {
         if let Some(stencil_info) = &stencil_info {
             info = info.stencil_attachment(stencil_info);
         }
-        let viewport = vk::Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: extent.width as f32,
-            height: extent.height as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
-        };
         // SAFETY: the buffer is being recorded; the images are alive and in the layouts that the caller's barriers left.
-        unsafe {
-            self.gpu.device.cmd_begin_rendering(self.buffer(), &info);
-            self.gpu.device.cmd_set_viewport(self.buffer(), 0, &[viewport]);
-            self.gpu.device.cmd_set_scissor(self.buffer(), 0, &[area]);
-        }
+        unsafe { self.gpu.device.cmd_begin_rendering(self.buffer(), &info) };
+        self.set_window([0, 0], extent);
     }
 
     pub fn end_rendering(&mut self) {
