@@ -152,7 +152,7 @@ pub const GROUPS: &[Group] = &[
         methods: &[
             &[("shade-by", "viewport")],
             &[("shade-by", "quad"), ("split", "tile")],
-            &[("shade-by", "quad"), ("split", "fragment"), ("vpl-shadow", "none")],
+            &[("shade-by", "quad"), ("split", "fragment")],
         ],
         must: Must::Equal(ROUNDING),
     },

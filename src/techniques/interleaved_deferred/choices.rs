@@ -288,7 +288,7 @@ impl Choices {
 
     /// Texels that a thread shades with one reading of its list of lights; 1 where each pixel finds its own.
     pub fn list_texels(&self) -> u32 {
-        let is_drawn = self.split.copies().is_some() && self.shade_by != ShadeBy::Dispatch;
+        let is_drawn = self.split.copies().is_some() && self.shade_stage() == Stage::Fragment;
         if is_drawn || matches!(self.split, SplitMethod::Branch | SplitMethod::Masked(_)) {
             return 1;
         }

@@ -77,6 +77,8 @@ impl VplMaps {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Turn {
     pub index: u32,
+    /// Turns of the frame.
+    pub count: u32,
     pub first: u32,
     pub end: u32,
 }
@@ -84,21 +86,22 @@ pub(super) struct Turn {
 /// All lights are one turn's where no map is held.
 pub(super) fn turns(maps: Option<&VplMaps>, vpl_count: u32) -> impl Iterator<Item = Turn> + use<> {
     let at_once = maps.map_or(vpl_count, |maps| maps.atlas.map_count);
-    (0..vpl_count.div_ceil(at_once)).map(move |index| {
+    let count = vpl_count.div_ceil(at_once);
+    (0..count).map(move |index| {
         let first = index * at_once;
-        Turn { index, first, end: (first + at_once).min(vpl_count) }
+        Turn { index, count, first, end: (first + at_once).min(vpl_count) }
     })
 }
 
 /// Name of a turn's pass: its number where there are several.
-fn of_turn(pass: &str, turn: &Turn, turn_count: usize) -> String {
-    if turn_count > 1 { format!("{NAME}.{pass}.{}", turn.index) } else { format!("{NAME}.{pass}") }
+fn of_turn(pass: &str, turn: &Turn) -> String {
+    if turn.count > 1 { format!("{NAME}.{pass}.{}", turn.index) } else { format!("{NAME}.{pass}") }
 }
 
-pub(super) fn drawing_pass(turn: &Turn, turn_count: usize) -> String {
-    of_turn("vpl_maps", turn, turn_count)
+pub(super) fn drawing_pass(turn: &Turn) -> String {
+    of_turn("vpl_maps", turn)
 }
 
-pub(super) fn finding_pass(turn: &Turn, turn_count: usize) -> String {
-    of_turn("vpl_shadow", turn, turn_count)
+pub(super) fn finding_pass(turn: &Turn) -> String {
+    of_turn("vpl_shadow", turn)
 }

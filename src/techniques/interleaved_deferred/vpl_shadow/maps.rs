@@ -19,7 +19,7 @@ use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traf
 use crate::passes::gbuffer::GBuffer;
 use crate::passes::mesh;
 use crate::passes::shadow_maps::CasterPipelines;
-use crate::plan::{Plan, Resources};
+use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{ClusterBoxes, DrawList, SceneGpu};
 use crate::scene::{Bounds, Scene};
 use crate::settings::GeometryChoice;
@@ -60,7 +60,7 @@ pub struct HiddenByMaps {
 /// Plans the atlas and what says where its maps are.
 pub fn plan(plan: &mut Plan, maps: &VplMaps, vpl_count: u32) {
     let count = |a_light: usize| u64::from(vpl_count) * a_light as u64;
-    plan.push(GROUP, MAPS, crate::plan::Shape::Image(maps.atlas.description()));
+    plan.push(GROUP, MAPS, Shape::Image(maps.atlas.description()));
     plan.buffer(GROUP, VIEWS, count(maps.atlas.face_count() as usize * size_of::<[[f32; 4]; 4]>()));
     plan.buffer(GROUP, VPL_MAPS, count(size_of::<VplMapBlock>()));
 }
@@ -144,16 +144,15 @@ impl HiddenByMaps {
         gbuffer: Edge<'_, GBuffer>,
         hidden: &Buffer,
     ) -> Result<()> {
-        let all: Vec<Turn> = turns(Some(&self.maps), self.faces.len() as u32).collect();
-        for turn in &all {
-            self.draw(cmd, turn, all.len(), scene)?;
-            self.find(cmd, turn, all.len(), frame, lights, gbuffer, hidden)?;
+        for turn in turns(Some(&self.maps), self.faces.len() as u32) {
+            self.draw(cmd, &turn, scene)?;
+            self.find(cmd, &turn, frame, lights, gbuffer, hidden)?;
         }
         Ok(())
     }
 
     /// Draws the maps of the lights whose turn it is.
-    fn draw(&self, cmd: &mut Commands, turn: &Turn, turn_count: usize, scene: &SceneGpu) -> Result<()> {
+    fn draw(&self, cmd: &mut Commands, turn: &Turn, scene: &SceneGpu) -> Result<()> {
         let lights = || turn.first..turn.end;
         let drawn = || lights().flat_map(|light| &self.faces[light as usize]);
         let traffic = Traffic {
@@ -163,7 +162,7 @@ impl HiddenByMaps {
         };
         let (atlas, face_count) = (&self.maps.atlas, self.maps.atlas.face_count());
         let target = (&self.depth, Some(0.0), Access::DepthWrite);
-        cmd.pass(&drawing_pass(turn, turn_count), traffic, |cmd| {
+        cmd.pass(&drawing_pass(turn), traffic, |cmd| {
             cmd.barriers([match turn.index {
                 0 => self.depth.discard(Access::DepthWrite),
                 _ => self.depth.from(Access::ComputeSample).to(Access::DepthWrite),
@@ -203,12 +202,10 @@ impl HiddenByMaps {
     }
 
     /// Asks these maps for every pixel that has one of their lights.
-    #[expect(clippy::too_many_arguments, reason = "what the pass reads and writes, each once")]
     fn find(
         &self,
         cmd: &mut Commands,
         turn: &Turn,
-        turn_count: usize,
         frame: &Buffer,
         lights: &ShadeGpu,
         gbuffer: Edge<'_, GBuffer>,
@@ -233,7 +230,7 @@ impl HiddenByMaps {
             written_bytes: hidden.bytes,
             invocations: Some(invocations),
         };
-        cmd.pass(&finding_pass(turn, turn_count), traffic, |cmd| {
+        cmd.pass(&finding_pass(turn), traffic, |cmd| {
             match turn.index {
                 0 => {
                     clear(cmd, hidden);

@@ -45,16 +45,15 @@ pub fn plan(plan: &mut Plan, choices: &Choices) {
     if let Some(maps) = maps {
         maps::plan(plan, maps, choices.vpl_count);
     }
-    let turn_count = turns(maps, choices.vpl_count).count();
     for turn in turns(maps, choices.vpl_count) {
         if maps.is_some() {
-            plan.pass(drawing_pass(&turn, turn_count), [(MAPS.to_owned(), Access::DepthWrite)]);
+            plan.pass(drawing_pass(&turn), [(MAPS.to_owned(), Access::DepthWrite)]);
         }
         let cleared = (turn.index == 0).then(|| (HIDDEN.to_owned(), Access::TransferWrite));
         let asked = maps.map(|_| (MAPS.to_owned(), Access::ComputeSample));
         let written = (HIDDEN.to_owned(), Access::ComputeWrite);
         let surface = gbuffer::surface(NAME, choices.shading.position);
-        plan.pass(finding_pass(&turn, turn_count), surface.into_iter().chain(asked).chain(cleared).chain([written]));
+        plan.pass(finding_pass(&turn), surface.into_iter().chain(asked).chain(cleared).chain([written]));
     }
 }
 
