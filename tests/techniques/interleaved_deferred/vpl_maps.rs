@@ -39,7 +39,7 @@ fn screened() -> Watched {
     Watched::with_scene(Scene { name: name.clone(), hash: name, ..scene })
 }
 
-/// Maps say what rays say, and more nearly so the finer they are; without them nothing is hidden at all.
+/// Maps say what rays say, and more nearly so the finer they are.
 #[test]
 fn maps_hide_what_rays_hide() {
     let watched = screened();
@@ -91,7 +91,7 @@ fn culled_maps_hold_all_that_is_asked() {
     }
 }
 
-/// A wall hides all that is behind it, whichever map's turn it is; lights that the camera's picture cannot have are not drawn.
+/// A wall hides all that is behind it, whichever map's turn it is.
 #[test]
 fn a_room_behind_a_wall_is_dark() {
     let watched = super::vpl_shadow::rooms(0.1);
