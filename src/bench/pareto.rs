@@ -19,7 +19,11 @@ pub fn mark(rows: &mut [BenchRow]) {
         .map(|index| {
             let [time, error] = places[index]?;
             let rivals = || {
-                let others = places.iter().enumerate().filter(|(other, _)| *other != index);
+                // Ratios to another baseline say nothing of these.
+                let others = places
+                    .iter()
+                    .enumerate()
+                    .filter(|(other, _)| *other != index && rows[*other].baseline == rows[index].baseline);
                 others.filter_map(|(other, place)| Some((other, (*place)?))).filter(|(_, [_, theirs])| *theirs <= error)
             };
             if rivals().any(|(other, _)| faster::is_faster(&rows[other], &rows[index])) {
@@ -72,6 +76,17 @@ mod tests {
         ];
         assert_eq!(marked(rows), [true, true, false, true, false, false, false, false]);
         assert_eq!(marked(Vec::new()), [false; 0]);
+    }
+
+    #[test]
+    fn rows_of_another_baseline_are_no_rivals() {
+        let of = |baseline: &str, row: BenchRow| BenchRow { baseline: baseline.to_owned(), ..row };
+        let rows = vec![
+            of("vpls=1", row("a", 1.0, 0.0, 0.1)),
+            of("vpls=1", row("b", 0.5, 0.01, 0.1)),
+            of("vpls=2", row("c", 1.0, 0.0, 0.1)),
+        ];
+        assert_eq!(marked(rows), [false, true, true]);
     }
 
     #[test]

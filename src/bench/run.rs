@@ -8,7 +8,7 @@ use super::machine::{Load, Ticks};
 use super::reference::References;
 use super::row::BenchRow;
 use super::rows_file::RowsFile;
-use super::sweep::{self, Axis};
+use super::sweep::{self, Axis, Part};
 use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
@@ -27,7 +27,8 @@ pub struct Request<'a> {
     pub job: &'a Job,
     pub what: What,
     pub axes: &'a [Axis],
-    /// `KEY=VALUE KEY=VALUE`, a point of the grid; None: the first that is possible.
+    /// `KEY=VALUE KEY=VALUE`, a point of the grid, or one for each point of the axes that it leaves out; None: the first that is
+    /// possible.
     pub baseline: Option<&'a str>,
     /// Rounds, at least one.
     pub repeat: usize,
@@ -74,7 +75,7 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
         return Err(Error::request(why).note("--fair --texels 4 gives them all four"));
     }
     let grid = sweep::grid(request.axes);
-    let named = request.baseline.map(|text| sweep::baseline(&grid, text)).transpose()?;
+    let parts = sweep::parts(&grid, request.baseline)?;
     let scene = job.load_scene()?;
     let (axes, hash) = (request.axes, scene.hash.clone());
     let scene = match request.frames {
@@ -94,17 +95,25 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
         }
     }
     let Request { what, is_fair, .. } = *request;
-    let measurement = Measurement { job, session: &session, what, is_fair, sequence: sequence.as_ref() };
-    let mut sweep = Sweep::start(request, measurement, candidates, named, file, observer)?;
-    let interrupted = match sweep.measure() {
-        Err(stop) if stop.kind() == ErrorKind::Interrupted => true,
-        done => done.map(|()| false)?,
-    };
-    let rows = sweep.rows.drain(..).flatten().collect();
-    let gates = std::mem::replace(&mut sweep.gates, Ok(()));
+    let mut found = Found { rows: vec![None; grid.len()], references: References::default(), gates: Ok(()) };
+    let mut interrupted = false;
+    let mut file = file;
+    for part in &parts {
+        let measurement = Measurement { job, session: &session, what, is_fair, sequence: sequence.as_ref() };
+        let mut sweep =
+            Sweep::start(request, measurement, (&candidates, part), &mut found, file.as_deref_mut(), &mut *observer)?;
+        interrupted = match sweep.measure() {
+            Err(stop) if stop.kind() == ErrorKind::Interrupted => true,
+            done => done.map(|()| false)?,
+        };
+        if interrupted {
+            break;
+        }
+    }
+    let Found { rows, gates, .. } = found;
+    let rows = rows.into_iter().flatten().collect();
     let log = session.gpu.validation_log();
     // Closing says what was leaked: only then is the log whole.
-    drop(sweep);
     drop(sequence);
     drop(session);
     fail_on_validation(log.as_deref())?;
@@ -116,18 +125,27 @@ fn is_impossible(error: &Error) -> bool {
     matches!(error.kind(), ErrorKind::Request | ErrorKind::NoDevice | ErrorKind::Memory)
 }
 
+/// What the parts of a sweep leave.
+struct Found {
+    /// By place in the grid.
+    rows: Vec<Option<BenchRow>>,
+    references: References,
+    gates: Result<()>,
+}
+
+/// A part of the grid on its way to rows.
 struct Sweep<'a> {
     head: Head<'a>,
-    candidates: Vec<Candidate>,
+    /// Of the whole grid.
+    candidates: &'a [Candidate],
+    /// The part's places in the grid.
+    points: &'a [usize],
     /// Place in the grid.
     baseline: usize,
     baseline_variant: Rc<Variant>,
     /// Impossible points found while the baseline was looked for.
     refused: Vec<(usize, Error)>,
-    /// By place in the grid.
-    rows: Vec<Option<BenchRow>>,
-    references: References,
-    gates: Result<()>,
+    found: &'a mut Found,
     file: Option<&'a mut RowsFile>,
     observer: &'a mut dyn Observer,
 }
@@ -137,21 +155,22 @@ impl<'a> Sweep<'a> {
     fn start(
         request: &Request<'a>,
         measurement: Measurement<'a>,
-        candidates: Vec<Candidate>,
-        named: Option<usize>,
+        (candidates, part): (&'a [Candidate], &'a Part),
+        found: &'a mut Found,
         file: Option<&'a mut RowsFile>,
         observer: &'a mut dyn Observer,
     ) -> Result<Self> {
         let mut refused = Vec::new();
-        let tried = named.map_or(0..candidates.len(), |index| index..index + 1);
-        let found = tried.into_iter().find_map(|index| match possible(&measurement, &candidates[index]) {
+        let Part { baseline: named, points } = part;
+        let tried = named.as_ref().map_or(&points[..], std::slice::from_ref);
+        let first = tried.iter().copied().find_map(|index| match possible(&measurement, &candidates[index]) {
             Err(error) if is_impossible(&error) => {
                 refused.push((index, error));
                 None
             }
             made => Some(made.map(|variant| (index, Rc::new(variant)))),
         });
-        let Some(found) = found else {
+        let Some(first) = first else {
             let (index, error) = refused.swap_remove(0);
             let label = &candidates[index].label;
             return Err(match named {
@@ -161,14 +180,12 @@ impl<'a> Sweep<'a> {
                     .note(format!("{label}: {}", error.message())),
             });
         };
-        let (baseline, baseline_variant) = found?;
+        let (baseline, baseline_variant) = first?;
         let (repeat, frames) = (request.repeat, request.frames.cloned());
         let head = Head { measurement, repeat, baseline: candidates[baseline].label.clone(), frames };
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
-        let rows = candidates.iter().map(kept).collect();
-        let references = References::default();
-        let gates = Ok(());
-        Ok(Self { head, candidates, baseline, baseline_variant, refused, rows, references, gates, file, observer })
+        points.iter().for_each(|index| found.rows[*index] = kept(&candidates[*index]));
+        Ok(Self { head, candidates, points, baseline, baseline_variant, refused, found, file, observer })
     }
 
     fn measure(&mut self) -> Result<()> {
@@ -176,27 +193,31 @@ impl<'a> Sweep<'a> {
             self.skip(index, &error)?;
         }
         let mut waiting: VecDeque<usize> =
-            (0..self.rows.len()).filter(|index| *index != self.baseline && self.rows[*index].is_none()).collect();
-        while !waiting.is_empty() || self.rows[self.baseline].is_none() {
+            self.points.iter().copied().filter(|index| *index != self.baseline && !self.is_known(*index)).collect();
+        while !waiting.is_empty() || !self.is_known(self.baseline) {
             let group = self.gather(&mut waiting)?;
             if group.members.is_empty() {
                 continue;
             }
             self.measure_group(&group)?;
             let known = self.known();
-            self.observer.group(known, self.rows.len());
+            self.observer.group(known, self.found.rows.len());
         }
         Ok(())
     }
 
     fn known(&self) -> usize {
-        self.rows.iter().flatten().count()
+        self.found.rows.iter().flatten().count()
+    }
+
+    fn is_known(&self, index: usize) -> bool {
+        self.found.rows[index].is_some()
     }
 
     /// The next group: as many of those that wait as have room.
     fn gather(&mut self, waiting: &mut VecDeque<usize>) -> Result<Group> {
         let mut group = Group::new(&self.baseline_variant);
-        if self.rows[self.baseline].is_none() {
+        if !self.is_known(self.baseline) {
             let values = self.candidates[self.baseline].values.clone()?;
             let measurement = self.head.measurement.of(&self.candidates[self.baseline]);
             group.add_baseline(&measurement, self.baseline, &self.baseline_variant, &values);
@@ -224,7 +245,7 @@ impl<'a> Sweep<'a> {
     fn measure_group(&mut self, group: &Group) -> Result<()> {
         let pictures = group.pictures()?;
         let repeat = self.head.repeat;
-        let (known, all, members) = (self.known(), self.rows.len(), group.members.len());
+        let (known, all, members) = (self.known(), self.found.rows.len(), group.members.len());
         let observer = &mut *self.observer;
         let (started, before) = (SystemTime::now(), Ticks::now());
         let samples = group.measure(repeat, &mut |done, of| {
@@ -240,7 +261,7 @@ impl<'a> Sweep<'a> {
             let candidate = &self.candidates[member.candidate];
             let Measurement { job, session, what, .. } = self.head.measurement.of(candidate);
             let values = candidate.values.as_ref().map_err(Error::clone)?;
-            let reference = self.references.of(job, session, what, values)?;
+            let reference = self.found.references.of(job, session, what, values)?;
             let mut row = self.head.measured(candidate, member, picture, &rounds, &reference)?;
             let asked = self.head.measurement.job.reference.as_ref();
             if let Some(sequence) = &member.variant.sequence {
@@ -253,7 +274,7 @@ impl<'a> Sweep<'a> {
                     Ok(judged) => {
                         row.errors = Some(judged.errors);
                         let gates = judged.gates.map_err(|error| error.within(&candidate.label));
-                        self.gates = std::mem::replace(&mut self.gates, Ok(())).and(gates);
+                        self.found.gates = std::mem::replace(&mut self.found.gates, Ok(())).and(gates);
                     }
                     Err(error) if is_impossible(&error) => row.errors_skipped = Some(error.message().to_owned()),
                     Err(error) => return Err(error),
@@ -265,7 +286,7 @@ impl<'a> Sweep<'a> {
     }
 
     fn skip(&mut self, index: usize, error: &Error) -> Result<()> {
-        if self.rows[index].is_none() {
+        if !self.is_known(index) {
             let row = self.head.skipped(&self.candidates[index], error);
             self.emit(index, row)?;
         }
@@ -278,7 +299,7 @@ impl<'a> Sweep<'a> {
             file.append(&row)?;
         }
         self.observer.row(&row)?;
-        self.rows[index] = Some(row);
+        self.found.rows[index] = Some(row);
         Ok(())
     }
 }

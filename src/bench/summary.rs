@@ -55,7 +55,10 @@ impl Summary {
             "commit": first.commit,
             "scene": first.scene,
             "technique": first.technique,
-            "baseline": first.baseline,
+            "baseline": match &self.baselines()[..] {
+                [one] => json!(one),
+                several => json!(several),
+            },
             "repeat": first.repeat,
             "pareto_of": ["ratio.mean", errors],
             "rows": self.rows,
@@ -118,7 +121,7 @@ impl Summary {
 
     fn legend(&self) -> String {
         let first = &self.rows[0];
-        let (baseline, rounds) = (&first.baseline, first.repeat);
+        let (baseline, rounds) = (self.baselines().join("; "), first.repeat);
         let told = match rounds {
             few if few < LEAST_PAIRS => {
                 format!("below {LEAST_PAIRS} rounds no interval is printed, and no two rows are told apart")
@@ -127,6 +130,17 @@ impl Summary {
         };
         let errors = self.reference().map_or_else(String::new, |name| format!("errors against {name}; "));
         format!("time ratios to {baseline}, of {rounds} rounds; {errors}{told}")
+    }
+
+    /// What ratios are to: one row, or one of each part of the sweep.
+    fn baselines(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            if !names.contains(&row.baseline.as_str()) {
+                names.push(&row.baseline);
+            }
+        }
+        names
     }
 
     /// What errors are against: the reference that was asked for, else the plain form of the first technique that has

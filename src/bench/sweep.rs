@@ -62,29 +62,59 @@ pub fn label(point: &Point) -> String {
     point.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")
 }
 
-/// The one point of `grid` that `text`, `KEY=VALUE KEY=VALUE`, names; keys in which no points differ may be left out.
+/// Points that share a baseline, by their places in the grid.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// None: the first point that is possible.
+    pub baseline: Option<usize>,
+    /// In the order of the grid, the baseline among them.
+    pub points: Vec<usize>,
+}
+
+/// The parts of `grid` that `text`, `KEY=VALUE KEY=VALUE`, makes of it: where it names several points, because it leaves axes
+/// out, each is the baseline of the points that have its values of those axes. One part without a text.
 ///
-/// Errors: no point or several are named (exit code 2).
-pub fn baseline(grid: &[Point], text: &str) -> Result<usize> {
+/// Errors: no point is named (exit code 2).
+pub fn parts(grid: &[Point], text: Option<&str>) -> Result<Vec<Part>> {
+    let all = || (0..grid.len()).collect();
+    let Some(text) = text else { return Ok(vec![Part { baseline: None, points: all() }]) };
+    let (named, keys) = baselines(grid, text)?;
+    if let [one] = named[..] {
+        return Ok(vec![Part { baseline: Some(one), points: all() }]);
+    }
+    let others = |index: usize| grid[index].iter().filter(|(key, _)| !keys.contains(key)).collect::<Vec<_>>();
+    let part = |baseline: usize| {
+        let points = (0..grid.len()).filter(|index| others(*index) == others(baseline)).collect();
+        Part { baseline: Some(baseline), points }
+    };
+    Ok(named.into_iter().map(part).collect())
+}
+
+/// The points that `text` names, and the keys that it has.
+///
+/// Errors: it names none (exit code 2).
+fn baselines(grid: &[Point], text: &str) -> Result<(Vec<usize>, Vec<String>)> {
     let wrong = |why: &str| {
         let first = grid.first().map(label).unwrap_or_default();
         Error::request(format!("--baseline {text:?}: {why}")).note(format!("for example --baseline \"{first}\""))
     };
     // A value may hold spaces, as names of cameras do: what a table shows is always understood.
     if let Some(index) = grid.iter().position(|point| label(point) == text) {
-        return Ok(index);
+        return Ok((vec![index], Vec::new()));
     }
     let mut named = Vec::new();
     for word in text.split_whitespace() {
         let (key, value) = word.split_once('=').ok_or_else(|| wrong("it must be KEY=VALUE KEY=VALUE"))?;
         named.push((key.trim_start_matches("--").to_owned(), value.to_owned()));
     }
+    if named.is_empty() && grid.iter().any(|point| !point.is_empty()) {
+        return Err(wrong("it must be KEY=VALUE KEY=VALUE"));
+    }
     let found: Vec<usize> =
         (0..grid.len()).filter(|index| named.iter().all(|pair| grid[*index].contains(pair))).collect();
     match found[..] {
         [] => Err(wrong("the sweep has no such combination")),
-        [one] => Ok(one),
-        _ => Err(wrong(&format!("it names {} combinations of the sweep, and must name one", found.len()))),
+        _ => Ok((found, named.into_iter().map(|(key, _)| key).collect())),
     }
 }
 
@@ -111,16 +141,22 @@ mod tests {
     }
 
     #[test]
-    fn a_baseline_names_one_point_of_the_grid() {
+    fn a_baseline_names_one_point_of_the_grid_or_one_of_each_part() {
         let grid = grid(&axes(&["split=none,one-pass".to_owned(), "kernel=5,7".to_owned()]).unwrap());
-        assert_eq!(baseline(&grid, "kernel=7 split=none").unwrap(), 1);
-        assert_eq!(baseline(&grid, "--split=one-pass  --kernel=5").unwrap(), 2);
-        for (text, why) in
-            [("kernel=9", "no such"), ("pattern=2x2", "no such"), ("kernel=5", "2 combi"), ("kernel", "KEY")]
-        {
-            let error = baseline(&grid, text).unwrap_err();
+        let part = |baseline: usize, points: &[usize]| Part { baseline: Some(baseline), points: points.to_vec() };
+        for (text, expected) in [
+            ("kernel=7 split=none", vec![part(1, &[0, 1, 2, 3])]),
+            ("--split=one-pass  --kernel=5", vec![part(2, &[0, 1, 2, 3])]),
+            ("split=one-pass", vec![part(2, &[0, 2]), part(3, &[1, 3])]),
+            ("kernel=5", vec![part(0, &[0, 1]), part(2, &[2, 3])]),
+        ] {
+            assert_eq!(parts(&grid, Some(text)).unwrap(), expected, "{text}");
+        }
+        for (text, why) in [("kernel=9", "no such"), ("pattern=2x2", "no such"), ("kernel", "KEY"), ("", "KEY")] {
+            let error = parts(&grid, Some(text)).unwrap_err();
             assert!(error.exit_code() == 2 && error.message().contains(why), "{error}");
         }
-        assert_eq!(baseline(&super::grid(&[]), "").unwrap(), 0);
+        assert_eq!(parts(&super::grid(&[]), Some("")).unwrap(), [part(0, &[0])]);
+        assert_eq!(parts(&grid, None).unwrap(), [Part { baseline: None, points: vec![0, 1, 2, 3] }]);
     }
 }

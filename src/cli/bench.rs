@@ -79,7 +79,10 @@ fn sub_command(what: What) -> Command {
             Arg::new("baseline")
                 .long("baseline")
                 .value_name("KEY=V ...")
-                .help("Combination that ratios are relative to; default: the first that is possible"),
+                .help(
+                    "Combination that ratios are relative to; if it leaves axes out, one for each of their points; default: \
+                     the first that is possible",
+                ),
         )
         .arg(
             Arg::new("repeat")

@@ -188,6 +188,35 @@ fn the_baseline_is_the_named_one() {
     }
 }
 
+/// Each row's ratio is to the row that has its value of the axis that --baseline leaves out: to the second of each pair.
+#[test]
+fn a_baseline_that_leaves_an_axis_out_is_one_for_each_point_of_it() {
+    let program = Program::new();
+    let sweep = ["--sweep", "vpls=4,8", "--sweep", "pattern=1x1,2x2", "--baseline", "pattern=2x2", "-o", "out"];
+    let first = program.run(&bench("shade", &[&sweep[..], &["--json"]].concat()));
+    let rows = lines(&first.fine().out);
+    assert_eq!(rows.len(), 4);
+    for (index, row) in rows.iter().enumerate() {
+        let vpls = [4, 4, 8, 8][index];
+        assert_eq!(row["baseline"], format!("vpls={vpls} pattern=2x2"));
+        assert_eq!(row["ratio"]["mean"] == 1.0, index % 2 == 1, "{row:#}");
+        let partner = &rows[index / 2 * 2 + 1];
+        assert_eq!(row["group"], partner["group"], "measured in turn");
+        let of = |row: &Value| -> Vec<f64> {
+            row["stage_ms"]["samples"].as_array().unwrap().iter().map(|ms| ms.as_f64().unwrap()).collect()
+        };
+        let pairs: Vec<f64> = of(row).iter().zip(of(partner)).map(|(ours, theirs)| (ours / theirs).ln()).collect();
+        let mean = (pairs.iter().sum::<f64>() / pairs.len() as f64).exp();
+        assert!((row["ratio"]["mean"].as_f64().unwrap() / mean - 1.0).abs() < 1e-9, "{row:#}");
+    }
+    let summary: Value = serde_json::from_str(&read(&program, "out/summary.json")).unwrap();
+    assert_eq!(summary["baseline"], serde_json::json!(["vpls=4 pattern=2x2", "vpls=8 pattern=2x2"]));
+    assert!(read(&program, "out/summary.md").contains("ratios to vpls=4 pattern=2x2; vpls=8 pattern=2x2"));
+    // All rows are known, whosever they are.
+    let again = program.run(&bench("shade", &[&sweep[..], &["--resume", "--json"]].concat()));
+    assert_eq!(again.fine().out, "");
+}
+
 #[test]
 fn an_earlier_run_is_not_overwritten_and_a_torn_one_is_resumed() {
     let program = Program::new();
