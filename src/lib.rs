@@ -46,6 +46,7 @@
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
 //! | [`selftest`] | every method that a device supports beside a plain twin, as one document |
 //! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
+//! | [`papers`] | what the papers publish, as data, and the commands that make it here |
 
 pub mod bench;
 pub mod bvh;
@@ -64,6 +65,7 @@ pub mod lens;
 pub mod lights;
 pub mod memory;
 pub mod metrics;
+pub mod papers;
 pub mod passes;
 pub mod picture;
 pub mod plan;

@@ -21,6 +21,7 @@ mod framing;
 mod gpu;
 mod lens;
 mod memory;
+mod papers;
 mod passes;
 mod plan;
 mod progress;

@@ -136,7 +136,7 @@ struct Found {
 /// A part of the grid on its way to rows.
 struct Sweep<'a> {
     head: Head<'a>,
-    /// Of the whole grid.
+    /// The whole grid's.
     candidates: &'a [Candidate],
     /// The part's places in the grid.
     points: &'a [usize],

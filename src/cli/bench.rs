@@ -164,7 +164,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
 }
 
 /// Errors: no technique reads a setting of this name (exit code 2), with the setting that `--KEY` resembles.
-fn require_known(key: &str) -> Result<()> {
+pub(super) fn require_known(key: &str) -> Result<()> {
     if key == TECHNIQUE || techniques::ALL.iter().any(|one| settings_of(*one).iter().any(|setting| setting.key == key))
     {
         return Ok(());

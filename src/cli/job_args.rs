@@ -1,12 +1,11 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
 use super::listed::{self, TechniqueSelection};
-use crate::cli::listed::DEFAULT_TECHNIQUE;
 use crate::cli::output::quiet_flag;
 use crate::error::Result;
 use crate::job::Job;
 use crate::settings::{COMMON, Kind, Setting};
-use crate::techniques::{self, Technique, settings_of};
+use crate::techniques::{self, DEFAULT_TECHNIQUE, Technique, settings_of};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 

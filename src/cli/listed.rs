@@ -1,7 +1,7 @@
 //! Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the
 //! default one. The other flags are there all the same, so that a technique can say what it does not read.
 
-use crate::techniques::{self, Technique};
+use crate::techniques::{self, DEFAULT_TECHNIQUE, Technique};
 
 /// What `--technique` takes beside names, for help alone.
 pub const ALL: &str = "all";
@@ -54,9 +54,6 @@ impl TechniqueSelection {
         }
     }
 }
-
-/// The technique that a command without --technique runs.
-pub const DEFAULT_TECHNIQUE: &str = "interleaved_deferred";
 
 #[cfg(test)]
 mod tests {

@@ -15,6 +15,7 @@ mod progress;
 mod rays;
 mod reference_args;
 pub mod render;
+pub mod reproduce;
 pub mod sampling;
 pub mod scene;
 mod self_test;
@@ -41,6 +42,7 @@ fn command(listed: &TechniqueSelection) -> Command {
             render::command(listed),
             compare::command(),
             bench::command(listed),
+            reproduce::command(),
             memory::command(listed),
             scene::command(),
             sampling::command(),
@@ -62,6 +64,7 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("render", matches)) => render::run(matches, argv),
         Some(("compare", matches)) => compare::run(matches),
         Some(("bench", matches)) => bench::run(matches, argv),
+        Some(("reproduce", matches)) => reproduce::run(matches),
         Some(("memory", matches)) => memory::run(matches, argv),
         Some(("scene", matches)) => scene::run(matches),
         Some(("sampling", matches)) => sampling::run(matches),

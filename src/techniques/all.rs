@@ -18,6 +18,9 @@ pub const ALL: &[&dyn Technique] = &[
     &path_traced::PathTraced,
 ];
 
+/// The technique of a command that names none.
+pub const DEFAULT_TECHNIQUE: &str = "interleaved_deferred";
+
 /// The technique of this name.
 ///
 /// Errors: none has it (exit code 2).

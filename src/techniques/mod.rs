@@ -24,7 +24,7 @@ pub mod patterns;
 mod shutter_close;
 pub mod stages;
 
-pub use all::{ALL, find};
+pub use all::{ALL, DEFAULT_TECHNIQUE, find};
 
 use crate::bvh::LazyBvh;
 use crate::caps::{Caps, Need};

@@ -193,7 +193,7 @@ fn the_baseline_is_the_named_one() {
 fn a_baseline_that_leaves_an_axis_out_is_one_for_each_point_of_it() {
     let program = Program::new();
     let sweep = ["--sweep", "vpls=4,8", "--sweep", "pattern=1x1,2x2", "--baseline", "pattern=2x2", "-o", "out"];
-    let first = program.run(&bench("shade", &[&sweep[..], &["--json"]].concat()));
+    let first = program.run(&bench("shade", &[&sweep[..], &["--json", "--quiet"]].concat()));
     let rows = lines(&first.fine().out);
     assert_eq!(rows.len(), 4);
     for (index, row) in rows.iter().enumerate() {
@@ -213,7 +213,7 @@ fn a_baseline_that_leaves_an_axis_out_is_one_for_each_point_of_it() {
     assert_eq!(summary["baseline"], serde_json::json!(["vpls=4 pattern=2x2", "vpls=8 pattern=2x2"]));
     assert!(read(&program, "out/summary.md").contains("ratios to vpls=4 pattern=2x2; vpls=8 pattern=2x2"));
     // All rows are known, whosever they are.
-    let again = program.run(&bench("shade", &[&sweep[..], &["--resume", "--json"]].concat()));
+    let again = program.run(&bench("shade", &[&sweep[..], &["--resume", "--json", "--quiet"]].concat()));
     assert_eq!(again.fine().out, "");
 }
 

@@ -25,6 +25,7 @@ const FLOORS: &[&[&str]] = &[
     &["job"],
     &["sequence"],
     &["bench", "selftest", "study"],
+    &["papers"],
     &["cli"],
     // The crate's front pages.
     &["lib", "main"],

@@ -222,7 +222,7 @@ fn an_eye_alone_sees_what_a_camera_beside_sees() {
     );
 }
 
-/// As far as eyes are apart; `tools/clarberg-2014 stereo` has larger pictures.
+/// As far as eyes are apart; `reproduce clarberg-2014/section-7` has larger pictures.
 #[test]
 fn what_both_eyes_see_is_shaded_once() {
     let watched = Watched::open("chess:triangles=12000");
