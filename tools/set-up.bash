@@ -66,6 +66,7 @@ has() {
     validation) [ -n "$(vulkan_files explicit_layer.d 'VkLayer_khronos_validation.json')" ] ;;
     spirv-tools) command -v spirv-val >/dev/null ;;
     shellcheck) command -v shellcheck >/dev/null ;;
+    browser) command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ;;
     *) fail "set-up.bash: no such need: $1" ;;
     esac
 }
@@ -77,6 +78,7 @@ debian_package() {
     software-driver) echo mesa-vulkan-drivers ;;
     compiler) echo g++ ;;
     validation) echo vulkan-validationlayers ;;
+    browser) echo chromium ;;
     *) echo "$1" ;;
     esac
 }
@@ -90,6 +92,7 @@ purpose() {
     validation) echo "Vulkan's validation layers" ;;
     spirv-tools) echo "spirv-val and its companions" ;;
     shellcheck) echo "the shell scripts' lint" ;;
+    browser) echo "a browser, in which pages are tried" ;;
     esac
 }
 
@@ -104,6 +107,7 @@ by_hand() {
         validation) fedora+=(vulkan-validation-layers) arch+=(vulkan-validation-layers) suse+=(vulkan-validationlayers) ;;
         spirv-tools) fedora+=(spirv-tools) arch+=(spirv-tools) suse+=(spirv-tools) ;;
         shellcheck) fedora+=(ShellCheck) arch+=(shellcheck) suse+=(ShellCheck) ;;
+        browser) fedora+=(chromium) arch+=(chromium) suse+=(chromium) ;;
         esac
     done
     printf '%s\n' \

@@ -10,7 +10,7 @@ use crate::papers::outcome::Outcome;
 use crate::papers::recipe::Effort;
 use crate::papers::reproduce::reproduce;
 use crate::papers::request::Request;
-use crate::papers::{self, listing, text};
+use crate::papers::{self, listing, page, text};
 use crate::progress::say;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::{Path, PathBuf};
@@ -106,11 +106,25 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
         return list(&items, matches);
     }
     let is_one = items.len() == 1;
-    let chosen: Vec<_> = items.into_iter().filter(|(_, item)| is_one || item.recipe.is_some()).collect();
+    let effort = Effort { is_quick: matches.get_flag("quick"), frames: matches.get_one::<u32>("frames").copied() };
+    let only: Vec<&String> = matches.get_many::<String>("only").into_iter().flatten().collect();
+    let has_step = |item: &Item, starts: &[&String]| {
+        let steps = item.recipe.map_or_else(Vec::new, |recipe| recipe(effort).steps);
+        steps.iter().any(|step| starts.iter().any(|start| step.name.starts_with(start.as_str())))
+    };
+    if let Some(start) = only.iter().find(|start| !items.iter().any(|(_, item)| has_step(item, &[**start]))) {
+        let all = items.iter().filter_map(|(_, item)| Some(item.recipe?(effort).steps)).flatten();
+        let names = all.map(|step| step.name).collect::<Vec<_>>().join(", ");
+        return Err(Error::request(format!("--only {start}: no step has a name that begins so"))
+            .note(format!("there are the steps {names}")));
+    }
+    // Those that cannot be made are refused where they are asked for by name.
+    let is_wanted = |item: &Item| is_one || item.recipe.is_some() && (only.is_empty() || has_step(item, &only));
+    let chosen: Vec<_> = items.into_iter().filter(|(_, item)| is_wanted(item)).collect();
     progress::install(matches.get_flag("quiet"));
-    let (mut outcomes, mut first_error) = (Vec::new(), None);
+    let (mut made, mut first_error) = (Vec::new(), None);
     for (paper, item) in chosen {
-        for request in requests(paper, item, matches)? {
+        for request in requests(paper, item, effort, matches)? {
             match reproduce(paper, item, &request) {
                 Ok(outcome) => {
                     show(&outcome, &request.folder, matches)?;
@@ -118,7 +132,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
                     if let Some(least) = matches.get_one::<f64>("min-ratio") {
                         first_error = first_error.or_else(|| outcome.require_ratios(*least).err());
                     }
-                    outcomes.push(outcome);
+                    made.push((outcome, request.folder));
                 }
                 // A setting that this item does not read, where several are asked for.
                 Err(error) if !is_one && error.exit_code() == 2 => {
@@ -130,8 +144,14 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
         }
     }
     if matches.get_flag("json") {
+        let outcomes: Vec<&Outcome> = made.iter().map(|(outcome, _)| outcome).collect();
         let document = serde_json::to_string_pretty(&outcomes).expect("its keys are texts");
         print(&format!("{document}\n"))?;
+    }
+    if !made.is_empty() {
+        let path = matches.get_one::<PathBuf>("output").expect("it has a default").join("index.html");
+        page::write(&path, &made)?;
+        say(format!("wrote {}", path.display()));
     }
     first_error.map_or(Ok(()), Err)
 }
@@ -145,7 +165,7 @@ fn list(items: &[(&Paper, &Item)], matches: &ArgMatches) -> Result<()> {
 }
 
 /// One a scene that is asked for, or one with the item's own scenes.
-fn requests(paper: &Paper, item: &Item, matches: &ArgMatches) -> Result<Vec<Request>> {
+fn requests(paper: &Paper, item: &Item, effort: Effort, matches: &ArgMatches) -> Result<Vec<Request>> {
     let program = std::env::current_exe()
         .map_err(|error| Error::request(format!("this program cannot find itself to run its commands: {error}")))?;
     let folder = matches.get_one::<PathBuf>("output").expect("it has a default").join(paper.name).join(item.name);
@@ -154,7 +174,7 @@ fn requests(paper: &Paper, item: &Item, matches: &ArgMatches) -> Result<Vec<Requ
     let request = Request {
         program,
         folder,
-        effort: Effort { is_quick: matches.get_flag("quick"), frames: matches.get_one::<u32>("frames").copied() },
+        effort,
         scene: None,
         rounds: matches.get_one::<u32>("repeat").copied(),
         settings,

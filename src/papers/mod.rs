@@ -11,6 +11,7 @@ pub mod keller_2001;
 pub mod kircher_2009;
 pub mod listing;
 pub mod outcome;
+pub mod page;
 pub mod recipe;
 pub mod reproduce;
 pub mod request;

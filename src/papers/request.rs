@@ -120,16 +120,9 @@ impl Request {
         self.only.is_empty() || self.only.iter().any(|start| step.name.starts_with(start.as_str()))
     }
 
-    /// Errors: no step's name begins as `only` says; a setting is one that a step sweeps, or that no step reads; a scene is named, and no step takes one (exit
+    /// Errors: a setting is one that a step sweeps, or that no step reads; a scene is named, and no step takes one (exit
     /// code 2).
     pub fn check(&self, item: &str, steps: &[Step]) -> Result<()> {
-        if let Some(start) =
-            self.only.iter().find(|start| !steps.iter().any(|step| step.name.starts_with(start.as_str())))
-        {
-            let names: Vec<&str> = steps.iter().map(|step| step.name.as_str()).collect();
-            return Err(Error::request(format!("--only {start}: no step of {item} has a name that begins so"))
-                .note(format!("its steps are {}", names.join(", "))));
-        }
         for (key, _) in &self.settings {
             if let Some(step) = steps.iter().find(|step| step.sweeps(key)) {
                 return Err(Error::request(format!("--{key}: {item} measures several of it (step {})", step.name)));

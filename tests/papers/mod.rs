@@ -1,6 +1,8 @@
 //! `reproduce` from outside: what is listed, what is found, what is taken from an earlier run, what fails. Never how long
 //! anything takes.
 
+mod page;
+
 use crate::support::benched::{lines, read};
 use crate::support::program::Program;
 use serde_json::Value;
@@ -180,7 +182,7 @@ fn what_cannot_be_asked_is_refused_before_anything_is_written() {
         (&["segovia-2006/figure-4"], &["cannot be made here", "drawing"]),
         (&["segovia-2006/table-1", "--split", "none"], &["--split", "measures several of it", "4x4"]),
         (&["segovia-2006/table-1", "--aperture", "1"], &["--aperture", "no command of segovia-2006/table-1 reads it"]),
-        (&["segovia-2006/table-1", "--only", "8x8"], &["--only 8x8", "its steps are 4x4, 2x2"]),
+        (&["segovia-2006/table-1", "--only", "8x8"], &["--only 8x8", "there are the steps 4x4, 2x2"]),
     ] {
         program.fails(&[&["reproduce"], arguments].concat(), 2, words);
     }

@@ -35,6 +35,15 @@ pub fn shared_scenes() -> Option<PathBuf> {
     folder
 }
 
+/// A browser of Chromium's kind; None where there is none.
+pub fn browser() -> Option<PathBuf> {
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    std::env::split_paths(&folders)
+        .flat_map(|folder| names.map(|name| folder.join(name)))
+        .find(|program| program.is_file())
+}
+
 /// Says that a test, or the rest of one, does not run here: on standard output, which runners show of failed tests only,
 /// and as a line of the file that QUINCUNX_SKIPS names.
 ///

@@ -22,6 +22,7 @@
 //! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
 //! - the direct lights' pattern, made by clustering sub-buffers (section 4.6), may be of any divisors of the split's, where
 //!   the paper says powers of two
+//! - the filter stops at a discontinuity in its own direction; `--discontinuity any` stops at any of the three, as the paper does
 //! - what hides a light from a pixel is found before the shading, and not in its loop: the maps need not be held all at once
 //!
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
