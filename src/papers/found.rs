@@ -4,6 +4,7 @@ use super::recipe::{FigureKind, Number, Source};
 use crate::bench::row::BenchRow;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::time::SystemTime;
 
 /// Why a step that `--only` leaves out has left nothing.
 pub const NOT_ASKED_FOR: &str = "it was not asked for";
@@ -24,6 +25,8 @@ pub enum Left {
 #[derive(Default)]
 pub struct Found {
     pub steps: BTreeMap<String, Left>,
+    /// When the last of their results was written; None where there are none.
+    pub latest: Option<SystemTime>,
 }
 
 impl Found {

@@ -29,7 +29,7 @@ pub struct Outcome {
     pub reason: String,
     /// Commit of the program.
     pub commit: String,
-    /// Year, month and day (UTC) on which the last step ended.
+    /// Year, month and day (UTC) on which the last step ended; today's where there are no steps.
     pub date: String,
     /// As the first step that ran on one has it; None where none did.
     pub device: Option<Value>,
@@ -137,7 +137,7 @@ pub fn outcome(paper: &Paper, item: &Item, recipe: &Recipe, found: &Found, reque
         verdict: item.verdict.name().to_owned(),
         reason: item.verdict.reason().to_owned(),
         commit: commit.to_owned(),
-        date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
+        date: date(found),
         device: recipe.steps.iter().find_map(|step| device(found.steps.get(&step.name)?)),
         effort: request.effort.name().to_owned(),
         scene: request.scene.clone(),
@@ -158,6 +158,11 @@ pub fn outcome(paper: &Paper, item: &Item, recipe: &Recipe, found: &Found, reque
             })
             .collect(),
     }
+}
+
+fn date(found: &Found) -> String {
+    let written = found.latest.and_then(|time| jiff::Timestamp::try_from(time).ok());
+    written.unwrap_or_else(jiff::Timestamp::now).strftime("%Y-%m-%d").to_string()
 }
 
 fn device(left: &Left) -> Option<Value> {

@@ -32,7 +32,9 @@ pub fn reproduce(paper: &Paper, item: &Item, request: &Request) -> Result<Outcom
     for (index, step) in recipe.steps.iter().enumerate() {
         let command = step.command(request, &request.folder).join(" ");
         say(format!("{name}, step {} of {}: quincunx {command}", index + 1, recipe.steps.len()));
-        found.steps.insert(step.name.clone(), step_run::run(step, request, COMMIT)?);
+        let (left, written) = step_run::run(step, request, COMMIT)?;
+        found.latest = found.latest.max(written);
+        found.steps.insert(step.name.clone(), left);
     }
     let outcome = outcome(paper, item, &recipe, &found, request, COMMIT);
     let document = serde_json::to_string_pretty(&outcome).expect("its keys are texts");

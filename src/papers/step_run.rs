@@ -11,12 +11,13 @@ use crate::bench::row::BenchRow;
 use crate::bench::rows_file;
 use crate::error::{Error, Result};
 use crate::interrupt;
+use crate::progress::say;
 use crate::whole_file::write_whole;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Environment that chooses the driver.
 const DRIVERS: &[&str] = &["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
@@ -38,9 +39,18 @@ struct Failure {
 
 /// Runs a step unless its results are there.
 ///
+/// With when its results were written; None where there are none.
+///
 /// Errors: a file cannot be written or is no result (exit code 2); Ctrl-C (130). A step that fails is no error: it leaves
 /// its reason.
-pub fn run(step: &Step, request: &Request, commit: &str) -> Result<Left> {
+pub fn run(step: &Step, request: &Request, commit: &str) -> Result<(Left, Option<SystemTime>)> {
+    let left = left(step, request, commit)?;
+    let written = || Files::of(step, &request.folder).result.metadata().ok()?.modified().ok();
+    let at = if let Left::Nothing { .. } = left { None } else { written() };
+    Ok((left, at))
+}
+
+fn left(step: &Step, request: &Request, commit: &str) -> Result<Left> {
     let folder = &request.folder;
     let command = step.command(request, folder);
     let files = Files::of(step, folder);
@@ -127,7 +137,7 @@ fn passed_on(stderr: impl Read) -> String {
         match line.strip_prefix("error: ") {
             Some(message) => error.push(message.to_owned()),
             None if !error.is_empty() => error.push(line.trim().to_owned()),
-            None => eprintln!("{line}"),
+            None => say(line),
         }
     }
     error.join("; ")
