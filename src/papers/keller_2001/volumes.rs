@@ -34,8 +34,8 @@ pub const FIGURE_5: Item = Item {
         scale: Scale::ItsMachine,
     }],
     verdict: Verdict::ShapeOnly(
-        "The paper shows pictures and says that 60 interleaved planes look better than 120 without: errors of ours say so too, or do not, with 8 bits \
-         a channel and with floats. --volume takes a scan.",
+        "The paper shows pictures and says that 60 interleaved planes look better than 120 without: errors of ours are with 8 bits a channel and with \
+         floats. --volume takes a scan.",
     ),
     recipe: Some(figure_5),
 };
