@@ -49,12 +49,21 @@ impl RowsFile {
                     .error("it holds rows of an earlier run")
                     .note("--resume measures only what is missing in it; --force replaces it"));
             }
-            Existing::Resume => rows.read()?,
+            Existing::Resume => rows.kept = rows.read()?.into_iter().map(|row| (row.key(), row)).collect(),
         }
         Ok(rows)
     }
 
-    fn read(&mut self) -> Result<()> {
+    /// The rows that are there, in their order; a torn last one is left out.
+    ///
+    /// Errors: a line is no row, or the file cannot be read (exit code 2).
+    pub fn rows(folder: &Path) -> Result<Vec<BenchRow>> {
+        let mut rows = Self { path: folder.join(NAME), file: None, kept_bytes: 0, kept: HashMap::new() };
+        rows.read()
+    }
+
+    /// Notes how much of it is whole.
+    fn read(&mut self) -> Result<Vec<BenchRow>> {
         let metadata = std::fs::metadata(&self.path).map_err(|error| self.error(&error.to_string()))?;
         // A pipe or a device would block or never end.
         if !metadata.is_file() {
@@ -70,14 +79,13 @@ impl RowsFile {
         let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         self.kept_bytes = whole as u64;
         let lines = bytes[..whole].split(|byte| *byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty());
-        for (index, line) in lines {
-            let row: BenchRow = serde_json::from_slice(line).map_err(|error| {
+        let row = |(index, line): (usize, &[u8])| {
+            serde_json::from_slice(line).map_err(|error| {
                 let why = format!("line {} is not a row: {error}", index + 1);
                 self.error(&why).note("remove the line, or use --force")
-            })?;
-            self.kept.insert(row.key(), row);
-        }
-        Ok(())
+            })
+        };
+        lines.map(row).collect()
     }
 
     fn error(&self, why: &str) -> Error {

@@ -34,7 +34,7 @@ pub fn command() -> Command {
                 .num_args(1..)
                 .help("Such as segovia-2006/table-4, or a paper, for all of it; several of them"),
         )
-        .arg(flag_of(LIST, "List every item of every paper, or of the named one, with its verdict").exclusive(false))
+        .arg(flag_of(LIST, "List every item of every paper, or of the named one, with its verdict"))
         .arg(flag_of(ALL, "Make every item of every paper that can be made").conflicts_with("item"))
         .arg(
             Arg::new("scene")
@@ -79,7 +79,7 @@ pub fn command() -> Command {
             Arg::new("min-ratio")
                 .long("min-ratio")
                 .value_name("RATIO")
-                .value_parser(value_parser!(f64))
+                .value_parser(finite)
                 .help("Fail with exit code 1 where ours, in parts of the published, is less"),
         )
         .arg(flag_of("force", "Make anew what is there"))
@@ -89,6 +89,12 @@ pub fn command() -> Command {
     rows(&TechniqueSelection::All)
         .into_iter()
         .fold(command, |command, Row { setting, .. }| command.arg(flag(setting).hide(true)))
+}
+
+/// A number that others can be less than.
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "it must be a number".to_owned())
 }
 
 /// Lists, or makes and prints.
@@ -243,7 +249,7 @@ mod tests {
                     if !seen.insert((std::mem::discriminant(&step.verb), step.scene.clone(), kind)) {
                         continue;
                     }
-                    let words = step.command(&Request { effort, ..request.clone() }, folder.path());
+                    let words = step.command(&Request { effort, ..request.clone() });
                     let argv: Vec<String> = ["quincunx".to_owned()].into_iter().chain(words).collect();
                     let checked = match parser.clone().try_get_matches_from(&argv) {
                         Ok(matches) => check(&matches, &argv, &mut scenes),

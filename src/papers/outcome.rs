@@ -105,10 +105,14 @@ impl Outcome {
         })
     }
 
-    /// Errors: a ratio of ours to the published is below `least` (exit code 1).
+    /// Errors: there is no ratio of ours to the published, or one is below `least` (exit code 1).
     pub fn require_ratios(&self, least: f64) -> Result<()> {
         let cells = self.tables.iter().flat_map(|table| &table.cells);
-        let too_small = cells.filter_map(|cell| Some((cell, cell.ratio?.value))).filter(|(_, ratio)| *ratio < least);
+        let ratios: Vec<_> = cells.filter_map(|cell| Some((cell, cell.ratio?.value))).collect();
+        if ratios.is_empty() {
+            return Err(Error::gate(format!("{}/{}: --min-ratio {least}: it has no ratio", self.paper, self.item)));
+        }
+        let too_small = ratios.into_iter().filter(|(_, ratio)| *ratio < least);
         let lines: Vec<String> =
             too_small.map(|(cell, ratio)| format!("{}, {}: {}", cell.row, cell.column, digits(ratio))).collect();
         if lines.is_empty() {
@@ -153,7 +157,7 @@ pub fn outcome(paper: &Paper, item: &Item, recipe: &Recipe, found: &Found, reque
             .iter()
             .map(|step| {
                 let (failed, exit_code) = failed(&step.name);
-                let command = step.command(request, &request.folder);
+                let command = step.command(request);
                 StepOutcome { name: step.name.clone(), command, failed, exit_code }
             })
             .collect(),

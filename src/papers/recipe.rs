@@ -186,26 +186,28 @@ impl Step {
 }
 
 impl Recipe {
-    pub fn step(&mut self, step: Step) -> &mut Self {
+    pub fn step(&mut self, step: Step) {
         self.steps.push(step);
-        self
     }
 
     /// The number of `row` and `column` in the item's table of this index.
-    pub fn cell(
-        &mut self,
-        table: usize,
-        row: impl Into<String>,
-        column: impl Into<String>,
-        source: Source,
-    ) -> &mut Self {
+    pub fn cell(&mut self, table: usize, row: impl Into<String>, column: impl Into<String>, source: Source) {
         self.cells.push(Cell { table, row: row.into(), column: column.into(), source });
-        self
     }
 
-    pub fn picture(&mut self, title: impl Into<String>, file: impl Into<String>) -> &mut Self {
+    /// Errors of a picture against another, both files of earlier steps, as cells of a row whose columns are `metrics`. The step is
+    /// called as the picture, with `-errors` behind it.
+    pub fn errors(&mut self, table: usize, row: &str, files: [&str; 2], metrics: &[&str]) {
+        let stem = files[0].rsplit_once('.').map_or(files[0], |(stem, _)| stem);
+        let step = format!("{stem}-errors");
+        self.step(Step::compare(&step, files));
+        for metric in metrics {
+            self.cell(table, row, *metric, Source::metric(&step, metric));
+        }
+    }
+
+    pub fn picture(&mut self, title: impl Into<String>, file: impl Into<String>) {
         self.pictures.push(Picture { title: title.into(), file: file.into() });
-        self
     }
 }
 

@@ -3,7 +3,7 @@
 use super::found::Found;
 use super::item::{Item, Paper};
 use super::outcome::{Outcome, outcome};
-use super::recipe::Recipe;
+use super::recipe::{Effort, Recipe};
 use super::request::Request;
 use super::{step_run, text};
 use crate::error::{Error, Result};
@@ -13,6 +13,12 @@ use std::io::Write;
 
 /// Commit of this program.
 const COMMIT: &str = env!("QUINCUNX_COMMIT");
+
+/// Whether another number of frames makes other steps.
+fn reads_frames(recipe: Option<fn(Effort) -> Recipe>, effort: Effort) -> bool {
+    let steps = |frames| recipe.map(|recipe| recipe(Effort { frames: Some(frames), ..effort }).steps);
+    steps(1) != steps(2)
+}
 
 /// Runs what is missing of an item, and writes `result.json` and `result.md` beside what its steps leave.
 ///
@@ -25,12 +31,17 @@ pub fn reproduce(paper: &Paper, item: &Item, request: &Request) -> Result<Outcom
     };
     let mut recipe: Recipe = recipe(request.effort);
     request.check(&name, &recipe.steps)?;
+    if let Some(frames) = request.effort.frames
+        && !reads_frames(item.recipe, request.effort)
+    {
+        return Err(Error::request(format!("--frames {frames}: {name} is of no film")));
+    }
     recipe.steps.retain(|step| request.wants(step));
     std::fs::create_dir_all(&request.folder)
         .map_err(|error| Error::request(format!("-o {}: {error}", request.folder.display())))?;
     let mut found = Found::default();
     for (index, step) in recipe.steps.iter().enumerate() {
-        let command = step.command(request, &request.folder).join(" ");
+        let command = step.command(request).join(" ");
         say(format!("{name}, step {} of {}: quincunx {command}", index + 1, recipe.steps.len()));
         let (left, written) = step_run::run(step, request, COMMIT)?;
         found.latest = found.latest.max(written);

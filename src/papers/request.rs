@@ -3,7 +3,7 @@
 use super::recipe::{Effort, Step, Verb};
 use crate::error::{Error, Result};
 use crate::techniques::{self, DEFAULT_TECHNIQUE, Technique, settings_of};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// How an item is to be made.
 #[derive(Clone, Debug)]
@@ -59,9 +59,9 @@ impl Step {
         self.words.iter().any(|word| word.strip_prefix(key).is_some_and(|rest| rest.starts_with('=')))
     }
 
-    /// The command without the program's name, as a user would type it; its files lie in `folder`.
-    pub fn command(&self, request: &Request, folder: &Path) -> Vec<String> {
-        let file = |name: &str| folder.join(name).display().to_string();
+    /// The command without the program's name, as a user would type it.
+    pub fn command(&self, request: &Request) -> Vec<String> {
+        let file = |name: &str| request.folder.join(name).display().to_string();
         let mut command: Vec<String> = match &self.verb {
             Verb::Bench { what, .. } => vec!["bench".to_owned(), what.clone()],
             Verb::Render { .. } => vec!["render".to_owned()],
@@ -75,7 +75,7 @@ impl Step {
             set(&mut command, &format!("--{key}"), value);
         }
         if let Some(device) = &request.device
-            && !matches!(self.verb, Verb::Compare { .. } | Verb::Pattern { .. })
+            && matches!(self.verb, Verb::Bench { .. } | Verb::Render { .. })
         {
             set(&mut command, "--device", device);
         }
@@ -120,7 +120,7 @@ impl Request {
         self.only.is_empty() || self.only.iter().any(|start| step.name.starts_with(start.as_str()))
     }
 
-    /// Errors: a setting is one that a step sweeps, or that no step reads; a scene is named, and no step takes one (exit
+    /// Errors: no step is measured in rounds, and rounds are named; a setting is one that a step sweeps, or that no step reads; a scene is named, and no step takes one (exit
     /// code 2).
     pub fn check(&self, item: &str, steps: &[Step]) -> Result<()> {
         for (key, _) in &self.settings {
@@ -130,6 +130,11 @@ impl Request {
             if !steps.iter().any(|step| step.reads(key)) {
                 return Err(Error::request(format!("--{key}: no command of {item} reads it")));
             }
+        }
+        if let Some(rounds) = self.rounds
+            && !steps.iter().any(|step| matches!(step.verb, Verb::Bench { .. }))
+        {
+            return Err(Error::request(format!("--repeat {rounds}: {item} measures no times")));
         }
         if let Some(scene) = &self.scene
             && steps.iter().all(|step| step.scene.is_none())

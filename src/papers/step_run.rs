@@ -7,8 +7,7 @@
 use super::found::Left;
 use super::recipe::{Step, Verb};
 use super::request::Request;
-use crate::bench::row::BenchRow;
-use crate::bench::rows_file;
+use crate::bench::rows_file::RowsFile;
 use crate::error::{Error, Result};
 use crate::interrupt;
 use crate::progress::say;
@@ -52,13 +51,13 @@ pub fn run(step: &Step, request: &Request, commit: &str) -> Result<(Left, Option
 
 fn left(step: &Step, request: &Request, commit: &str) -> Result<Left> {
     let folder = &request.folder;
-    let command = step.command(request, folder);
+    let command = step.command(request);
     let files = Files::of(step, folder);
     let driver = DRIVERS.iter().filter_map(|name| Some(format!("{name}={}", std::env::var(name).ok()?)));
     let key = driver.chain([commit.to_owned()]).chain(command.iter().cloned()).collect::<Vec<_>>().join("\n");
-    let is_begun = !request.is_fresh && std::fs::read_to_string(&files.key).is_ok_and(|there| there == key);
+    let is_begun = !request.is_fresh && read(&files.key).is_ok_and(|there| there == key);
     if is_begun && files.is_done() {
-        return files.read(step);
+        return files.read();
     }
     if !is_begun {
         files.remove()?;
@@ -76,7 +75,7 @@ fn left(step: &Step, request: &Request, commit: &str) -> Result<Left> {
             if let Verb::Compare { .. } | Verb::Memory | Verb::Pattern { .. } = step.verb {
                 write_whole(&files.result, |out| out.write_all(&printed))?;
             }
-            files.read(step)
+            files.read()
         }
         Err(Failure { code: Some(130), .. }) => {
             Err(Error::interrupted("interrupted; finished steps and rows are valid").note("the same command goes on"))
@@ -181,18 +180,10 @@ impl Files {
         Ok(())
     }
 
-    fn read(&self, step: &Step) -> Result<Left> {
-        match (&step.verb, &self.folder) {
-            (Verb::Bench { .. }, Some(folder)) => {
-                let path = folder.join(rows_file::NAME);
-                let text = read(&path)?;
-                let rows = text.lines().map(|line| {
-                    serde_json::from_str::<BenchRow>(line)
-                        .map_err(|error| Error::request(format!("{}: {error}", path.display())))
-                });
-                Ok(Left::Rows(rows.collect::<Result<_>>()?))
-            }
-            _ => {
+    fn read(&self) -> Result<Left> {
+        match &self.folder {
+            Some(folder) => Ok(Left::Rows(RowsFile::rows(folder)?)),
+            None => {
                 let document: Value = serde_json::from_str(&read(&self.result)?)
                     .map_err(|error| Error::request(format!("{}: {error}", self.result.display())))?;
                 Ok(Left::Document(document))

@@ -170,6 +170,11 @@ fn a_command_that_fails_leaves_its_reason_and_the_others_run() {
     ]);
     assert_eq!(report.code, 1);
     assert!(report.err.contains("--min-ratio 1.5: 5 ratios are less"), "{}", report.err);
+    // A gate without a number is none.
+    let without = program.run(&["reproduce", "dubla-2009/figure-6", "--only", "nothing", "--min-ratio", "nan"]);
+    assert!(without.code == 2 && without.err.contains("it must be a number"), "{}", without.err);
+    let plan = ["reproduce", "kircher-2009/bytes", "--min-ratio", "1", "--quiet", "-o", "out"];
+    program.fails(&plan, 1, &["--min-ratio 1: it has no ratio"]);
 }
 
 #[test]
@@ -182,6 +187,8 @@ fn what_cannot_be_asked_is_refused_before_anything_is_written() {
         (&["segovia-2006/figure-4"], &["cannot be made here", "drawing"]),
         (&["segovia-2006/table-1", "--split", "none"], &["--split", "measures several of it", "4x4"]),
         (&["segovia-2006/table-1", "--aperture", "1"], &["--aperture", "no command of segovia-2006/table-1 reads it"]),
+        (&["segovia-2006/table-1", "--frames", "9"], &["--frames 9", "is of no film"]),
+        (&["clarberg-2014/table-1", "--repeat", "9"], &["--repeat 9", "measures no times"]),
         (&["segovia-2006/table-1", "--only", "8x8"], &["--only 8x8", "there are the steps 4x4, 2x2"]),
     ] {
         program.fails(&[&["reproduce"], arguments].concat(), 2, words);

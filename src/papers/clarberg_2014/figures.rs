@@ -1,6 +1,6 @@
 //! Its figures of executions and of the algorithm.
 
-use super::scenes::{SPONZA, UNLIT, blurred, frames, pictures};
+use super::scenes::{UNLIT, blurred, frames, pictures};
 use crate::papers::item::{ABSENT, Item, Published, Scale, Verdict};
 use crate::papers::recipe::{Effort, Recipe, Source, Step};
 
@@ -137,13 +137,10 @@ fn figure_4(effort: Effort) -> Recipe {
     ] {
         let words = format!("{common} --spp 8 {words}");
         recipe.step(Step::render(step, "exr", "chess", &words));
-        let (picture, errors) = (format!("{step}-picture"), format!("{step}-errors"));
+        let picture = format!("{step}-picture");
         recipe.step(Step::render(&picture, "png", "chess", &words));
-        recipe.step(Step::compare(&errors, [&format!("{step}.exr"), "reference.exr"]));
+        recipe.errors(0, row, [&format!("{step}.exr"), "reference.exr"], &["rmse", "hdr_flip"]);
         recipe.cell(0, row, EXECUTIONS, Source::counter(step, "shaded_per_pixel"));
-        for metric in ["rmse", "hdr_flip"] {
-            recipe.cell(0, row, metric, Source::metric(&errors, metric));
-        }
         recipe.picture(row, format!("{picture}.png"));
     }
     recipe
@@ -264,13 +261,4 @@ fn figure_7(effort: Effort) -> Recipe {
         }
     }
     recipe
-}
-
-/// Scenes with blur that errors are taken of.
-pub fn judged() -> [(&'static str, &'static str, &'static str); 3] {
-    [
-        ("hall", SPONZA, "--aperture 0.1"),
-        ("arena", "arena", "--aperture 0.1 --camera flight --time 10 --shutter 0,0.04"),
-        ("chess", "chess", "--shutter 0,0.04"),
-    ]
 }

@@ -31,3 +31,12 @@ pub fn frames(effort: Effort) -> String {
 
 /// Executions are the same whatever light falls: for pictures that nobody looks at.
 pub const UNLIT: &str = "--brdf lambert --direct-shadow none --light-cutoff 1000";
+
+/// Scenes with blur that errors are taken of.
+pub fn judged() -> [(&'static str, &'static str, &'static str); 3] {
+    [
+        ("hall", SPONZA, "--aperture 0.1"),
+        ("arena", "arena", "--aperture 0.1 --camera flight --time 10 --shutter 0,0.04"),
+        ("chess", "chess", "--shutter 0,0.04"),
+    ]
+}

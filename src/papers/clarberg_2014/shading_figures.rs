@@ -1,7 +1,7 @@
 //! Its figures against other ways to shade, its filter, and two eyes.
 
-use super::figures::{judged, reference};
-use super::scenes::{SPONZA, UNLIT, blurred, frames, pictures};
+use super::figures::reference;
+use super::scenes::{SPONZA, UNLIT, blurred, frames, judged, pictures};
 use crate::bench::row::BenchRow;
 use crate::papers::figures;
 use crate::papers::item::{ABSENT, Item, Published, Scale, Verdict};
@@ -135,12 +135,8 @@ fn figure_9(effort: Effort) -> Recipe {
 
 /// A picture, and its errors as cells of a row.
 fn judge(recipe: &mut Recipe, table: usize, row: &str, step: &str, scene: &str, words: &str, reference: &str) {
-    let errors = format!("{step}-errors");
     recipe.step(Step::render(step, "exr", scene, words));
-    recipe.step(Step::compare(&errors, [&format!("{step}.exr"), &format!("{reference}.exr")]));
-    for metric in ["rmse", "hdr_flip"] {
-        recipe.cell(table, row, metric, Source::metric(&errors, metric));
-    }
+    recipe.errors(table, row, [&format!("{step}.exr"), &format!("{reference}.exr")], &["rmse", "hdr_flip"]);
 }
 
 const ERRORS: Published = Published {

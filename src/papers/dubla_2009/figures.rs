@@ -129,14 +129,11 @@ fn figure_8(effort: Effort) -> Recipe {
     recipe.step(Step::render("paths-picture", "png", "office", &format!("{paths} --exposure auto")));
     recipe.picture("paths", "paths-picture.png");
     for mode in ["adaptive", "max", "igi"] {
-        let (picture, errors) = (format!("{mode}-picture"), format!("{mode}-errors"));
+        let picture = format!("{mode}-picture");
         let words = format!("{LIT} {} --mode {mode}", size(effort));
         recipe.step(Step::render(mode, "exr", "office", &words));
         recipe.step(Step::render(&picture, "png", "office", &format!("{words} --exposure auto")));
-        recipe.step(Step::compare(&errors, [&format!("{mode}.exr"), "paths.exr"]));
-        for metric in ["hdr_flip", "rmse", "over_threshold"] {
-            recipe.cell(0, mode, metric, Source::metric(&errors, metric));
-        }
+        recipe.errors(0, mode, [&format!("{mode}.exr"), "paths.exr"], &["hdr_flip", "rmse", "over_threshold"]);
         recipe.picture(mode, format!("{picture}.png"));
     }
     recipe

@@ -47,7 +47,7 @@ fn figure_1(effort: Effort) -> Recipe {
         recipe.step(Step::render(step, "png", scene, &format!("--technique {technique} --msaa 4 {size}")));
         recipe.picture(step, format!("{step}.png"));
     }
-    recipe.step(Step::compare("errors", ["inferred.png", "forward.png"]));
+    recipe.errors(2, "inferred_lighting", ["inferred.png", "forward.png"], &["flip", "rmse"]);
     let words = format!("--technique forward {size} --msaa 4 --sweep technique=forward,inferred_lighting");
     recipe.step(Step::bench("frame", "frame", scene, 7, &words));
     for technique in ["inferred_lighting", "forward"] {
@@ -56,9 +56,6 @@ fn figure_1(effort: Effort) -> Recipe {
     }
     let faster = Source::row("frame", "technique=inferred_lighting", figures::times_as_fast());
     recipe.cell(1, "inferred_lighting", "over forward", faster);
-    for metric in ["flip", "rmse"] {
-        recipe.cell(2, "inferred_lighting", metric, Source::metric("errors", metric));
-    }
     recipe
 }
 
@@ -292,12 +289,8 @@ fn figure_10(effort: Effort) -> Recipe {
     recipe.step(Step::render("forward", "png", "fence", &format!("--technique forward --supersample 8 {common}")));
     recipe.picture("forward, 64 samples", "forward.png");
     for way in ["blend", "test"] {
-        let errors = format!("{way}-errors");
         recipe.step(Step::render(way, "png", "fence", &format!("{INFERRED} {common} --msaa 4 --alpha {way}")));
-        recipe.step(Step::compare(&errors, [&format!("{way}.png"), "forward.png"]));
-        for metric in ["flip", "rmse"] {
-            recipe.cell(0, format!("--alpha {way}"), metric, Source::metric(&errors, metric));
-        }
+        recipe.errors(0, &format!("--alpha {way}"), [&format!("{way}.png"), "forward.png"], &["flip", "rmse"]);
         recipe.picture(format!("--alpha {way}"), format!("{way}.png"));
     }
     recipe

@@ -17,12 +17,8 @@ const SUPERSAMPLED: &str = "--technique forward --supersample 8";
 
 /// A picture of `words`, and its errors as cells of a row.
 fn judge(recipe: &mut Recipe, table: usize, row: &str, step: &str, scene: &str, words: &str, reference: &str) {
-    let errors = format!("{step}-errors");
     recipe.step(Step::render(step, "exr", scene, words));
-    recipe.step(Step::compare(&errors, [&format!("{step}.exr"), &format!("{reference}.exr")]));
-    for metric in ["flip", "rmse"] {
-        recipe.cell(table, row, metric, Source::metric(&errors, metric));
-    }
+    recipe.errors(table, row, [&format!("{step}.exr"), &format!("{reference}.exr")], &["flip", "rmse"]);
 }
 
 /// A light buffer of the paper's 800x450 for 1280x720.

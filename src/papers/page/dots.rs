@@ -89,29 +89,20 @@ fn line(cell: &CellOutcome, has_parts: bool) -> Line {
     }
 }
 
-/// Plots of a table: one, or one a column where columns are of other things. None of what has too little or too much for a
-/// plot.
+/// Plots of a table: one where numbers are parts of one of them, else one a column, because columns may be of other things. None
+/// of what has too little or too much for a plot.
 pub fn plots(table: &TableOutcome) -> Vec<Markup> {
+    if let Some(whole) = &table.parts_of {
+        return plot(table, |_| true, &format!("in parts of {whole}")).into_iter().collect();
+    }
     let mut columns: Vec<&str> = Vec::new();
     for cell in &table.cells {
         if !columns.contains(&cell.column.as_str()) {
             columns.push(&cell.column);
         }
     }
-    if !UNLIKE.iter().any(|unit| table.unit.starts_with(unit)) {
-        return plot(table, |_| true, &unit_of(table)).into_iter().collect();
-    }
-    columns.into_iter().filter_map(|column| plot(table, |cell| cell.column == column, column)).collect()
-}
-
-/// Units of tables whose columns are not on one scale.
-const UNLIKE: &[&str] = &["error", "number"];
-
-fn unit_of(table: &TableOutcome) -> String {
-    match &table.parts_of {
-        Some(whole) => format!("in parts of {whole}"),
-        None => table.unit.clone(),
-    }
+    let of_column = |column: &str| plot(table, |cell| cell.column == column, &format!("{column}, {}", table.unit));
+    columns.into_iter().filter_map(of_column).collect()
 }
 
 fn plot(table: &TableOutcome, is_in: impl Fn(&CellOutcome) -> bool, unit: &str) -> Option<Markup> {

@@ -2,8 +2,8 @@
 
 use super::{dots, pictures};
 use crate::error::Result;
-use crate::papers::digits::{digits, number};
-use crate::papers::outcome::{CellOutcome, Outcome, TableOutcome};
+use crate::papers::columns::{columns, missing};
+use crate::papers::outcome::{Outcome, TableOutcome};
 use maud::{Markup, html};
 use std::path::Path;
 
@@ -34,6 +34,7 @@ pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
             }
             @for one in outcome.tables.iter().filter(|table| !table.cells.is_empty()) {
                 (table(one))
+                @for line in missing(one) { p.failed { (line) } }
                 @for plot in dots::plots(one) { (plot) }
             }
             (pictures)
@@ -46,60 +47,6 @@ pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
             }
         }
     })
-}
-
-/// A column: its title, and what it says of a cell, as text and, where it sorts by it, as a number.
-struct Column {
-    title: String,
-    text: fn(&CellOutcome) -> String,
-    value: Option<fn(&CellOutcome) -> Option<f64>>,
-}
-
-fn columns(table: &TableOutcome) -> Vec<Column> {
-    let has = |some: fn(&CellOutcome) -> bool| table.cells.iter().any(some);
-    let part = |of: &str| format!("{of}, in parts of {}", table.parts_of.as_deref().unwrap_or_default());
-    let mut columns = vec![Column { title: table.title.clone(), text: |cell| cell.row.clone(), value: None }];
-    let mut add =
-        |is_there: bool, title: String, text: fn(&CellOutcome) -> String, value: fn(&CellOutcome) -> Option<f64>| {
-            if is_there {
-                columns.push(Column { title, text, value: Some(value) });
-            }
-        };
-    add(
-        has(|cell| cell.published.is_some()),
-        format!("published, {}", table.unit),
-        |cell| cell.published.map(digits).unwrap_or_default(),
-        |cell| cell.published,
-    );
-    add(
-        has(|cell| cell.ours.is_some() || cell.missing.is_some()),
-        format!("ours, {}", table.unit),
-        |cell| cell.ours.as_ref().map(number).or_else(|| cell.missing.clone()).unwrap_or_default(),
-        |cell| cell.ours.map(|ours| ours.value),
-    );
-    add(
-        has(|cell| cell.published_part.is_some()),
-        part("published"),
-        |cell| cell.published_part.map(digits).unwrap_or_default(),
-        |cell| cell.published_part,
-    );
-    add(
-        has(|cell| cell.our_part.is_some()),
-        part("ours"),
-        |cell| cell.our_part.as_ref().map(number).unwrap_or_default(),
-        |cell| cell.our_part.map(|part| part.value),
-    );
-    add(
-        has(|cell| cell.ratio.is_some()),
-        "ours in parts of the published".to_owned(),
-        |cell| cell.ratio.as_ref().map(number).unwrap_or_default(),
-        |cell| cell.ratio.map(|ratio| ratio.value),
-    );
-    let of_column = |cell: &CellOutcome| cell.column != table.cells[0].column;
-    if table.cells.iter().any(of_column) {
-        columns.insert(1, Column { title: "column".to_owned(), text: |cell| cell.column.clone(), value: None });
-    }
-    columns
 }
 
 /// A table whose head sorts it.

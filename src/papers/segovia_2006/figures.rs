@@ -187,11 +187,7 @@ fn qualities(scene: &str, common: &str, ways: &[(&str, &str, &str)]) -> Recipe {
         let picture = format!("{name}-picture");
         recipe.step(Step::render(*name, "exr", scene, &format!("{common} {words}")));
         recipe.step(Step::render(&picture, "png", scene, &format!("{common} {words}")));
-        let compare = format!("{name}-errors");
-        recipe.step(Step::compare(&compare, [&format!("{name}.exr"), "reference.exr"]));
-        for metric in ERRORS.columns {
-            recipe.cell(0, *title, *metric, Source::metric(&compare, metric));
-        }
+        recipe.errors(0, title, [&format!("{name}.exr"), "reference.exr"], ERRORS.columns);
         recipe.picture(*title, format!("{picture}.png"));
     }
     recipe
