@@ -29,6 +29,10 @@ impl Variant {
     pub fn new(session: &Session, technique: &dyn Technique, what: What, values: &Values) -> Result<Self> {
         let stage = what.stage_of(technique)?;
         let renderer = session.renderer(technique, values, &[], what.submits())?;
+        if stage.is_some() && renderer.is_in_parts() {
+            return Err(Error::request("a stage is timed in a frame of one run")
+                .note("--accumulate 1 --until-error 0, or `bench frame`"));
+        }
         let is_timed =
             |index: &usize| stage.is_none_or(|stage| stage.has(technique.name(), &renderer.passes()[*index].name));
         let passes: Vec<usize> = (0..renderer.passes().len()).filter(is_timed).collect();

@@ -62,6 +62,41 @@ impl FrameTime {
             sum(&mut total.timestamp_ns, more.timestamp_ns);
         }
     }
+
+    /// Nothing yet of a frame of `pass_count` passes, to which its parts are added.
+    pub fn none(pass_count: usize) -> Self {
+        let passes = vec![PassTime::default(); pass_count];
+        Self { host: Vec::new(), wall_ns: 0, device_ns: Some(0), passes, statistics: Vec::new() }
+    }
+
+    /// What the host did before a part of the frame.
+    pub fn add_host(&mut self, passes: Vec<(String, u64)>) {
+        for (name, ns) in passes {
+            match self.host.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, total)) => *total += ns,
+                None => self.host.push((name, ns)),
+            }
+        }
+    }
+
+    /// A part of the frame, whose passes are those of the frame at `places`. Statistics become its own, pass by pass.
+    pub fn add_part(&mut self, part: Self, places: &[usize]) {
+        let sum = |total: &mut Option<u64>, more: Option<u64>| {
+            if let Some(more) = more {
+                *total = Some(total.unwrap_or_default() + more);
+            }
+        };
+        self.wall_ns += part.wall_ns;
+        self.device_ns = self.device_ns.zip(part.device_ns).map(|(total, more)| total + more);
+        for (place, time) in places.iter().zip(part.passes) {
+            sum(&mut self.passes[*place].wall_ns, time.wall_ns);
+            sum(&mut self.passes[*place].timestamp_ns, time.timestamp_ns);
+        }
+        if !part.statistics.is_empty() {
+            self.statistics.resize(self.passes.len(), PassStatistics::default());
+            places.iter().zip(part.statistics).for_each(|(place, counts)| self.statistics[*place] = counts);
+        }
+    }
 }
 
 impl Commands {

@@ -44,6 +44,22 @@ pub struct VplWalk {
     pub walk_count: u32,
 }
 
+/// How far the walks of earlier runs have come: the next ones go on there, so that lights of many runs are those of one long walk.
+#[derive(Clone, Debug, Default)]
+pub struct Course {
+    runs: u32,
+    walk_count: u64,
+    /// Lights of the last walk that its run had no room for; not yet divided.
+    left: Vec<VplBlock>,
+}
+
+impl Course {
+    /// Walks of all runs so far.
+    pub fn walk_count(&self) -> u64 {
+        self.walk_count
+    }
+}
+
 /// Walks tried for each light wanted, before a scene counts as one that no light lands in.
 const PATIENCE: u64 = 1024;
 
@@ -65,11 +81,17 @@ const RAY_OFFSET: f32 = 1e-4;
 /// Walks until `walk.count` lights are found. Where nothing shines, or no walk lands, there is no indirect light: the rest
 /// of the lights are dark ones, so that a picture is a picture all the same.
 pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> VplWalk {
+    walk_on(scene, bvh, lights, walk, &mut Course::default())
+}
+
+/// The same for one run of many, from where `course` stands. Lights are divided by the walks that a run took on average so far: what
+/// stopping at a run's last light biases falls with the number of runs, and a walk's lights may be two runs'.
+pub fn walk_on(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk, course: &mut Course) -> VplWalk {
     let bounds = scene.bounds();
     let radius = 0.5 * bounds.diagonal();
     let (sources, powers) = sources(scene, lights, walk.emissive, radius);
     let total: f64 = powers.iter().sum();
-    let mut vpls: Vec<VplBlock> = Vec::with_capacity(walk.count as usize);
+    let mut vpls = std::mem::take(&mut course.left);
     let patience = if total > 0.0 { PATIENCE * u64::from(walk.count) } else { 0 };
     let cumulative: Vec<f64> = powers
         .iter()
@@ -82,16 +104,18 @@ pub fn walk(scene: &Scene, bvh: &Bvh, lights: &[Light], walk: &Walk) -> VplWalk 
     let tracer = Tracer { scene, bvh, center: bounds.center(), radius, offset };
     let mut walk_count = 0u64;
     while (vpls.len() as u64) < u64::from(walk.count) && walk_count < patience {
-        let mut numbers = Numbers::new(walk_count, walk.seed);
+        let mut numbers = Numbers::new(course.walk_count + walk_count, walk.seed);
         walk_count += 1;
         let pick = f64::from(numbers.next());
         let index = cumulative.partition_point(|sum| *sum <= pick).min(sources.len() - 1);
         let chance = powers[index] / total;
         tracer.one(&sources[index], chance as f32, walk, &mut numbers, &mut vpls);
     }
-    vpls.truncate(walk.count as usize);
+    (course.runs, course.walk_count) = (course.runs + 1, course.walk_count + walk_count);
+    let walks_a_run = course.walk_count as f64 / f64::from(course.runs);
+    course.left = vpls.split_off(vpls.len().min(walk.count as usize));
     for vpl in &mut vpls {
-        vpl.intensity = vpl.intensity.map(|channel| (f64::from(channel) / walk_count as f64) as f32);
+        vpl.intensity = vpl.intensity.map(|channel| (f64::from(channel) / walks_a_run) as f32);
     }
     let found_count = vpls.len() as u32;
     vpls.resize(walk.count as usize, vpl(bounds.center(), Vec3::Y, Vec3::ZERO));
@@ -354,6 +378,30 @@ mod tests {
         let expected = landing * 0.5 / std::f32::consts::PI;
         assert!((total(&found) / expected - 1.0).abs().max_element() < 0.02, "{} {expected}", total(&found));
         assert!(found.vpls.iter().all(|vpl| vpl.normal_ws[1] > 0.99 && vpl.position_ws[1].abs() < 1e-3));
+    }
+
+    /// Runs of few lights are one long walk: the same lights in the same order, and on average the same flux, of which stopping each run by
+    /// itself would make some percent too much.
+    #[test]
+    fn runs_go_on_where_the_one_before_has_ended() {
+        let mut scene = floor(0.5);
+        scene.meshes.push(square(3.0, 1.0, 0));
+        scene.draws.push(Draw { mesh: 1, world_from_object: Mat4::IDENTITY });
+        let bvh = Bvh::build(&scene).unwrap();
+        for bounces in [1, 3] {
+            let of = |count| Walk { count, bounces, emissive: false, starts: true, medium: None, seed: 3 };
+            let light = [point(1.0)];
+            let whole = walk(&scene, &bvh, &light, &of(8 * 512));
+            let mut course = Course::default();
+            let runs: Vec<VplWalk> = (0..512).map(|_| walk_on(&scene, &bvh, &light, &of(8), &mut course)).collect();
+            let place = |vpl: &VplBlock| [vpl.position_ws, vpl.normal_ws];
+            let [one, many]: [Vec<_>; 2] =
+                [whole.vpls.iter().map(place).collect(), runs.iter().flat_map(|run| &run.vpls).map(place).collect()];
+            assert_eq!(one, many, "{bounces} bounces");
+            let mean = runs.iter().map(total).sum::<Vec3>() / 512.0;
+            let ratio = mean / total(&whole);
+            assert!((ratio - 1.0).abs().max_element() < 0.005, "{bounces} bounces: {ratio}");
+        }
     }
 
     #[test]

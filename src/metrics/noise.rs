@@ -38,6 +38,32 @@ pub fn relative_error(sums: &[[f32; 4]], sample_count: u64) -> f64 {
     (sums.iter().map(of).sum::<f64>() / sums.len().max(1) as f64).sqrt()
 }
 
+/// Whether `--until-error` looks at the error of two halves after this many runs: 2, 4, 6, 8, 12, 16 and so on, so that both halves
+/// have as many.
+pub fn is_checked_in_halves(run_count: u64) -> bool {
+    let odd_part = run_count >> run_count.trailing_zeros().min(63);
+    run_count.is_multiple_of(2) && run_count > 0 && (odd_part == 1 || odd_part == 3)
+}
+
+/// The estimate of `relative_error` for a picture that is the mean of two: `halves`, row-major, of as many independent runs each as
+/// `counts` says, at least one. A pixel's variance is what its two values say, which is nothing for one pixel and enough for many.
+///
+/// What both have in common it does not see: a filter's blur, say.
+pub fn error_of_halves(halves: [&[[f32; 3]]; 2], counts: [u32; 2]) -> f64 {
+    let [first, second] = counts.map(f64::from);
+    let count = first + second;
+    // Their difference has the variance s / first + s / second, the mean s / count.
+    let share = first * second / (count * count);
+    let of = |(a, b): (&[f32; 3], &[f32; 3])| {
+        let mean_squared: f64 =
+            a.iter().zip(b).map(|(a, b)| ((f64::from(*a) * first + f64::from(*b) * second) / count).powi(2)).sum();
+        let apart: f64 = a.iter().zip(b).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
+        apart * share / (mean_squared + 3.0 * RELMSE_EPSILON)
+    };
+    let pixels = halves[0].iter().zip(halves[1]);
+    (pixels.map(of).sum::<f64>() / halves[0].len().max(1) as f64).sqrt()
+}
+
 /// Samples a pixel at which an error of `most` is expected, where that of `sample_count` is `error`: errors fall with the
 /// root of their number.
 pub fn samples_for(most: f64, sample_count: u64, error: f64) -> u64 {
@@ -89,8 +115,32 @@ mod tests {
         assert!((found / actual - 1.0).abs() < 0.05, "{found} estimated, {actual} found");
     }
 
+    /// Two halves of independent samples say the same as their squares do, whichever is larger.
+    #[test]
+    fn halves_are_as_far_apart_as_their_mean_is_off() {
+        let mut random = Pcg32::new(7, 0);
+        for counts in [[16u32, 16], [17, 16], [20, 5]] {
+            let mut squares = 0.0;
+            let mut mean_of = |count: u32| (0..count).map(|_| random.between(0.0, 2.0)).sum::<f32>() / count as f32;
+            let (mut halves, pixel_count) = ([Vec::new(), Vec::new()], 20_000);
+            for _ in 0..pixel_count {
+                let means = counts.map(&mut mean_of);
+                let weights = counts.map(|count| f64::from(count) / f64::from(counts[0] + counts[1]));
+                let mean: f64 = (0..2).map(|half| f64::from(means[half]) * weights[half]).sum();
+                squares += 3.0 * (mean - 1.0).powi(2) / (3.0 * mean * mean + 0.03);
+                (0..2).for_each(|half| halves[half].push([means[half]; 3]));
+            }
+            let found = error_of_halves([&halves[0], &halves[1]], counts);
+            let actual = (squares / f64::from(pixel_count)).sqrt();
+            assert!((found / actual - 1.0).abs() < 0.05, "{counts:?}: {found} estimated, {actual} found");
+        }
+        assert!(error_of_halves([&[[f32::NAN; 3]], &[[0.0; 3]]], [1, 1]).is_nan());
+    }
+
     #[test]
     fn it_is_looked_at_often_enough_and_no_oftener() {
+        let halves: Vec<u64> = (0..=100).filter(|count| is_checked_in_halves(*count)).collect();
+        assert_eq!(halves, [2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96]);
         let checked: Vec<u64> = (0..=200).filter(|count| is_checked(*count)).collect();
         assert_eq!(checked, [16, 24, 32, 48, 64, 96, 128, 192]);
         assert!(is_checked(1 << 63));

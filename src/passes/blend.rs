@@ -53,7 +53,17 @@ pub struct BlendLights<'a> {
 /// The picture of what is solid, which the pass blends over.
 pub struct SolidPicture<'a> {
     pub depth: Edge<'a, Image>,
+    /// The layer, where it blends over nothing: old contents are not needed.
     pub color: Edge<'a, Image>,
+}
+
+/// What BLEND surfaces are blended over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// The picture of what is solid.
+    Picture,
+    /// Nothing: a layer of what they send, premultiplied, and of how much they cover, for the picture of what is solid.
+    Nothing,
 }
 
 /// What the pass needs of a device, where the scene has BLEND surfaces.
@@ -76,12 +86,19 @@ pub struct BlendTarget<'a> {
     pub has_shadow_maps: bool,
     /// What stops virtual point lights, as the shader's axis names it.
     pub vpl_shadow: &'static str,
+    pub over: Over,
 }
 
 impl<'a> BlendTarget<'a> {
-    /// One sample, no shadow maps, virtual lights that nothing stops.
+    /// One sample over the picture, no shadow maps, virtual lights that nothing stops.
     pub fn plain(lists: &'a ObjectLists) -> Self {
-        Self { pieces: &lists.pieces, samples: Samples::ONE, has_shadow_maps: false, vpl_shadow: "none" }
+        Self {
+            pieces: &lists.pieces,
+            samples: Samples::ONE,
+            has_shadow_maps: false,
+            vpl_shadow: "none",
+            over: Over::Picture,
+        }
     }
 }
 
@@ -151,6 +168,7 @@ pub struct Blend {
     params: BlendParams,
     /// Each call's.
     lights: Vec<ObjectLights>,
+    over: Over,
 }
 
 impl Blend {
@@ -191,7 +209,10 @@ impl Blend {
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[target.samples.format],
                 samples: target.samples.count,
-                blending: Blending::Over,
+                blending: match target.over {
+                    Over::Picture => Blending::Over,
+                    Over::Nothing => Blending::Layer,
+                },
                 depth_format: Some(vk::Format::D32_SFLOAT),
                 depth_write: false,
                 depth_compare: mesh::DEPTH_COMPARE,
@@ -202,7 +223,7 @@ impl Blend {
                 foreign_sets: &[scene.material_layout],
             },
         )?;
-        Ok(Some(Self { pipeline, calls, params, lights }))
+        Ok(Some(Self { pipeline, calls, params, lights, over: target.over }))
     }
 
     /// Draws over `solid` what blends.
@@ -220,12 +241,18 @@ impl Blend {
         let SolidPicture { depth, color } = solid;
         let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
         cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
-            cmd.barriers([depth.to(Access::DepthTest), color.to(Access::ColorWrite)]);
+            let (drawn, clear) = match self.over {
+                Over::Picture => (color.to(Access::ColorWrite), None),
+                Over::Nothing => {
+                    (color.resource.discard(Access::ColorWrite), Some(vk::ClearColorValue { float32: [0.0; 4] }))
+                }
+            };
+            cmd.barriers([depth.to(Access::DepthTest), drawn]);
             cmd.barriers(lights.shadow_maps.and_then(|maps| maps.to(Access::FragmentSample)));
             let extent = color.resource.description.extent;
             cmd.begin_rendering(
                 extent,
-                &[ColorTarget::new(color.resource, None)],
+                &[ColorTarget::new(color.resource, clear)],
                 Some((depth.resource, None, Access::DepthTest)),
             );
             mesh::bind_streams(cmd, scene);

@@ -81,6 +81,13 @@ pub fn written(technique: &str, position: PositionStorage, has_emissive: bool) -
     images.chain([("depth", Access::DepthWrite)]).map(|(what, access)| (full(technique, what), access)).collect()
 }
 
+/// What it holds is kept for more runs than the one that draws it (`GBuffer::kept`).
+pub fn keep(plan: &mut Plan, technique: &str, position: PositionStorage, has_emissive: bool) {
+    for (image, _) in written(technique, position, has_emissive) {
+        plan.keep(&image);
+    }
+}
+
 /// Resources that a compute pass touches to read normal and position.
 pub fn surface(technique: &str, position: PositionStorage) -> Vec<(String, Access)> {
     surface_as(technique, position, Access::ComputeSample)
@@ -124,6 +131,8 @@ pub struct GBuffer {
     pub position: Option<Image>,
     pub depth: Image,
     nearest: Sampler,
+    /// All of it is readable by compute shaders as soon as it is drawn, and stays so: later runs read it too.
+    is_kept: bool,
 }
 
 impl GBuffer {
@@ -144,7 +153,37 @@ impl GBuffer {
             position: position_storage.image_format().map(|_| image("position")),
             depth: image("depth"),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            is_kept: false,
         })
+    }
+
+    /// The same, kept for more runs than the one that draws it, where `is_kept`.
+    pub fn kept(self, is_kept: bool) -> Self {
+        Self { is_kept, ..self }
+    }
+
+    /// As the pass leaves it that draws it, or an earlier run.
+    pub fn drawn(&self) -> Edge<'_, Self> {
+        self.from(if self.is_kept { Access::ComputeSample } else { Access::ColorWrite })
+    }
+
+    /// What makes a kept one readable, once it is drawn.
+    fn made_readable(&self) -> Vec<Barrier> {
+        let depth = self.depth.from(Access::DepthWrite).to(match self.position {
+            Some(_) => Access::DepthTest,
+            None => Access::ComputeSample,
+        });
+        let colors = self.attachments().into_iter().map(|image| image.from(Access::ColorWrite));
+        colors.map(|edge| edge.to(Access::ComputeSample)).chain([depth]).collect()
+    }
+
+    /// Makes the depth of a kept one readable again where it holds positions, after a pass that tested it: it is as that pass
+    /// was handed it.
+    pub fn restore_depth(&self, cmd: &mut Commands) {
+        assert!(self.is_kept, "only a later run asks for it");
+        if self.position.is_none() {
+            cmd.barriers([self.depth.from(Access::DepthTest).to(Access::ComputeSample)]);
+        }
     }
 
     pub fn extent(&self) -> Extent {
@@ -219,7 +258,8 @@ impl Edge<'_, GBuffer> {
         let gbuffer = self.resource;
         let materials = [Some(&gbuffer.color), gbuffer.emissive.as_ref()].into_iter().flatten();
         let mut barriers = self.surface_to_sampled();
-        barriers.extend(materials.map(|image| image.from(Access::ColorWrite).to(Access::ComputeSample)));
+        let last = if gbuffer.is_kept { Access::ComputeSample } else { Access::ColorWrite };
+        barriers.extend(materials.map(|image| image.from(last).to(Access::ComputeSample)));
         barriers
     }
 }
@@ -234,7 +274,7 @@ impl GBuffer {
         match self.position_storage {
             PositionStorage::Depth => self.depth.from(readers),
             PositionStorage::Half | PositionStorage::Unorm16 | PositionStorage::Float => {
-                self.depth.from(Access::DepthWrite)
+                self.depth.from(if self.is_kept { Access::DepthTest } else { Access::DepthWrite })
             }
         }
     }
@@ -353,6 +393,9 @@ impl GBufferPass {
                 }
             }
             cmd.end_rendering();
+            if gbuffer.is_kept {
+                cmd.barriers(gbuffer.made_readable());
+            }
             Ok(())
         })
     }

@@ -24,6 +24,9 @@ const READBACK: &str = "readback";
 impl Plan {
     /// Lives inside a frame; None: kept from frame to frame.
     pub fn lifetime(&self, resource: usize) -> Option<Lifetime> {
+        if self.resources[resource].is_kept {
+            return None;
+        }
         let touching = || {
             let touches = |pass: &super::PlannedPass| pass.touches.iter().any(|touch| touch.resource == resource);
             self.passes.iter().enumerate().filter(move |(_, pass)| touches(pass)).map(|(index, _)| index)
@@ -98,6 +101,8 @@ mod tests {
         plan.read_back("a");
         assert_eq!(of(&plan, 1), Some((0, 4)));
         assert_eq!(plan.pass_name(4), "readback");
+        plan.keep("a");
+        assert_eq!(of(&plan, 1), None);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Plan: what a frame needs, by arithmetic alone: its resources, and how each pass touches which of them.
 //!
 //! A resource that passes touch is transient: it lives from its first pass to its last, and its bytes may be another's
-//! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept.
+//! before and after. A resource that no pass lists (lights, trees, the frame's numbers) is written once and kept; what a run
+//! leaves for the next one is kept too.
 
 mod lifetimes;
 mod requirements;
@@ -50,6 +51,8 @@ pub struct Planned {
     pub shape: Shape,
     /// Needed after the frame: the picture, and stages that the user asked for.
     pub read_back: bool,
+    /// Passes of the next run need what this one left.
+    pub is_kept: bool,
 }
 
 /// One pass's use of one transient resource.
@@ -112,7 +115,7 @@ impl Plan {
     pub fn push(&mut self, group: &'static str, name: impl Into<String>, shape: Shape) {
         let name = name.into();
         assert!(self.resources.iter().all(|planned| planned.name != name), "{name} is planned twice");
-        self.resources.push(Planned { name, group, shape, read_back: false });
+        self.resources.push(Planned { name, group, shape, read_back: false, is_kept: false });
     }
 
     /// The next pass, with every transient resource that it touches, by full name; a resource that it touches in two
@@ -135,6 +138,12 @@ impl Plan {
             self.resources[index].read_back = true;
         }
         index.is_some()
+    }
+
+    /// What a run leaves in the resource of this name, passes of the next one need: its bytes are its own. The plan has it.
+    pub fn keep(&mut self, name: &str) {
+        let index = self.index(name).unwrap_or_else(|| panic!("no resource is called {name}"));
+        self.resources[index].is_kept = true;
     }
 
     fn index(&self, name: &str) -> Option<usize> {

@@ -94,8 +94,12 @@ impl Resources {
             self.targets.iter().enumerate().map(|(index, target)| (*target, index)).collect();
         for (index, pass) in plan.passes.iter().enumerate() {
             let name_of = |resource: usize| plan.resources[resource].name.as_str();
-            let mut says: Vec<String> =
-                pass.touches.iter().map(|touch| format!("{} {:?}", name_of(touch.resource), touch.access)).collect();
+            let mut says: Vec<String> = pass
+                .touches
+                .iter()
+                .filter(|touch| plan.is_transient(touch.resource))
+                .map(|touch| format!("{} {:?}", name_of(touch.resource), touch.access))
+                .collect();
             let mut does: Vec<String> = touched
                 .iter()
                 .filter(|touch| touch.pass == index)

@@ -122,7 +122,8 @@ fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64, cop
     place_all(frame, &|index| sharing.part(index).is_some(), &mut rehearsal)?;
     if copies == Copies::All {
         for (index, planned) in frame.resources.iter().enumerate() {
-            if !frame.is_transient(index) && planned.shape.usage() == Use::Device {
+            // What passes of a run leave for the next one, nobody uploads.
+            if !frame.is_transient(index) && !planned.is_kept && planned.shape.usage() == Use::Device {
                 copy(planned, Use::Upload, &mut rehearsal)?;
             }
             if planned.read_back {

@@ -19,6 +19,7 @@ pub mod interleaved_deferred;
 pub mod interleaved_sampling;
 pub mod notes;
 pub mod own_pass;
+pub mod parts;
 pub mod path_traced;
 pub mod patterns;
 mod shutter_close;
@@ -42,6 +43,7 @@ use crate::settings::{COMMON, DirectShadow, EMISSIVE, INSTRUMENT, Setting, Value
 use crate::shading::medium::Medium;
 use bench_stage::{BenchStage, PlainForm};
 use notes::Figures;
+use parts::{InParts, Part};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -239,6 +241,10 @@ pub struct Run<'a> {
     pub frame: &'a FrameBlock,
     pub scene: &'a Scene,
     pub bvh: &'a LazyBvh,
+    pub view: &'a View,
+    pub lights: &'a LightSet,
+    pub gpu: &'a Arc<Gpu>,
+    pub scene_gpu: &'a SceneGpu,
 }
 
 /// A technique on the device.
@@ -279,7 +285,18 @@ pub trait Frame {
         block
     }
 
-    /// Sums that it keeps from run to run; None where a picture is one run.
+    /// Whether its runs are recorded one by one, each after its `begin_run` (parts.rs), and what ends them early. None: all runs
+    /// are what `record` has recorded.
+    fn in_parts(&self) -> Option<InParts> {
+        None
+    }
+
+    /// Records a part of a frame that is made `in_parts`: its passes are some of those of `record`, in their order.
+    fn record_part(&self, _: &mut Commands, _: &SceneGpu, _frame: &Buffer, part: Part) -> Result<()> {
+        unreachable!("no frame of this technique has a part {part:?}")
+    }
+
+    /// Sums that it keeps from run to run; None where a picture is one run, or made in parts.
     fn sums(&self) -> Option<Sums<'_>> {
         None
     }

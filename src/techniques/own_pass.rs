@@ -6,6 +6,7 @@
 
 use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::Figures;
+use super::parts::{InParts, Part};
 use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Run, Sums, Technique};
 use crate::caps::Caps;
 use crate::error::Result;
@@ -189,6 +190,20 @@ impl Frame for FrameWithPass {
 
     fn block_of(&self, run: u32, block: FrameBlock, view: &View) -> FrameBlock {
         self.frame.block_of(run, block, view)
+    }
+
+    fn in_parts(&self) -> Option<InParts> {
+        self.frame.in_parts()
+    }
+
+    /// Its own pass goes over each picture.
+    fn record_part(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer, part: Part) -> Result<()> {
+        self.frame.record_part(cmd, scene, frame, part)?;
+        if let Part::Samples { .. } = part {
+            return Ok(());
+        }
+        let (picture, last) = self.frame.picture();
+        self.own.record(cmd, picture.from(last))
     }
 
     fn sums(&self) -> Option<Sums<'_>> {

@@ -1,31 +1,32 @@
 //! Session: the device with the scene in its memory. It makes any number of renderers; A B A B timing holds two.
 
+mod part_recording;
+mod parts;
+mod renderer;
+
+pub use renderer::Renderer;
+
+use part_recording::PartRecording;
+
 use crate::bvh::LazyBvh;
 use crate::caps::Caps;
-use crate::caps::quirks::LoopEnd;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::View;
-use crate::gpu::commands::{RecordedPass, Recording, Submits};
-use crate::gpu::recorded::{FrameTime, Recorded};
+use crate::gpu::commands::{Recording, Submits};
 use crate::gpu::shader::structs::FrameBlock;
-use crate::gpu::timing::Clock;
-use crate::gpu::{Access, Buffer, Commands, DeviceRequest, Gpu, readback, statistics, upload};
-use crate::interrupt;
+use crate::gpu::{Commands, DeviceRequest, Gpu, statistics};
 use crate::lights::LightSet;
 use crate::memory::kinds::Kinds;
 use crate::memory::ledger::Snapshot;
-use crate::metrics::noise;
 use crate::passes::next_run::NextRun;
-use crate::picture::{Aov, Picture};
 use crate::plan::{Plan, Requirements, Resources, Sharing};
 use crate::progress::Stage;
 use crate::report::memory::MemoryTable;
 use crate::resident::{self, SceneGpu, SceneStats, Textures};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::Values;
-use crate::techniques::{Frame, Inputs, Prepared, Run, Sums, Technique, bindable, fitness, stages};
+use crate::techniques::{Inputs, Prepared, Technique, bindable, fitness, stages};
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -40,37 +41,6 @@ pub struct Session {
     pub stats: SceneStats,
     scene_gpu: Arc<SceneGpu>,
     bvh: Arc<LazyBvh>,
-}
-
-/// One technique with its settings, ready to make frames.
-pub struct Renderer {
-    // Dropped in this order: commands, what they use, the scene.
-    recorded: Recorded,
-    /// Several runs may go at once.
-    next_run: Option<NextRun>,
-    frame: Box<dyn Frame>,
-    /// What `numbers` is in device memory, written between runs.
-    block: RefCell<Buffer>,
-    numbers: FrameBlock,
-    runs: Cell<u32>,
-    /// What a picture begins with: sums, and how many samples a pixel they are of.
-    earlier: Option<(Vec<[f32; 4]>, u32)>,
-    _scene_gpu: Arc<SceneGpu>,
-    gpu: Arc<Gpu>,
-    scene: Arc<Scene>,
-    bvh: Arc<LazyBvh>,
-    pub view: View,
-    pub lights: LightSet,
-    pub host_passes: Vec<(String, u64)>,
-    /// Passes that the device ran once before the first frame, with their times in nanoseconds.
-    pub once_passes: Vec<(String, u64)>,
-    pub counters: BTreeMap<&'static str, f64>,
-    pub resolved: BTreeMap<&'static str, String>,
-    /// Plan of the frame; the scene's own plan is `SceneStats::plan`.
-    pub plan: Plan,
-    /// Which of its resources lie in the same bytes.
-    pub sharing: Sharing,
-    aovs: Vec<String>,
 }
 
 impl Session {
@@ -220,7 +190,8 @@ impl Session {
         }
         let once_passes = frame.once();
         let mut cmd = Commands::begin(&self.gpu, technique.name(), recording)?;
-        cmd.set_heirs(resources.heirs(&sharing));
+        let heirs = resources.heirs(&sharing);
+        cmd.set_heirs(heirs.clone());
         frame.record(&mut cmd, &self.scene_gpu, &block)?;
         let may_batch = recording.limit.is_some() && recording.submits == Submits::One;
         let mut next_run = None;
@@ -241,7 +212,9 @@ impl Session {
             numbers,
             runs: Cell::new(0),
             earlier: None,
-            _scene_gpu: self.scene_gpu.clone(),
+            part_recording: PartRecording { name: technique.name(), recording, heirs },
+            error_of_halves: Cell::new(None),
+            scene_gpu: self.scene_gpu.clone(),
             gpu: self.gpu.clone(),
             scene: self.scene.clone(),
             bvh: self.bvh.clone(),
@@ -305,193 +278,4 @@ fn submit_limit(values: &Values, caps: &Caps) -> Option<Duration> {
 
 fn block_name(technique: &dyn Technique) -> String {
     format!("{}.frame", technique.name())
-}
-
-impl Renderer {
-    /// Makes one frame and waits for it: a picture, in as many runs of what was recorded as the technique takes, or fewer
-    /// where its error is small enough before. Ctrl-C ends it after a run, whose number is in `runs`.
-    ///
-    /// Errors: the device fails, memory for reading the sums back (exit code 4); Ctrl-C in the host's part of a run (130).
-    pub fn frame(&self) -> Result<FrameTime> {
-        let (stage, all) = (Stage::counted("rendering", "samples"), self.frame.run_count());
-        let until_error = self.frame.sums().and_then(|sums| sums.until_error);
-        let mut expected = all;
-        let mut total = self.run(self.begin()?, 1)?;
-        while self.runs.get() < all && interrupt::check().is_ok() {
-            let count = self.runs.get();
-            if let Some(most) = until_error.filter(|_| noise::is_checked(count.into())) {
-                let error = self.estimated_error()?.unwrap_or_default();
-                // NaN and infinity stay: reading the picture says where.
-                if error <= most || !error.is_finite() {
-                    break;
-                }
-                expected = noise::samples_for(most, count.into(), error).min(all.into()) as u32;
-            }
-            stage.reach(count.into(), expected.into());
-            total.add(self.run(count, self.runs_at_once(count, until_error.is_some()))?);
-        }
-        if all > 1 {
-            stage.reach(self.runs.get().into(), expected.into());
-        }
-        Ok(total)
-    }
-
-    /// Lets frames begin with these sums (`Sums`, row-major) of `count` samples a pixel, instead of none.
-    ///
-    /// Errors: the technique sums nothing up, or its picture has no more samples than that (exit code 2).
-    pub fn begin_with(&mut self, sums: Vec<[f32; 4]>, count: u32) -> Result<()> {
-        assert_eq!(sums.len() as u64, self.view.extent.pixel_count(), "the sums are of another picture");
-        let all = self.frame.run_count();
-        if self.frame.sums().is_none() {
-            return Err(Error::request("the technique does not sum up samples: there is nothing to continue"));
-        }
-        if count >= all {
-            let why = format!("there are {count} samples a pixel already, and --spp asks for {all} in all");
-            return Err(Error::request(why));
-        }
-        self.earlier = Some((sums, count));
-        Ok(())
-    }
-
-    /// Puts what a picture begins with in place: the index of the first run.
-    fn begin(&self) -> Result<u32> {
-        let Some(((sums, count), target)) = self.earlier.as_ref().zip(self.frame.sums()) else { return Ok(0) };
-        upload::buffer(&self.gpu, target.buffer, bytemuck::cast_slice(sums), Access::ComputeRead)?;
-        Ok(*count)
-    }
-
-    /// Runs that may go in one submit after `count` of them: up to the next look at their error.
-    fn runs_at_once(&self, count: u32, is_checked: bool) -> u32 {
-        let all = self.frame.run_count();
-        let fitting = if self.next_run.is_some() { self.recorded.runs_of_submit() } else { 1 };
-        let end = (count + 1..all).find(|end| is_checked && noise::is_checked((*end).into())).unwrap_or(all);
-        fitting.min(end - count)
-    }
-
-    /// `times` runs from `index` on.
-    fn run(&self, index: u32, times: u32) -> Result<FrameTime> {
-        let numbers = self.frame.block_of(index, self.numbers, &self.view);
-        let numbers = FrameBlock { sample_index: index, ..numbers };
-        // The run before has ended: the device reads the block no more.
-        self.block.borrow_mut().mapped_mut().copy_from_slice(bytemuck::bytes_of(&numbers));
-        let host = self.frame.begin_run(&Run { index, frame: &numbers, scene: &self.scene, bvh: &self.bvh })?;
-        let time = self.recorded.run_times(times)?;
-        self.runs.set(index + times);
-        Ok(FrameTime { host, ..time })
-    }
-
-    /// What was summed up so far (`Sums`), row-major; None where the technique sums nothing up.
-    ///
-    /// Errors: memory for the copy (exit code 4).
-    pub fn sums(&self) -> Result<Option<Vec<[f32; 4]>>> {
-        let Some(Sums { buffer, .. }) = self.frame.sums() else { return Ok(None) };
-        let bytes = self.view.extent.pixel_count() * size_of::<[f32; 4]>() as u64;
-        let bytes = readback::buffer(&self.gpu, buffer, bytes, Access::ComputeWrite)?;
-        Ok(Some(bytemuck::pod_collect_to_vec(&bytes)))
-    }
-
-    /// The relative error (`metrics::noise`) of the last frame's picture; None where it is no sum of two samples or more.
-    ///
-    /// Errors: memory for the copy (exit code 4).
-    pub fn estimated_error(&self) -> Result<Option<f64>> {
-        let count = self.runs.get();
-        let sums = if count > 1 { self.sums()? } else { None };
-        Ok(sums.map(|sums| noise::relative_error(&sums, count.into())))
-    }
-
-    /// Runs that the last frame's picture is made of, and those that it takes at most.
-    pub fn runs(&self) -> (u32, u32) {
-        (self.runs.get(), self.frame.run_count())
-    }
-
-    /// Whether the last frame left a picture where it was ended before its last run.
-    pub fn has_early_pictures(&self) -> bool {
-        self.frame.has_early_pictures()
-    }
-
-    /// Makes the first `pass_count` passes of a frame that was recorded with a submit a pass. It makes no picture: that
-    /// is read after a whole frame.
-    ///
-    /// Errors: the device fails (exit code 4).
-    pub fn frame_first(&self, pass_count: usize) -> Result<FrameTime> {
-        self.recorded.run_first(pass_count)
-    }
-
-    /// The clock of the times of its frames.
-    pub fn clock(&self) -> Clock {
-        self.recorded.clock()
-    }
-
-    /// The passes of a frame, in order.
-    pub fn passes(&self) -> &[RecordedPass] {
-        self.recorded.passes()
-    }
-
-    /// The last frame's picture.
-    ///
-    /// Errors: memory for the copy (exit code 4); a pixel is NaN or infinite (1).
-    pub fn picture(&self) -> Result<Picture> {
-        let (image, last) = self.frame.picture();
-        let bytes = readback::image(&self.gpu, image, last)?;
-        let pixels = bytes
-            .chunks_exact(16)
-            .map(|texel| {
-                let channel = |at: usize| f32::from_le_bytes([texel[at], texel[at + 1], texel[at + 2], texel[at + 3]]);
-                [channel(0), channel(4), channel(8)]
-            })
-            .collect();
-        let picture = Picture { extent: image.description.extent, pixels };
-        picture.check().map_err(|error| self.explained(error, &picture))?;
-        Ok(picture)
-    }
-
-    /// Shaders write NaN where a driver has ended their loops (glsl/loops.glsl).
-    fn explained(&self, error: Error, picture: &Picture) -> Error {
-        let is_nan = picture.pixels.iter().flatten().any(|channel| channel.is_nan());
-        let own = self.frame.explained_nan().filter(|_| is_nan);
-        let error = own.into_iter().flatten().fold(error, Error::note);
-        match self.gpu.caps.identity.loop_end() {
-            Some(LoopEnd { iterations, gone_in }) if is_nan => error
-                .note(format!(
-                    "this driver ends a thread's loops after {iterations} iterations, which may be lights times steps of \
-                     shadow rays, or all steps of a path's rays"
-                ))
-                .note(format!(
-                    "fewer lights, --vpls or --bounces, a larger --pattern, --direct-shadow none or sun, --cull tiled, \
-                     --vpl-shadow none, or a newer driver ({gone_in}) would help"
-                )),
-            _ => error,
-        }
-    }
-
-    /// What the last frame's counters are, those of the settings and those that it left.
-    ///
-    /// Errors: memory for reading them back (exit code 4).
-    pub fn measured_counters(&self) -> Result<BTreeMap<&'static str, f64>> {
-        let mut counters = self.counters.clone();
-        counters.extend(self.frame.counters(&self.gpu)?);
-        if self.frame.sums().is_some() {
-            counters.insert("samples", self.runs.get().into());
-        }
-        if let Some(error) = self.estimated_error()? {
-            counters.insert("estimated_error", error);
-        }
-        Ok(counters)
-    }
-
-    /// Bytes that the last frame touched, by full name, of the resources of which it counts them.
-    ///
-    /// Errors: memory for reading counts back (exit code 4).
-    pub fn touched_bytes(&self) -> Result<BTreeMap<String, u64>> {
-        self.frame.touched_bytes(&self.gpu)
-    }
-
-    /// One of the last frame's intermediate results, which `Session::renderer` was asked for: others share their bytes
-    /// with what came after them.
-    ///
-    /// Errors: memory for the copy (exit code 4).
-    pub fn aov(&self, name: &str) -> Result<Aov> {
-        assert!(self.aovs.iter().any(|asked| asked == name), "the renderer was not asked for {name}");
-        self.frame.aov(&self.gpu, name)
-    }
 }
