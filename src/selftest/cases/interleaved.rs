@@ -193,6 +193,15 @@ pub const GROUPS: &[Group] = &[
         must: Must::Equal(ROUNDING),
     },
     Group {
+        name: "accumulate",
+        technique: NAME,
+        place: FENCE,
+        common: &[VPLS, ("accumulate", "3")],
+        twin: Twin::Method(&[("light-lists", "none"), ("split", "branch")]),
+        methods: &[&[], &[("split", "stencil")], &[("position", "float"), ("split", "tile")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
         name: "vpl-shadow",
         technique: NAME,
         place: CORNELL,

@@ -1,6 +1,7 @@
 //! The choices that the settings make, and what is refused because it cannot be made.
 
 use super::mapping::mapping;
+use super::run_settings::{run_count, until_error};
 use super::split_method::{Copier, Copies, Form, MaskKind, ShadeBy, SplitMethod};
 use super::sub_buffers::{Stage, Storage};
 use super::subsets::subsets;
@@ -82,8 +83,12 @@ pub struct Choices {
     /// The pattern that the joined lights are dealt out over, i x j: it divides the split's. 1x1 where none are joined
     /// and where every light is summed: no pixel lacks any of them.
     pub direct_pattern: Pattern,
-    /// Virtual point lights.
+    /// Virtual point lights, of each run.
     pub vpl_count: u32,
+    /// Runs with lights of their own, at most.
+    pub run_count: u32,
+    /// The estimated relative error at which they end before.
+    pub until_error: Option<f64>,
     pub vpl_shadow: VplShadow,
     /// Shadow maps of virtual lights, where they have any; `PreparedInterleaved` knows what room they have.
     pub vpl_maps: Option<VplMaps>,
@@ -136,13 +141,16 @@ impl Choices {
             shade_by: values.choice("shade-by"),
             filter,
             kernel: kernel(values)?,
-            fused: filter == Filter::Gauss && values.is_on("fuse"),
+            // Many runs are gathered before they are filtered.
+            fused: filter == Filter::Gauss && values.is_on("fuse") && run_count(values) == 1,
             direct_full: direct == Direct::Full,
             direct_interleaved: direct == Direct::Interleaved,
             blend_subsets: values.is("blend-lights", BlendLights::Subset),
             light_pattern: Pattern::grid(light_pattern),
             direct_pattern: Pattern::grid(direct_pattern),
             vpl_count: values.integer("vpls") as u32,
+            run_count: run_count(values),
+            until_error: until_error(values),
             vpl_shadow: values.choice("vpl-shadow"),
             vpl_maps: None,
             direct_count: if direct == Direct::None { 0 } else { lights.lights.len() as u32 },
@@ -224,6 +232,7 @@ impl Choices {
         let mut resolved = BTreeMap::from([
             ("direct-pattern", format!("{i}x{j}")),
             ("cull-by", self.shading.cull_by.name().to_owned()),
+            ("accumulate", self.run_count.to_string()),
             ("sigma", format!("{}", self.kernel.sigma)),
             ("texels", self.list_texels().to_string()),
             (WORKGROUP.key, workgroup::text(self.shading.workgroup)),

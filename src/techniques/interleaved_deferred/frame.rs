@@ -1,9 +1,11 @@
 //! Interleaved deferred shading on the device: its passes and its resources, and the passes that not every frame has.
 //! `mod.rs` has their order.
 
+use super::accumulate::Accumulate;
 use super::choices::Choices;
 use super::composite::Composite;
 use super::filter::{FilterStage, FilteredIrradiance};
+use super::runs::ManyRuns;
 use super::shade::{ShadeGpu, SubsetLights};
 use super::split_passes::SplitPasses;
 use super::vpl_shadow::{self, FindHidden, Sought};
@@ -11,7 +13,7 @@ use crate::error::Result;
 use crate::gpu::shader::structs::{LightBlock, ShadeParams};
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu, Image};
 use crate::lights::object_lists::ObjectLists;
-use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, SolidPicture};
+use crate::passes::blend::{self, Blend, BlendLights, BlendTarget, Over, SolidPicture};
 use crate::passes::cull::{Cull, CullLights};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, GBufferPass};
@@ -35,6 +37,8 @@ pub struct FrameLights<'a> {
 pub struct InterleavedFrame {
     pub gbuffer_pass: GBufferPass,
     pub gbuffer: GBuffer,
+    pub runs: Option<ManyRuns>,
+    pub accumulate: Option<Accumulate>,
     pub cull: Option<Cull>,
     pub direct: DirectGpu,
     /// The composite shades every punctual light.
@@ -57,6 +61,7 @@ impl InterleavedFrame {
         resources: &mut Resources,
         choices: &Choices,
         lights: &FrameLights<'_>,
+        runs: Option<ManyRuns>,
     ) -> Result<Self> {
         let Choices { shading, mapping, .. } = choices;
         let FrameLights { subsets, direct: direct_lights, blended, vpl_clamp_m } = *lights;
@@ -101,26 +106,84 @@ impl InterleavedFrame {
                 inputs.view,
                 choices.blend_params(least_squared),
                 &shading.direct.light_constants(),
-                &BlendTarget { vpl_shadow: choices.blend_axis(), ..BlendTarget::plain(blended) },
+                &BlendTarget {
+                    vpl_shadow: choices.blend_axis(),
+                    over: if choices.run_count > 1 { Over::Nothing } else { Over::Picture },
+                    ..BlendTarget::plain(blended)
+                },
             )?,
             blend_lists: (inputs.stats.has_blend)
                 .then(|| blend::upload_lists(gpu, resources, NAME, blended))
                 .transpose()?,
-            gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?,
+            gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?.kept(choices.run_count > 1),
+            runs,
+            accumulate: Accumulate::new(gpu, resources, choices, inputs.stats.has_blend)?,
             direct,
             is_lit_fully: choices.direct_full,
             shade,
         })
     }
 
+    /// What all runs share: the G-buffer, masks of the punctual lights, the split.
+    pub fn record_opening(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<Edge<'_, GBuffer>> {
+        let gbuffer = self.record_gbuffer(cmd, scene, frame)?;
+        let gbuffer = self.record_cull(cmd, frame, gbuffer)?;
+        self.split_passes.record_split(cmd, &self.shade, gbuffer)
+    }
+
+    /// A run's irradiance in frame order. `is_split_anew`: the opening is recorded with it.
+    pub fn record_irradiance<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        (frame, is_split_anew): (&Buffer, bool),
+        gbuffer: Edge<'a, GBuffer>,
+    ) -> Result<(Edge<'a, GBuffer>, Edge<'a, Buffer>)> {
+        let gbuffer = self.record_hidden(cmd, scene, frame, gbuffer)?;
+        let (gbuffer, flags) = self.record_flags_of_gather(cmd, frame, gbuffer)?;
+        let framed = (frame, is_split_anew);
+        self.split_passes.record_shade(cmd, framed, &self.shade, &self.direct, gbuffer, flags)
+    }
+
+    /// The picture of what is solid under this irradiance; hands the G-buffer on as it leaves it. `masks_from`: how the
+    /// masks of the punctual lights were touched last.
+    pub fn record_solid<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        frame: &Buffer,
+        (gbuffer, masks_from): (Edge<'a, GBuffer>, Access),
+        irradiance: Edge<'a, Buffer>,
+    ) -> Result<Edge<'a, GBuffer>> {
+        let (gbuffer, irradiance) = self.record_filter(cmd, frame, gbuffer, irradiance)?;
+        let direct = self.direct.from(masks_from);
+        self.composite.record(cmd, frame, direct, gbuffer, irradiance, &self.color)
+    }
+
+    /// What many runs sum up: this one's irradiance, and what blends. Hands both on as it leaves them.
+    pub fn record_run<'a>(
+        &'a self,
+        cmd: &mut Commands,
+        scene: &SceneGpu,
+        frame: &Buffer,
+        run: u32,
+        (gbuffer, irradiance): (Edge<'a, GBuffer>, Edge<'a, Buffer>),
+    ) -> Result<(Edge<'a, GBuffer>, Edge<'a, Buffer>)> {
+        let accumulate = self.accumulate.as_ref().expect("it is planned with many runs");
+        if let Some(layer) = accumulate.layer() {
+            self.record_blend(cmd, scene, frame, gbuffer, layer.from(Access::ComputeRead))?;
+            gbuffer.resource.restore_depth(cmd);
+        }
+        Ok((gbuffer, accumulate.record_sums(cmd, run, irradiance)?))
+    }
+
     /// The G-buffer, as it is drawn.
-    pub fn record_gbuffer(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<Edge<'_, GBuffer>> {
+    fn record_gbuffer(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<Edge<'_, GBuffer>> {
         self.gbuffer_pass.record(cmd, NAME, frame, scene, &self.gbuffer)?;
-        Ok(self.gbuffer.from(Access::ColorWrite))
+        Ok(self.gbuffer.drawn())
     }
 
     /// Masks of the punctual lights, where they are culled.
-    pub fn record_cull<'a>(
+    fn record_cull<'a>(
         &self,
         cmd: &mut Commands,
         frame: &Buffer,
@@ -133,7 +196,7 @@ impl InterleavedFrame {
     }
 
     /// The virtual lights that pixels do not see, where any are looked for.
-    pub fn record_hidden<'a>(
+    fn record_hidden<'a>(
         &self,
         cmd: &mut Commands,
         scene: &SceneGpu,
@@ -147,7 +210,7 @@ impl InterleavedFrame {
     }
 
     /// Discontinuities before the gather, where it filters.
-    pub fn record_flags_of_gather<'a>(
+    fn record_flags_of_gather<'a>(
         &'a self,
         cmd: &mut Commands,
         frame: &Buffer,
@@ -160,7 +223,7 @@ impl InterleavedFrame {
     }
 
     /// Discontinuities and the filter, where there is one.
-    pub fn record_filter<'a>(
+    fn record_filter<'a>(
         &'a self,
         cmd: &mut Commands,
         frame: &Buffer,
@@ -173,7 +236,7 @@ impl InterleavedFrame {
         }
     }
 
-    /// Blended surfaces over the picture, where there are any.
+    /// Blended surfaces over the picture, where there are any, or over nothing into the layer of a run.
     pub fn record_blend(
         &self,
         cmd: &mut Commands,

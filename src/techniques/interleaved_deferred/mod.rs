@@ -4,13 +4,15 @@
 //! pixels with the same lights lie together, each sub-buffer is shaded with its own lights, the irradiance is gathered
 //! back, filtered where no discontinuity is, and multiplied with the albedo last.
 //!
-//! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend.
+//! Passes, in order: vpls (on the host), gbuffer, cull, split, shade, gather, discontinuity, filter, composite, blend; with
+//! `--accumulate` above 1 vpls, shade, gather, blend and accumulate.sums come once a run, accumulate.mean before discontinuity and
+//! accumulate.over last.
 //! With `--split two-pass`, and `fragment` in two passes, split is split.blocks and split.translate, and gather is
 //! gather.translate and gather.blocks. Splits that copy nothing have neither; before the shading of `stencil` and
 //! `depth` comes mask. With `--fuse on` gather walks the filter's rows (behind discontinuity, which then comes before
-//! split) and composite its columns: no pass filter where one compute shader pulls each pixel.
+//! shade) and composite its columns: no pass filter where one compute shader pulls each pixel.
 //!
-//! With `--vpl-shadow` vpl_shadow comes before split and finds the lights that a pixel does not see. With maps vpl_maps, which draws
+//! With `--vpl-shadow` vpl_shadow comes before shade and finds the lights that a pixel does not see. With maps vpl_maps, which draws
 //! them, comes before it; where not all maps are held at once, both come once a turn, with the turn's number behind their names.
 //!
 //! Differs from the paper
@@ -28,6 +30,7 @@
 //! Equal to the reference: at pattern 1x1, and with `--split none`, it is plain deferred shading of the same lights;
 //! every split except `none` and `subsample` gives the picture of `branch`, to the bit on software drivers.
 
+pub mod accumulate;
 mod aov;
 mod bench_stages;
 mod choices;
@@ -41,6 +44,8 @@ pub mod mapping;
 pub mod mask;
 mod plan;
 mod resources;
+mod run_settings;
+mod runs;
 pub mod settings;
 pub mod shade;
 pub mod split;
@@ -53,7 +58,8 @@ pub mod vpl_shadow;
 
 use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Technique, light_visibility};
+use super::parts::{InParts, Part, Runs};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
@@ -70,8 +76,10 @@ use crate::settings::{LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::{Choices, Direct, VplShadow};
 use frame::{FrameLights, InterleavedFrame};
+use runs::ManyRuns;
 use shade::SubsetLights;
 use split_method::SplitMethod;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -93,7 +101,7 @@ impl Technique for InterleavedDeferred {
     }
 
     fn settings(&self) -> &'static [&'static [Setting]] {
-        &[settings::SETTINGS, settings::SHADING, LIGHT_LISTS]
+        &[settings::SETTINGS, run_settings::RUNS, settings::SHADING, LIGHT_LISTS]
     }
 
     fn aovs(&self) -> &'static [&'static str] {
@@ -141,6 +149,10 @@ impl Technique for InterleavedDeferred {
             1 => settings.push(("transport", "one-bounce".to_owned())),
             // The surface that is seen scatters too.
             more => settings.extend([("transport", "full".to_owned()), ("bounces", (more + 1).to_string())]),
+        }
+        if run_settings::run_count(values) > 1 {
+            // What edges lack would hide what runs come to.
+            settings.push(("pixel", "middle".to_owned()));
         }
         match values.choice("direct") {
             // Joined to the subsets, direct light is diffuse.
@@ -260,13 +272,22 @@ impl Prepared for PreparedInterleaved {
             ("vpls_per_pixel", vpls),
         ]);
         counters.extend(blend::counters(&blended));
+        // Those of many runs come with each.
+        let passes = if choices.run_count > 1 { Vec::new() } else { vec![(format!("{NAME}.vpls"), walk_ns)] };
+        let runs = (choices.run_count > 1).then(|| ManyRuns {
+            count: choices.run_count,
+            until_error: choices.until_error,
+            walk,
+            course: RefCell::default(),
+            found_count: Cell::default(),
+        });
         Ok(HostPart {
-            passes: vec![(format!("{NAME}.vpls"), walk_ns)],
+            passes,
             counters,
             light_counts: [direct_lights.len() as u32, subsets.vpls.len() as u32],
             build: Box::new(move |gpu, inputs, scene, resources| {
                 let lights = FrameLights { subsets: &subsets, direct: &direct_lights, blended: &blended, vpl_clamp_m };
-                Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights)?))
+                Ok(Box::new(InterleavedFrame::new(gpu, inputs, scene, resources, &choices, &lights, runs)?))
             }),
         })
     }
@@ -275,15 +296,51 @@ impl Prepared for PreparedInterleaved {
 impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         // Each pass is handed the G-buffer as the one before it left it.
-        let gbuffer = self.record_gbuffer(cmd, scene, frame)?;
-        let gbuffer = self.record_cull(cmd, frame, gbuffer)?;
-        let gbuffer = self.record_hidden(cmd, scene, frame, gbuffer)?;
-        let (gbuffer, flags) = self.record_flags_of_gather(cmd, frame, gbuffer)?;
-        let (gbuffer, irradiance) = self.split_passes.record(cmd, frame, &self.shade, &self.direct, gbuffer, flags)?;
-        let (gbuffer, irradiance) = self.record_filter(cmd, frame, gbuffer, irradiance)?;
-        let direct = self.direct.from(Access::ComputeWrite);
-        let gbuffer = self.composite.record(cmd, frame, direct, gbuffer, irradiance, &self.color)?;
-        self.record_blend(cmd, scene, frame, gbuffer, self.color.from(Access::ComputeWrite))
+        let gbuffer = self.record_opening(cmd, scene, frame)?;
+        let (gbuffer, irradiance) = self.record_irradiance(cmd, scene, (frame, true), gbuffer)?;
+        let written = Access::ComputeWrite;
+        let Some(accumulate) = &self.accumulate else {
+            let gbuffer = self.record_solid(cmd, frame, (gbuffer, written), irradiance)?;
+            return self.record_blend(cmd, scene, frame, gbuffer, self.color.from(written));
+        };
+        let (gbuffer, irradiance) = self.record_run(cmd, scene, frame, 0, (gbuffer, irradiance))?;
+        let one = (Runs::All, 1);
+        let mean = accumulate.record_mean(cmd, one, written, irradiance)?;
+        self.record_solid(cmd, frame, (gbuffer, written), mean)?;
+        accumulate.record_over(cmd, one, written, self.color.from(written))
+    }
+
+    fn run_count(&self) -> u32 {
+        self.runs.as_ref().map_or(1, |runs| runs.count)
+    }
+
+    fn in_parts(&self) -> Option<InParts> {
+        self.runs.as_ref().map(|runs| InParts { until_error: runs.until_error })
+    }
+
+    fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
+        let begin = |runs: &ManyRuns| runs.begin(run, &self.shade.vpls, self.hidden.as_ref());
+        self.runs.as_ref().map_or(Ok(Vec::new()), begin)
+    }
+
+    fn record_part(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer, part: Part) -> Result<()> {
+        let accumulate = self.accumulate.as_ref().expect("parts are of many runs, which are summed up");
+        match part {
+            Part::Samples { run } => {
+                let is_first = run == 0;
+                let gbuffer = if is_first { self.record_opening(cmd, scene, frame)? } else { self.gbuffer.drawn() };
+                let irradiance = self.record_irradiance(cmd, scene, (frame, is_first), gbuffer)?;
+                self.record_run(cmd, scene, frame, run, irradiance)?;
+                Ok(())
+            }
+            Part::Picture { of, run_count } => {
+                let irradiance = self.split_passes.irradiance().from(Access::ComputeRead);
+                let (runs, read) = ((of, run_count), Access::ComputeRead);
+                let mean = accumulate.record_mean(cmd, runs, read, irradiance)?;
+                self.record_solid(cmd, frame, (self.gbuffer.drawn(), read), mean)?;
+                accumulate.record_over(cmd, runs, read, self.color.from(Access::ComputeWrite))
+            }
+        }
     }
 
     fn drawn(&self) -> BTreeMap<&'static str, f64> {
@@ -292,11 +349,18 @@ impl Frame for InterleavedFrame {
     }
 
     fn picture(&self) -> (&Image, Access) {
-        (&self.color, if self.blend.is_some() { Access::ColorWrite } else { Access::ComputeWrite })
+        (
+            &self.color,
+            if self.blend.is_some() && self.runs.is_none() { Access::ColorWrite } else { Access::ComputeWrite },
+        )
     }
 
     fn counters(&self, gpu: &Arc<Gpu>) -> Result<BTreeMap<&'static str, f64>> {
-        if self.is_lit_fully { self.direct.counters(gpu, self.color.description.extent) } else { Ok(BTreeMap::new()) }
+        let mut counters = self.runs.as_ref().map(ManyRuns::counters).unwrap_or_default();
+        if self.is_lit_fully {
+            counters.extend(self.direct.counters(gpu, self.color.description.extent)?);
+        }
+        Ok(counters)
     }
 
     fn aov(&self, gpu: &Arc<Gpu>, name: &str) -> Result<Aov> {

@@ -1,5 +1,6 @@
 //! What a frame needs: resources by arithmetic, and the passes that touch them.
 
+use super::accumulate;
 use super::choices::Choices;
 use super::filter;
 use super::shade;
@@ -36,23 +37,42 @@ pub fn plan(choices: &Choices, inputs: &Inputs<'_>, blended: &ObjectLists) -> Re
     shade::plan(&mut plan, choices.vpl_count, choices.joined_count(), choices.subset_count());
     plan.picture(full("composite.color"), extent);
     plan.pass(full("gbuffer"), gbuffer::written(NAME, shading.position, has_emissive));
+    if choices.run_count > 1 {
+        gbuffer::keep(&mut plan, NAME, shading.position, has_emissive);
+    }
     let masks = shading.culls(choices.direct_count as usize).then_some(NAME);
     if masks.is_some() {
         let written = cull::masks(NAME, Access::ComputeWrite);
+        let kept = (choices.run_count > 1).then(|| written.0.clone());
         plan.pass(full("cull"), gbuffer::surface(NAME, shading.position).into_iter().chain([written]));
+        kept.iter().for_each(|masks| plan.keep(masks));
     }
+    split_passes::plan_split(&mut plan, choices);
     vpl_shadow::plan(&mut plan, choices);
     filter::plan_before_gather(&mut plan, choices);
     let gathered = split_passes::plan(&mut plan, choices);
+    let has_blend = inputs.stats.has_blend;
+    let blends = |plan: &mut Plan, into: &str| {
+        plan.pass(full("blend"), blend::touches(&gbuffer::depth(NAME), into));
+    };
+    accumulate::plan_resources(&mut plan, choices, has_blend);
+    if has_blend {
+        blend::plan_lists(&mut plan, NAME, blended);
+        if choices.run_count > 1 {
+            blends(&mut plan, accumulate::LAYER);
+        }
+    }
+    accumulate::plan_mean(&mut plan, choices, has_blend, &gathered);
     let filtered = filter::plan(&mut plan, choices, gathered);
     let mut composed = gbuffer::shading(NAME, shading.position, has_emissive);
     composed.extend(masks.map(|technique| cull::masks(technique, Access::ComputeRead)));
     composed.extend(filtered.into_iter().map(|buffer| (buffer, Access::ComputeRead)));
     composed.push((full("composite.color"), Access::ComputeWrite));
     plan.pass(full("composite"), composed);
-    if inputs.stats.has_blend {
-        blend::plan_lists(&mut plan, NAME, blended);
-        plan.pass(full("blend"), blend::touches(&gbuffer::depth(NAME), &full("composite.color")));
+    match (has_blend, choices.run_count) {
+        (false, _) => {}
+        (true, 1) => blends(&mut plan, &full("composite.color")),
+        (true, _) => accumulate::plan_over(&mut plan, &full("composite.color")),
     }
     Ok(plan)
 }

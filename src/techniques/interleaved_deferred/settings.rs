@@ -1,6 +1,7 @@
 //! The settings of interleaved deferred shading.
 
 use super::choices::{BlendLights, Direct, StopAt, VplShadow};
+use super::run_settings::is_filtered_once;
 use super::split_method::{Form, ShadeBy, Split, StorageKind};
 use super::vpl_shadow::unrolled::MapShape;
 use crate::passes::filter::{Filter, WalkEnd};
@@ -220,9 +221,9 @@ pub const SETTINGS: &[Setting] = &[
         help: "Merge passes of --filter gauss: the composite runs over the filter's columns, and a one-pass gather \
                that pulls over its rows; the same pixels with fewer passes, and fewer stages to time and to look at",
         unread: |values| {
-            is_even(values).or_else(|| {
-                Unread::unless(values, "filter", &[Filter::Gauss], "no pass walks rows and columns of buffers")
-            })
+            let is_gauss =
+                || Unread::unless(values, "filter", &[Filter::Gauss], "no pass walks rows and columns of buffers");
+            is_even(values).or_else(is_gauss).or_else(|| is_filtered_once(values))
         },
         ..Setting::changing(Changes::Nothing)
     },

@@ -1,4 +1,4 @@
-//! The split of a frame on the device: from the G-buffer to irradiance in frame order.
+//! The split of a frame on the device, and what follows from it: from the G-buffer to irradiance in frame order.
 
 use super::choices::Choices;
 use super::drawn_irradiance::DrawnIrradiance;
@@ -51,7 +51,16 @@ pub struct SubBuffers {
     pub gathered: Buffer,
 }
 
-/// Plans resources and passes from the G-buffer on; returns the name of the irradiance in frame order.
+/// Plans the split, where there is one: its results are kept where many runs shade them.
+pub fn plan_split(plan: &mut Plan, choices: &Choices) {
+    let Some(copies) = choices.split.copies() else { return };
+    split::plan(plan, choices, copies);
+    if choices.run_count > 1 {
+        Surface::touches("split", Access::ComputeRead).iter().for_each(|(part, _)| plan.keep(part));
+    }
+}
+
+/// Plans resources and passes from the shading on; returns the name of the irradiance in frame order.
 pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
     let Choices { shading, split, mapping, .. } = choices;
     let frame_bytes = mapping.frame_texel_count() * 8;
@@ -83,7 +92,6 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
             shaded
         }
         SplitMethod::Copy(copies) => {
-            split::plan(plan, choices, *copies);
             let storage = copies.storage;
             let stage = choices.shade_stage();
             storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, stage);
@@ -133,12 +141,36 @@ impl SplitPasses {
         })
     }
 
-    /// Records split, shade and gather, or what replaces them; hands the G-buffer on as it leaves it, and irradiance in
-    /// frame order. `flags`: as `Gather::record`.
-    pub fn record<'a>(
+    /// Irradiance in frame order.
+    pub fn irradiance(&self) -> &Buffer {
+        match self {
+            Self::Branch { irradiance, .. }
+            | Self::Strided { irradiance, .. }
+            | Self::Subsample { irradiance, .. }
+            | Self::Masked { irradiance, .. } => irradiance,
+            Self::SubBuffers(SubBuffers { gathered, .. }) => gathered,
+        }
+    }
+
+    /// Records the split, where there is one; hands the G-buffer on as it leaves it.
+    pub fn record_split<'a>(
+        &self,
+        cmd: &mut Commands,
+        lights: &ShadeGpu,
+        gbuffer: Edge<'a, GBuffer>,
+    ) -> Result<Edge<'a, GBuffer>> {
+        let Self::SubBuffers(SubBuffers { copies, split, surface, .. }) = self else { return Ok(gbuffer) };
+        split.record(cmd, lights.mapping(), gbuffer, surface)?;
+        Ok(gbuffer.after(copies.stage().samples()))
+    }
+
+    /// Records shade and gather, or what replaces them; hands the G-buffer on as it leaves it, and irradiance in frame
+    /// order. `is_split_anew`: the split came in the same frame before it, and not in an earlier run. `flags`: as
+    /// `Gather::record`.
+    pub fn record_shade<'a>(
         &'a self,
         cmd: &mut Commands,
-        frame: &Buffer,
+        (frame, is_split_anew): (&Buffer, bool),
         lights: &ShadeGpu,
         direct: &DirectGpu,
         gbuffer: Edge<'a, GBuffer>,
@@ -165,10 +197,16 @@ impl SplitPasses {
                 shade.record(cmd, frame, lights, direct, gbuffer, masked)?;
                 (irradiance, Access::TransferWrite, Stage::Fragment)
             }
-            Self::SubBuffers(SubBuffers { copies, split, surface, shade, shaded, gather, gathered }) => {
-                split.record(cmd, mapping, gbuffer, surface)?;
-                let written = copies.storage.written(copies.stage());
-                let surface = surface.from(written);
+            Self::SubBuffers(SubBuffers { copies, surface, shade, shaded, gather, gathered, .. }) => {
+                let storage = copies.storage;
+                let shaded_in = match shade {
+                    ShadeCopied::Dispatched(_) => Stage::Compute,
+                    ShadeCopied::Drawn(_) => Stage::Fragment,
+                };
+                let surface = surface.from(match is_split_anew {
+                    true => storage.written(copies.stage()),
+                    false => storage.read(shaded_in),
+                });
                 let shaded_by = match shade {
                     ShadeCopied::Dispatched(shade) => {
                         shade.record(cmd, frame, lights, direct, surface, shaded)?;
@@ -180,7 +218,7 @@ impl SplitPasses {
                     }
                 };
                 let last = gather.record(cmd, mapping, shaded.from(shaded_by), flags, gathered)?;
-                (gathered, last, copies.stage())
+                return Ok((gbuffer, gathered.from(last)));
             }
         };
         Ok((gbuffer.after(stage.samples()), irradiance.from(last)))

@@ -1,6 +1,7 @@
 //! Interleaved deferred shading (Segovia et al. 2006) pass by pass; tests/techniques/collapse.rs holds its methods to one
 //! picture.
 
+mod accumulate;
 mod discontinuity;
 mod shade_by;
 mod split;

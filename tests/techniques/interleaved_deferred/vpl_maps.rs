@@ -28,7 +28,7 @@ fn apart(a: &[u32], b: &[u32], lights_a_pixel: u32) -> f64 {
 }
 
 /// A screen in front of a wall, lit by what one lamp lights of the floor and of the walls around them.
-fn screened() -> Watched {
+pub fn screened() -> Watched {
     let grey = Material { double_sided: true, ..Material::diffuse("grey", Vec3::splat(0.6)) };
     let mut scene = closed_box(&grey);
     rectangle(&mut scene, vec3(0.1, 0.2, -0.3), 0.4 * Vec3::X, 0.3 * Vec3::Y, grey.clone());

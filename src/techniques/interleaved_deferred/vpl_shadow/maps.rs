@@ -4,49 +4,34 @@
 //! writes  vpl_shadow.maps  image, 4 B a texel; vpl_shadow.hidden
 
 use super::super::shade::ShadeGpu;
+use super::draws::{FaceDraws, MapDraws};
 use super::held::{GROUP, MAPS, Turn, VIEWS, VPL_MAPS, VplMaps, drawing_pass, finding_pass, turns};
-use super::reach::Reach;
 use super::sought::{Sought, clear, groups, params};
-use super::unrolled::{self, MapShape};
-use crate::error::{Error, Result};
+use super::unrolled::MapShape;
+use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{HiddenParams, SubsetBlock, VplBlock, VplMapBlock};
 use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::hidden::LIGHTS_A_WORD;
 use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::maps::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic, upload};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic};
 use crate::passes::gbuffer::GBuffer;
 use crate::passes::mesh;
 use crate::passes::shadow_maps::CasterPipelines;
 use crate::plan::{Plan, Resources, Shape};
-use crate::resident::{ClusterBoxes, DrawList, SceneGpu};
-use crate::scene::{Bounds, Scene};
-use crate::settings::GeometryChoice;
-use crate::techniques::Inputs;
+use crate::resident::SceneGpu;
+use crate::techniques::{Inputs, Run};
 use ash::vk;
-use glam::Vec3;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Draws of all maps together, at most: each is recorded.
-const MOST_DRAWS: usize = 1 << 22;
-
-/// Surfaces are off their boxes by this part of the scene's diagonal, or of the greatest coordinate, whichever is more: halves have
-/// eleven bits.
-const SLACK: [f32; 2] = [1e-4, 1.0 / 1024.0];
-
-/// A face that is drawn.
-struct FaceDraws {
-    index: u32,
-    casters: DrawList,
-}
 
 pub struct HiddenByMaps {
     maps: VplMaps,
     pipelines: CasterPipelines,
-    /// The faces of each light's map that the picture can ask.
-    faces: Vec<Vec<FaceDraws>>,
+    /// Maps of the run whose turn it is.
+    draws: RefCell<MapDraws>,
     depth: Image,
     views: Buffer,
     blocks: Buffer,
@@ -79,42 +64,9 @@ impl HiddenByMaps {
     ) -> Result<Self> {
         let Sought { choices, lights, least_squared } = *sought;
         let atlas = maps.atlas;
-        let bounds = box_of(inputs.scene);
-        let (mut clips, mut faces, mut draw_count) = (Vec::new(), Vec::new(), 0);
-        let boxes = ClusterBoxes::new(inputs.scene, scene, inputs.view);
-        let extreme = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let slack_m = (SLACK[0] * bounds.diagonal()).max(SLACK[1] * extreme);
-        for vpl in &lights.vpls {
-            let all = atlas.faces(vpl, &bounds);
-            clips.extend(all.iter().map(|face| face.clip_from_world.to_cols_array_2d()));
-            let drawn: Vec<FaceDraws> = (0..)
-                .zip(&all)
-                .filter_map(|(index, face)| {
-                    if maps.casters == GeometryChoice::All {
-                        return Some(FaceDraws { index, casters: boxes.list(|_| true) });
-                    }
-                    let reach = Reach::of(vpl, face);
-                    let is_asked = is_bright(vpl) && boxes.seen().iter().any(|seen| reach.may_hold(seen, slack_m));
-                    let casters = || boxes.list(|bounds| reach.may_hold(bounds, slack_m));
-                    is_asked.then(|| FaceDraws { index, casters: casters() })
-                })
-                .collect();
-            draw_count += drawn.iter().map(|face| face.casters.calls().count()).sum::<usize>();
-            if draw_count > MOST_DRAWS {
-                let done = faces.len() + 1;
-                return Err(Error::memory(format!(
-                    "--vpl-shadow map: the maps of the first {done} virtual lights of {} take {draw_count} draws, and at most \
-                     {MOST_DRAWS} are recorded",
-                    lights.vpls.len()
-                ))
-                .note("fewer --vpls, or --vpl-shadow ray, which draws nothing"));
-            }
-            faces.push(drawn);
-        }
+        let draws = MapDraws::of(&maps, inputs.scene, inputs.view, scene, &lights.vpls)?;
         let (views, blocks) = (resources.buffer(VIEWS), resources.buffer(VPL_MAPS));
-        upload::buffer(gpu, &views, bytemuck::cast_slice(&clips), Access::GraphicsRead)?;
-        let of_lights: Vec<VplMapBlock> = lights.vpls.iter().map(|vpl| unrolled::block(vpl, &bounds)).collect();
-        upload::buffer(gpu, &blocks, bytemuck::cast_slice(&of_lights), Access::ComputeRead)?;
+        draws.upload(gpu, &views, &blocks)?;
         let settings = &choices.shading;
         let own = [("MAP_SIZE", atlas.size_px), ("MAP_COLUMNS", atlas.columns), ("MAP_BIAS", maps.bias_m.to_bits())];
         let shader = variant(COMP_VARIANTS, &[settings.position.name(), atlas.shape.name()]);
@@ -122,7 +74,7 @@ impl HiddenByMaps {
         let params = params(choices, least_squared);
         Ok(Self {
             pipelines: CasterPipelines::new(gpu, scene, maps.slope_bias_px)?,
-            faces,
+            draws: RefCell::new(draws),
             depth: resources.image(MAPS),
             views,
             blocks,
@@ -144,17 +96,18 @@ impl HiddenByMaps {
         gbuffer: Edge<'_, GBuffer>,
         hidden: &Buffer,
     ) -> Result<()> {
-        for turn in turns(Some(&self.maps), self.faces.len() as u32) {
-            self.draw(cmd, &turn, scene)?;
+        let MapDraws { faces, .. } = &*self.draws.borrow();
+        for turn in turns(Some(&self.maps), faces.len() as u32) {
+            self.draw(cmd, &turn, scene, faces)?;
             self.find(cmd, &turn, frame, lights, gbuffer, hidden)?;
         }
         Ok(())
     }
 
     /// Draws the maps of the lights whose turn it is.
-    fn draw(&self, cmd: &mut Commands, turn: &Turn, scene: &SceneGpu) -> Result<()> {
+    fn draw(&self, cmd: &mut Commands, turn: &Turn, scene: &SceneGpu, faces: &[Vec<FaceDraws>]) -> Result<()> {
         let lights = || turn.first..turn.end;
-        let drawn = || lights().flat_map(|light| &self.faces[light as usize]);
+        let drawn = || lights().flat_map(|light| &faces[light as usize]);
         let traffic = Traffic {
             read_bytes: drawn().map(|face| mesh::depth_bytes(scene, &face.casters)).sum(),
             written_bytes: self.depth.description.bytes(),
@@ -180,7 +133,7 @@ impl HiddenByMaps {
                         let layer = atlas.window(light - turn.first, index).layer;
                         cmd.begin_layers(extent, Layers::One(layer), &[], Some(target));
                         mesh::bind_streams(cmd, scene);
-                        let found = self.faces[light as usize].iter().find(|face| face.index == index);
+                        let found = faces[light as usize].iter().find(|face| face.index == index);
                         found.into_iter().for_each(|face| draw(cmd, light, face));
                         cmd.end_rendering();
                     }
@@ -190,7 +143,7 @@ impl HiddenByMaps {
             cmd.begin_rendering(extent, &[], Some(target));
             mesh::bind_streams(cmd, scene);
             for light in lights() {
-                for face in &self.faces[light as usize] {
+                for face in &faces[light as usize] {
                     let window = atlas.window(light - turn.first, face.index);
                     cmd.set_window(window.at_px, window.extent);
                     draw(cmd, light, face);
@@ -238,7 +191,7 @@ impl HiddenByMaps {
                 }
                 _ => {
                     cmd.barriers([hidden.from(Access::ComputeWrite).to(Access::ComputeWrite)]);
-                    cmd.barriers(gbuffer.resource.from(Access::ComputeSample).surface_to_sampled());
+                    cmd.barriers(gbuffer.after(Access::ComputeSample).surface_to_sampled());
                 }
             }
             cmd.barriers([self.depth.from(Access::DepthWrite).to(Access::ComputeSample)]);
@@ -251,26 +204,24 @@ impl HiddenByMaps {
 
     /// Numbers for the report's `counters`: maps that are drawn of those that lights have, their faces and triangles, and turns.
     pub fn counters(&self) -> BTreeMap<&'static str, f64> {
-        let faces = || self.faces.iter().flatten();
+        let MapDraws { faces: of_lights, .. } = &*self.draws.borrow();
+        let faces = || of_lights.iter().flatten();
         let triangles: u64 = faces().map(|face| face.casters.triangles_drawn()).sum();
         BTreeMap::from([
-            ("vpl_maps", self.faces.iter().filter(|faces| !faces.is_empty()).count() as f64),
+            ("vpl_maps", of_lights.iter().filter(|faces| !faces.is_empty()).count() as f64),
             ("vpl_map_faces", faces().count() as f64),
             ("vpl_map_triangles_drawn", triangles as f64),
-            ("vpl_map_turns", turns(Some(&self.maps), self.faces.len() as u32).count() as f64),
+            ("vpl_map_turns", turns(Some(&self.maps), of_lights.len() as u32).count() as f64),
         ])
     }
-}
 
-/// A light that walks have not found is dark.
-fn is_bright(vpl: &VplBlock) -> bool {
-    vpl.intensity[..3].iter().any(|channel| *channel > 0.0)
-}
-
-/// What casts shadows; a point where nothing does.
-fn box_of(scene: &Scene) -> Bounds {
-    match scene.bounds() {
-        bounds if bounds.is_empty() => Bounds { min: Vec3::ZERO, max: Vec3::ZERO },
-        bounds => bounds,
+    /// From now on, maps are those of `vpls`, as many as before.
+    ///
+    /// Errors: memory for the upload, more draws than can be recorded (exit code 4).
+    pub fn begin_run(&self, run: &Run<'_>, vpls: &[VplBlock]) -> Result<()> {
+        let draws = MapDraws::of(&self.maps, run.scene, run.view, run.scene_gpu, vpls)?;
+        draws.upload(run.gpu, &self.views, &self.blocks)?;
+        self.draws.replace(draws);
+        Ok(())
     }
 }

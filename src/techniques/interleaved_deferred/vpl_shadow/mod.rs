@@ -8,6 +8,7 @@
 //! light has few of them a thread, and its time stands beside the shading's. Maps need not all be held at once: each has its turn, is
 //! asked, and is drawn over by another's.
 
+mod draws;
 pub mod held;
 mod maps;
 mod rays;
@@ -21,13 +22,14 @@ pub use sought::{Sought, read, words_a_point};
 use super::choices::{Choices, VplShadow};
 use super::shade::ShadeGpu;
 use crate::error::Result;
+use crate::gpu::shader::structs::VplBlock;
 use crate::gpu::{Access, Buffer, Commands, Edge, Gpu};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{self, GBuffer};
 use crate::plan::{Plan, Resources};
 use crate::resident::SceneGpu;
-use crate::techniques::Inputs;
 use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::{Inputs, Run};
 use held::{GROUP, MAPS, drawing_pass, finding_pass, turns};
 use maps::HiddenByMaps;
 use rays::HiddenByRays;
@@ -100,6 +102,16 @@ impl FindHidden {
             Self::Maps(maps) => maps.record(cmd, frame, scene, lights, gbuffer, hidden)?,
         }
         Ok(gbuffer.after(Access::ComputeSample))
+    }
+
+    /// From now on, what is found is of `vpls`, as many as before.
+    ///
+    /// Errors: as `HiddenByMaps::begin_run`.
+    pub fn begin_run(&self, run: &Run<'_>, vpls: &[VplBlock]) -> Result<()> {
+        match self {
+            Self::Rays(_) => Ok(()),
+            Self::Maps(maps) => maps.begin_run(run, vpls),
+        }
     }
 
     /// Numbers for the report's `counters`.
