@@ -64,7 +64,7 @@ pub struct Outcome {
     pub auto_exposure_ev: Option<f64>,
     /// What a person should know of the picture.
     pub notes: Vec<String>,
-    /// Ctrl-C ended it: samples a pixel that it has, and that it was to have.
+    /// Ctrl-C ended it: samples a pixel, or runs, that it has, and that it was to have.
     pub ended_after: Option<(u32, u32)>,
     /// Whether the gates of `Job::reference` hold; a caller prints first and fails then.
     pub gates: Result<()>,
@@ -163,10 +163,13 @@ impl Job {
         fail_on_validation(log.as_deref())?;
         match outcome.ended_after {
             None => Ok(outcome),
-            Some((runs, all)) => Err(Error::interrupted(format!(
-                "interrupted after {runs} of {all} samples a pixel; {} is the picture so far",
-                outcome.path.display()
-            ))),
+            Some((runs, all)) => {
+                let unit = if outcome.report.counters.contains_key("runs") { "runs" } else { "samples a pixel" };
+                let path = outcome.path.display();
+                Err(Error::interrupted(format!(
+                    "interrupted after {runs} of {all} {unit}; {path} is the picture so far"
+                )))
+            }
         }
     }
 

@@ -20,7 +20,7 @@ const PASS_FRAMES: usize = 3;
 /// The plain form at one size, from one camera, of one set of lights.
 pub struct Reference {
     pub picture: Picture,
-    /// Nanoseconds, and whose they are; only where whole frames are measured.
+    /// Nanoseconds, and whose they are; only where whole frames of one run are measured.
     pub cost: Option<Cost>,
 }
 
@@ -97,8 +97,9 @@ impl Reference {
         renderer.frame()?;
         let picture = renderer.picture()?;
         let lights = renderer.counters.get(form.lights_per_pixel).copied().unwrap_or(0.0);
+        let is_one_frame = what == What::Frame && !renderer.is_in_parts();
         drop(renderer);
-        let passes = if what == What::Frame { pass_ms(job, session, values)? } else { None };
+        let passes = if is_one_frame { pass_ms(job, session, values)? } else { None };
         let light = format!("{}.{}", job.technique.name(), form.light_pass);
         let light_ms = |passes: &[(String, f64)]| passes.iter().find(|(name, _)| *name == light).map(|(_, ms)| *ms);
         let cost = match passes {

@@ -16,6 +16,16 @@ pub fn ms() -> Figure {
     figure(FigureKind::Time, of_time)
 }
 
+/// The same in seconds.
+pub fn seconds() -> Figure {
+    figure(FigureKind::Time, |row| Some(of_time(row)?.times(1e-3)))
+}
+
+/// What a counter of the report says.
+pub fn counter(name: &'static str) -> Figure {
+    figure(FigureKind::Other, move |row| row.counters.as_ref()?.get(name).copied().map(Number::exact))
+}
+
 /// Frames a second.
 pub fn per_second() -> Figure {
     figure(FigureKind::Rate, |row| Some(of_time(row)?.divides(1000.0)))

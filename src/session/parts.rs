@@ -18,13 +18,14 @@ impl Renderer {
     pub(super) fn frame_in_parts(&self, until_error: Option<f64>) -> Result<FrameTime> {
         let (stage, all) = (Stage::counted("rendering", "runs"), self.frame.run_count());
         let mut total = FrameTime::none(self.passes().len());
-        self.error_of_halves.set(None);
+        let mut expected = all;
         for run in 0..all {
+            self.error_of_halves.set(None);
             total.add_host(self.begin_run(run)?);
             self.run_part(Part::Samples { run }, &mut total)?;
             let done = run + 1;
             self.runs.set(done);
-            let mut expected = all;
+            stage.reach(done.into(), expected.into());
             if let Some(most) = until_error.filter(|_| done < all && noise::is_checked_in_halves(done.into())) {
                 let error = self.compare_halves(&mut total)?;
                 // NaN and infinity stay: reading the picture says where.
@@ -33,7 +34,6 @@ impl Renderer {
                 }
                 expected = noise::samples_for(most, done.into(), error).min(all.into()) as u32;
             }
-            stage.reach(done.into(), expected.into());
             if interrupt::check().is_err() {
                 break;
             }
@@ -57,12 +57,19 @@ impl Renderer {
 
     /// Makes the pictures of even and of odd runs, and says how far that of all is from what it tends to.
     fn compare_halves(&self, total: &mut FrameTime) -> Result<f64> {
+        let mut read_ns = 0;
         let mut pixels = |of| {
             self.run_picture(of, total)?;
-            Ok::<_, Error>(self.picture_as_is()?.pixels)
+            let began = Instant::now();
+            let pixels = self.picture_as_is()?.pixels;
+            read_ns += began.elapsed().as_nanos() as u64;
+            Ok::<_, Error>(pixels)
         };
         let [even, odd] = [pixels(Runs::Even)?, pixels(Runs::Odd)?];
+        let began = Instant::now();
         let error = noise::error_of_halves([&even, &odd], halves(self.runs.get()));
+        let compare_ns = read_ns + began.elapsed().as_nanos() as u64;
+        total.add_host(vec![(format!("{}.compare", self.part_recording.name), compare_ns)]);
         self.error_of_halves.set(Some(error));
         Ok(error)
     }

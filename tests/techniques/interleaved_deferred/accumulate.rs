@@ -131,8 +131,13 @@ fn runs_end_where_the_error_is_small_enough() {
         let plain = watched.picture(NAME, &both(&way, &[("accumulate", &runs.to_string())]));
         require_same(&watched.session.gpu, &renderer.picture().unwrap(), &plain, &most);
     }
-    let all = watched.render(NAME, &both(&way, &[("until-error", "0.0001"), ("accumulate", "5")]));
-    assert_eq!(all.runs(), (5, 5));
+    // The last run comes after the last look at the error.
+    let [asked, plain] = [&[("until-error", "0.0001")][..], &[]].map(|changes| {
+        let renderer = watched.render(NAME, &both(&both(&way, &[("accumulate", "5")]), changes));
+        assert_eq!(renderer.runs(), (5, 5));
+        renderer.estimated_error().unwrap()
+    });
+    assert_eq!(asked, plain);
 }
 
 /// A frame begins anew: with its first run's lights, and with sums of nothing. Asking how good it is leaves it as it is.
@@ -164,6 +169,9 @@ fn times_are_of_all_runs() {
     assert!(renderer.host_passes.iter().all(|(name, _)| !name.contains("vpls")));
     assert_eq!(time.passes.len(), renderer.passes().len());
     assert!(time.passes.iter().all(|pass| pass.wall_ns.is_some_and(|ns| ns > 0)), "every pass has run");
+    let looked = watched.render_as(NAME, &both(&way, &[("until-error", "0.0001")]), &[], Submits::PerPass);
+    let looked = looked.frame().unwrap();
+    assert!(looked.host.iter().any(|(name, ns)| name.ends_with(".compare") && *ns > 0));
     let walls: u64 = time.passes.iter().filter_map(|pass| pass.wall_ns).sum();
     assert!(walls <= time.wall_ns, "{walls} of {}", time.wall_ns);
 }
