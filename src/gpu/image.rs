@@ -11,7 +11,7 @@ use ash::vk;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
-/// A two-dimensional image, an array of them, or a three-dimensional one.
+/// A two-dimensional image, an array of them, a cube of six, or a three-dimensional one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageDescription {
     pub extent: Extent,
@@ -21,6 +21,8 @@ pub struct ImageDescription {
     pub level_count: u32,
     /// None: a plain image. Some: an array of so many layers, whose views are arrays, of one layer too.
     pub layer_count: Option<u32>,
+    /// Six layers, square, are the faces of a cube, which shaders look up by directions.
+    pub is_cube: bool,
     /// None: a flat image. Some: a three-dimensional one, so many texels deep, of one level, one layer and one sample.
     pub depth: Option<u32>,
     /// Samples a pixel: 1, or another power of two where the image has one level and is only drawn into, resolved, and fetched.
@@ -31,7 +33,17 @@ pub struct ImageDescription {
 impl ImageDescription {
     /// An image of one level and one layer, sampled as it is.
     pub fn plain(extent: Extent, format: vk::Format, samples: u32, usage: vk::ImageUsageFlags) -> Self {
-        Self { extent, format, sampled_as: None, level_count: 1, layer_count: None, depth: None, samples, usage }
+        Self {
+            extent,
+            format,
+            sampled_as: None,
+            level_count: 1,
+            layer_count: None,
+            is_cube: false,
+            depth: None,
+            samples,
+            usage,
+        }
     }
 
     /// Layers, of a plain image one.
@@ -60,8 +72,11 @@ impl ImageDescription {
         let Self { extent, format, level_count, samples, usage, .. } = *self;
         let is_stored_otherwise = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
         let reinterpreted = is_stored_otherwise || self.sampled_as.is_some();
+        let flag = |flag, is_set| if is_set { flag } else { vk::ImageCreateFlags::empty() };
+        let flags = flag(vk::ImageCreateFlags::MUTABLE_FORMAT, reinterpreted)
+            | flag(vk::ImageCreateFlags::CUBE_COMPATIBLE, self.is_cube);
         vk::ImageCreateInfo::default()
-            .flags(if reinterpreted { vk::ImageCreateFlags::MUTABLE_FORMAT } else { vk::ImageCreateFlags::empty() })
+            .flags(flags)
             .image_type(if self.depth.is_some() { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })
             .format(format)
             .extent(vk::Extent3D { width: extent.width, height: extent.height, depth: self.slices() })
@@ -239,6 +254,7 @@ impl Image {
             .layer_count(description.layers());
         let view_type = match description {
             ImageDescription { depth: Some(_), .. } => vk::ImageViewType::TYPE_3D,
+            ImageDescription { is_cube: true, .. } => vk::ImageViewType::CUBE,
             ImageDescription { layer_count: Some(_), .. } => vk::ImageViewType::TYPE_2D_ARRAY,
             _ => vk::ImageViewType::TYPE_2D,
         };

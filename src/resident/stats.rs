@@ -128,14 +128,7 @@ impl SceneStats {
 }
 
 pub fn texture_shape(extent: Extent, format: vk::Format) -> Shape {
-    Shape::Image(ImageDescription {
-        extent,
-        format,
-        sampled_as: None,
-        level_count: mipmaps::level_count(extent.width, extent.height),
-        layer_count: None,
-        depth: None,
-        samples: 1,
-        usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
-    })
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    let level_count = mipmaps::level_count(extent.width, extent.height);
+    Shape::Image(ImageDescription { level_count, ..ImageDescription::plain(extent, format, 1, usage) })
 }

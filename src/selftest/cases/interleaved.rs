@@ -228,6 +228,8 @@ pub const GROUPS: &[Group] = &[
         methods: &[
             &[("vpl-shadow-shape", "cube"), ("vpl-shadow-maps", "64")],
             &[("vpl-shadow-shape", "hemicube"), ("vpl-shadow-maps", "7")],
+            &[("vpl-shadow-shape", "cube"), ("vpl-shadow-index", "cube-map")],
+            &[("vpl-shadow-shape", "hemicube"), ("vpl-shadow-index", "cube-map")],
         ],
         must: Must::Near(ONE_TEXEL),
     },

@@ -3,7 +3,7 @@
 use super::choices::{BlendLights, Direct, StopAt, VplShadow};
 use super::run_settings::is_filtered_once;
 use super::split_method::{Form, ShadeBy, Split, StorageKind};
-use super::vpl_shadow::unrolled::MapShape;
+use super::vpl_shadow::unrolled::{MapIndex, MapShape};
 use crate::passes::filter::{Filter, WalkEnd};
 use crate::settings::{
     BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION,
@@ -135,6 +135,20 @@ pub const SETTINGS: &[Setting] = &[
                that it lights (hemicube), six faces unrolled (cube), or six layers of an array, each drawn by itself (layers); a \
                texel of one is a texel of the others, up to how a device rounds corners",
         unread: without_vpl_maps,
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "vpl-shadow-index",
+        kind: Kind::Choice(MapIndex::WORDS),
+        default: "arithmetic",
+        paper: "Segovia 2006, 4.3",
+        help: "How a direction from a virtual light comes to its texel of an unrolled shadow map: by arithmetic, or, as in the paper, by a \
+               look-up in a small cube of texels' places (cube-map); the same texels, up to how a device rounds the look-up",
+        unread: |values| {
+            let is_unrolled = [MapShape::Hemicube, MapShape::Cube];
+            without_vpl_maps(values)
+                .or_else(|| Unread::unless(values, "vpl-shadow-shape", &is_unrolled, "a layer is found by its number"))
+        },
         ..Setting::changing(Changes::Picture)
     },
     Setting {

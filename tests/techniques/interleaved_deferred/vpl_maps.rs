@@ -83,8 +83,15 @@ fn culled_maps_hold_all_that_is_asked() {
         let way = |changes: Changes<'_>| hidden(watched, &both(&both(&COMMON, &[MAP]), changes));
         let held = way(&[]);
         assert!(held.iter().sum::<u32>() > 0);
-        for changes in [("vpl-shadow-maps", "1"), ("vpl-shadow-shape", "cube"), ("vpl-shadow-shape", "layers")] {
-            let other = apart(&way(&[changes]), &held, 4);
+        let indexed = ("vpl-shadow-index", "cube-map");
+        for changes in [
+            &[("vpl-shadow-maps", "1")][..],
+            &[("vpl-shadow-shape", "cube")],
+            &[("vpl-shadow-shape", "layers")],
+            &[indexed],
+            &[indexed, ("vpl-shadow-shape", "cube"), ("vpl-shadow-maps", "7")],
+        ] {
+            let other = apart(&way(changes), &held, 4);
             println!("{changes:?}: {other:.5} otherwise");
             assert!(other < 0.002, "{changes:?}: {other}");
         }

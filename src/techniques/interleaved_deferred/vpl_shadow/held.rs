@@ -1,6 +1,6 @@
 //! Shadow maps that are held at once, and the turns that lights take; the names of what all this is kept in.
 
-use super::unrolled::MapAtlas;
+use super::unrolled::{MapAtlas, MapIndex, MapShape};
 use crate::caps::Limits;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -25,6 +25,7 @@ const AUTO_BYTES: u64 = 64 << 20;
 #[derive(Clone, Copy, Debug)]
 pub struct VplMaps {
     pub atlas: MapAtlas,
+    pub(super) index: MapIndex,
     pub(super) slope_bias_px: f32,
     pub(super) bias_m: f32,
     pub(super) casters: GeometryChoice,
@@ -41,8 +42,12 @@ impl VplMaps {
         let vpl_count = values.integer("vpls") as u32;
         let most = MapAtlas::most(shape, size_px, limits.max_image_side_px, limits.max_image_layers).min(vpl_count);
         let of = |map_count| MapAtlas::new(shape, size_px, map_count, limits.max_image_side_px);
+        // Layers have no index.
+        let index = if shape == MapShape::Layers { MapIndex::Arithmetic } else { values.choice("vpl-shadow-index") };
         let asked = values.unless_auto("vpl-shadow-maps", Values::integer).map(|count| count as u32);
         let map_count = asked.unwrap_or_else(|| {
+            let index_bytes = if index == MapIndex::CubeMap { of(1).index_description().bytes() } else { 0 };
+            let room_bytes = room_bytes.saturating_sub(index_bytes);
             let bytes = AUTO_BYTES.min(room_bytes).min(limits.max_allocation_bytes);
             (bytes / of(1).description().bytes()).clamp(1, u64::from(most)) as u32
         });
@@ -60,10 +65,19 @@ impl VplMaps {
         }
         Ok(Self {
             atlas: of(map_count),
+            index,
             slope_bias_px: values.number("shadow-slope-bias") as f32,
             bias_m: values.length("shadow-bias", scene.lasting_bounds().diagonal().max(1e-6)),
             casters: values.choice("shadow-casters"),
         })
+    }
+
+    /// The axis MAPS of maps.comp.
+    pub(super) fn axis(&self) -> &'static str {
+        match self.index {
+            MapIndex::Arithmetic => self.atlas.shape.name(),
+            MapIndex::CubeMap => "indexed",
+        }
     }
 
     /// Resolved values.

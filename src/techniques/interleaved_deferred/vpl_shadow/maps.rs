@@ -6,8 +6,9 @@
 use super::super::shade::ShadeGpu;
 use super::draws::{FaceDraws, MapDraws};
 use super::held::{GROUP, MAPS, Turn, VIEWS, VPL_MAPS, VplMaps, drawing_pass, finding_pass, turns};
+use super::index::{self, IndexCube};
 use super::sought::{Sought, clear, groups, params};
-use super::unrolled::MapShape;
+use super::unrolled::{MapIndex, MapShape};
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::sampler::Sampler;
@@ -35,6 +36,7 @@ pub struct HiddenByMaps {
     depth: Image,
     views: Buffer,
     blocks: Buffer,
+    index: Option<IndexCube>,
     nearest: Sampler,
     compare: ComputePipeline,
     params: HiddenParams,
@@ -46,6 +48,9 @@ pub struct HiddenByMaps {
 pub fn plan(plan: &mut Plan, maps: &VplMaps, vpl_count: u32) {
     let count = |a_light: usize| u64::from(vpl_count) * a_light as u64;
     plan.push(GROUP, MAPS, Shape::Image(maps.atlas.description()));
+    if maps.index == MapIndex::CubeMap {
+        index::plan(plan, &maps.atlas);
+    }
     plan.buffer(GROUP, VIEWS, count(maps.atlas.face_count() as usize * size_of::<[[f32; 4]; 4]>()));
     plan.buffer(GROUP, VPL_MAPS, count(size_of::<VplMapBlock>()));
 }
@@ -68,9 +73,20 @@ impl HiddenByMaps {
         let (views, blocks) = (resources.buffer(VIEWS), resources.buffer(VPL_MAPS));
         draws.upload(gpu, &views, &blocks)?;
         let settings = &choices.shading;
-        let own = [("MAP_SIZE", atlas.size_px), ("MAP_COLUMNS", atlas.columns), ("MAP_BIAS", maps.bias_m.to_bits())];
-        let shader = variant(COMP_VARIANTS, &[settings.position.name(), atlas.shape.name()]);
-        let constants = [&settings.workgroup_constants()[..], &own].concat();
+        let own = [("MAP_COLUMNS", atlas.columns), ("MAP_BIAS", maps.bias_m.to_bits())];
+        let shader = variant(COMP_VARIANTS, &[settings.position.name(), maps.axis()]);
+        let mut constants = [&settings.workgroup_constants()[..], &own].concat();
+        let index = match maps.index {
+            MapIndex::Arithmetic => {
+                constants.push(("MAP_SIZE", atlas.size_px));
+                None
+            }
+            MapIndex::CubeMap => {
+                let [width, height] = atlas.tile_px();
+                constants.extend([("MAP_TILE_X", width), ("MAP_TILE_Y", height)]);
+                Some(IndexCube::new(gpu, resources, &atlas)?)
+            }
+        };
         let params = params(choices, least_squared);
         Ok(Self {
             pipelines: CasterPipelines::new(gpu, scene, maps.slope_bias_px)?,
@@ -78,6 +94,7 @@ impl HiddenByMaps {
             depth: resources.image(MAPS),
             views,
             blocks,
+            index,
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
             compare: ComputePipeline::new(gpu, shader, &constants)?,
             groups: groups(choices, &params),
@@ -198,6 +215,7 @@ impl HiddenByMaps {
             let mut bound = lights.bound_to_find(frame, gbuffer.resource, hidden);
             bound.push(("VplMaps", Bound::Buffer(&self.blocks)));
             bound.push(("atlas", Bound::Sampled(&self.depth, self.nearest.handle, Access::ComputeSample)));
+            bound.extend(self.index.iter().map(IndexCube::bound));
             cmd.dispatch(&self.compare, bytemuck::bytes_of(&params), &bound, groups)
         })
     }

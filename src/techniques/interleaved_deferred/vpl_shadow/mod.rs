@@ -10,6 +10,7 @@
 
 mod draws;
 pub mod held;
+mod index;
 mod maps;
 mod rays;
 mod reach;

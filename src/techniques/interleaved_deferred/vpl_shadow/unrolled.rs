@@ -26,6 +26,15 @@ choices! {
     }
 }
 
+choices! {
+    /// How a direction comes to its texel of an unrolled map (`--vpl-shadow-index`).
+    pub enum MapIndex {
+        "arithmetic" => Arithmetic,
+        /// By a look-up in a cube of texels' places.
+        "cube-map" => CubeMap,
+    }
+}
+
 /// Maps that are held at once, in one image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MapAtlas {
@@ -86,7 +95,7 @@ impl MapAtlas {
     }
 
     /// What a map takes of the image, or of its layer.
-    fn tile_px(&self) -> [u32; 2] {
+    pub fn tile_px(&self) -> [u32; 2] {
         let size = self.size_px;
         match self.shape {
             MapShape::Hemicube => [2 * size, 3 * (size / 2)],
@@ -108,6 +117,14 @@ impl MapAtlas {
         ImageDescription { layer_count, ..plain }
     }
 
+    /// The cube in which directions are looked up: six faces, as large as those of a map.
+    pub fn index_description(&self) -> ImageDescription {
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let extent = Extent::new(self.size_px, self.size_px);
+        let plain = ImageDescription::plain(extent, vk::Format::R16G16_UINT, 1, usage);
+        ImageDescription { layer_count: Some(6), is_cube: true, ..plain }
+    }
+
     /// Where a face of the map in `slot` lies.
     pub fn window(&self, slot: u32, face: u32) -> Window {
         let (size, half) = (self.size_px, self.size_px / 2);
@@ -126,6 +143,19 @@ impl MapAtlas {
             _ => ([size, size], Extent::new(size, half)),
         };
         Window { layer: 0, at_px: [tile[0] + first[0], tile[1] + first[1]], extent }
+    }
+
+    /// The texel of the map in the first slot of an unrolled image in which a direction of a light's frame (right, up, normal)
+    /// lies. Twin: maps.comp.
+    pub fn texel_of(&self, away: Vec3) -> [u32; 2] {
+        let (face, axis, across) = face_of(away);
+        let half = (self.size_px / 2) as i32;
+        let [x, y] = across.map(|across| (across / axis.abs() * half as f32).floor() as i32);
+        let is_half = self.shape == MapShape::Hemicube && face > 0;
+        let Window { at_px: [left, top], extent, .. } = self.window(0, face);
+        let (x, y) = (x + half, if is_half { y } else { y + half });
+        let inside = |at: i32, side: u32| at.clamp(0, side as i32 - 1) as u32;
+        [left + inside(x, extent.width), top + inside(y, extent.height)]
     }
 
     /// The faces of a light's map: along its normal, then around it, and for a cube behind it. `bounds`: of all that casts shadows.
@@ -149,6 +179,18 @@ impl MapAtlas {
             Face { view, clip_from_world: if is_half { HALF * whole } else { whole } }
         };
         axes.into_iter().take(self.face_count() as usize).enumerate().map(face).collect()
+    }
+}
+
+/// Where a direction of a light's frame lies: the face, how far along its axis, and across it.
+fn face_of(away: Vec3) -> (u32, f32, [f32; 2]) {
+    let size = away.abs();
+    if size.z >= size.x.max(size.y) {
+        (if away.z < 0.0 { 5 } else { 0 }, away.z, [away.x, away.y])
+    } else if size.x >= size.y {
+        (if away.x < 0.0 { 2 } else { 1 }, away.x, [away.y, away.z])
+    } else {
+        (if away.y < 0.0 { 4 } else { 3 }, away.y, [away.x, away.z])
     }
 }
 
@@ -203,14 +245,7 @@ mod tests {
         let [right, up] = [block.right_ws, block.up_ws].map(Vec4::from_array);
         let away = at_ws - position;
         let away = Vec3::new(away.dot(right.truncate()), away.dot(up.truncate()), away.dot(normal));
-        let size = away.abs();
-        let (face, axis, across) = if size.z >= size.x.max(size.y) {
-            (if away.z < 0.0 { 5 } else { 0 }, away.z, [away.x, away.y])
-        } else if size.x >= size.y {
-            (if away.x < 0.0 { 2 } else { 1 }, away.x, [away.y, away.z])
-        } else {
-            (if away.y < 0.0 { 4 } else { 3 }, away.y, [away.x, away.z])
-        };
+        let (face, axis, across) = face_of(away);
         let half = 0.5 * atlas.size_px as f32;
         let is_half = atlas.shape == MapShape::Hemicube && face > 0;
         let [x, y] = across.map(|at| at / axis.abs() * half);
