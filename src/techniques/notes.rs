@@ -1,6 +1,6 @@
 //! What a technique says of a picture's figures, as lines of the report's text.
 
-use crate::settings::written::WrittenSettings;
+use crate::settings::written::{SettingValue, WrittenSettings};
 use std::collections::BTreeMap;
 
 /// The figures of a picture.
@@ -41,10 +41,20 @@ pub fn direct_light(figures: &Figures<'_>, pass: Option<&str>) -> Option<String>
     ))
 }
 
+/// How far the mean of `samples`, in words, is from what it tends to, and whether that is what `--until-error` asked for; `more`:
+/// the setting that would have more of them.
+pub fn estimated_error(figures: &Figures<'_>, samples: &str, more: &str) -> Vec<String> {
+    let error = figures.counter("estimated_error");
+    let words = error.map_or(String::new(), |error| format!(", estimated error {error:.5}"));
+    let most = figures.settings.get("until-error").and_then(SettingValue::as_f64).filter(|most| *most > 0.0);
+    let missed = most.filter(|most| error.is_some_and(|error| error > *most));
+    let missed = missed.map(|most| format!("  note: --until-error {most} is not reached; a larger {more} would help"));
+    [format!("{samples}{words}")].into_iter().chain(missed).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::written::SettingValue;
     use crate::techniques;
 
     fn told(technique: &str, counters: &[(&str, f64)]) -> Vec<String> {
@@ -73,6 +83,14 @@ mod tests {
                 &[found, &format!("{direct}, 8.00 ns each, 75 % left out by culling")][..],
             ),
             ("interleaved_deferred", &[("vpls", 16.0), ("vpls_found", 16.0)], &[]),
+            (
+                "interleaved_deferred",
+                &[("vpls", 16.0), ("vpls_found", 16.0), ("runs", 5.0), ("estimated_error", 0.25)],
+                &[
+                    "5 runs, estimated error 0.25000",
+                    "  note: --until-error 0.01 is not reached; a larger --accumulate would help",
+                ],
+            ),
             ("deferred", &lights, &[&format!("{direct}, 2.00 ns each, 75 % left out by culling")]),
             ("forward", &lights, &[&format!("{direct}, 75 % left out by culling")]),
             (

@@ -187,7 +187,12 @@ impl Technique for InterleavedDeferred {
             )
         });
         let composite = format!("{NAME}.composite");
-        dark.into_iter().chain(notes::direct_light(figures, Some(&composite))).collect()
+        let runs = figures.counter("runs").map(|runs| {
+            let plural = if runs == 1.0 { "" } else { "s" };
+            notes::estimated_error(figures, &format!("{runs} run{plural}"), "--accumulate")
+        });
+        let direct = notes::direct_light(figures, Some(&composite));
+        dark.into_iter().chain(direct).chain(runs.into_iter().flatten()).collect()
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {

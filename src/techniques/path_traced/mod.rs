@@ -48,7 +48,7 @@ pub mod sample;
 pub mod settings;
 
 use super::bench_stage::BenchStage;
-use super::notes::Figures;
+use super::notes::{self, Figures};
 use super::shutter_close::ShutterClose;
 use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique, emissive_lights};
 use crate::bvh::Bvh;
@@ -67,7 +67,6 @@ use crate::resident::SceneGpu;
 use crate::resident::traced::{Layout, Rays, Reads};
 use crate::resident::volume::PlacedVolume;
 use crate::scene::{AlphaMode, Light, Material, Medium};
-use crate::settings::written::SettingValue;
 use crate::settings::{Brdf, Setting, StackPlace, TREE, VOLUME_PLACE, Values, WORKGROUP};
 use crate::techniques::path_traced::resources::{COLOR, NAME, SUMS};
 use crate::techniques::path_traced::settings::{AmbientVisibility, PixelPlace, RaySource, Transport};
@@ -120,13 +119,8 @@ impl Technique for PathTraced {
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
         let Some(samples) = figures.counter("samples") else { return Vec::new() };
-        let (error, plural) = (figures.counter("estimated_error"), if samples == 1.0 { "" } else { "s" });
-        let words = error.map_or(String::new(), |error| format!(", estimated error {error:.5}"));
-        let most = figures.settings.get("until-error").and_then(SettingValue::as_f64).filter(|most| *most > 0.0);
-        let missed = most.filter(|most| error.is_some_and(|error| error > *most));
-        let missed =
-            missed.map(|most| format!("  note: --until-error {most} is not reached; a larger --spp would help"));
-        [format!("{samples} sample{plural} a pixel{words}")].into_iter().chain(missed).collect()
+        let plural = if samples == 1.0 { "" } else { "s" };
+        notes::estimated_error(figures, &format!("{samples} sample{plural} a pixel"), "--spp")
     }
 
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {

@@ -57,7 +57,11 @@ fn sampling_ends_where_the_error_is_small_enough() {
     assert!(ran.out.contains("20 samples a pixel, estimated error 0."), "{}", ran.out);
     assert!(ran.out.contains("note: --until-error 0.0001 is not reached"), "{}", ran.out);
     program.fails(&small(&["--until-error", "1.5"]), 2, &["--until-error 1.5", "0 to 1"]);
-    program.fails(&["render", "cornell", "--until-error", "0.1"], 2, &["does not read --until-error"]);
+    program.fails(
+        &["render", "cornell", "--technique", "deferred", "--until-error", "0.1"],
+        2,
+        &["does not read --until-error"],
+    );
 }
 
 /// What an EXR of `extent` holds: picture, sums, and texts.
