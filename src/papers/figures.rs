@@ -21,9 +21,13 @@ pub fn seconds() -> Figure {
     figure(FigureKind::Time, |row| Some(of_time(row)?.times(1e-3)))
 }
 
+fn count(row: &BenchRow, name: &str) -> Option<f64> {
+    row.counters.as_ref()?.get(name).copied()
+}
+
 /// What a counter of the report says.
 pub fn counter(name: &'static str) -> Figure {
-    figure(FigureKind::Other, move |row| row.counters.as_ref()?.get(name).copied().map(Number::exact))
+    figure(FigureKind::Other, move |row| count(row, name).map(Number::exact))
 }
 
 /// Frames a second.
@@ -88,14 +92,14 @@ pub fn passes_ms_per_megapixel(passes: &'static [&'static str]) -> Figure {
 /// The same of one light, where each pixel meets as many as the counter says.
 pub fn passes_ms_per_megapixel_and_light(passes: &'static [&'static str], counter: &'static str) -> Figure {
     figure(FigureKind::Other, |row| {
-        let lights = row.counters.as_ref()?.get(counter)?;
+        let lights = count(row, counter)?;
         Some(Number::exact(passes_ms(row, passes)? / megapixels(row)? / lights))
     })
 }
 
 /// Milliseconds of passes for each of what a counter counts.
 pub fn passes_ms_per(passes: &'static [&'static str], counter: &'static str) -> Figure {
-    figure(FigureKind::Other, |row| Some(Number::exact(passes_ms(row, passes)? / row.counters.as_ref()?.get(counter)?)))
+    figure(FigureKind::Other, |row| Some(Number::exact(passes_ms(row, passes)? / count(row, counter)?)))
 }
 
 /// What the method adds to a frame without it, in passes of one light.

@@ -248,7 +248,7 @@ pub const TABLE_5: Item = Item {
     verdict: Verdict::ShapeOnly(
         "The scenes are not ours to ship: an office of our own and halls with as many triangles stand for them. What its 1 % is of is \
          not said; its times are those of 264 to 278 lights a scene, a map and a shading pass (table 3) each. Ours are times until \
-         the estimated relative error of the indirect light is 6 %, which some hundred lights reach here. The speed-up falls from the \
+         the estimated relative error of the indirect light is 6 %, which 256 to 1,024 lights reach here. The speed-up falls from the \
          pattern's 4 towards 1 as maps take the time.",
     ),
     recipe: Some(table_5),
