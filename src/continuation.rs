@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::session::Renderer;
 use crate::settings::Values;
 use crate::settings::written::{SettingValue, WrittenSettings, written};
-use crate::techniques::path_traced::settings::MOST_SAMPLES;
+use crate::techniques::until_error::MOST_SAMPLES;
 use crate::techniques::{Technique, settings_of};
 use crate::units::Extent;
 use serde_json::{Map, Value, json};

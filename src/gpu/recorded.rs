@@ -51,16 +51,10 @@ impl FrameTime {
 
     /// Another run of the same frame, which makes the same picture with it. Statistics become its own, as counters are
     /// those of the last run.
-    pub fn add(&mut self, run: Self) {
-        let sum = |total: &mut Option<u64>, more: Option<u64>| *total = total.zip(more).map(|(a, b)| a + b);
-        self.wall_ns += run.wall_ns;
-        self.host.iter_mut().zip(&run.host).for_each(|((_, total), (_, more))| *total += more);
-        sum(&mut self.device_ns, run.device_ns);
-        self.statistics = run.statistics;
-        for (total, more) in self.passes.iter_mut().zip(&run.passes) {
-            sum(&mut total.wall_ns, more.wall_ns);
-            sum(&mut total.timestamp_ns, more.timestamp_ns);
-        }
+    pub fn add(&mut self, mut run: Self) {
+        self.add_host(std::mem::take(&mut run.host));
+        let all: Vec<usize> = (0..run.passes.len()).collect();
+        self.add_part(run, &all);
     }
 
     /// Nothing yet of a frame of `pass_count` passes, to which its parts are added.

@@ -13,8 +13,13 @@ const LEAST_SAMPLES: u64 = 16;
 /// Whether `--until-error` looks at the error after this many samples a pixel: 16, 24, 32, 48, 64 and so on, so that what
 /// is sampled in vain is at most half of what is needed, and looking costs nothing beside sampling.
 pub fn is_checked(sample_count: u64) -> bool {
-    let odd_part = sample_count >> sample_count.trailing_zeros().min(63);
-    sample_count >= LEAST_SAMPLES && (odd_part == 1 || odd_part == 3)
+    sample_count >= LEAST_SAMPLES && is_round(sample_count)
+}
+
+/// Whether a count is a power of two, or three of one.
+fn is_round(count: u64) -> bool {
+    let odd_part = count >> count.trailing_zeros().min(63);
+    odd_part == 1 || odd_part == 3
 }
 
 /// The estimated relative standard error of a picture: the root of the mean over pixels of V / (|m|^2 + 0.03), where m is
@@ -41,8 +46,7 @@ pub fn relative_error(sums: &[[f32; 4]], sample_count: u64) -> f64 {
 /// Whether `--until-error` looks at the error of two halves after this many runs: 2, 4, 6, 8, 12, 16 and so on, so that both halves
 /// have as many.
 pub fn is_checked_in_halves(run_count: u64) -> bool {
-    let odd_part = run_count >> run_count.trailing_zeros().min(63);
-    run_count.is_multiple_of(2) && run_count > 0 && (odd_part == 1 || odd_part == 3)
+    run_count.is_multiple_of(2) && is_round(run_count)
 }
 
 /// The estimate of `relative_error` for a picture that is the mean of two: `halves`, row-major, of as many independent runs each as

@@ -163,7 +163,7 @@ impl Renderer {
     ///
     /// Errors: memory for the copy (exit code 4).
     pub fn estimated_error(&self) -> Result<Option<f64>> {
-        if self.frame.in_parts().is_some() {
+        if self.is_in_parts() {
             return self.error_in_parts();
         }
         let count = self.runs.get();

@@ -24,6 +24,7 @@ pub mod path_traced;
 pub mod patterns;
 mod shutter_close;
 pub mod stages;
+pub mod until_error;
 
 pub use all::{ALL, DEFAULT_TECHNIQUE, find};
 

@@ -1,7 +1,7 @@
 //! The choices that the settings make, and what is refused because it cannot be made.
 
 use super::mapping::mapping;
-use super::run_settings::{run_count, until_error};
+use super::run_settings::run_count;
 use super::split_method::{Copier, Copies, Form, MaskKind, ShadeBy, SplitMethod};
 use super::sub_buffers::{Stage, Storage};
 use super::subsets::subsets;
@@ -18,6 +18,7 @@ use crate::passes::workgroup;
 use crate::sampling::pattern::Pattern;
 use crate::settings::{PositionStorage, Values, WORKGROUP};
 use crate::techniques::interleaved_deferred::resources::NAME;
+use crate::techniques::until_error::until_error;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Bytes;
 use std::collections::BTreeMap;

@@ -165,10 +165,9 @@ impl InterleavedFrame {
         cmd: &mut Commands,
         scene: &SceneGpu,
         frame: &Buffer,
-        run: u32,
+        (accumulate, run): (&Accumulate, u32),
         (gbuffer, irradiance): (Edge<'a, GBuffer>, Edge<'a, Buffer>),
     ) -> Result<(Edge<'a, GBuffer>, Edge<'a, Buffer>)> {
-        let accumulate = self.accumulate.as_ref().expect("it is planned with many runs");
         if let Some(layer) = accumulate.layer() {
             self.record_blend(cmd, scene, frame, gbuffer, layer.from(Access::ComputeRead))?;
             gbuffer.resource.restore_depth(cmd);

@@ -308,7 +308,7 @@ impl Frame for InterleavedFrame {
             let gbuffer = self.record_solid(cmd, frame, (gbuffer, written), irradiance)?;
             return self.record_blend(cmd, scene, frame, gbuffer, self.color.from(written));
         };
-        let (gbuffer, irradiance) = self.record_run(cmd, scene, frame, 0, (gbuffer, irradiance))?;
+        let (gbuffer, irradiance) = self.record_run(cmd, scene, frame, (accumulate, 0), (gbuffer, irradiance))?;
         let one = (Runs::All, 1);
         let mean = accumulate.record_mean(cmd, one, written, irradiance)?;
         self.record_solid(cmd, frame, (gbuffer, written), mean)?;
@@ -335,7 +335,7 @@ impl Frame for InterleavedFrame {
                 let is_first = run == 0;
                 let gbuffer = if is_first { self.record_opening(cmd, scene, frame)? } else { self.gbuffer.drawn() };
                 let irradiance = self.record_irradiance(cmd, scene, (frame, is_first), gbuffer)?;
-                self.record_run(cmd, scene, frame, run, irradiance)?;
+                self.record_run(cmd, scene, frame, (accumulate, run), irradiance)?;
                 Ok(())
             }
             Part::Picture { of, run_count } => {

@@ -1,15 +1,13 @@
 //! The settings of progressive rendering: how many runs with lights of their own a picture has (Segovia 2006, section 6.3).
 
 use crate::settings::{Changes, Kind, Setting, Unread, Values};
-
-/// Runs of a picture, at most: float sums of more lose what a run adds.
-const MOST_RUNS: u32 = 1 << 16;
+use crate::techniques::until_error::{MOST_SAMPLES, sample_count};
 
 /// Its rows of the table.
 pub const RUNS: &[Setting] = &[
     Setting {
         key: "accumulate",
-        kind: Kind::Integer { min: 1, max: MOST_RUNS as u64 },
+        kind: Kind::Integer { min: 1, max: MOST_SAMPLES as u64 },
         auto: true,
         default: "auto",
         paper: "Segovia 2006, 6.3",
@@ -30,15 +28,9 @@ pub const RUNS: &[Setting] = &[
     },
 ];
 
-/// The error that `--until-error` asks for; None: no such bound.
-pub fn until_error(values: &Values) -> Option<f64> {
-    Some(values.number("until-error")).filter(|error| *error > 0.0)
-}
-
-/// Runs of a picture, at most where `until_error` ends them.
+/// Runs of a picture, at most where an error ends them.
 pub fn run_count(values: &Values) -> u32 {
-    let auto = if until_error(values).is_some() { MOST_RUNS } else { 1 };
-    values.unless_auto("accumulate", Values::integer).map_or(auto, |count| count as u32)
+    sample_count(values, "accumulate", 1)
 }
 
 /// Why nothing reads a setting that the filter of one run alone has.

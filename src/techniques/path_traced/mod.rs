@@ -50,6 +50,7 @@ pub mod settings;
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
 use super::shutter_close::ShutterClose;
+use super::until_error::{sample_count, until_error};
 use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique, emissive_lights};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
@@ -126,7 +127,7 @@ impl Technique for PathTraced {
     fn prepare(&self, inputs: &Inputs<'_>) -> Result<Box<dyn Prepared>> {
         let bvh = inputs.bvh.whole(inputs.scene)?;
         let sources = Sources::new(inputs, bvh)?;
-        let sample_count = settings::sample_count(inputs.values);
+        let sample_count = sample_count(inputs.values, "spp", settings::DEFAULT_SAMPLES);
         let choices = choices(inputs, &sources)?;
         Ok(Box::new(PreparedPaths { choices, sources, layout: layout(inputs, bvh)?, sample_count }))
     }
@@ -358,7 +359,7 @@ impl PreparedPaths {
         Ok(Box::new(PathFrame {
             sample,
             sample_count: self.sample_count,
-            until_error: settings::until_error(inputs.values),
+            until_error: until_error(inputs.values),
             tree,
         }))
     }

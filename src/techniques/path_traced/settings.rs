@@ -4,24 +4,13 @@ use crate::choice::choices;
 use crate::resident::traced::TexelLevels;
 use crate::settings::{
     APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting,
-    Unread, VOLUME, VPL_CLAMP, Values, WORKGROUP, volume_name,
+    Unread, VOLUME, VPL_CLAMP, WORKGROUP, volume_name,
 };
 use crate::shading::medium::Medium;
+use crate::techniques::until_error::MOST_SAMPLES;
 
-/// Paths a pixel, at most: float sums of more lose what a path adds.
-pub const MOST_SAMPLES: u32 = 1 << 16;
-const DEFAULT_SAMPLES: u32 = 64;
-
-/// The error that `--until-error` asks for; None: no such bound.
-pub fn until_error(values: &Values) -> Option<f64> {
-    Some(values.number("until-error")).filter(|error| *error > 0.0)
-}
-
-/// Paths a pixel, at most where `until_error` ends them.
-pub fn sample_count(values: &Values) -> u32 {
-    let auto = if until_error(values).is_some() { MOST_SAMPLES } else { DEFAULT_SAMPLES };
-    values.unless_auto("spp", Values::integer).map_or(auto, |count| count as u32)
-}
+/// Paths a pixel where nothing says how many.
+pub const DEFAULT_SAMPLES: u32 = 64;
 
 choices! {
     /// Light that is counted (`--transport`).
